@@ -1,0 +1,169 @@
+"""A forward model made of a function of the user's, a wrapper around another solver included."""
+
+import hashlib
+import inspect
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from dalembert.errors import InputError, SolveError, unknown
+from dalembert.forward.model import Channel, Coordinate, ForwardModel
+from dalembert.forward.responses import Responses
+from dalembert.parameters import Parameter, Parameters
+
+DERIVATIVES = ("complex-step", "central-differences")
+
+
+@dataclass(frozen=True)
+class PythonModel:
+    """A forward model from ``function(**parameters) -> (samples, channels)``.
+
+    Parameters
+    ----------
+    function : callable
+        Called with the parameters by name; returns an array of shape (samples, channels), or (samples,)
+        for one channel.
+    parameters : mapping of str to (lower, upper), or Parameters
+    channels : sequence of str or Channel
+    samples : array, shape (samples,)
+        What the samples lie along, by default times in seconds.
+    coordinate, unit : str
+        Name and unit of ``samples``.
+    derivative : {"complex-step", "central-differences"}
+        The complex step is exact, and needs a function that runs in complex numbers.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> times = np.linspace(0, 1, 3)
+    >>> decay = PythonModel(lambda rate: np.exp(-rate * times), {"rate": (0.1, 2.0)}, ["x"], times)
+    >>> decay.evaluate(np.array([[1.0]])).values.shape
+    (1, 3, 1)
+    >>> decay.jacobian(np.array([1.0]))[:, 0, 0].round(4).tolist()
+    [-0.0, -0.3033, -0.3679]
+    """
+
+    function: Callable[..., np.ndarray]
+    parameters: Parameters
+    channels: tuple[Channel, ...]
+    coordinate: Coordinate
+    derivative: str = "complex-step"
+    kept: int | None = field(default=None, repr=False)
+
+    def __init__(
+        self,
+        function: Callable[..., np.ndarray],
+        parameters: Parameters | Mapping[str, Parameter | tuple[float, float]],
+        channels: Iterable[str | Channel],
+        samples: np.ndarray,
+        *,
+        coordinate: str = "time",
+        unit: str = "s",
+        derivative: str = "complex-step",
+        kept: int | None = None,
+    ) -> None:
+        if derivative not in DERIVATIVES:
+            raise InputError(unknown("derivative", derivative, DERIVATIVES))
+        given = tuple(Channel(entry) if isinstance(entry, str) else entry for entry in channels)
+        for name, value in (
+            ("function", function),
+            ("parameters", Parameters.of(parameters)),
+            ("channels", given),
+            ("coordinate", Coordinate(coordinate, unit, np.asarray(samples, dtype=float)[:kept])),
+            ("derivative", derivative),
+            ("kept", kept),
+        ):
+            object.__setattr__(self, name, value)
+
+    @property
+    def fingerprint(self) -> str:
+        """Hash of the function's source, the parameters' names, the channels and the samples."""
+        try:
+            source = inspect.getsource(self.function)
+        except (OSError, TypeError):
+            source = repr(self.function)
+        text = "\n".join([source, *self.parameters.names, *(channel.name for channel in self.channels)])
+        return hashlib.sha256(text.encode() + self.coordinate.values.tobytes()).hexdigest()
+
+    def evaluate(self, vectors: np.ndarray) -> Responses:
+        """Responses of a batch, one call of the function after another."""
+        vectors = np.atleast_2d(vectors)
+        values = np.full((len(vectors), *self._shape), np.nan)
+        failures: list[str | None] = []
+        for row, vector in enumerate(vectors):
+            try:
+                values[row] = self._call(vector)
+                failures.append(None)
+            except Exception as error:  # whatever the user's function raises is this sample's failure
+                failures.append(f"{type(error).__name__}: {error}")
+        return Responses(values, tuple(failures))
+
+    def jacobian(self, vector: np.ndarray) -> np.ndarray:
+        """Derivative of the response, shape (samples, channels, parameters)."""
+        vector = np.asarray(vector, dtype=float)
+        jacobian = np.empty((*self._shape, len(vector)))
+        for column, scale in enumerate(self.parameters.scale):
+            jacobian[:, :, column] = (
+                self._complex_step(vector, column)
+                if self.derivative == "complex-step"
+                else self._central_difference(vector, column, scale * np.finfo(float).eps ** (1 / 3))
+            )
+        return jacobian
+
+    def linearise(self, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Response (samples, channels) and its jacobian (samples, channels, parameters)."""
+        return self._call(np.asarray(vector, dtype=float)), self.jacobian(vector)
+
+    def first(self, samples: int) -> ForwardModel:
+        """The same model, cut to its first ``samples`` samples."""
+        return PythonModel(
+            self.function,
+            self.parameters,
+            self.channels,
+            self.coordinate.values,
+            coordinate=self.coordinate.name,
+            unit=self.coordinate.unit,
+            derivative=self.derivative,
+            kept=samples,
+        )
+
+    @property
+    def _shape(self) -> tuple[int, int]:
+        return len(self.coordinate.values), len(self.channels)
+
+    def _call(self, vector: np.ndarray) -> np.ndarray:
+        response = np.asarray(self.function(**dict(zip(self.parameters.names, vector, strict=True))))
+        if response.ndim == 1:
+            response = response[:, None]
+        response = response[: self.kept]
+        if response.shape != self._shape:
+            raise InputError(
+                f"the model's function returned an array of shape {response.shape}; "
+                f"expected (samples, channels) = {self._shape}"
+            )
+        if not np.all(np.isfinite(response)):
+            raise SolveError("the model's function returned a value that is not finite")
+        return response
+
+    def _complex_step(self, vector: np.ndarray, column: int, step: float = 1e-30) -> np.ndarray:
+        moved = vector.astype(complex)
+        moved[column] += 1j * step
+        try:
+            response = self._call(moved)
+        except TypeError as error:
+            raise InputError(
+                "the model's function cannot run in complex numbers "
+                f"({error}); give derivative='central-differences', or make it complex-safe"
+            ) from error
+        if not np.iscomplexobj(response):
+            raise InputError(
+                "the model's function drops the imaginary part of its parameters, so its complex-step derivative would "
+                "be zero; give derivative='central-differences', or make it complex-safe"
+            )
+        return response.imag / step
+
+    def _central_difference(self, vector: np.ndarray, column: int, step: float) -> np.ndarray:
+        moved = np.zeros_like(vector)
+        moved[column] = step
+        return (self._call(vector + moved) - self._call(vector - moved)) / (2 * step)

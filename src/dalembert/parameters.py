@@ -71,7 +71,8 @@ class Parameters:
 
     @classmethod
     def of(
-        cls, given: "Parameters | Mapping[str, Parameter | tuple[float, float]] | list[Parameter] | tuple[Parameter, ...]"
+        cls,
+        given: "Parameters | Mapping[str, Parameter | tuple[float, float]] | list[Parameter] | tuple[Parameter, ...]",
     ) -> "Parameters":
         """Parameters from a mapping of names to bounds (or to :class:`Parameter`), or from a list."""
         if isinstance(given, Parameters):
@@ -125,12 +126,15 @@ class Parameters:
                     raise InputError(unknown("parameter", name, self.names))
             missing = [name for name in self.names if name not in values]
             if missing:
-                raise InputError(f"no value given for parameter {missing[0]!r}; expected all of {', '.join(self.names)}")
+                raise InputError(
+                    f"no value given for parameter {missing[0]!r}; expected all of {', '.join(self.names)}"
+                )
             return np.array([values[name] for name in self.names])
         vector = np.asarray(values)
         if vector.shape != (len(self),):
             raise InputError(
-                f"a parameter vector of shape {vector.shape} was given; expected ({len(self)},) for {', '.join(self.names)}"
+                f"a parameter vector of shape {vector.shape} was given; "
+                f"expected ({len(self)},) for {', '.join(self.names)}"
             )
         return vector
 

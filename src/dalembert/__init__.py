@@ -1,0 +1,42 @@
+"""Simulate mechanical systems, identify their parameters from measured motion, and bound what is uncertain.
+
+The public names are imported where they are first used, so that ``import dalembert`` costs almost nothing;
+``__init__.pyi`` says the same to type checkers and editors.
+"""
+
+from importlib import import_module
+
+__version__ = "0.1.0"
+
+_MODULES = ("errors", "parameters", "forward", "optimize", "data", "inverse", "multibody", "report", "study")
+
+_NAMES = {
+    "errors": "DalembertError InputError ModelError SolveError DataError",
+    "parameters": "Parameter Parameters",
+    "forward": "Channel Coordinate ForwardModel PythonModel Responses",
+    "optimize": "ImprovedParticleSwarm LeastSquares Minimiser ParticleSwarm",
+    "data": "Measurements read_csv",
+    "inverse": "Fit identify",
+    "multibody": """
+        System AncfBeam AncfCable RigidBody RigidBar PointMass Point
+        RevoluteJoint PrismaticJoint FixedJoint DistanceJoint PrescribedMotion
+        Force Torque Spring TorsionSpring UserForce
+        Step Harmonic Polynomial Table Custom
+        GeneralizedAlpha TimeResponse Trajectory simulate equilibrium modes
+    """,
+}
+_HOME = {name: module for module, names in _NAMES.items() for name in names.split()}
+
+__all__ = ["__version__", *_HOME, *_MODULES]  # noqa: PLE0604 (every entry is a string)
+
+
+def __getattr__(name: str) -> object:
+    if name in _HOME:
+        return getattr(import_module(f"{__name__}.{_HOME[name]}"), name)
+    if name in _MODULES:
+        return import_module(f"{__name__}.{name}")
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -27,8 +27,6 @@ _NAMES = {
 }
 _HOME = {name: module for module, names in _NAMES.items() for name in names.split()}
 
-__all__ = ["__version__", *_HOME, *_MODULES]  # noqa: PLE0604 (every entry is a string)
-
 
 def __getattr__(name: str) -> object:
     if name in _HOME:
@@ -39,4 +37,4 @@ def __getattr__(name: str) -> object:
 
 
 def __dir__() -> list[str]:
-    return sorted(__all__)
+    return sorted(["__version__", *_HOME, *_MODULES])

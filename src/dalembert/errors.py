@@ -28,7 +28,7 @@ def unknown(what: str, given: str, known: Iterable[str], where: str = "") -> str
     """Sentence for an unknown name, with the closest known ones.
 
     >>> unknown("channel", "AB.end.z", ["AB.end.x", "AB.end.y", "OA.end.x"])
-    "unknown channel 'AB.end.z'; did you mean 'AB.end.x' or 'AB.end.y'?"
+    "unknown channel 'AB.end.z'; did you mean 'AB.end.y' or 'AB.end.x'?"
     """
     names = sorted(known)
     close = get_close_matches(given, names, n=2, cutoff=0.6)

@@ -79,10 +79,7 @@ class Parameters:
             return given
         if isinstance(given, Mapping):
             return cls(
-                tuple(
-                    entry if isinstance(entry, Parameter) else Parameter(name, *map(float, entry))
-                    for name, entry in given.items()
-                )
+                tuple(entry if isinstance(entry, Parameter) else _within(name, entry) for name, entry in given.items())
             )
         return cls(tuple(given))
 
@@ -145,3 +142,11 @@ class Parameters:
     def clip(self, vectors: np.ndarray) -> np.ndarray:
         """Vectors of shape (..., parameters) moved onto the bounds where they lie outside."""
         return np.clip(vectors, self.lower, self.upper)
+
+
+def _within(name: str, bounds: tuple[float, float]) -> Parameter:
+    try:
+        lower, upper = map(float, bounds)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"parameter {name!r}: bounds are {bounds!r}; expected two numbers, (lower, upper)") from error
+    return Parameter(name, lower, upper)

@@ -161,7 +161,7 @@ class PythonModel:
                 "the model's function drops the imaginary part of its parameters, so its complex-step derivative would "
                 "be zero; give derivative='central-differences', or make it complex-safe"
             )
-        return response.imag / step
+        return np.imag(response) / step
 
     def _central_difference(self, vector: np.ndarray, column: int, step: float) -> np.ndarray:
         moved = np.zeros_like(vector)

@@ -1,0 +1,80 @@
+# Needs only make and Python 3.11 or newer: every target makes its own environment in .venv.
+
+SHELL := /bin/sh
+.DEFAULT_GOAL := help
+.SUFFIXES:
+.PHONY: help demo checks test verify validation docs bench clean
+
+DEMO_STUDY := studies/flexible-pendulum/identify.toml
+DEMO_RUN := runs/demo
+EVIDENCE := build/evidence.json
+ALL := slow or not slow
+
+# The first of these that runs, is new enough and can make an environment; PYTHON=... on the command line wins.
+CANDIDATES := python3.13 python3.12 python3.11 python3 python
+USABLE := import sys, venv, ensurepip; sys.exit(sys.version_info < (3, 11))
+PYTHON ?= $(firstword $(foreach candidate,$(CANDIDATES),\
+	$(shell $(candidate) -c "$(USABLE)" >/dev/null 2>&1 && echo $(candidate))))
+
+BIN := .venv/bin
+PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
+
+help:
+	@echo "make demo        identify a flexible double pendulum from measured motion, and write its report"
+	@echo "make test        format, lint, types, floors, tests (what a change must pass)"
+	@echo "make verify      make test, the slow tests too, and whether the validation page is up to date"
+	@echo "make validation  regenerate docs/validation.md from a full run of the verification tests"
+	@echo "make docs        the documentation, as HTML in docs/_build"
+	@echo "make bench       speed, beside a peer"
+	@echo "make clean       remove the environment and everything built"
+
+demo: .venv/core.stamp
+	$(BIN)/dalembert run $(DEMO_STUDY) --out $(DEMO_RUN)
+	@echo "The report: $(CURDIR)/$(DEMO_RUN)/report.html"
+
+checks: .venv/test.stamp
+	$(BIN)/ruff format --check
+	$(BIN)/ruff check
+	$(BIN)/pyright
+	$(BIN)/lint-imports
+
+test: checks
+	$(BIN)/pytest
+
+verify: checks
+	$(BIN)/pytest -m "$(ALL)" --evidence=$(EVIDENCE)
+	$(BIN)/python docs/validation.py $(EVIDENCE) --check
+
+validation: .venv/test.stamp
+	$(BIN)/pytest tests -m "$(ALL)" --evidence=$(EVIDENCE)
+	$(BIN)/python docs/validation.py $(EVIDENCE)
+
+docs: .venv/docs.stamp
+	$(BIN)/sphinx-build --fail-on-warning --keep-going --quiet docs docs/_build
+	@echo "The documentation: $(CURDIR)/docs/_build/index.html"
+
+bench: .venv/bench.stamp
+	$(BIN)/python benchmarks/run.py
+
+clean:
+	rm -rf .venv build dist docs/_build .pytest_cache .ruff_cache .import_linter_cache .hypothesis
+	find src tests studies benchmarks docs -name __pycache__ -type d -prune -exec rm -rf {} + 2>/dev/null || true
+
+.venv/bin/python:
+	@test -n "$(PYTHON)" || { echo "No usable Python was found (looked for $(CANDIDATES))." \
+		"dalembert needs Python 3.11 or newer with the venv module: install one" \
+		"(on Debian and Ubuntu: python3 and python3-venv), or name one with 'make PYTHON=/path/to/python3.11'."; exit 1; } >&2
+	@$(PYTHON) -c "$(USABLE)" || { echo "'$(PYTHON)' is older than Python 3.11, or has no venv module:" \
+		"name a newer one with 'make PYTHON=/path/to/python3.11'."; exit 1; } >&2
+	$(PYTHON) -m venv .venv
+
+# One stamp an environment; it is made anew when the dependencies change.
+.venv/core.stamp: .venv/bin/python pyproject.toml constraints.txt
+	$(PIP) hatchling editables
+	$(PIP) --no-build-isolation --editable .
+	@touch $@
+
+.venv/%.stamp: .venv/bin/python pyproject.toml constraints.txt
+	$(PIP) hatchling editables
+	$(PIP) --no-build-isolation --editable ".[$*]"
+	@touch $@

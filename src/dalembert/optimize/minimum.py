@@ -1,0 +1,81 @@
+"""What every minimiser takes and returns: a batch objective, progress, a minimum."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from dalembert.errors import InputError
+
+Objective = Callable[[np.ndarray], np.ndarray]
+"""Fitness of a batch, (batch, parameters) to (batch,); NaN or an infinity marks a sample that failed."""
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How far a minimiser has come.
+
+    Parameters
+    ----------
+    iteration, evaluations : int
+    best : float
+        Lowest fitness so far; infinite while every sample has failed.
+    x : array, shape (parameters,)
+        Where it was found.
+    """
+
+    iteration: int
+    evaluations: int
+    best: float
+    x: np.ndarray
+
+
+OnIteration = Callable[[Progress], None]
+
+
+@dataclass(frozen=True)
+class Minimum:
+    """Where a minimiser ended.
+
+    Parameters
+    ----------
+    x : array, shape (parameters,)
+    fitness : float
+        Infinite if every sample failed.
+    success : bool
+    message : str
+        Why it stopped, in a sentence.
+    iterations, evaluations : int
+    """
+
+    x: np.ndarray
+    fitness: float
+    success: bool
+    message: str
+    iterations: int
+    evaluations: int
+
+
+def fitness_of(objective: Objective, points: np.ndarray) -> np.ndarray:
+    """Fitness of a batch, shape (batch,), with every failed sample infinitely bad.
+
+    >>> fitness_of(lambda x: np.array([1.0, np.nan, -np.inf]), np.zeros((3, 2)))
+    array([ 1., inf, inf])
+    """
+    values = np.asarray(objective(points), dtype=float)
+    if values.shape != (len(points),):
+        raise InputError(
+            f"the objective returned an array of shape {values.shape}; expected ({len(points)},), one number a point"
+        )
+    return np.where(np.isfinite(values), values, np.inf)
+
+
+def box(lower: ArrayLike, upper: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
+    """The two corners of a search box as arrays of shape (parameters,), checked."""
+    low, high = np.array(lower, dtype=float, ndmin=1), np.array(upper, dtype=float, ndmin=1)
+    if low.ndim != 1 or low.shape != high.shape or not np.all(np.isfinite(low) & np.isfinite(high) & (low < high)):
+        raise InputError(
+            f"bounds are {low.tolist()} and {high.tolist()}; expected two vectors of one length, finite, lower < upper"
+        )
+    return low, high

@@ -1,0 +1,167 @@
+"""What particle swarms share: their state, one step of it, and the loop."""
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from dalembert.errors import InputError
+from dalembert.optimize.minimum import Minimum, Objective, OnIteration, Progress, box, fitness_of
+
+
+@dataclass(frozen=True)
+class SwarmState:
+    """A swarm between two iterations: all that is needed to go on, and to go on with the same bits.
+
+    Each iteration draws from a generator of its own, seeded with (seed, iteration), so no generator's inner state
+    has to be kept.
+
+    Parameters
+    ----------
+    seed, iteration, evaluations : int
+        ``iteration`` counts evaluated swarms, the first random one included.
+    lower, upper : array, shape (parameters,)
+    positions, velocities : array, shape (particles, parameters)
+    own, own_fitness : array, shape (particles, parameters), (particles,)
+        Best position of each particle so far.
+    quality, quality_fitness : array, shape (kept, parameters), (kept,)
+        Good positions that the swarm remembers, best first; empty for swarms without such a memory.
+    """
+
+    seed: int
+    iteration: int
+    evaluations: int
+    lower: np.ndarray
+    upper: np.ndarray
+    positions: np.ndarray
+    velocities: np.ndarray
+    own: np.ndarray
+    own_fitness: np.ndarray
+    quality: np.ndarray
+    quality_fitness: np.ndarray
+
+    @property
+    def best(self) -> np.ndarray:
+        """Best position of all, shape (parameters,)."""
+        return self.own[np.argmin(self.own_fitness)]
+
+    @property
+    def best_fitness(self) -> float:
+        return float(np.min(self.own_fitness))
+
+    @property
+    def progress(self) -> Progress:
+        return Progress(self.iteration, self.evaluations, self.best_fitness, self.best)
+
+
+@dataclass(frozen=True)
+class Swarm(ABC):
+    """Base of the swarms: a whole swarm is one batch, and ``advance`` is one iteration.
+
+    Parameters
+    ----------
+    particles : int
+    iterations : int
+        Evaluated swarms, the first random one included, so a run costs particles × iterations evaluations.
+    """
+
+    particles: int = 40
+    iterations: int = 100
+
+    def __post_init__(self) -> None:
+        for name in ("particles", "iterations"):
+            if getattr(self, name) < 1:
+                raise InputError(f"{type(self).__name__}: {name} is {getattr(self, name)}; expected at least 1")
+
+    def start(
+        self, objective: Objective, lower: ArrayLike, upper: ArrayLike, seed: int, start: ArrayLike | None = None
+    ) -> SwarmState:
+        """Scatter the particles evenly at random over the box, at random velocities, and evaluate them.
+
+        Parameters
+        ----------
+        objective : callable
+            Batch (particles, parameters) to fitness (particles,); NaN marks a failed sample.
+        lower, upper : array, shape (parameters,)
+        seed : int
+        start : array, shape (parameters,), optional
+            Where the first particle begins.
+        """
+        low, high = box(lower, upper)
+        rng = np.random.default_rng((seed, 0))
+        positions = low + (high - low) * rng.random((self.particles, len(low)))
+        if start is not None:
+            positions[0] = np.clip(start, low, high)
+        limit = self.velocity_bound(low, high)
+        velocities = limit * (2 * rng.random(positions.shape) - 1)
+        empty = np.empty((0, len(low)))
+        fitness = fitness_of(objective, positions)
+        quality = self.remember(empty, np.empty(0), positions, fitness)
+        return SwarmState(seed, 1, len(positions), low, high, positions, velocities, positions, fitness, *quality)
+
+    def advance(self, state: SwarmState, objective: Objective) -> SwarmState:
+        """The state one iteration later."""
+        rng = np.random.default_rng((state.seed, state.iteration))
+        positions, velocities = self.move(state, rng)
+        fitness = fitness_of(objective, positions)
+        better = fitness < state.own_fitness
+        return SwarmState(
+            state.seed,
+            state.iteration + 1,
+            state.evaluations + len(positions),
+            state.lower,
+            state.upper,
+            positions,
+            velocities,
+            np.where(better[:, None], positions, state.own),
+            np.where(better, fitness, state.own_fitness),
+            *self.remember(state.quality, state.quality_fitness, positions, fitness),
+        )
+
+    def minimise(
+        self,
+        objective: Objective,
+        lower: ArrayLike,
+        upper: ArrayLike,
+        seed: int,
+        *,
+        start: ArrayLike | None = None,
+        on_iteration: OnIteration | None = None,
+    ) -> Minimum:
+        """Smallest fitness found in the box; parameters as in :meth:`start`.
+
+        ``on_iteration`` is called with a :class:`Progress` after each evaluated swarm.
+        """
+        state = self.start(objective, lower, upper, seed, start)
+        while True:
+            if on_iteration is not None:
+                on_iteration(state.progress)
+            if state.iteration >= self.iterations:
+                return self.end(state)
+            state = self.advance(state, objective)
+
+    def end(self, state: SwarmState) -> Minimum:
+        """What a swarm found when it stops in this state."""
+        found = bool(np.isfinite(state.best_fitness))
+        message = f"all {state.iteration} iterations done" if found else "every sample of the swarm failed"
+        return Minimum(state.best, state.best_fitness, found, message, state.iteration, state.evaluations)
+
+    @abstractmethod
+    def velocity_bound(self, lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
+        """Largest speed a parameter, shape (parameters,); also the spread of the first velocities."""
+
+    @abstractmethod
+    def move(self, state: SwarmState, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+        """New positions and velocities, each (particles, parameters), inside their bounds."""
+
+    def remember(
+        self, kept: np.ndarray, kept_fitness: np.ndarray, positions: np.ndarray, fitness: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Good positions and their fitness after new ones were seen; a plain swarm remembers none."""
+        return kept, kept_fitness
+
+
+def pulled(rng: np.random.Generator, strength: float, towards: np.ndarray, positions: np.ndarray) -> np.ndarray:
+    """The pull c·r·(target − x) with r evenly random in [0, 1] for each particle and parameter."""
+    return strength * rng.random(positions.shape) * (towards - positions)

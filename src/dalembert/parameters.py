@@ -25,6 +25,9 @@ class Parameter:
         Typical size; the larger absolute bound if not given.
     start : float, optional
         First guess; the middle of the bounds if not given.
+    log : bool, optional
+        Whether the identification searches its logarithm, so that factors count and not differences. If not given:
+        where both bounds are positive and more than a decade apart.
     """
 
     name: str
@@ -33,6 +36,7 @@ class Parameter:
     unit: str = ""
     scale: float | None = None
     start: float | None = None
+    log: bool | None = None
 
     def __post_init__(self) -> None:
         if not (np.isfinite(self.lower) and np.isfinite(self.upper) and self.lower < self.upper):
@@ -47,6 +51,16 @@ class Parameter:
                 f"parameter {self.name!r}: start {self.start} lies outside its bounds "
                 f"({self.lower}, {self.upper}); widen the bounds or move the start"
             )
+        if self.log and not self.lower > 0:
+            raise InputError(
+                f"parameter {self.name!r}: its logarithm is to be searched, but its lower bound is {self.lower}; "
+                "expected a positive one; raise the bound or leave log out"
+            )
+
+    @property
+    def logarithmic(self) -> bool:
+        """Whether its logarithm is searched: as ``log`` says, or for positive bounds more than a decade apart."""
+        return self.log if self.log is not None else 0 < 10 * self.lower < self.upper
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,1 @@
+"""dalembert beside its peers, in one run, as ratios."""

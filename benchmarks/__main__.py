@@ -1,0 +1,20 @@
+"""``python -m benchmarks [name ...]``: all benchmarks, or the named ones."""
+
+import sys
+from importlib import import_module
+
+NAMES = ("steps", "chains", "sensitivities", "batches", "identification", "startup")
+
+
+def main(chosen: list[str]) -> int:
+    unknown = [name for name in chosen if name not in NAMES]
+    if unknown:
+        print(f"unknown benchmark {unknown[0]!r}; expected some of {', '.join(NAMES)}", file=sys.stderr)
+        return 2
+    for name in chosen or NAMES:
+        import_module(f"benchmarks.{name}").main()
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

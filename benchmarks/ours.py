@@ -1,0 +1,85 @@
+"""The benchmark models written for dalembert."""
+
+import numpy as np
+
+import dalembert as da
+from benchmarks.cases import ARM, GRAVITY, PENDULUM, Bar, Integration, TwoLinkArm
+
+JOINT_AND_TIP = ("OA.end.x", "OA.end.y", "AB.end.x", "AB.end.y")
+
+
+def solver(integration: Integration) -> da.GeneralizedAlpha:
+    return da.GeneralizedAlpha(step=integration.step, spectral_radius=integration.spectral_radius)
+
+
+def cable_pendulum(
+    theta1=-PENDULUM.oa.angle,
+    theta2=-PENDULUM.ab.angle,
+    youngs_oa=PENDULUM.oa.youngs_modulus,
+    youngs_ab=PENDULUM.ab.youngs_modulus,
+) -> da.System:
+    """The peer's element: gradient-deficient cable, two elements and four."""
+    system = da.System(gravity=(0.0, -GRAVITY))
+    oa = system.add(_cable("OA", PENDULUM.oa, youngs_oa, -theta1))
+    ab = system.add(_cable("AB", PENDULUM.ab, youngs_ab, -theta2, start=oa.end))
+    system.add(da.RevoluteJoint("O", system.ground, oa.start))
+    system.add(da.RevoluteJoint("A", oa.end, ab.start))
+    return system
+
+
+def beam_pendulum(
+    theta1=-PENDULUM.oa.angle,
+    theta2=-PENDULUM.ab.angle,
+    youngs_oa=PENDULUM.oa.youngs_modulus,
+    youngs_ab=PENDULUM.ab.youngs_modulus,
+    length_oa=PENDULUM.oa.length,
+    length_ab=PENDULUM.ab.length,
+    height=PENDULUM.oa.height,
+    density=PENDULUM.oa.density,
+) -> da.System:
+    """The published example: fully parametrised beams, with twice the coordinates of the cables."""
+    section = {"height": height, "width": PENDULUM.oa.width, "density": density, "poisson_ratio": 0.3}
+    system = da.System(gravity=(0.0, -GRAVITY))
+    oa = system.add(da.AncfBeam("OA", length_oa, PENDULUM.oa.elements, youngs_oa, angle=-theta1, **section))
+    ab = system.add(
+        da.AncfBeam("AB", length_ab, PENDULUM.ab.elements, youngs_ab, angle=-theta2, start=oa.end, **section)
+    )
+    system.add(da.RevoluteJoint("O", system.ground, oa.start))
+    system.add(da.RevoluteJoint("A", oa.end, ab.start))
+    return system
+
+
+def two_link_arm(case: TwoLinkArm = ARM) -> da.System:
+    system = da.System(gravity=(0.0, -GRAVITY))
+    oa = system.add(da.RigidBar("OA", case.upper.length, case.upper.mass, angle=case.upper.angle))
+    ab = system.add(da.RigidBar("AB", case.lower.length, case.lower.mass, angle=case.lower.angle, start=oa.end))
+    system.add(da.RevoluteJoint("O", system.ground, oa.start))
+    system.add(da.RevoluteJoint("A", oa.end, ab.start))
+    return system
+
+
+def chain(bar: Bar) -> da.System:
+    system = da.System(gravity=(0.0, -GRAVITY))
+    cable = system.add(_cable("C", bar, bar.youngs_modulus, bar.angle))
+    system.add(da.RevoluteJoint("O", system.ground, cable.start))
+    return system
+
+
+def simulated(system: da.System, integration: Integration, channels: tuple[str, ...]) -> np.ndarray:
+    """Channels (samples, channels) at the output times."""
+    trajectory = da.simulate(system, integration.end, solver=solver(integration), times=integration.times)
+    return trajectory.channels(channels)
+
+
+def _cable(name: str, bar: Bar, youngs_modulus, angle, start=(0.0, 0.0)) -> da.AncfCable:
+    return da.AncfCable(
+        name,
+        bar.length,
+        bar.elements,
+        youngs_modulus,
+        density=bar.density,
+        height=bar.height,
+        width=bar.width,
+        angle=angle,
+        start=start,
+    )

@@ -1,0 +1,1 @@
+"""The benchmark models written for other packages."""

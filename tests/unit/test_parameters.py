@@ -40,6 +40,11 @@ def box() -> Parameters:
             {"lower": 0.0, "upper": 1.0, "start": 3.0},
             "parameter 'k': start 3.0 lies outside its bounds (0.0, 1.0); widen the bounds or move the start",
         ),
+        (
+            {"lower": 0.0, "upper": 1.0, "log": True},
+            "parameter 'k': its logarithm is to be searched, but its lower bound is 0.0; "
+            "expected a positive one; raise the bound or leave log out",
+        ),
     ],
 )
 def test_a_parameter_that_cannot_be_meant_is_refused(options: dict[str, float], sentence: str) -> None:
@@ -79,6 +84,22 @@ def test_a_vector_of_another_length_is_refused(box: Parameters) -> None:
 def test_scale_and_start_are_taken_from_the_bounds_unless_given(box: Parameters) -> None:
     assert box.scale.tolist() == [4.0, 0.1]
     assert box.start.tolist() == [-1.0, 0.2]
+
+
+@pytest.mark.parametrize(
+    ("bounds", "log", "logarithmic"),
+    [
+        ((1.0, 11.0), None, True),
+        ((1.0, 10.0), None, False),
+        ((-1.0, 100.0), None, False),
+        ((1.0, 100.0), False, False),
+        ((1.0, 2.0), True, True),
+    ],
+)
+def test_the_logarithm_is_searched_where_bounds_span_more_than_a_decade(
+    bounds: tuple[float, float], log: bool | None, logarithmic: bool
+) -> None:
+    assert Parameter("k", *bounds, log=log).logarithmic is logarithmic
 
 
 def test_parameters_of_parameters_and_of_a_list_are_the_same(box: Parameters) -> None:

@@ -3,6 +3,7 @@
 SHELL := /bin/sh
 .DEFAULT_GOAL := help
 .SUFFIXES:
+.DELETE_ON_ERROR:
 .PHONY: help demo checks test verify validation docs bench clean
 
 DEMO_STUDY := studies/flexible-pendulum/identify.toml
@@ -54,7 +55,7 @@ docs: .venv/docs.stamp
 	@echo "The documentation: $(CURDIR)/docs/_build/index.html"
 
 bench: .venv/bench.stamp
-	$(BIN)/python benchmarks/run.py
+	$(BIN)/python -m benchmarks
 
 clean:
 	rm -rf .venv build dist docs/_build .pytest_cache .ruff_cache .import_linter_cache .hypothesis

@@ -1,11 +1,14 @@
-"""Runs the Python examples of README.md and of the documentation, each file in an empty folder."""
+"""Runs the examples of README.md and of the documentation, each file's in one empty folder."""
 
+import subprocess
+import sys
+import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from sybil import Sybil
-from sybil.parsers.markdown import PythonCodeBlockParser, SkipParser
+from sybil import Example, Sybil
+from sybil.parsers.markdown import CodeBlockParser, PythonCodeBlockParser, SkipParser
 
 
 @pytest.fixture(scope="module")
@@ -16,6 +19,22 @@ def empty_folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
         yield folder
 
 
+def check_study(example: Example) -> str | None:
+    """What ``dalembert check`` has to say against a study file; its data file is made up where there is none."""
+    file = Path("study.toml")
+    file.write_text(example.parsed)
+    data = tomllib.loads(example.parsed).get("data")
+    if data and not Path(data["file"]).exists():
+        columns = [data.get("time", "t"), *data["columns"].values()]
+        rows = [",".join(columns), *(",".join([str(time)] * len(columns)) for time in (0.0, 0.5, 1.0))]
+        Path(data["file"]).write_text("\n".join(rows))
+    command = [Path(sys.executable).with_name("dalembert"), "check", file]
+    run = subprocess.run(command, check=False, capture_output=True, text=True)
+    return None if run.returncode == 0 else f"dalembert check ended with {run.returncode}:\n{run.stdout}{run.stderr}"
+
+
 pytest_collect_file = Sybil(
-    parsers=[PythonCodeBlockParser(), SkipParser()], patterns=["*.md"], fixtures=["empty_folder"]
+    parsers=[PythonCodeBlockParser(), CodeBlockParser("toml", check_study), SkipParser()],
+    patterns=["*.md"],
+    fixtures=["empty_folder"],
 ).pytest()

@@ -1,0 +1,63 @@
+"""What a channel measures, and in which unit, read from the last word of its name."""
+
+QUANTITIES = {
+    "x": ("position", "m"),
+    "y": ("position", "m"),
+    "length": ("length", "m"),
+    "angle": ("angle", "rad"),
+    "vx": ("velocity", "m/s"),
+    "vy": ("velocity", "m/s"),
+    "rate": ("angular rate", "rad/s"),
+    "ax": ("acceleration", "m/s²"),
+    "ay": ("acceleration", "m/s²"),
+    "acceleration": ("angular acceleration", "rad/s²"),
+    "force": ("force", "N"),
+    "force_x": ("force", "N"),
+    "force_y": ("force", "N"),
+    "torque": ("torque", "N m"),
+    "kinetic_energy": ("energy", "J"),
+    "potential_energy": ("energy", "J"),
+    "total_energy": ("energy", "J"),
+}
+
+
+def quantity(channel: str) -> str:
+    """Axis label of a channel.
+
+    Examples
+    --------
+    >>> quantity("AB.end.x"), quantity("O.torque"), quantity("gauge 7")
+    ('position (m)', 'torque (N m)', 'response')
+    """
+    return labelled(*QUANTITIES.get(channel.rpartition(".")[2], ("response", "")))
+
+
+def derivative(channel: str, unit: str) -> str:
+    """Axis label of a channel's derivative along something in ``unit``.
+
+    Examples
+    --------
+    >>> derivative("AB.end.x", "rad"), derivative("AB.end.x", ""), derivative("gauge 7", "rad")
+    ('derivative (m/rad)', 'derivative (m)', 'derivative')
+    """
+    own = QUANTITIES.get(channel.rpartition(".")[2], ("", ""))[1]
+    return labelled("derivative", f"{own}/{unit}" if own and unit else own)
+
+
+def labelled(name: str, unit: str) -> str:
+    """Name with its unit in brackets, where it has one."""
+    return f"{name} ({unit})" if unit else name
+
+
+def by_quantity(channels: tuple[str, ...], most: int = 4) -> list[list[int]]:
+    """Groups of channel numbers that may share an axis: one quantity each, ``most`` channels at most.
+
+    Examples
+    --------
+    >>> by_quantity(("AB.end.x", "O.torque", "AB.end.y"))
+    [[0, 2], [1]]
+    """
+    groups: dict[str, list[int]] = {}
+    for number, channel in enumerate(channels):
+        groups.setdefault(quantity(channel), []).append(number)
+    return [group[first : first + most] for group in groups.values() for first in range(0, len(group), most)]

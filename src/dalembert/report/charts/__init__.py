@@ -1,0 +1,27 @@
+"""One function a figure, each in a file of its own."""
+
+from dalembert.report.charts.convergence import convergence
+from dalembert.report.charts.correlation import correlation
+from dalembert.report.charts.energies import energies
+from dalembert.report.charts.mechanism import mechanism
+from dalembert.report.charts.newton import newton
+from dalembert.report.charts.parameters import parameters
+from dalembert.report.charts.responses import responses
+from dalembert.report.charts.singular_values import singular_values
+from dalembert.report.charts.starts import starts
+from dalembert.report.charts.sweep import sweep
+from dalembert.report.charts.violations import violations
+
+__all__ = [
+    "convergence",
+    "correlation",
+    "energies",
+    "mechanism",
+    "newton",
+    "parameters",
+    "responses",
+    "singular_values",
+    "starts",
+    "sweep",
+    "violations",
+]

@@ -1,0 +1,110 @@
+"""Which instants of a motion to show, and how fast."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from dalembert.report.digits import shown
+
+FRAMES = 150
+FRAMES_A_SECOND = 25
+SHORTEST = 2.0
+
+
+@dataclass(frozen=True)
+class Playback:
+    """Frames of a motion for a film.
+
+    Parameters
+    ----------
+    times : array, shape (frames,)
+        Instants shown, in s.
+    frames : array of int, shape (frames,)
+        Their numbers in the motion.
+    seconds : float
+        How long the film takes.
+    """
+
+    times: np.ndarray
+    frames: np.ndarray
+    seconds: float
+
+    @classmethod
+    def of(cls, times: np.ndarray) -> "Playback":
+        """Film of a motion at the given times, as near to 25 frames a second in real time as 150 frames allow.
+
+        Examples
+        --------
+        >>> film = Playback.of(np.linspace(0, 10, 20_001))
+        >>> len(film.frames), film.seconds, film.pace
+        (150, 6.0, 'played 1.67 times faster than real')
+        """
+        span = float(times[-1] - times[0])
+        seconds = min(max(span, SHORTEST), FRAMES / FRAMES_A_SECOND)
+        wanted = np.linspace(times[0], times[-1], max(2, round(seconds * FRAMES_A_SECOND)))
+        after = np.searchsorted(times, wanted).clip(1, max(len(times) - 1, 1))
+        if len(times) == 1:
+            return cls(times, np.array([0]), seconds)
+        nearer = np.where(wanted - times[after - 1] <= times[after] - wanted, after - 1, after)
+        frames = np.unique(nearer)
+        return cls(times[frames], frames, seconds)
+
+    @property
+    def labels(self) -> list[str]:
+        """Time of each frame, as text."""
+        decimals = max(0, 2 - int(np.floor(np.log10(max(self.times[-1] - self.times[0], 1e-12)))))
+        return [f"{time:.{decimals}f}" for time in self.times]
+
+    @property
+    def pace(self) -> str:
+        """The film's speed, in words."""
+        ratio = self.seconds / max(float(self.times[-1] - self.times[0]), 1e-12)
+        if abs(ratio - 1) < 0.02:
+            return "played in real time"
+        return f"played {shown(max(ratio, 1 / ratio), digits=3)} times {'slower' if ratio > 1 else 'faster'} than real"
+
+
+def controls(playback: Playback) -> dict[str, Any]:
+    """Layout of the play button and the slider, and in ``meta`` what a page with controls of its own needs."""
+    duration = 1000 * playback.seconds / len(playback.frames)
+    still = {"mode": "immediate", "frame": {"duration": 0, "redraw": False}, "transition": {"duration": 0}}
+    play = {"frame": {"duration": duration, "redraw": False}, "transition": {"duration": 0}, "fromcurrent": True}
+    buttons = [
+        {"label": "▶ play", "method": "animate", "args": [None, play]},
+        {"label": "❚❚ pause", "method": "animate", "args": [[None], still]},
+    ]
+    steps = [
+        {"label": label, "method": "animate", "args": [[str(frame)], still]}
+        for frame, label in zip(playback.frames, playback.labels, strict=True)
+    ]
+    return {
+        "updatemenus": [
+            {
+                "type": "buttons",
+                "direction": "left",
+                "showactive": False,
+                "buttons": buttons,
+                "x": 0,
+                "xanchor": "left",
+                "y": -0.16,
+                "yanchor": "top",
+                "pad": {"t": 22, "r": 10},
+            }
+        ],
+        "sliders": [
+            {
+                "steps": steps,
+                "currentvalue": {"prefix": "t = ", "suffix": f" s, {playback.pace}", "font": {"size": 12}},
+                "ticklen": 0,
+                "minorticklen": 0,
+                "font": {"color": "rgba(0, 0, 0, 0)", "size": 1},
+                "x": 0.26,
+                "len": 0.74,
+                "y": -0.16,
+                "yanchor": "top",
+                "pad": {"t": 4},
+            }
+        ],
+        "meta": {"labels": playback.labels, "seconds": playback.seconds, "pace": playback.pace},
+    }

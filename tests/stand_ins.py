@@ -1,0 +1,126 @@
+"""Results as the report sees them, made of a pendulum in closed form: for tests of figures and pages."""
+
+from dataclasses import dataclass, field
+from types import SimpleNamespace
+
+import numpy as np
+
+from dalembert.forward import Coordinate
+from dalembert.parameters import Parameter, Parameters
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Two bars that swing with given angles; its diagnostics are given, not computed."""
+
+    times: np.ndarray
+    energies: dict[str, np.ndarray]
+    violations: dict[str, np.ndarray]
+    newton_iterations: np.ndarray
+    channel_names: tuple[str, ...] = ("AB.end.x", "AB.end.y")
+    extra: dict[str, np.ndarray] = field(default_factory=dict)
+
+    def drawing(self, points: int = 8) -> SimpleNamespace:
+        along = np.linspace(0, 1, points)[None, :, None]
+        elbow, tip = swing(self.times)
+        first = along * elbow[:, None]
+        second = elbow[:, None] + along * (tip - elbow)[:, None]
+        joints = {"O": np.zeros((len(self.times), 2)), "A": elbow}
+        return SimpleNamespace(times=self.times, lines={"OA": first, "AB": second, **self.extra}, joints=joints)
+
+    def channels(self, names: list[str]) -> np.ndarray:
+        tip = swing(self.times)[1]
+        return np.stack([tip[:, self.channel_names.index(name)] for name in names], axis=1)
+
+
+def swing(times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Elbow and tip (samples, 2) of the two bars."""
+    first, second = 0.8 * np.cos(3.1 * times), 1.1 * np.cos(2.3 * times + 0.4)
+    elbow = np.stack([np.sin(first), -np.cos(first)], axis=1)
+    return elbow, elbow + 2 * np.stack([np.sin(second), -np.cos(second)], axis=1)
+
+
+def motion(samples: int = 401, end: float = 2.0) -> Motion:
+    times = np.linspace(0, end, samples)
+    kinetic = 40 * np.sin(3.1 * times) ** 2
+    balance = 2e-6 * np.sin(9 * times) * times
+    return Motion(
+        times,
+        {
+            "kinetic": kinetic,
+            "potential": -12 - kinetic + balance,
+            "total": -12 + balance,
+            "work": np.zeros(samples),
+            "balance": balance,
+        },
+        {
+            "position": 1e-13 * np.abs(np.sin(5 * times)),
+            "velocity": 1e-8 * (1 + np.abs(np.sin(7 * times))),
+            "acceleration": 3e-5 * (1 + np.abs(np.cos(7 * times))),
+        },
+        np.where(np.arange(samples - 1) % 37 == 0, 5, 3),
+    )
+
+
+def fit(
+    names: tuple[str, str] = ("theta1", "theta2"), channels: tuple[str, ...] = ("AB.end.x", "AB.end.y"), starts: int = 6
+):
+    """A fit with known numbers; the second parameter sits on its upper bound."""
+    random = np.random.default_rng(3)
+    times = np.linspace(0, 2, 41)
+    response = swing(times)[1]
+    noise = 5e-3 * random.standard_normal(response.shape)
+    parameters = Parameters((Parameter(names[0], 0.6, 1.0, unit="rad"), Parameter(names[1], 0.4, 0.65, unit="rad")))
+    fitness = [1.9e-3 if start % 3 else 0.41 for start in range(starts)]
+    history = tuple(
+        SimpleNamespace(start=start, iteration=step, simulations=9 * start + step + 1, best=best, values=None)
+        for start in range(starts)
+        for step, best in enumerate(fitness[start] + (8 + start) * 10.0 ** -np.arange(9))
+    )
+    ends = tuple(
+        SimpleNamespace(
+            start=random.uniform(parameters.lower, parameters.upper),
+            end=np.array([0.7853, 0.65]) if start % 3 else np.array([0.61, 0.5]),
+            fitness=fitness[start],
+            success=start != 4,
+            message="the gradient vanishes" if start != 4 else "too many iterations",
+            simulations=9,
+        )
+        for start in range(starts)
+    )
+    return SimpleNamespace(
+        parameters=parameters,
+        values=np.array([0.785312, 0.65]),
+        deviations=np.array([2.1e-4, 3.3e-4]),
+        correlation=np.array([[1.0, -0.83], [-0.83, 1.0]]),
+        fitness=1.9e-3,
+        response=response,
+        data=SimpleNamespace(
+            coordinate=Coordinate("time", "s", times),
+            channels=channels,
+            values=response + noise,
+            deviations=np.array([5e-3, 5e-3]),
+        ),
+        residuals=noise,
+        history=history,
+        starts=ends,
+        success=True,
+        status="The fitness no longer falls: 4 of 6 starts end in the same minimum. Widen the bounds of theta2.",
+        method="least squares, 6 starts",
+        simulations=54,
+        provenance={"version": "0.1.0", "seed": 0, "model": "9f2c", "method": {"name": "least squares", "starts": 6}},
+    )
+
+
+def sweep() -> SimpleNamespace:
+    angle = np.linspace(0.6, 1.0, 21)
+    values = np.stack([np.sin(angle), -np.cos(angle)], axis=1)
+    slopes = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    channels = ("AB.end.x", "AB.end.y")
+    first = SimpleNamespace(
+        parameter="theta1", unit="rad", values=angle, channels=channels, responses=values, sensitivities=slopes
+    )
+    second = SimpleNamespace(
+        parameter="theta2", unit="rad", values=angle, channels=channels, responses=values, sensitivities=None
+    )
+    return SimpleNamespace(at="time 0.5 s", curves=(first, second))

@@ -1,0 +1,60 @@
+from dataclasses import replace
+
+import numpy as np
+
+from dalembert.report import charts
+from stand_ins import motion, sweep
+
+
+def _named(figure):
+    return {trace.name: trace for trace in figure.data}
+
+
+def test_energies_are_the_numbers_given():
+    trajectory = motion()
+    traces = _named(charts.energies(trajectory))
+    for name in ("kinetic", "potential", "total", "balance"):
+        np.testing.assert_array_equal(traces[name].y, trajectory.energies[name])
+        np.testing.assert_array_equal(traces[name].x, trajectory.times)
+    np.testing.assert_array_equal(traces["work done on it"].y, trajectory.energies["work"])
+    assert traces["balance"].yaxis == "y2"
+
+
+def test_a_long_run_keeps_its_largest_violation():
+    trajectory = motion(samples=100_001)
+    trajectory.violations["position"][54_321] = 1e-5
+    figure = charts.violations(trajectory)
+    traces = _named(figure)
+    assert figure.layout.yaxis.type == "log"
+    assert np.nanmax(traces["position (m)"].y) == 1e-5
+    assert len(traces["position (m)"].y) <= 4000
+    assert set(traces) == {"position (m)", "velocity (m/s)", "acceleration (m/s²)"}
+
+
+def test_newton_iterations_of_each_step():
+    counts = np.array([3, 2, 7, 2])
+    figure = charts.newton(replace(motion(), newton_iterations=counts))
+    assert list(figure.data[0].x) == [1, 2, 3, 4]
+    assert list(figure.data[0].y) == [3, 2, 7, 2]
+
+
+def test_newton_iterations_of_a_long_run_keep_the_most():
+    counts = np.full(40_000, 3)
+    counts[12_345] = 9
+    traces = _named(charts.newton(replace(motion(), newton_iterations=counts)))
+    most = np.array(traces["most in 100 steps"].y)
+    assert len(most) == 400
+    assert most.max() == 9
+    assert traces["most in 100 steps"].x[int(most.argmax())] == 12_301
+    assert max(traces["mean"].y) == 3.06
+
+
+def test_a_sweep_draws_responses_and_slopes():
+    first, second = sweep().curves
+    figure = charts.sweep(first, "time 0.5 s")
+    np.testing.assert_array_equal(figure.data[0].y, first.responses[:, 0])
+    np.testing.assert_array_equal(figure.data[1].y, first.sensitivities[:, 0])
+    assert figure.layout.title.text == "Response along theta1 at time 0.5 s"
+    assert figure.layout.xaxis2.title.text == "theta1 (rad)"
+    assert figure.layout.yaxis2.title.text == "derivative (m/rad)"
+    assert len(charts.sweep(second).data) == 2

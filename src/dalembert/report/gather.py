@@ -1,0 +1,30 @@
+"""All figures of a result."""
+
+from typing import Any
+
+import plotly.graph_objects as go
+
+from dalembert.report.contents import Result, contents
+
+
+def figures(result: Result, **options: Any) -> dict[str, go.Figure]:
+    """Every figure that a report of the result would show, by name.
+
+    Parameters
+    ----------
+    result : Fit, Trajectory or sweep
+    **options
+        ``trajectory`` and ``points``, as in :func:`dalembert.report.report`.
+
+    Returns
+    -------
+    dict of str to plotly.graph_objects.Figure
+        For a fit ``"parameters"``, ``"responses-1"``, ``"convergence"``, ``"correlation"`` …, for a trajectory
+        ``"mechanism"``, ``"energies"``, ``"violations"``, ``"newton"``, for a sweep ``"sweep-1"`` ….
+
+    Raises
+    ------
+    InputError
+        For a result that is none of these.
+    """
+    return {plot.name: plot.figure for section in contents(result, **options) for plot in section.plots}

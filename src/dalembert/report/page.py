@@ -1,0 +1,115 @@
+"""The report: one HTML file that holds all it needs."""
+
+import base64
+import hashlib
+import json
+import os
+import tempfile
+from collections.abc import Sequence
+from importlib.resources import files
+from pathlib import Path
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup
+from plotly.offline import get_plotlyjs
+
+from dalembert import __version__
+from dalembert.report.contents import Result, contents
+from dalembert.report.look import DARK, FONT, LIGHT, exchanged, template
+from dalembert.report.needs import TrajectoryLike
+from dalembert.report.plot import SAFE
+
+
+def report(
+    result: Result,
+    path: str | os.PathLike[str],
+    *,
+    title: str | None = None,
+    trajectory: TrajectoryLike | None = None,
+    notes: str | Sequence[str] = (),
+    study: str | None = None,
+    points: Sequence[str] = (),
+) -> Path:
+    """Write an HTML report that opens offline in any browser, in its light or dark, and asks nothing of the network.
+
+    Parameters
+    ----------
+    result : Fit, Trajectory or sweep
+    path : path
+        The file is written whole or not at all.
+    title : str, optional
+    trajectory : Trajectory, optional
+        Motion at the identified values, drawn with the measured points of a fit.
+    notes : str or sequence of str
+        Paragraphs to stand under the headline.
+    study : str, optional
+        Text of the study file, for the provenance.
+    points : sequence of str
+        Points whose paths are drawn, for example ``"AB.end"``; the measured points or the free ends if not given.
+
+    Returns
+    -------
+    pathlib.Path
+        The file written.
+
+    Raises
+    ------
+    InputError
+        For a result that is none of a fit, a trajectory and a sweep.
+    """
+    paragraphs = [notes] if isinstance(notes, str) else list(notes)
+    sections = contents(result, title=title, trajectory=trajectory, notes=paragraphs, study=study, points=tuple(points))
+    environment = _environment()
+    scripts = [Markup(get_plotlyjs()), Markup(_packaged("page.js"))]
+    page = environment.get_template("page.html").render(
+        title=sections[0].title,  # pyright: ignore[reportAttributeAccessIssue]
+        sections=sections,
+        environment=environment,
+        style=Markup(environment.get_template("page.css").render(light=LIGHT, dark=DARK, font=Markup(FONT))),
+        scripts=scripts,
+        policy=_policy(scripts),
+        look=_json({"template": template().to_plotly_json(), "dark": exchanged()}),
+        version=__version__,
+    )
+    return _write(Path(path), page)
+
+
+def _environment() -> Environment:
+    return Environment(
+        loader=PackageLoader("dalembert.report"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+
+
+def _packaged(name: str) -> str:
+    return files("dalembert.report").joinpath("templates", name).read_text(encoding="utf-8")
+
+
+def _json(content: object) -> Markup:
+    return Markup(json.dumps(content).translate(SAFE))
+
+
+def _policy(scripts: list[Markup]) -> str:
+    """Content security policy: nothing from elsewhere, and no script but ours, by their hashes."""
+    hashes = " ".join(
+        f"'sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}'" for script in scripts
+    )
+    return f"default-src 'none'; script-src {hashes}; style-src 'unsafe-inline'; img-src data: blob:; base-uri 'none'"
+
+
+def _write(path: Path, text: str) -> Path:
+    """Write a file whole or not at all: beside its place first, then moved onto it."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as file:
+            file.write(text)
+        Path(temporary).chmod(0o644)
+        Path(temporary).replace(path)
+    except BaseException:
+        Path(temporary).unlink(missing_ok=True)
+        raise
+    return path

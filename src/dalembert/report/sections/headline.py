@@ -1,0 +1,87 @@
+"""The first lines of a report: what was done, whether it worked, and what came out."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from dalembert.report.digits import counted, shown, with_deviation
+from dalembert.report.needs import FitLike, SweepLike, TrajectoryLike
+from dalembert.report.quantities import labelled
+from dalembert.report.sections.section import Section
+
+MOST_VALUES = 4
+
+
+@dataclass(frozen=True)
+class Fact:
+    """A number that is worth a place at the top."""
+
+    label: str
+    text: str
+
+
+@dataclass(frozen=True)
+class Headline(Section):
+    """Title, verdict with advice, and the few numbers that matter."""
+
+    name: ClassVar[str] = "headline"
+    heading: ClassVar[str] = "Result"
+    title: str
+    verdict: str
+    success: bool
+    status: str
+    facts: Sequence[Fact]
+    notes: Sequence[str] = ()
+
+
+def of_fit(fit: FitLike, title: str | None, notes: Sequence[str]) -> Headline:
+    """Headline of identified parameters."""
+    values = [
+        Fact(labelled(item.name, item.unit), with_deviation(value, deviation))
+        for item, value, deviation in zip(fit.parameters, fit.values, fit.deviations, strict=True)
+    ]
+    ended = sum(start.success for start in fit.starts)
+    facts = [
+        *(values if len(values) <= MOST_VALUES else []),
+        Fact("fitness", shown(fit.fitness, digits=3)),
+        Fact("simulations", counted(fit.simulations)),
+        *([Fact("starts converged", f"{ended} of {len(fit.starts)}")] if len(fit.starts) > 1 else []),
+    ]
+    verdict = "identified" if fit.success else "not identified"
+    return Headline(title or "Identified parameters", verdict, fit.success, fit.status, facts, notes)
+
+
+def of_trajectory(trajectory: TrajectoryLike, title: str | None, notes: Sequence[str]) -> Headline:
+    """Headline of a simulated motion."""
+    times = np.asarray(trajectory.times)
+    counts = np.asarray(trajectory.newton_iterations)
+    balance, position = largest(trajectory.energies, "balance"), largest(trajectory.violations, "position")
+    facts = [
+        Fact("simulated", shown(float(times[-1] - times[0])) + " s"),
+        Fact("steps", counted(len(counts))),
+        Fact("largest energy error", shown(balance, digits=3) + " J"),
+        Fact("largest opening of a joint", shown(position, digits=3) + " m"),
+    ]
+    swing = max((float(np.ptp(values)) for key, values in trajectory.energies.items() if key != "balance"), default=0.0)
+    status = (
+        f"The energy balance is kept to {shown(100 * balance / swing, digits=2)} % of the energy that moves; "
+        "a smaller step lowers it."
+        if swing > 0 and np.isfinite(balance)
+        else "The motion was simulated to its end."
+    )
+    return Headline(title or "Simulated motion", "simulated", True, status, facts, notes)
+
+
+def of_sweep(sweep: SweepLike, title: str | None, notes: Sequence[str]) -> Headline:
+    """Headline of a sweep."""
+    facts = [Fact(f"values of {curve.parameter}", str(len(curve.values))) for curve in sweep.curves]
+    names = ", ".join(curve.parameter for curve in sweep.curves)
+    status = f"Responses at {sweep.at}, one parameter varied at a time: {names}."
+    return Headline(title or "Parameter sweep", "swept", True, status, facts[:MOST_VALUES], notes)
+
+
+def largest(series: Mapping[str, np.ndarray], key: str) -> float:
+    """Largest magnitude in one of several series, NaN if it is not there."""
+    return float(np.nanmax(np.abs(series[key]), initial=0.0)) if key in series else float("nan")

@@ -1,0 +1,32 @@
+"""Where a result comes from, so that it can be made again."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from dalembert.report.sections.section import Section
+from dalembert.report.table import Table, cell
+
+
+@dataclass(frozen=True)
+class Provenance(Section):
+    """Version, seed, fingerprint of the model and settings of the method; the study as it was run, if there is one."""
+
+    name: ClassVar[str] = "provenance"
+    heading: ClassVar[str] = "Provenance"
+    facts: Mapping[str, Any]
+    study: str | None = None
+
+    @property
+    def table(self) -> Table:
+        rows = [(cell(key), cell(str(value))) for key, value in _flat(self.facts)]
+        return Table("provenance", "What made this result", ("what", "value"), rows)
+
+
+def _flat(facts: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, Any]]:
+    """Entries of nested mappings, named by their path."""
+    for key, value in facts.items():
+        if isinstance(value, Mapping):
+            yield from _flat(value, f"{above}{key}.")
+        else:
+            yield f"{above}{key}", value

@@ -1,0 +1,27 @@
+"""What the data tell about the parameters, and what they do not."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+from dalembert.report import charts
+from dalembert.report.needs import FitLike
+from dalembert.report.plot import Plot
+from dalembert.report.sections.section import Section
+
+
+@dataclass(frozen=True)
+class Telling(Section):
+    """Sentences on identifiability, singular values and correlation."""
+
+    name: ClassVar[str] = "telling"
+    heading: ClassVar[str] = "What the data tell"
+    fit: FitLike
+    sentences: Sequence[str] = ()
+    spectrum: Plot | None = None
+
+    @property
+    def plots(self) -> tuple[Plot, ...]:
+        pairs = "Near 1 or −1, the data tell a combination of the two parameters but not each of them."
+        heat = Plot("correlation", charts.correlation(self.fit), pairs)
+        return (heat,) if self.spectrum is None else (heat, self.spectrum)

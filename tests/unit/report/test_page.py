@@ -1,0 +1,254 @@
+import base64
+import csv
+import hashlib
+import io
+import json
+import re
+from html.parser import HTMLParser
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from plotly.offline import get_plotlyjs
+
+from dalembert.errors import InputError
+from dalembert.report import figures, report
+from dalembert.report.table import Table, cell
+from stand_ins import fit, motion, sweep
+from support import says
+
+NASTY = "<script>alert(1)</script>"
+
+
+class Page(HTMLParser):
+    """Tags, links and scripts of a page, as a browser would find them."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.tags, self.addresses, self.scripts, self.words = [], [], [], []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append((tag, dict(attrs)))
+        self.addresses += [value for name, value in attrs if name in ("src", "href", "srcset", "action", "data")]
+
+    def handle_data(self, data):
+        if self.tags and self.tags[-1][0] == "script" and self.cdata_elem == "script":
+            self.scripts.append((self.tags[-1][1], data))
+        else:
+            self.words.append(data)
+
+    @property
+    def text(self) -> str:
+        return " ".join(" ".join(self.words).split())
+
+    def table(self, name: str) -> list[list[str]]:
+        """Content of the CSV that is offered under this name."""
+        link = next(attrs["href"] for tag, attrs in self.tags if tag == "a" and attrs.get("download") == f"{name}.csv")
+        return list(csv.reader(io.StringIO(base64.b64decode(link.partition(",")[2]).decode())))
+
+
+def _page(path) -> Page:
+    return Page(path.read_text(encoding="utf-8"))
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """Report of a fit with all that it can hold."""
+    result = fit()
+    told = SimpleNamespace(singular_values=np.array([120.0, 3.0]), directions=np.eye(2))
+    result.identifiability = lambda: told
+    path = tmp_path_factory.mktemp("report") / "new" / "fit.html"
+    return report(result, path, title="Pendulum", trajectory=motion(), notes="A note.", study="[model]\nlength = 1")
+
+
+def test_sections_stand_in_reading_order(whole):
+    page = _page(whole)
+    anchors = [attrs["id"] for tag, attrs in page.tags if tag in ("section", "header")]
+    assert anchors == [
+        "result",
+        "parameters",
+        "response-and-data",
+        "mechanism",
+        "search",
+        "what-the-data-tell",
+        "diagnostics-of-the-simulation",
+        "provenance",
+    ]
+    linked = [attrs["href"] for tag, attrs in page.tags if tag == "a" and attrs["href"].startswith("#")]
+    assert {f"#{anchor}" for anchor in anchors} == set(linked)
+
+
+def test_the_page_says_the_numbers_and_the_advice(whole):
+    text = _page(whole).text
+    for words in (
+        "Pendulum",
+        "identified",
+        "0.78531 ± 0.00021",
+        "Widen the bounds of theta2.",
+        "theta2 ended on a bound",
+        "A note.",
+        "5 of 6",
+        "least squares, 6 starts",
+        "length = 1",
+        "played in real time",
+    ):
+        assert words in text
+
+
+def test_tables_download_with_all_their_digits(whole):
+    page = _page(whole)
+    rows = page.table("parameters")
+    assert rows[1] == ["theta1", "0.785312", "0.00021", "rad", "0.6", "1.0", ""]
+    assert rows[2][-1] == "on its bound"
+    samples = np.array(page.table("responses")[1:], dtype=float)
+    result = fit()
+    np.testing.assert_array_equal(samples[:, 1::2], result.data.values)
+    np.testing.assert_array_equal(samples[:, 2::2], result.response)
+    assert ["seed", "0"] in page.table("provenance")
+    assert ["method.starts", "6"] in page.table("provenance")
+    assert page.table("starts")[3][:4] == ["5", "0.0019", "9", "not converged"]
+    assert float(page.table("diagnostics")[1][1]) == np.abs(motion().energies["balance"]).max()
+
+
+def test_the_page_loads_nothing_from_elsewhere(whole):
+    page = _page(whole)
+    assert page.addresses
+    assert all(address.startswith(("#", "data:text/csv")) for address in page.addresses)
+    assert not {tag for tag, _ in page.tags} & {"link", "iframe", "img", "object", "embed", "base", "form"}
+    own = whole.read_text().replace(get_plotlyjs(), "")
+    assert not re.search(r"https?://|@import|url\(|\bfetch\(|XMLHttpRequest|\bimport\(|WebSocket", own)
+
+
+def test_the_library_is_inlined_once_and_every_script_is_allowed_by_its_hash(whole):
+    text = whole.read_text()
+    assert text.count(get_plotlyjs()) == 1
+    page = Page(text)
+    policy = next(attrs["content"] for tag, attrs in page.tags if attrs.get("http-equiv") == "Content-Security-Policy")
+    assert policy.startswith("default-src 'none';")
+    run = [data for attrs, data in page.scripts if attrs.get("type") != "application/json"]
+    hashes = [base64.b64encode(hashlib.sha256(script.encode()).digest()).decode() for script in run]
+    assert re.findall(r"'sha256-([^']+)'", policy) == hashes
+    assert "unsafe-inline" not in policy.partition("script-src")[2].partition(";")[0]
+
+
+def test_every_figure_is_in_the_page_with_its_numbers(whole):
+    page = _page(whole)
+    drawn = {attrs["data-name"]: json.loads(data) for attrs, data in page.scripts if "data-name" in attrs}
+    assert list(drawn) == [
+        "parameters",
+        "responses-1",
+        "mechanism",
+        "convergence",
+        "starts",
+        "correlation",
+        "singular-values",
+        "energies",
+        "violations",
+        "newton",
+    ]
+    assert set(drawn) - {"singular-values"} == set(figures(fit(), trajectory=motion()))
+    places = {attrs["id"] for tag, attrs in page.tags if "canvas" in attrs.get("class", "")}
+    assert places == {f"figure-{name}" for name in drawn}
+    packed = drawn["responses-1"]["data"][0]["y"]
+    values = np.frombuffer(base64.b64decode(packed["bdata"]), dtype=packed["dtype"])
+    np.testing.assert_array_equal(values, fit().response[:, 0])
+    assert "updatemenus" not in drawn["mechanism"]["layout"]
+
+
+def test_the_page_stays_small(whole):
+    assert whole.stat().st_size - len(get_plotlyjs()) < 400_000
+
+
+def test_names_with_markup_are_shown_as_they_stand(tmp_path):
+    result = fit(names=(NASTY, "b"), channels=(f"{NASTY}.x", f"{NASTY}.y"))
+    result.status = result.method = NASTY
+    result.provenance = {NASTY: NASTY}
+    result.starts[0].message = NASTY
+    result.identifiability = lambda: NASTY
+    trajectory = motion()
+    trajectory.extra[NASTY] = trajectory.drawing().lines["AB"]
+    path = report(
+        result, tmp_path / "a.html", title=NASTY, notes=[NASTY], study=NASTY, trajectory=trajectory, points=["AB.end"]
+    )
+    text = path.read_text()
+    assert "<script>alert" not in text
+    page = Page(text)
+    assert page.text.count(NASTY) >= 10
+    for attrs, data in page.scripts:
+        if attrs.get("class") == "figure":
+            assert "<script" not in json.dumps(json.loads(data))
+
+
+def test_a_spreadsheet_does_not_run_a_name_as_a_formula():
+    table = Table("t", "", ("a", "b"), [(cell("=1+1"), cell(-1.5))])
+    assert table.csv == "a,b\n'=1+1,-1.5\n"
+
+
+def test_a_trajectory_alone_has_its_report(tmp_path):
+    path = report(motion(), tmp_path / "motion.html")
+    text = _page(path).text
+    assert "Simulated motion" in text
+    assert "The energy balance is kept to" in text
+    names = list(figures(motion()))
+    assert names == ["mechanism", "energies", "violations", "newton"]
+    paths = [trace.name for trace in figures(motion())["mechanism"].data if str(trace.name).startswith("path")]
+    assert paths == ["path of AB's end"]
+
+
+def test_a_fit_without_motion_and_history(tmp_path):
+    result = fit()
+    result.history, result.starts = (), result.starts[:1]
+    names = figures(result)
+    assert list(names) == ["parameters", "responses-1", "correlation"]
+    assert report(result, tmp_path / "a.html").exists()
+
+
+def test_a_fit_that_failed_says_so(tmp_path):
+    result = fit()
+    result.success, result.status = False, "No start converged; give more iterations."
+    page = _page(report(result, tmp_path / "a.html"))
+    assert "! not identified" in page.text
+    assert any(attrs.get("class") == "verdict bad" for _, attrs in page.tags)
+
+
+def test_a_sweep_has_its_report(tmp_path):
+    page = _page(report(sweep(), tmp_path / "sweep.html", title="Sensitivity"))
+    assert page.table("sweep-1")[0] == [
+        "theta1 (rad)",
+        "AB.end.x",
+        "AB.end.y",
+        "d AB.end.x / d theta1",
+        "d AB.end.y / d theta1",
+    ]
+    assert len(page.table("sweep-2")) == 22
+    assert list(figures(sweep())) == ["sweep-1", "sweep-2"]
+
+
+def test_something_else_is_refused(tmp_path):
+    with pytest.raises(
+        InputError,
+        match=says(
+            "report: a dict was given; expected a Fit, a Trajectory or a sweep, such as identify() or simulate() return"
+        ),
+    ):
+        report({}, tmp_path / "a.html")
+
+
+def test_a_report_that_cannot_be_written_leaves_the_old_one(tmp_path, monkeypatch):
+    path = report(motion(), tmp_path / "a.html")
+    before = path.read_bytes()
+
+    def full(*_):
+        raise OSError("the disk is full")
+
+    monkeypatch.setattr("pathlib.Path.replace", full)
+    with pytest.raises(OSError, match=says("the disk is full")):
+        report(sweep(), path)
+    assert path.read_bytes() == before
+    assert [entry.name for entry in tmp_path.iterdir()] == ["a.html"]
+
+
+def test_the_same_result_gives_the_same_bytes(tmp_path):
+    pages = [report(fit(), tmp_path / name, trajectory=motion()).read_bytes() for name in ("a.html", "b.html")]
+    assert pages[0] == pages[1]

@@ -1,0 +1,169 @@
+"""Initial states that satisfy the joints: closed loops, consistent velocities, and refusal of redundant constraints.
+
+Bodies are moved rigidly: an assembled mechanism is not strained. The unknowns are the frames of the bodies, position of
+the placed point and angle; corrections are the smallest ones. Newton's iteration uses the jacobian of the real part, so
+one more iteration makes the derivatives along a complex step exact.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from scipy.linalg import qr
+
+from dalembert.errors import InputError, ModelError, unknown
+from dalembert.multibody.bodies import Body
+from dalembert.multibody.evaluate import constraint_jacobian, constraint_rates, residual
+from dalembert.multibody.kernels.dual import STEP
+from dalembert.multibody.kernels.model import Model
+from dalembert.multibody.lowering import Lowered, lower
+from dalembert.multibody.system import System
+
+_CLOSED = 1e-13  # violation against the scale that counts as none
+_MOST_ITERATIONS = 60
+_FRAME = {"x": 0, "y": 1, "angle": 2}
+
+
+def assembled(system: System) -> Lowered:
+    """Arrays of a system whose joints are closed and whose velocities are consistent, at the start.
+
+    Raises
+    ------
+    ModelError
+        Where the mechanism cannot be assembled, or its driving coordinates contradict its joints.
+    """
+    lowered = lower(system)
+    if lowered.structure.size == lowered.structure.n:
+        return lowered
+    model = lowered.dual if lowered.is_complex else lowered.real
+    free = _free(system)
+    frames = _close(system.bodies, lowered, model, free)
+    lowered = replace(lowered, frames=frames, x=_coordinates(system.bodies, lowered, frames))
+    return replace(lowered, v=_consistent(system.bodies, lowered, model, free))
+
+
+def scales(lowered: Lowered) -> np.ndarray:
+    """Typical size of each unknown, (N + 1,): the extent of the mechanism for positions, one for angles and gradients."""
+    n, kinds = lowered.structure.n, np.array(lowered.structure.kinds)
+    places = lowered.x.real[:n][kinds == "position"].reshape(-1, 2)
+    joints = lowered.data["joints"].real
+    arms = (joints[:, 0:2], joints[:, 3:5], lowered.data["beams"].real[:, :1], lowered.data["cables"].real[:, :1])
+    extent = max(np.ptp(places, axis=0).max(initial=0.0), *(np.abs(arm).max(initial=0.0) for arm in arms))
+    scale = np.ones(lowered.structure.size + 1)
+    scale[:n][kinds == "position"] = extent if extent > 0 else 1.0
+    return scale
+
+
+def refuse_redundancy(lowered: Lowered) -> None:
+    """Raise where a constraint follows from the others.
+
+    Raises
+    ------
+    ModelError
+        With the joints whose constraints are redundant.
+    """
+    structure = lowered.structure
+    if structure.size == structure.n:
+        return
+    jacobian = constraint_jacobian(lowered, lowered.x.real)
+    dense = jacobian[:, np.unique(jacobian.indices)].toarray()
+    dense /= np.linalg.norm(dense, axis=1, keepdims=True) + 1e-300
+    _, triangle, order = qr(dense.T, mode="economic", pivoting=True)
+    rank = int(np.sum(np.abs(np.diag(triangle)) > 1e-9))
+    if rank < len(order):
+        names = sorted({structure.owners[structure.n + row] for row in order[rank:]})
+        raise ModelError(
+            f"the constraints are redundant: {len(order)} were given, {rank} are independent at the start; "
+            f"those of {', '.join(map(repr, names))} follow from the others. Take a joint out or replace one by a joint "
+            "that holds less (a revolute joint instead of a fixed one), or start from a position that is not singular"
+        )
+
+
+def _free(system: System) -> np.ndarray:
+    """Mask of the frame coordinates that assembly may change, (bodies, 3)."""
+    names = [body.name for body in system.bodies]
+    free = np.array([[True, True, body.turns] for body in system.bodies])
+    for entry in system.driving:
+        name, _, coordinate = entry.rpartition(".")
+        if coordinate not in _FRAME:
+            raise InputError(unknown("coordinate", coordinate, _FRAME, f"driving {entry!r}"))
+        if name not in names:
+            raise InputError(unknown("body", name, names, f"driving {entry!r}"))
+        free[names.index(name), _FRAME[coordinate]] = False
+    return free
+
+
+def _coordinates(bodies: Sequence[Body], lowered: Lowered, frames: np.ndarray) -> np.ndarray:
+    """Unknowns of undeformed bodies in their frames, (N + 1,)."""
+    own = [body.coordinates(*frame) for body, frame in zip(bodies, frames, strict=True)]
+    return np.concatenate([*own, np.zeros(lowered.structure.size + 1 - lowered.structure.n)])
+
+
+def _modes(bodies: Sequence[Body], lowered: Lowered, frames: np.ndarray) -> np.ndarray:
+    """Derivatives of the coordinates by the frames, (n, bodies, 3)."""
+    modes = np.zeros((lowered.structure.n, len(bodies), 3), dtype=frames.dtype)
+    for number, (body, frame) in enumerate(zip(bodies, frames, strict=True)):
+        first = lowered.structure.first[body.name]
+        modes[first : first + body.size, number] = body.rigid_modes(body.coordinates(*frame), frame)
+    return modes
+
+
+def _size(values: np.ndarray) -> float:
+    """Largest entry, derivatives included."""
+    return max(np.abs(values.real).max(initial=0.0), np.abs(values.imag).max(initial=0.0) / STEP)
+
+
+def _close(bodies: Sequence[Body], lowered: Lowered, model: Model, free: np.ndarray) -> np.ndarray:
+    """Frames at which all joints are closed."""
+    frames = lowered.frames
+    still = np.zeros_like(lowered.x)
+    tolerance = _CLOSED * scales(lowered).max()
+    for _ in range(_MOST_ITERATIONS):
+        x = _coordinates(bodies, lowered, frames)
+        gaps = residual(lowered, model, x, still, still)[lowered.structure.n :]
+        if _size(gaps) <= tolerance:
+            return frames
+        jacobian = constraint_jacobian(lowered, x.real) @ _modes(bodies, lowered, frames.real)[:, free]
+        step = np.linalg.lstsq(jacobian, -gaps, rcond=1e-10)[0]
+        longest = np.abs(step.real).max(initial=0.0)
+        if not np.isfinite(longest):
+            break
+        frames = frames.copy()
+        frames[free] += step * min(1.0, 0.5 * scales(lowered).max() / (longest + 1e-300))
+        if longest <= 1e-15 and _size(gaps) <= 1e3 * tolerance:
+            return frames
+    structure = lowered.structure
+    gaps = residual(lowered, model, _coordinates(bodies, lowered, frames), still, still)[structure.n :]
+    worst = int(np.argmax(np.abs(gaps.real)))
+    raise ModelError(
+        f"the mechanism cannot be assembled: joint {structure.owners[structure.n + worst]!r} stays open by "
+        f"{abs(gaps.real[worst]):.3g} (m or rad). Check lengths and places of the bodies that it connects; a first "
+        "placement nearer to the closed position may be needed, or fewer driving coordinates"
+    )
+
+
+def _consistent(bodies: Sequence[Body], lowered: Lowered, model: Model, free: np.ndarray) -> np.ndarray:
+    """Velocities of rigid motions that satisfy the joints, nearest to the given ones."""
+    n = lowered.structure.n
+    tail = np.zeros(lowered.structure.size + 1 - n)
+    modes = _modes(bodies, lowered, lowered.frames)
+    rates = lowered.rates
+    jacobian = None
+    for _ in range(4):  # linear: once for the value, once for its derivative, once for rounding
+        v = np.concatenate([np.tensordot(modes, rates, 2), tail])
+        wrong, _ = constraint_rates(lowered, model, lowered.x, v, np.zeros_like(v))
+        speed = max(np.abs(v.real).max(initial=0.0), np.abs(wrong.real).max(initial=0.0), 1.0)
+        if _size(wrong) <= 10 * _CLOSED * speed:
+            return v
+        if jacobian is None:
+            jacobian = constraint_jacobian(lowered, lowered.x.real) @ modes[:, free].real
+        rates = rates.astype(np.result_type(rates, wrong))
+        rates[free] += np.linalg.lstsq(jacobian, -wrong, rcond=1e-10)[0]
+    worst = int(np.argmax(np.abs(wrong.real)))
+    if np.abs(wrong.real[worst]) <= 1e-9 * speed:
+        return v
+    raise ModelError(
+        f"no first velocities are consistent with the joints: at joint {lowered.structure.owners[n + worst]!r} "
+        f"{abs(wrong.real[worst]):.3g} (m/s or rad/s) remain. Check the velocities of the driving coordinates and of the "
+        "prescribed motions"
+    )

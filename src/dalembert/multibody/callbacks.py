@@ -1,0 +1,96 @@
+"""Functions of the user's, made callable from kernels by address, in real and in complex arithmetic."""
+
+import ctypes
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from numba import carray, cfunc, complex128, float64, types
+from numba.core.registry import CPUDispatcher
+
+from dalembert.multibody.kernels.user import ANSWER, GIVEN
+
+_C_FUNCTION = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p)
+_RATE_STEP = 1e-5  # s, of the differences that stand in for a rate that is not given
+
+
+@dataclass
+class Failures:
+    """First exception of each run that a plain Python function raised; the answer was NaN there."""
+
+    errors: list[Exception] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class Callback:
+    """Addresses for real and for complex numbers, and what keeps them alive."""
+
+    real: int
+    complex: int
+    alive: tuple[Any, ...] = field(repr=False)
+
+
+def force_callback(function: Callable[..., Any], failures: Failures) -> Callback:
+    """Callback of ``function(t, at, against) -> (fx, fy, torque)``."""
+    if isinstance(function, CPUDispatcher):
+        return _compiled_force(function)
+    return _plain(lambda given: function(given[0], given[1:7], given[7:13]), GIVEN, ANSWER, failures)
+
+
+def signal_callback(
+    function: Callable, rate: Callable | None, second: Callable | None, failures: Failures
+) -> Callback:
+    """Callback of a function of time: value, rate and second rate."""
+    h = _RATE_STEP
+
+    def answer(given: np.ndarray) -> tuple[Any, Any, Any]:
+        t = given[0].real
+        value = function(t)
+        if rate is not None:
+            first = rate(t)
+            last = second(t) if second is not None else (rate(t + h) - rate(t - h)) / (2 * h)
+        else:
+            ahead, behind = function(t + h), function(t - h)
+            first = (ahead - behind) / (2 * h)
+            last = second(t) if second is not None else (ahead - 2 * value + behind) / h**2
+        return value, first, last
+
+    return _plain(answer, 1, 3, failures)
+
+
+def _plain(function: Callable[[np.ndarray], Any], given: int, answer: int, failures: Failures) -> Callback:
+    def trampoline(dtype: type) -> Any:
+        def call(source: int, target: int) -> None:
+            into = _view(target, answer, dtype)
+            try:
+                into[:] = function(_view(source, given, dtype))
+            except Exception as error:  # must not cross the compiled code
+                failures.errors.append(error)
+                into[:] = np.nan
+
+        return _C_FUNCTION(call)
+
+    pair = trampoline(float), trampoline(complex)
+    addresses = [ctypes.cast(entry, ctypes.c_void_p).value or 0 for entry in pair]
+    return Callback(*addresses, pair)
+
+
+def _view(address: int, count: int, dtype: type) -> np.ndarray:
+    buffer = (ctypes.c_double * (count * (2 if dtype is complex else 1))).from_address(address)
+    return np.frombuffer(buffer, dtype=dtype)
+
+
+@lru_cache(maxsize=64)
+def _compiled_force(function: CPUDispatcher) -> Callback:
+    def build(kind: Any) -> Any:
+        @cfunc(types.void(types.CPointer(kind), types.CPointer(kind)))
+        def call(source: Any, target: Any) -> None:
+            given, into = carray(source, GIVEN), carray(target, ANSWER)
+            into[0], into[1], into[2] = function(given[0].real, given[1:7], given[7:13])
+
+        return call
+
+    pair = build(float64), build(complex128)
+    return Callback(pair[0].address, pair[1].address, pair)

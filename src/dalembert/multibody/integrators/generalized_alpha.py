@@ -1,0 +1,390 @@
+"""Generalized-alpha for the index-3 equations, with the derivatives of its discrete solution."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from dalembert.errors import InputError, unknown
+from dalembert.multibody.kernels import signals
+from dalembert.multibody.kernels.assembly import constraint_rates, largest, residual, tangent
+from dalembert.multibody.kernels.compiled import compiled
+from dalembert.multibody.kernels.dual import STEP
+from dalembert.multibody.kernels.linear import factorise, solve, storage
+from dalembert.multibody.kernels.model import select, workspace
+from dalembert.multibody.kernels.motion import Motion, advance, coefficients, copy, interpolate, row, still
+
+STARTS = ("consistent", "zero")
+DONE, NEWTON_FAILED, SINGULAR, TOO_MANY_STEPS = range(4)
+_MOST_ITERATIONS = 12
+_SLOW = 0.3  # contraction above which the kept factorisation is renewed
+_HALVINGS = 8  # of a fixed step that Newton does not converge on
+_UNITS = 1 << _HALVINGS
+_ROUNDING = 4e-15  # relative corrections of this size are rounding
+
+
+@dataclass(frozen=True)
+class GeneralizedAlpha:
+    """Generalized-alpha integrator for index 3 (Arnold and Bruels 2007), of second order.
+
+    Parameters
+    ----------
+    step : float
+        Step in s; the first one when ``adaptive``.
+    spectral_radius : float
+        At infinity, in [0, 1]: 1 damps nothing, 0 damps the highest frequencies in one step.
+    initial_acceleration : {"consistent", "zero"}
+        Accelerations and multipliers at the start: those that satisfy the equations of motion, or none (a start of
+        first order).
+    adaptive : bool
+        Choose the step by the estimated local error.
+    tolerance : float
+        Of the local error, relative to each coordinate's scale; for ``adaptive``.
+    newton_tolerance : float
+        Of the coordinates at each step, relative to their scale.
+    most_steps : int
+        After which an adaptive run gives up.
+
+    Examples
+    --------
+    >>> GeneralizedAlpha(step=1e-3).spectral_radius
+    0.8
+    """
+
+    step: float
+    spectral_radius: float = 0.8
+    initial_acceleration: str = "consistent"
+    adaptive: bool = False
+    tolerance: float = 1e-6
+    newton_tolerance: float = 1e-12
+    most_steps: int = 10_000_000
+
+    def __post_init__(self) -> None:
+        if not (np.isfinite(self.step) and self.step > 0):
+            raise InputError(f"GeneralizedAlpha: step is {self.step}; expected a positive number of seconds")
+        if not 0 <= self.spectral_radius <= 1:
+            raise InputError(f"GeneralizedAlpha: spectral_radius is {self.spectral_radius}; expected a number in [0, 1]")
+        if self.initial_acceleration not in STARTS:
+            raise InputError(unknown("initial_acceleration", self.initial_acceleration, STARTS, "GeneralizedAlpha"))
+        for name in ("tolerance", "newton_tolerance"):
+            if not getattr(self, name) > 0:
+                raise InputError(f"GeneralizedAlpha: {name} is {getattr(self, name)}; expected a positive number")
+
+
+class Settings(NamedTuple):
+    """What the compiled loop needs of `GeneralizedAlpha`."""
+
+    step: float
+    spectral_radius: float
+    consistent: bool
+    adaptive: bool
+    tolerance: float
+    newton_tolerance: float
+    most_steps: int
+
+
+class Problem(NamedTuple):
+    """What does not change from sample to sample: sizes, scales, where matrix entries go, LAPACK, times.
+
+    ``n`` coordinates; ``scale`` (N + 1,); ``slots`` and ``layout`` of the Newton matrix; those of the sensitivities,
+    whose matrix is renewed at each step; ``edges`` of the smooth stretches of motion; ``times`` of the output.
+    """
+
+    n: int
+    scale: np.ndarray
+    slots: tuple
+    layout: tuple
+    exact_slots: tuple
+    exact_layout: tuple
+    lapack: np.ndarray
+    edges: np.ndarray
+    times: np.ndarray
+
+
+class Log(NamedTuple):
+    """Of one run: steps, Newton iterations, factorisations, rejected steps; iterations of each step while room lasts."""
+
+    counts: np.ndarray
+    iterations: np.ndarray
+    ends: np.ndarray
+
+
+class _Newton(NamedTuple):
+    """Work of the Newton iteration; ``memory``: step of the kept factorisation (0: none), contraction seen."""
+
+    factors: tuple
+    work: tuple
+    dual_work: tuple
+    r: np.ndarray
+    delta: np.ndarray
+    memory: np.ndarray
+
+
+@compiled
+def _signals(model, t, within, work):
+    signals.evaluate(
+        model.signals.index, model.signals.data, model.signals.knots, model.callbacks, t, within, work.signals
+    )
+
+
+@compiled
+def _lift(n, state, direction, target):
+    """Complex state: the real one plus the imaginary step along a direction."""
+    for i in range(len(state.x)):
+        target[0, i] = complex(state.x[i], STEP * direction.x[i])
+    for i in range(n):
+        target[1, i] = complex(state.v[i], STEP * direction.v[i])
+        target[2, i] = complex(state.a[i], STEP * direction.a[i])
+
+
+@compiled
+def _renew(problem, dual, c, new, newton):
+    tangent(
+        dual, problem.slots, problem.n, new.x, new.v, new.a, (c.dq, c.dv, 1.0), (1.0, 1.0 / c.dq), newton.dual_work,
+        newton.factors.matrix,
+    )  # fmt: skip
+    newton.memory[0] = c.step if factorise(problem.layout, problem.lapack, newton.factors) else 0.0
+    return newton.memory[0] != 0.0
+
+
+@compiled
+def _converge(problem, model, dual, c, tolerance, old, new, newton, log):
+    """Newton iteration on the new accelerations and multipliers: status, and the unknown that moved most."""
+    n, size = problem.n, len(old.x) - 1
+    kept = newton.memory[0]
+    fresh = False
+    if not (0.8 * kept < c.step < 1.25 * kept):
+        advance(n, c, old, new)
+        if not _renew(problem, dual, c, new, newton):
+            return SINGULAR, 0
+        log.counts[2] += 1
+        fresh = True
+        newton.memory[1] = 0.9
+    advance(n, c, old, new)
+    before, worst = 0.0, 0
+    for iteration in range(_MOST_ITERATIONS):
+        residual(model, n, new.x, new.v, new.a, newton.work, 1.0 / c.dq, newton.r)
+        solve(problem.layout, problem.lapack, newton.factors, newton.r, newton.delta)
+        log.counts[1] += 1
+        norm, worst = 0.0, 0
+        for i in range(n):
+            new.a[i] -= newton.delta[i]
+            moved = c.dq * abs(newton.delta[i]) / problem.scale[i]
+            if not moved <= norm:
+                norm, worst = moved, i
+        for i in range(n, size):
+            new.x[i] -= newton.delta[i]
+        if not norm < 1e100:
+            return NEWTON_FAILED, worst
+        advance(n, c, old, new)
+        if iteration > 0:
+            newton.memory[1] = norm / before
+        rate = newton.memory[1]
+        if norm <= _ROUNDING or (rate < 1.0 and norm * rate / (1.0 - rate) <= tolerance):
+            return DONE, iteration + 1
+        if (rate > _SLOW and iteration > 0) or iteration == 5:
+            if fresh and rate > 2.0:
+                return NEWTON_FAILED, worst
+            if not _renew(problem, dual, c, new, newton):
+                return SINGULAR, worst
+            log.counts[2] += 1
+            fresh = True
+        before = norm
+    return NEWTON_FAILED, worst
+
+
+@compiled
+def _differentiate(problem, dual, directions, c, t, within, old, new, dolds, dnews, exact, dual_work, lifted, buffers):
+    """Derivatives of the converged step: one exact tangent, and one linear solution a direction."""
+    n, size = problem.n, len(old.x) - 1
+    r, delta, answer = buffers
+    tangent(
+        dual, problem.exact_slots, n, new.x, new.v, new.a, (c.dq, c.dv, 1.0), (1.0, 1.0 / c.dq), dual_work, exact.matrix
+    )
+    regular = factorise(problem.exact_layout, problem.lapack, exact)
+    for d in range(len(dolds.x)):
+        model = select(directions, d)
+        dold, dnew = row(dolds, d), row(dnews, d)
+        dnew.a[:] = dold.a
+        dnew.x[n:size] = dold.x[n:size]
+        advance(n, c, dold, dnew)
+        _lift(n, new, dnew, lifted)
+        _signals(model, t, within, dual_work)
+        residual(model, n, lifted[0], lifted[1], lifted[2], dual_work, 1.0 / c.dq, r)
+        for i in range(size):
+            delta[i] = r[i].imag / STEP
+        solve(problem.exact_layout, problem.lapack, exact, delta, answer)
+        for i in range(n):
+            dnew.a[i] -= answer[i]
+        for i in range(n, size):
+            dnew.x[i] -= answer[i]
+        advance(n, c, dold, dnew)
+    return regular
+
+
+@compiled
+def _accelerate(problem, model, dual, directions, t, within, state, dstates, work, dual_work, lifted, exact, buffers):
+    """Accelerations and multipliers that satisfy the equations of motion, and their derivatives."""
+    n, last = problem.n, len(state.x) - 1
+    r, delta, answer = buffers
+    rate, second = np.zeros(last + 1), np.zeros(last + 1)
+    drate, dsecond = np.zeros(last + 1, np.complex128), np.zeros(last + 1, np.complex128)
+    _signals(model, t, within, work)
+    _signals(dual, t, within, dual_work)
+    for _ in range(2):  # twice: friction may depend on the multipliers
+        args = (dual, problem.exact_slots, n, state.x, state.v, state.a)
+        constraints = np.empty_like(exact.matrix)
+        tangent(*args, (1.0, 0.0, 0.0), (0.0, 1.0), dual_work, constraints)
+        tangent(*args, (0.0, 0.0, 1.0), (1.0, 0.0), dual_work, exact.matrix)
+        exact.matrix[:] += constraints
+        if not factorise(problem.exact_layout, problem.lapack, exact):
+            return False
+        for _ in range(2):
+            residual(model, n, state.x, state.v, state.a, work, 1.0, answer)
+            constraint_rates(model, n, state.x, state.v, state.a, work, rate, second)
+            delta[:n] = answer[:n]
+            delta[n:] = second[n:]
+            solve(problem.exact_layout, problem.lapack, exact, delta, answer)
+            state.a[:n] -= answer[:n]
+            state.x[n:last] -= answer[n:last]
+    state.w[:] = state.a
+    for d in range(len(dstates.x)):
+        tilted, dstate = select(directions, d), row(dstates, d)
+        _signals(tilted, t, within, dual_work)
+        _lift(n, state, dstate, lifted)
+        residual(tilted, n, lifted[0], lifted[1], lifted[2], dual_work, 1.0, r)
+        constraint_rates(tilted, n, lifted[0], lifted[1], lifted[2], dual_work, drate, dsecond)
+        for i in range(last):
+            delta[i] = (r[i].imag if i < n else dsecond[i].imag) / STEP
+        solve(problem.exact_layout, problem.lapack, exact, delta, answer)
+        dstate.a[:n] -= answer[:n]
+        dstate.x[n:last] -= answer[n:last]
+        dstate.w[:] = dstate.a
+    return True
+
+
+@compiled
+def integrate(problem, settings, model, dual, directions, state, dstates, out, dout, log):
+    """Run from ``problem.edges[0]`` to the last edge and fill the states at the output times.
+
+    Parameters
+    ----------
+    problem, settings : Problem, Settings
+    model, dual : Model
+        In real and in complex numbers.
+    directions : Model
+        Stack of complex models, one a direction of differentiation; may be empty.
+    state, dstates : Motion
+        At the start, and its derivatives (directions, N + 1); overwritten.
+    out, dout : Motion
+        Arrays (times, N + 1) and (directions, times, N + 1); ``w`` is not used.
+    log : Log
+
+    Returns
+    -------
+    status, time, unknown : int, float, int
+        `DONE`, or the reason, with the time reached and the unknown that moved most.
+    """
+    n, width = problem.n, len(state.x)
+    old, new = still(width), still(width)
+    copy(state, new)
+    dolds = Motion(np.zeros_like(dstates.x), np.zeros_like(dstates.x), np.zeros_like(dstates.x), np.zeros_like(dstates.x))
+    work, dual_work = workspace(model), workspace(dual)
+    newton = _Newton(storage(problem.layout), work, dual_work, np.zeros(width), np.zeros(width), np.array([0.0, 0.9]))
+    exact = storage(problem.exact_layout)
+    lifted = np.zeros((3, width), np.complex128)
+    buffers = np.zeros(width, np.complex128), np.zeros(width), np.zeros(width)
+    differentiated = len(dstates.x) > 0
+    due = 0
+    length = settings.step
+    for stretch in range(len(problem.edges) - 1):
+        begin, end = problem.edges[stretch], problem.edges[stretch + 1]
+        within = 0.5 * (begin + end)
+        if stretch > 0 or settings.consistent:
+            if not _accelerate(
+                problem, model, dual, directions, begin, within, new, dstates, work, dual_work, lifted, exact, buffers
+            ):
+                return SINGULAR, begin, 0
+        if stretch == 0:
+            while due < len(problem.times) and problem.times[due] <= begin:
+                _record(n, 1.0, 1.0, new, new, dstates, dstates, out, dout, due)
+                due += 1
+        steps = max(1, int(np.ceil((end - begin) / settings.step - 1e-6)))
+        nominal = (end - begin) / steps
+        unit, level = 0, 0
+        t = begin
+        if not settings.adaptive:
+            length = nominal
+        while (settings.adaptive and t < end) or (not settings.adaptive and unit < steps * _UNITS):
+            if settings.adaptive:
+                if t + length * 1.0001 >= end:
+                    length = end - t
+                target = t + length if length < end - t else end
+            else:
+                stride = _UNITS >> level
+                length = nominal / (1 << level)
+                target = end if unit + stride == steps * _UNITS else begin + nominal * ((unit + stride) / _UNITS)
+            copy(new, old)
+            c = coefficients(length, settings.spectral_radius)
+            _signals(model, target, within, work)
+            _signals(dual, target, within, dual_work)
+            status, detail = _converge(problem, model, dual, c, settings.newton_tolerance, old, new, newton, log)
+            error = 0.0
+            if status == DONE and settings.adaptive:
+                for i in range(n):
+                    gap = abs(c.beta - 1 / 6) * length * length * abs(new.w[i] - old.w[i])
+                    error = max(error, gap / (settings.tolerance * problem.scale[i]))
+            if status != DONE or error > 1.0:
+                log.counts[3] += 1
+                copy(old, new)
+                if status != DONE:
+                    newton.memory[0] = 0.0
+                if settings.adaptive:
+                    length *= max(0.2, 0.9 * error ** (-1 / 3)) if status == DONE else 0.25
+                    if length < 1e-12 * (end - begin):
+                        return NEWTON_FAILED, t, detail
+                elif level == _HALVINGS:
+                    return status, t, detail
+                else:
+                    level += 1
+                continue
+            if log.counts[0] < len(log.iterations):
+                log.iterations[log.counts[0]] = detail
+                log.ends[log.counts[0]] = target
+            log.counts[0] += 1
+            if differentiated:
+                dolds.x[:], dolds.v[:], dolds.a[:], dolds.w[:] = dstates.x, dstates.v, dstates.a, dstates.w
+                _differentiate(
+                    problem, dual, directions, c, target, within, old, new, dolds, dstates, exact, dual_work, lifted,
+                    buffers,
+                )  # fmt: skip
+            while due < len(problem.times) and problem.times[due] <= target + 1e-9 * length:
+                share = min(1.0, (problem.times[due] - t) / length)
+                _record(n, length, share, old, new, dolds, dstates, out, dout, due)
+                due += 1
+            t = target
+            if settings.adaptive:
+                if log.counts[0] >= settings.most_steps:
+                    return TOO_MANY_STEPS, t, 0
+                growth = min(2.0, 0.9 * (error + 1e-30) ** (-1 / 3))
+                if growth < 1.0 or growth > 1.2:
+                    length *= growth
+            else:
+                unit += stride
+                if level > 0 and unit % (2 * stride) == 0:
+                    level -= 1
+    copy(new, state)
+    return DONE, problem.edges[-1], 0
+
+
+@compiled
+def _record(n, length, share, old, new, dolds, dnews, out, dout, due):
+    """Write the states at an output time."""
+    if share > 1.0 - 1e-9:
+        out.x[due], out.v[due], out.a[due] = new.x, new.v, new.a
+        for d in range(len(dnews.x)):
+            dout.x[d, due], dout.v[d, due], dout.a[d, due] = dnews.x[d], dnews.v[d], dnews.a[d]
+        return
+    interpolate(n, length, share, old, new, out.x[due], out.v[due], out.a[due])
+    for d in range(len(dnews.x)):
+        interpolate(n, length, share, row(dolds, d), row(dnews, d), dout.x[d, due], dout.v[d, due], dout.a[d, due])

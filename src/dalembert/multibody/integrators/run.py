@@ -1,0 +1,136 @@
+"""Calls of the compiled integrators with lowered models."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from dalembert.multibody.assemble import scales
+from dalembert.multibody.integrators import generalized_alpha as alpha
+from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha, Log, Problem, Settings
+from dalembert.multibody.kernels.dual import STEP
+from dalembert.multibody.kernels.linear import LAPACK
+from dalembert.multibody.kernels.model import KINDS, Block, Model, Signals
+from dalembert.multibody.kernels.motion import Motion
+from dalembert.multibody.lowering import Lowered
+
+
+@dataclass(frozen=True)
+class Run:
+    """What a run of an integrator left.
+
+    Parameters
+    ----------
+    status : int
+    reason : str or None
+        Why the run ended early.
+    times : array (samples,)
+    states : Motion of arrays (samples, N + 1)
+    derivatives : Motion of arrays (directions, samples, N + 1)
+    counts : array (4,)
+        Steps, Newton iterations, factorisations, rejected steps.
+    iterations, ends : array
+        Newton iterations of each step, and the step's end, s.
+    """
+
+    reason: str | None
+    times: np.ndarray
+    states: Motion
+    derivatives: Motion
+    counts: np.ndarray
+    iterations: np.ndarray
+    ends: np.ndarray
+
+
+def run(
+    lowered: Lowered,
+    solver: GeneralizedAlpha,
+    end: float,
+    times: np.ndarray,
+    tilted: Sequence[Lowered] = (),
+    problem: Problem | None = None,
+) -> Run:
+    """Integrate from 0 to ``end``; ``tilted`` are the models along the directions of differentiation."""
+    problem = problem or make_problem(lowered, end, times)
+    width = lowered.structure.size + 1
+    directions = stack([entry.dual for entry in tilted], lowered.dual)
+    state = _state(lowered.x.real, lowered.v.real)
+    dstates = _zeros(len(tilted), width)
+    for d, entry in enumerate(tilted):
+        dstates.x[d], dstates.v[d] = entry.x.imag / STEP, entry.v.imag / STEP
+    out, dout = _zeros(len(times), width), _zeros(len(tilted), len(times), width)
+    steps = 0 if solver.adaptive else int(np.ceil(end / solver.step)) + len(problem.edges)
+    log = Log(np.zeros(4, dtype=np.int64), np.zeros(max(steps, 100_000), dtype=np.int64), np.zeros(max(steps, 100_000)))
+    status, time, unknown = alpha.integrate(
+        problem, settings(solver), lowered.real, lowered.dual, directions, state, dstates, out, dout, log
+    )
+    taken = min(int(log.counts[0]), len(log.iterations))
+    reason = None if status == alpha.DONE else explain(lowered, solver, status, time, unknown)
+    return Run(reason, times, out, dout, log.counts, log.iterations[:taken].copy(), log.ends[:taken].copy())
+
+
+def make_problem(lowered: Lowered, end: float, times: np.ndarray) -> Problem:
+    """What all samples of a structure share."""
+    structure = lowered.structure
+    slots, layout = structure.kept
+    exact_slots, exact_layout = structure.fresh
+    edges = np.array([0.0, *(time for time in lowered.jumps if 0 < time < end), end])
+    return Problem(
+        structure.n, scales(lowered), slots, layout, exact_slots, exact_layout, LAPACK, edges, np.asarray(times, dtype=float)
+    )
+
+
+def settings(solver: GeneralizedAlpha) -> Settings:
+    """The solver's numbers, as the compiled loop takes them."""
+    return Settings(
+        float(solver.step),
+        float(solver.spectral_radius),
+        solver.initial_acceleration == "consistent",
+        bool(solver.adaptive),
+        float(solver.tolerance),
+        float(solver.newton_tolerance),
+        int(solver.most_steps),
+    )
+
+
+def stack(models: Sequence[Model], like: Model) -> Model:
+    """Models with one more leading axis on their numbers and callbacks; ``like`` gives the shapes of an empty stack."""
+
+    def joined(arrays: list[np.ndarray], pattern: np.ndarray) -> np.ndarray:
+        return np.stack(arrays) if arrays else np.zeros((0, *pattern.shape), dtype=pattern.dtype)
+
+    blocks = {}
+    for kind in KINDS:
+        first: Block = getattr(like, kind)
+        blocks[kind] = Block(first.index, first.meta, joined([getattr(model, kind).data for model in models], first.data))
+    signals = Signals(like.signals.index, like.signals.knots, joined([m.signals.data for m in models], like.signals.data))
+    return Model(**blocks, signals=signals, callbacks=joined([m.callbacks for m in models], like.callbacks))
+
+
+def explain(lowered: Lowered, solver: GeneralizedAlpha, status: int, time: float, unknown: int) -> str:
+    """Sentence for a run that ended early."""
+    owner = lowered.structure.owners[min(unknown, lowered.structure.size - 1)]
+    if lowered.failures.errors:
+        error = lowered.failures.errors[0]
+        return f"a function of the user's failed near t = {time:.6g} s: {type(error).__name__}: {error}"
+    if status == alpha.SINGULAR:
+        return (
+            f"the equations of motion became singular at t = {time:.6g} s, at component {owner!r}: redundant constraints, "
+            "a massless part, or a singular position; start from another position or take a constraint out"
+        )
+    if status == alpha.TOO_MANY_STEPS:
+        return f"the adaptive step reached most_steps = {solver.most_steps} at t = {time:.6g} s; raise tolerance or most_steps"
+    return (
+        f"Newton's iteration did not converge at t = {time:.6g} s, worst at component {owner!r}, though the step of "
+        f"{solver.step:g} s was cut down {'' if solver.adaptive else 'to 1/256 '}for it; take a smaller step, or check "
+        "the component's stiffness, loads and dimensions"
+    )
+
+
+def _state(x: np.ndarray, v: np.ndarray) -> Motion:
+    zeros = np.zeros_like(x, dtype=float)
+    return Motion(x.astype(float), v.astype(float), zeros.copy(), zeros)
+
+
+def _zeros(*shape: int) -> Motion:
+    return Motion(np.zeros(shape), np.zeros(shape), np.zeros(shape), np.zeros(shape))

@@ -1,0 +1,200 @@
+"""Joints between two points, or between a point and the ground."""
+
+from abc import abstractmethod
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from dalembert.errors import InputError, ModelError, unknown
+from dalembert.multibody.fields import Number, number, require, require_not_negative
+from dalembert.multibody.kernels import joints as kernel
+from dalembert.multibody.kernels import markers
+from dalembert.multibody.points import Side
+from dalembert.multibody.signals import Course
+
+if TYPE_CHECKING:
+    from dalembert.multibody.lowering import Lowering, Pair
+
+
+@dataclass(frozen=True)
+class Joint:
+    """Base of all joints: a name and two sides."""
+
+    name: str
+    a: Side
+    b: Side
+
+    @abstractmethod
+    def lower(self, lowering: "Lowering") -> None:
+        """Write the rows of the kernels."""
+
+    def _oriented(self, pair: "Pair") -> None:
+        """Refuse sides that have no direction."""
+        for side, kind in ((self.a, pair.kinds[0]), (self.b, pair.kinds[1])):
+            if kind == markers.MASS:
+                raise ModelError(
+                    f"{type(self).__name__} {self.name!r}: {side} is a point mass, which has no direction; "
+                    "use a revolute or distance joint, or a rigid body"
+                )
+
+
+def _friction(lowering: "Lowering", kind: int, index: list[int], pair: "Pair", rest: list[Number], *law: Number) -> None:
+    """Add the friction of a joint, where it has any."""
+    if any(value != 0 for value in law[:3]):
+        lowering.add("frictions", index, [kind, *pair.kinds, 0, pair.wraps], [*pair.data, *rest, *law])
+
+
+@dataclass(frozen=True)
+class RevoluteJoint(Joint):
+    """A pin: both points coincide.
+
+    Parameters
+    ----------
+    name : str
+    a, b : Point or ground
+    viscous : float
+        Friction torque per relative angular velocity, N m s.
+    coulomb : float
+        Constant friction torque, N m.
+    friction_coefficient : float
+        With ``pin_radius`` (m): friction torque friction_coefficient x pin_radius x reaction force.
+    slip_rate : float
+        Relative angular velocity, rad/s, over which the Coulomb torque turns its sign, as tanh(rate / slip_rate).
+    """
+
+    viscous: Number = number("N*m*s", 0.0)
+    coulomb: Number = number("N*m", 0.0)
+    friction_coefficient: Number = number("", 0.0)
+    pin_radius: Number = number("m", 0.0)
+    slip_rate: Number = number("rad/s", 1e-3)
+
+    def __post_init__(self) -> None:
+        owner = f"revolute joint {self.name!r}"
+        require_not_negative(
+            owner, viscous=self.viscous, coulomb=self.coulomb, friction_coefficient=self.friction_coefficient,
+            pin_radius=self.pin_radius,
+        )  # fmt: skip
+        require(owner, slip_rate=self.slip_rate)
+
+    def lower(self, lowering: "Lowering") -> None:
+        pair = lowering.pair(self.a, self.b, self.name)
+        index = pair.slots + lowering.multipliers(self.name, 2)
+        lowering.add("joints", index, [kernel.REVOLUTE, *pair.kinds, 0, pair.wraps], [*pair.data, 0.0, 0.0])
+        law = self.viscous, self.coulomb, self.friction_coefficient * self.pin_radius, self.slip_rate
+        _friction(lowering, kernel.REVOLUTE, index, pair, [0.0, 0.0], *law)
+
+
+@dataclass(frozen=True)
+class FixedJoint(Joint):
+    """A weld: both points coincide and keep their relative angle. A beam's end offers its section's direction."""
+
+    def lower(self, lowering: "Lowering") -> None:
+        pair = lowering.pair(self.a, self.b, self.name)
+        self._oriented(pair)
+        index = pair.slots + lowering.multipliers(self.name, 3)
+        lowering.add("joints", index, [kernel.FIXED, *pair.kinds, 0, pair.wraps], [*pair.data, pair.rest_angle, 0.0])
+
+
+@dataclass(frozen=True)
+class PrismaticJoint(Joint):
+    """A slide: point b stays on a line through point a that turns with a, and keeps its relative angle.
+
+    Parameters
+    ----------
+    name : str
+    a, b : Point or ground
+    angle : float
+        Of the line against the axes of a, rad.
+    viscous : float
+        Friction force per sliding velocity, N s/m.
+    coulomb : float
+        Constant friction force, N.
+    friction_coefficient : float
+        Friction force per normal force.
+    slip_velocity : float
+        Sliding velocity, m/s, over which the Coulomb force turns its sign.
+    """
+
+    angle: Number = number("rad", 0.0)
+    viscous: Number = number("N*s/m", 0.0)
+    coulomb: Number = number("N", 0.0)
+    friction_coefficient: Number = number("", 0.0)
+    slip_velocity: Number = number("m/s", 1e-3)
+
+    def __post_init__(self) -> None:
+        owner = f"prismatic joint {self.name!r}"
+        require_not_negative(
+            owner, viscous=self.viscous, coulomb=self.coulomb, friction_coefficient=self.friction_coefficient
+        )
+        require(owner, slip_velocity=self.slip_velocity)
+
+    def lower(self, lowering: "Lowering") -> None:
+        pair = lowering.pair(self.a, self.b, self.name)
+        self._oriented(pair)
+        index = pair.slots + lowering.multipliers(self.name, 2)
+        rest = [pair.rest_angle, self.angle]
+        lowering.add("joints", [*index, None], [kernel.PRISMATIC, *pair.kinds, 0, pair.wraps], [*pair.data, *rest])
+        law = self.viscous, self.coulomb, self.friction_coefficient, self.slip_velocity
+        _friction(lowering, kernel.PRISMATIC, [*index, None], pair, rest, *law)
+
+
+@dataclass(frozen=True)
+class DistanceJoint(Joint):
+    """A massless rod between two points.
+
+    Parameters
+    ----------
+    name : str
+    a, b : Point or ground
+    length : float, optional
+        m; the first distance of the points if not given.
+    """
+
+    length: Number | None = number("m", None)
+
+    def __post_init__(self) -> None:
+        if self.length is not None:
+            require(f"distance joint {self.name!r}", length=self.length)
+
+    def lower(self, lowering: "Lowering") -> None:
+        pair = lowering.pair(self.a, self.b, self.name)
+        length = pair.distance if self.length is None else self.length
+        if not np.real(length) > 0:
+            raise ModelError(
+                f"distance joint {self.name!r}: its points {self.a} and {self.b} coincide and no length is given; "
+                "give a length, or use a revolute joint"
+            )
+        index = pair.slots + lowering.multipliers(self.name, 1)
+        lowering.add("joints", index, [kernel.DISTANCE, *pair.kinds, 0, pair.wraps], [*pair.data, length, 0.0])
+
+
+@dataclass(frozen=True)
+class PrescribedMotion(Joint):
+    """A coordinate of point b against point a that follows a function of time.
+
+    Parameters
+    ----------
+    name : str
+    a, b : Point or ground
+    coordinate : {"x", "y", "angle"}
+        x and y along the fixed axes, in m; the angle in rad.
+    motion : float or Signal
+    """
+
+    coordinate: str = "angle"
+    motion: Course = 0.0
+
+    _KINDS = {"x": kernel.MOTION_X, "y": kernel.MOTION_Y, "angle": kernel.MOTION_ANGLE}
+
+    def __post_init__(self) -> None:
+        if self.coordinate not in self._KINDS:
+            raise InputError(unknown("coordinate", self.coordinate, self._KINDS, f"prescribed motion {self.name!r}"))
+
+    def lower(self, lowering: "Lowering") -> None:
+        pair = lowering.pair(self.a, self.b, self.name)
+        if self.coordinate == "angle":
+            self._oriented(pair)
+        index = pair.slots + lowering.multipliers(self.name, 1)
+        meta = [self._KINDS[self.coordinate], *pair.kinds, lowering.signal(self.motion), pair.wraps]
+        lowering.add("joints", index, meta, [*pair.data, 0.0, 0.0])

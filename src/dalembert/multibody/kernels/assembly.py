@@ -1,0 +1,139 @@
+"""Residual, tangent, constraint rates and energies of a whole model, from the kernels of its components."""
+
+from dalembert.multibody.kernels import beam, body, cable, friction, joints, load, spring, user
+from dalembert.multibody.kernels.compiled import compiled
+from dalembert.multibody.kernels.dual import STEP, real
+
+
+@compiled
+def gather(index, e, width, x, v, a, work):
+    """Copy the unknowns of component ``e`` to the local vectors."""
+    for i in range(width):
+        g = index[e, i]
+        work.x[i], work.v[i], work.a[i] = x[g], v[g], a[g]
+
+
+@compiled
+def _add_residual(kernel, width, block, callbacks, x, v, a, work, r):
+    index = block.index
+    for e in range(len(index)):
+        gather(index, e, width, x, v, a, work)
+        kernel(work.x, work.v, work.a, work.signals, callbacks, block.data, block.meta, e, work.r)
+        for i in range(width):
+            r[index[e, i]] += work.r[i]
+
+
+@compiled
+def residual(model, n, x, v, a, work, scale, r):
+    """Fill ``r`` (N + 1,): the equations of motion, then the constraints times ``scale``.
+
+    The signals in ``work`` hold the time.
+    """
+    r[:] = 0.0
+    c = model.callbacks
+    _add_residual(beam.residual, beam.WIDTH, model.beams, c, x, v, a, work, r)
+    _add_residual(cable.residual, cable.WIDTH, model.cables, c, x, v, a, work, r)
+    _add_residual(body.residual, body.WIDTH, model.bodies, c, x, v, a, work, r)
+    _add_residual(joints.residual, joints.WIDTH, model.joints, c, x, v, a, work, r)
+    _add_residual(friction.residual, friction.WIDTH, model.frictions, c, x, v, a, work, r)
+    _add_residual(spring.residual, spring.WIDTH, model.springs, c, x, v, a, work, r)
+    _add_residual(load.residual, load.WIDTH, model.loads, c, x, v, a, work, r)
+    _add_residual(user.residual, user.WIDTH, model.users, c, x, v, a, work, r)
+    last = len(r) - 1
+    r[n:last] *= scale
+    r[last] = 0.0
+
+
+@compiled
+def _add_tangent(kernel, width, block, slots, callbacks, n, x, v, a, by, rows, work, matrix):
+    index, last = block.index, len(x) - 1
+    for e in range(len(index)):
+        gather(index, e, width, x, v, a, work)
+        for j in range(width):
+            column = index[e, j]
+            if column == last:
+                continue
+            if column < n:
+                work.x[j] += 1j * STEP * by[0]
+                work.v[j] += 1j * STEP * by[1]
+                work.a[j] += 1j * STEP * by[2]
+            else:
+                work.x[j] += 1j * STEP
+            kernel(work.x, work.v, work.a, work.signals, callbacks, block.data, block.meta, e, work.r)
+            work.x[j], work.v[j], work.a[j] = x[column], v[column], a[column]
+            for i in range(width):
+                row = index[e, i]
+                if row < last:
+                    matrix[slots[e, i, j]] += work.r[i].imag / STEP * (rows[0] if row < n else rows[1])
+
+
+@compiled
+def tangent(dual, slots, n, x, v, a, by, rows, work, matrix):
+    """Fill the flat ``matrix`` with the derivative of the residual along ``by[0] dq + by[1] dv + by[2] da``, and dlambda.
+
+    Rows of the equations of motion are multiplied by ``rows[0]``, those of the constraints by ``rows[1]``. ``dual`` is
+    the model in complex numbers; each component's columns come from the complex step.
+    """
+    matrix[:] = 0.0
+    c = dual.callbacks
+    _add_tangent(beam.residual, beam.WIDTH, dual.beams, slots.beams, c, n, x, v, a, by, rows, work, matrix)
+    _add_tangent(cable.residual, cable.WIDTH, dual.cables, slots.cables, c, n, x, v, a, by, rows, work, matrix)
+    _add_tangent(body.residual, body.WIDTH, dual.bodies, slots.bodies, c, n, x, v, a, by, rows, work, matrix)
+    _add_tangent(joints.residual, joints.WIDTH, dual.joints, slots.joints, c, n, x, v, a, by, rows, work, matrix)
+    _add_tangent(friction.residual, friction.WIDTH, dual.frictions, slots.frictions, c, n, x, v, a, by, rows, work, matrix)
+    _add_tangent(spring.residual, spring.WIDTH, dual.springs, slots.springs, c, n, x, v, a, by, rows, work, matrix)
+    _add_tangent(load.residual, load.WIDTH, dual.loads, slots.loads, c, n, x, v, a, by, rows, work, matrix)
+    _add_tangent(user.residual, user.WIDTH, dual.users, slots.users, c, n, x, v, a, by, rows, work, matrix)
+
+
+@compiled
+def constraint_rates(model, n, x, v, a, work, rate, second):
+    """Fill ``rate`` and ``second`` (N + 1,) with the first and second time derivatives of the constraints."""
+    block = model.joints
+    local = work.r[:3], work.r[3:6]
+    for e in range(len(block.index)):
+        gather(block.index, e, joints.WIDTH, x, v, a, work)
+        joints.rates(work.x, work.v, work.a, work.signals, block.data, block.meta, e, local[0], local[1])
+        for i in range(3):
+            row = block.index[e, joints.MULTIPLIERS + i]
+            rate[row], second[row] = local[0][i], local[1][i]
+
+
+@compiled
+def _sum_energy(kernel, width, block, callbacks, x, v, work, totals):
+    for e in range(len(block.index)):
+        gather(block.index, e, width, x, v, v, work)
+        kinetic, potential, power = kernel(
+            work.x[:width], work.v[:width], work.signals, callbacks, block.data, block.meta, e
+        )
+        totals[0] += kinetic
+        totals[1] += potential
+        totals[2] += power
+
+
+@compiled
+def energies(model, x, v, work, totals):
+    """Fill ``totals`` (3,): kinetic energy, potential energy, power of all that is not conservative."""
+    totals[:] = 0.0
+    c = model.callbacks
+    _sum_energy(beam.energy, beam.WIDTH, model.beams, c, x, v, work, totals)
+    _sum_energy(cable.energy, cable.WIDTH, model.cables, c, x, v, work, totals)
+    _sum_energy(body.energy, body.WIDTH, model.bodies, c, x, v, work, totals)
+    _sum_energy(joints.energy, joints.WIDTH, model.joints, c, x, v, work, totals)
+    _sum_energy(friction.energy, friction.WIDTH, model.frictions, c, x, v, work, totals)
+    _sum_energy(spring.energy, spring.WIDTH, model.springs, c, x, v, work, totals)
+    _sum_energy(load.energy, load.WIDTH, model.loads, c, x, v, work, totals)
+    _sum_energy(user.energy, user.WIDTH, model.users, c, x, v, work, totals)
+
+
+@compiled
+def largest(values, scale, n):
+    """Largest |real part| of the first ``n`` values against their scales; NaN if one is not finite."""
+    most = 0.0
+    for i in range(n):
+        size = abs(real(values[i])) / scale[i]
+        if not size < 1e300:
+            return 1e300
+        if size > most:
+            most = size
+    return most

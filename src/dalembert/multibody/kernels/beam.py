@@ -1,0 +1,119 @@
+"""The fully parametrised planar ANCF beam element (Omar and Shabana 2001).
+
+Local coordinates: (r, r_x, r_y) at both nodes, two components each, 12 in all. With xi = x/h along the element and y
+across it, r_x = s1'(r1 - r2) + s2' r1_x + s5' r2_x + y d and r_y = (1 - xi) r1_y + xi r2_y, d = (r2_y - r1_y)/h.
+Green-Lagrange strain, Saint-Venant-Kirchhoff material, Gauss points 3 along by 2 across.
+
+Data: length h, height, width, mass, rotatory mass (density x second moment of area x length), stiffnesses C11, C12, G,
+retardation time of the material damping, gravity (gx, gy).
+"""
+
+import numpy as np
+
+from dalembert.multibody.kernels import hermite
+from dalembert.multibody.kernels.compiled import compiled
+from dalembert.multibody.kernels.dual import reciprocal
+
+WIDTH = 12
+_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(3)
+XI, W = (_POINTS + 1) / 2, _WEIGHTS / 2
+ACROSS = np.array([-0.5, 0.5]) / np.sqrt(3.0)
+S1, S2, S5 = 6 * XI * (XI - 1), 1 - 4 * XI + 3 * XI**2, 3 * XI**2 - 2 * XI
+
+
+@compiled
+def residual(x, v, a, signals, callbacks, data, meta, e, r):
+    """M a + elastic and damping forces - weight."""
+    for i in range(WIDTH):
+        r[i] = 0.0
+    h, height = data[e, 0], data[e, 1]
+    c11, c12, shear, delay = data[e, 5], data[e, 6], data[e, 7], data[e, 8]
+    across = reciprocal(h)
+    dx, dy = (x[10] - x[4]) * across, (x[11] - x[5]) * across
+    for g in range(3):
+        xi = XI[g]
+        s1, s2, s5 = S1[g] * across, S2[g], S5[g]
+        cx = s1 * (x[0] - x[6]) + s2 * x[2] + s5 * x[8]
+        cy = s1 * (x[1] - x[7]) + s2 * x[3] + s5 * x[9]
+        nx, ny = (1 - xi) * x[4] + xi * x[10], (1 - xi) * x[5] + xi * x[11]
+        eyy = 0.5 * (nx * nx + ny * ny - 1.0)
+        sx, sy, tx, ty, ux, uy = 0.0 * h, 0.0 * h, 0.0 * h, 0.0 * h, 0.0 * h, 0.0 * h
+        for b in range(2):
+            y = ACROSS[b] * height
+            fx, fy = cx + y * dx, cy + y * dy
+            exx = 0.5 * (fx * fx + fy * fy - 1.0)
+            twice = fx * nx + fy * ny
+            sxx, syy, sxy = c11 * exx + c12 * eyy, c12 * exx + c11 * eyy, shear * twice
+            if delay != 0.0:
+                rates = _strain_rates(v, xi, s1, s2, s5, y * across, fx, fy, nx, ny)
+                sxx += delay * (c11 * rates[0] + c12 * rates[1])
+                syy += delay * (c12 * rates[0] + c11 * rates[1])
+                sxy += delay * shear * rates[2]
+            px, py = sxx * fx + sxy * nx, sxx * fy + sxy * ny
+            sx, sy = sx + px, sy + py
+            tx, ty = tx + y * px, ty + y * py
+            ux, uy = ux + sxy * fx + syy * nx, uy + sxy * fy + syy * ny
+        w = 0.5 * W[g] * h * height * data[e, 2]
+        sx, sy, tx, ty, ux, uy = w * sx, w * sy, w * tx * across, w * ty * across, w * ux, w * uy
+        r[0] += s1 * sx
+        r[1] += s1 * sy
+        r[2] += s2 * sx
+        r[3] += s2 * sy
+        r[4] += (1 - xi) * ux - tx
+        r[5] += (1 - xi) * uy - ty
+        r[6] -= s1 * sx
+        r[7] -= s1 * sy
+        r[8] += s5 * sx
+        r[9] += s5 * sy
+        r[10] += xi * ux + tx
+        r[11] += xi * uy + ty
+    mass, rotatory = data[e, 3], data[e, 4]
+    hermite.inertia(mass, h, 0, 2, 6, 8, a, r)
+    hermite.inertia(mass, h, 1, 3, 7, 9, a, r)
+    hermite.weight(mass, h, data[e, 9], 0, 2, 6, 8, r)
+    hermite.weight(mass, h, data[e, 10], 1, 3, 7, 9, r)
+    for i in range(4, 6):
+        r[i] += rotatory * (a[i] / 3 + a[i + 6] / 6)
+        r[i + 6] += rotatory * (a[i] / 6 + a[i + 6] / 3)
+
+
+@compiled
+def _strain_rates(v, xi, s1, s2, s5, y_over_h, fx, fy, nx, ny):
+    """Rates of (E_xx, E_yy, 2 E_xy) at one Gauss point."""
+    gx = s1 * (v[0] - v[6]) + s2 * v[2] + s5 * v[8] + y_over_h * (v[10] - v[4])
+    gy = s1 * (v[1] - v[7]) + s2 * v[3] + s5 * v[9] + y_over_h * (v[11] - v[5])
+    mx, my = (1 - xi) * v[4] + xi * v[10], (1 - xi) * v[5] + xi * v[11]
+    return fx * gx + fy * gy, nx * mx + ny * my, fx * mx + fy * my + gx * nx + gy * ny
+
+
+@compiled
+def energy(x, v, signals, callbacks, data, meta, e):
+    """Kinetic energy, strain and gravity energy, power of the material damping."""
+    h, height, mass, rotatory = data[e, 0], data[e, 1], data[e, 3], data[e, 4]
+    c11, c12, shear, delay = data[e, 5], data[e, 6], data[e, 7], data[e, 8]
+    momentum = np.zeros_like(x)
+    hermite.inertia(mass, h, 0, 2, 6, 8, v, momentum)
+    hermite.inertia(mass, h, 1, 3, 7, 9, v, momentum)
+    for i in range(4, 6):
+        momentum[i] += rotatory * (v[i] / 3 + v[i + 6] / 6)
+        momentum[i + 6] += rotatory * (v[i] / 6 + v[i + 6] / 3)
+    kinetic = 0.0 * h
+    for i in range(WIDTH):
+        kinetic += 0.5 * v[i] * momentum[i]
+    potential = -mass * (data[e, 9] * hermite.centre(h, 0, 2, 6, 8, x) + data[e, 10] * hermite.centre(h, 1, 3, 7, 9, x))
+    power = 0.0 * h
+    across = 1.0 / h
+    for g in range(3):
+        xi = XI[g]
+        s1, s2, s5 = S1[g] * across, S2[g], S5[g]
+        nx, ny = (1 - xi) * x[4] + xi * x[10], (1 - xi) * x[5] + xi * x[11]
+        for b in range(2):
+            y = ACROSS[b] * height * across
+            fx = s1 * (x[0] - x[6]) + s2 * x[2] + s5 * x[8] + y * (x[10] - x[4])
+            fy = s1 * (x[1] - x[7]) + s2 * x[3] + s5 * x[9] + y * (x[11] - x[5])
+            exx, eyy, twice = 0.5 * (fx * fx + fy * fy - 1), 0.5 * (nx * nx + ny * ny - 1), fx * nx + fy * ny
+            w = 0.5 * W[g] * h * height * data[e, 2]
+            potential += 0.5 * w * (c11 * (exx * exx + eyy * eyy) + 2 * c12 * exx * eyy + shear * twice * twice)
+            dxx, dyy, dxy = _strain_rates(v, xi, s1, s2, s5, y, fx, fy, nx, ny)
+            power -= delay * w * (c11 * (dxx * dxx + dyy * dyy) + 2 * c12 * dxx * dyy + shear * dxy * dxy)
+    return kinetic, potential, power

@@ -1,0 +1,127 @@
+"""The gradient-deficient planar ANCF cable element (Gerstmayr and Shabana 2006): an Euler-Bernoulli beam.
+
+Local coordinates: (r, r') at both nodes, 8 in all. Axial strain |r'| - 1 (five Gauss points), curvature
+(r' x r'')/|r'|^2 (three Gauss points).
+
+Data: length h, axial stiffness EA, bending stiffness EI, mass, retardation time of the material damping,
+gravity (gx, gy).
+"""
+
+import numpy as np
+
+from dalembert.multibody.kernels import hermite
+from dalembert.multibody.kernels.compiled import compiled
+from dalembert.multibody.kernels.dual import reciprocal, root
+
+WIDTH = 8
+
+
+def _gauss(points: int) -> tuple[np.ndarray, ...]:
+    """Weights and derivatives of the Hermite functions, first (x h) and second (x h^2), at Gauss points of [0, 1]."""
+    xi, weights = np.polynomial.legendre.leggauss(points)
+    xi = (xi + 1) / 2
+    first = (6 * xi * (xi - 1), 1 - 4 * xi + 3 * xi**2, 3 * xi**2 - 2 * xi)
+    second = (12 * xi - 6, 6 * xi - 4, 6 * xi - 2)
+    return (weights / 2, *first, *second)
+
+
+AW, A1, A2, A5, _, _, _ = _gauss(5)
+BW, B1, B2, B5, C1, C2, C5 = _gauss(3)
+
+
+@compiled
+def _line(s1, s2, s5, x):
+    """s1 (r1 - r2) + s2 r1' + s5 r2', both components."""
+    return s1 * (x[0] - x[4]) + s2 * x[2] + s5 * x[6], s1 * (x[1] - x[5]) + s2 * x[3] + s5 * x[7]
+
+
+@compiled
+def _spread(s1, s2, s5, fx, fy, r):
+    """Transpose of `_line`."""
+    r[0] += s1 * fx
+    r[1] += s1 * fy
+    r[2] += s2 * fx
+    r[3] += s2 * fy
+    r[4] -= s1 * fx
+    r[5] -= s1 * fy
+    r[6] += s5 * fx
+    r[7] += s5 * fy
+
+
+@compiled
+def _curvature(tx, ty, cx, cy):
+    """Curvature, and its derivatives by r' = (tx, ty); those by r'' are (-ty, tx) over the square, the last value."""
+    square = reciprocal(tx * tx + ty * ty)
+    kappa = (tx * cy - ty * cx) * square
+    return kappa, (cy - 2 * kappa * tx) * square, -(cx + 2 * kappa * ty) * square, square
+
+
+@compiled
+def residual(x, v, a, signals, callbacks, data, meta, e, r):
+    """M a + elastic and damping forces - weight."""
+    for i in range(WIDTH):
+        r[i] = 0.0
+    h, axial, bending, mass, delay = data[e, 0], data[e, 1], data[e, 2], data[e, 3], data[e, 4]
+    across = reciprocal(h)
+    for g in range(5):
+        s1, s2, s5 = A1[g] * across, A2[g], A5[g]
+        tx, ty = _line(s1, s2, s5, x)
+        inverse = reciprocal(root(tx * tx + ty * ty))
+        force = AW[g] * h * axial * (1.0 - inverse)
+        if delay != 0.0:
+            ux, uy = _line(s1, s2, s5, v)
+            force += AW[g] * h * axial * delay * (tx * ux + ty * uy) * inverse * inverse
+        _spread(s1, s2, s5, force * tx, force * ty, r)
+    for g in range(3):
+        s1, s2, s5 = B1[g] * across, B2[g], B5[g]
+        c1, c2, c5 = C1[g] * across * across, C2[g] * across, C5[g] * across
+        tx, ty = _line(s1, s2, s5, x)
+        cx, cy = _line(c1, c2, c5, x)
+        kappa, px, py, square = _curvature(tx, ty, cx, cy)
+        moment = kappa
+        if delay != 0.0:
+            ux, uy = _line(s1, s2, s5, v)
+            wx, wy = _line(c1, c2, c5, v)
+            moment += delay * (px * ux + py * uy + (tx * wy - ty * wx) * square)
+        moment *= BW[g] * h * bending
+        _spread(s1, s2, s5, moment * px, moment * py, r)
+        _spread(c1, c2, c5, -moment * ty * square, moment * tx * square, r)
+    hermite.inertia(mass, h, 0, 2, 4, 6, a, r)
+    hermite.inertia(mass, h, 1, 3, 5, 7, a, r)
+    hermite.weight(mass, h, data[e, 5], 0, 2, 4, 6, r)
+    hermite.weight(mass, h, data[e, 6], 1, 3, 5, 7, r)
+
+
+@compiled
+def energy(x, v, signals, callbacks, data, meta, e):
+    """Kinetic energy, strain and gravity energy, power of the material damping."""
+    h, axial, bending, mass, delay = data[e, 0], data[e, 1], data[e, 2], data[e, 3], data[e, 4]
+    momentum = np.zeros_like(x)
+    hermite.inertia(mass, h, 0, 2, 4, 6, v, momentum)
+    hermite.inertia(mass, h, 1, 3, 5, 7, v, momentum)
+    kinetic = 0.0 * h
+    for i in range(WIDTH):
+        kinetic += 0.5 * v[i] * momentum[i]
+    potential = -mass * (data[e, 5] * hermite.centre(h, 0, 2, 4, 6, x) + data[e, 6] * hermite.centre(h, 1, 3, 5, 7, x))
+    power = 0.0 * h
+    across = 1.0 / h
+    for g in range(5):
+        s1, s2, s5 = A1[g] * across, A2[g], A5[g]
+        tx, ty = _line(s1, s2, s5, x)
+        ux, uy = _line(s1, s2, s5, v)
+        length = root(tx * tx + ty * ty)
+        rate = (tx * ux + ty * uy) / length
+        potential += 0.5 * AW[g] * h * axial * (length - 1.0) * (length - 1.0)
+        power -= AW[g] * h * axial * delay * rate * rate
+    for g in range(3):
+        s1, s2, s5 = B1[g] * across, B2[g], B5[g]
+        c1, c2, c5 = C1[g] * across * across, C2[g] * across, C5[g] * across
+        tx, ty = _line(s1, s2, s5, x)
+        ux, uy = _line(s1, s2, s5, v)
+        cx, cy = _line(c1, c2, c5, x)
+        wx, wy = _line(c1, c2, c5, v)
+        kappa, px, py, square = _curvature(tx, ty, cx, cy)
+        rate = px * ux + py * uy + (tx * wy - ty * wx) * square
+        potential += 0.5 * BW[g] * h * bending * kappa * kappa
+        power -= BW[g] * h * bending * delay * rate * rate
+    return kinetic, potential, power

@@ -1,0 +1,122 @@
+"""Elementary functions for the complex step.
+
+In kernels an imaginary part is a direction of differentiation, as small as 1e-30, never a physical quantity. So each
+function here is exact in the real part and first order in the imaginary one. That is all that a complex step needs,
+it is faster than the general complex function, and it has no branch cuts in the way.
+"""
+
+import math
+
+from numba import types
+from numba.extending import overload
+
+from dalembert.multibody.kernels.compiled import compiled
+
+#: Size of the imaginary step. Second-order terms vanish below the rounding of the first.
+STEP = 1e-30
+
+
+def _is_complex(kind: types.Type) -> bool:
+    return isinstance(kind, types.Complex)
+
+
+def real(x):
+    """Real part, for decisions: a branch must not see the direction of differentiation."""
+    return x.real
+
+
+def sin_cos(x):
+    """Sine and cosine."""
+    return math.sin(x), math.cos(x)
+
+
+def root(x):
+    """Square root of a quantity with a positive real part."""
+    return math.sqrt(x)
+
+
+def tanh(x):
+    """Hyperbolic tangent."""
+    return math.tanh(x)
+
+
+def angle_of(x, y):
+    """Angle of the vector (x, y) in (-pi, pi]."""
+    return math.atan2(y, x)
+
+
+def reciprocal(x):
+    """1/x, without the scaling that a general complex division does."""
+    return 1.0 / x
+
+
+@overload(real, inline="always")
+def _real(x):
+    return (lambda x: x.real) if _is_complex(x) else (lambda x: x)
+
+
+@overload(sin_cos)
+def _sin_cos(x):
+    if not _is_complex(x):
+        return lambda x: (math.sin(x), math.cos(x))
+
+    def dual(x):
+        s, c = math.sin(x.real), math.cos(x.real)
+        return complex(s, c * x.imag), complex(c, -s * x.imag)
+
+    return dual
+
+
+@overload(root)
+def _root(x):
+    if not _is_complex(x):
+        return lambda x: math.sqrt(x)
+
+    def dual(x):
+        s = math.sqrt(x.real)
+        return complex(s, 0.5 * x.imag / s)
+
+    return dual
+
+
+@overload(tanh)
+def _tanh(x):
+    if not _is_complex(x):
+        return lambda x: math.tanh(x)
+
+    def dual(x):
+        s = math.tanh(x.real)
+        return complex(s, (1.0 - s * s) * x.imag)
+
+    return dual
+
+
+@overload(angle_of)
+def _angle_of(x, y):
+    if not _is_complex(x):
+        return lambda x, y: math.atan2(y, x)
+
+    def dual(x, y):
+        square = x.real * x.real + y.real * y.real
+        return complex(math.atan2(y.real, x.real), (x.real * y.imag - y.real * x.imag) / square)
+
+    return dual
+
+
+@overload(reciprocal)
+def _reciprocal(x):
+    if not _is_complex(x):
+        return lambda x: 1.0 / x
+
+    def dual(x):
+        inverse = 1.0 / x.real
+        return complex(inverse, -x.imag * inverse * inverse)
+
+    return dual
+
+
+@compiled
+def wrapped(angle):
+    """The angle moved by whole turns into (-pi, pi]."""
+    turns = math.floor(real(angle) / (2.0 * math.pi) + 0.5)
+    return angle - 2.0 * math.pi * turns

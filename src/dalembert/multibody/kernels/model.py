@@ -1,0 +1,109 @@
+"""The compiled form of any model: arrays, one block a kind of component.
+
+All arrays of unknowns have length N + 1 for n coordinates and m multipliers, N = n + m: coordinates, multipliers, and a
+last entry that stays zero, to which absent slots of a component point.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from dalembert.multibody.kernels import beam, body, cable, friction, joints, load, spring, user
+from dalembert.multibody.kernels.compiled import compiled
+
+#: The kinds in the order of the fields of `Model`.
+KINDS = {
+    "beams": beam,
+    "cables": cable,
+    "bodies": body,
+    "joints": joints,
+    "frictions": friction,
+    "springs": spring,
+    "loads": load,
+    "users": user,
+}
+WIDEST = 12
+
+
+class Block(NamedTuple):
+    """Components of one kind: unknowns (count, width), integers (count, -) and numbers (count, -)."""
+
+    index: np.ndarray
+    meta: np.ndarray
+    data: np.ndarray
+
+
+class Signals(NamedTuple):
+    """Functions of time, see :mod:`signals`."""
+
+    index: np.ndarray
+    knots: np.ndarray
+    data: np.ndarray
+
+
+class Model(NamedTuple):
+    """A whole model in real numbers, or in complex ones as a direction of differentiation."""
+
+    beams: Block
+    cables: Block
+    bodies: Block
+    joints: Block
+    frictions: Block
+    springs: Block
+    loads: Block
+    users: Block
+    signals: Signals
+    callbacks: np.ndarray
+
+
+class Slots(NamedTuple):
+    """Places of the local matrix entries of each kind in a stored matrix, (count, width, width)."""
+
+    beams: np.ndarray
+    cables: np.ndarray
+    bodies: np.ndarray
+    joints: np.ndarray
+    frictions: np.ndarray
+    springs: np.ndarray
+    loads: np.ndarray
+    users: np.ndarray
+
+
+class Work(NamedTuple):
+    """Local vectors of one component, and the signals' values."""
+
+    x: np.ndarray
+    v: np.ndarray
+    a: np.ndarray
+    r: np.ndarray
+    signals: np.ndarray
+
+
+@compiled
+def _row(block, d):
+    return Block(block.index, block.meta, block.data[d])
+
+
+@compiled
+def select(stack, d):
+    """Model ``d`` of a stack, whose numbers and callbacks have one more leading axis."""
+    return Model(
+        _row(stack.beams, d),
+        _row(stack.cables, d),
+        _row(stack.bodies, d),
+        _row(stack.joints, d),
+        _row(stack.frictions, d),
+        _row(stack.springs, d),
+        _row(stack.loads, d),
+        _row(stack.users, d),
+        Signals(stack.signals.index, stack.signals.knots, stack.signals.data[d]),
+        stack.callbacks[d],
+    )
+
+
+@compiled
+def workspace(model):
+    """Local vectors in the arithmetic of the model."""
+    zero = model.signals.data[:1] * 0
+    local = np.zeros((4, WIDEST), zero.dtype)
+    return Work(local[0], local[1], local[2], local[3], np.zeros((len(model.signals.index), 3), zero.dtype))

@@ -1,0 +1,93 @@
+"""States of motion, their difference formulas and their interpolation between steps."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from dalembert.multibody.kernels.compiled import compiled
+
+
+class Motion(NamedTuple):
+    """A state: unknowns x (N + 1: coordinates, multipliers, zero), velocities, accelerations, algorithmic accelerations.
+
+    The same four arrays hold a state's derivative along one direction of the parameters.
+    """
+
+    x: np.ndarray
+    v: np.ndarray
+    a: np.ndarray
+    w: np.ndarray
+
+
+class Coefficients(NamedTuple):
+    """Of one step of generalized-alpha: dq and dv by the new acceleration, and what makes the step."""
+
+    step: float
+    dq: float
+    dv: float
+    alpha_m: float
+    alpha_f: float
+    beta: float
+    gamma: float
+
+
+@compiled
+def still(size):
+    """A state of zeros."""
+    return Motion(np.zeros(size), np.zeros(size), np.zeros(size), np.zeros(size))
+
+
+@compiled
+def copy(source, target):
+    """Copy one state into another."""
+    target.x[:] = source.x
+    target.v[:] = source.v
+    target.a[:] = source.a
+    target.w[:] = source.w
+
+
+@compiled
+def row(stack, d):
+    """State ``d`` of a stack of states."""
+    return Motion(stack.x[d], stack.v[d], stack.a[d], stack.w[d])
+
+
+@compiled
+def coefficients(step, spectral_radius):
+    """Coefficients of generalized-alpha (Arnold and Bruels 2007) for a step and a spectral radius at infinity."""
+    alpha_m = (2 * spectral_radius - 1) / (spectral_radius + 1)
+    alpha_f = spectral_radius / (spectral_radius + 1)
+    gamma = 0.5 + alpha_f - alpha_m
+    beta = 0.25 * (gamma + 0.5) ** 2
+    share = (1 - alpha_f) / (1 - alpha_m)
+    return Coefficients(step, step * step * beta * share, step * gamma * share, alpha_m, alpha_f, beta, gamma)
+
+
+@compiled
+def advance(n, c, old, new):
+    """Algorithmic accelerations, velocities and coordinates that belong to the new accelerations; linear in its states."""
+    h = c.step
+    scale = 1.0 / (1.0 - c.alpha_m)
+    own, past = (1.0 - c.alpha_f) * scale, c.alpha_f * scale
+    lag = c.alpha_m * scale
+    half, beta = h * h * (0.5 - c.beta), h * h * c.beta
+    early, late = h * (1.0 - c.gamma), h * c.gamma
+    for i in range(n):
+        w0 = old.w[i]
+        w1 = own * new.a[i] + past * old.a[i] - lag * w0
+        new.w[i] = w1
+        new.x[i] = old.x[i] + h * old.v[i] + half * w0 + beta * w1
+        new.v[i] = old.v[i] + early * w0 + late * w1
+
+
+@compiled
+def interpolate(n, h, s, old, new, x, v, a):
+    """State at the fraction ``s`` of a step of length ``h``: cubic for coordinates and velocities, linear for the rest."""
+    s0, s1 = 1 - 3 * s * s + 2 * s**3, 3 * s * s - 2 * s**3
+    t0, t1 = h * (s - 2 * s * s + s**3), h * (s**3 - s * s)
+    for i in range(n):
+        x[i] = s0 * old.x[i] + t0 * old.v[i] + s1 * new.x[i] + t1 * new.v[i]
+        v[i] = s0 * old.v[i] + t0 * old.a[i] + s1 * new.v[i] + t1 * new.a[i]
+        a[i] = (1 - s) * old.a[i] + s * new.a[i]
+    for i in range(n, len(x)):
+        x[i] = (1 - s) * old.x[i] + s * new.x[i]

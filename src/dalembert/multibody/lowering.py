@@ -1,0 +1,299 @@
+"""From a system of components to the arrays of the kernels.
+
+What depends only on the kinds and connections of components is a `Structure`, found once and shared by all samples of an
+ensemble; what depends on numbers is in `Lowered`.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from dalembert.errors import ModelError
+from dalembert.multibody.bodies import Body, Marker
+from dalembert.multibody.callbacks import Callback, Failures, force_callback, signal_callback
+from dalembert.multibody.fields import Number
+from dalembert.multibody.kernels import markers
+from dalembert.multibody.kernels import signals as signal_kinds
+from dalembert.multibody.kernels.model import KINDS, Block, Model, Signals
+from dalembert.multibody.points import Ground, GroundPoint, Place, Point, Side
+from dalembert.multibody.signals import Course, Custom, as_signal
+from dalembert.multibody.structure import Structure
+from dalembert.multibody.system import System
+
+_META = {kind: 5 if kind not in ("beams", "cables", "bodies") else 0 for kind in KINDS}
+_DATA = {
+    "beams": 11, "cables": 7, "bodies": 4, "joints": 8, "frictions": 12, "springs": 11, "loads": 6, "users": 6,
+}  # fmt: skip
+_ABSENT = -1
+
+
+class Pair(NamedTuple):
+    """Two markers as kernels see them, and how they stand at first."""
+
+    kinds: tuple[int, int]
+    slots: list[int | None]
+    data: list[Number]
+    distance: Number
+    rest_angle: Number
+    wraps: int
+
+
+@dataclass(frozen=True)
+class Lowered:
+    """A system as arrays.
+
+    Parameters
+    ----------
+    structure : Structure
+    bodies : mapping of name to Body
+    data : mapping of kind to array (count, -)
+    signal_data, knots : array
+    callbacks : tuple of Callback
+    frames, rates : array, shape (bodies, 3)
+        Place (x, y) and angle of each body at first, and their rates.
+    x, v : array, shape (N + 1,)
+        First unknowns and velocities, as placed: joints may not be closed yet.
+    jumps : tuple of float
+        Times, s, at which loads jump.
+    failures : Failures
+        What functions of the user's raised.
+    """
+
+    structure: Structure
+    bodies: dict[str, Body]
+    data: dict[str, np.ndarray]
+    signal_data: np.ndarray
+    knots: np.ndarray
+    callbacks: tuple[Callback, ...]
+    frames: np.ndarray
+    rates: np.ndarray
+    x: np.ndarray
+    v: np.ndarray
+    jumps: tuple[float, ...]
+    failures: Failures = field(compare=False, repr=False)
+
+    @property
+    def is_complex(self) -> bool:
+        return any(np.iscomplexobj(array) for array in (self.x, self.v, self.signal_data, *self.data.values()))
+
+    def model(self, dtype: type) -> Model:
+        """The arrays in real or in complex numbers."""
+        blocks = {
+            kind: Block(
+                self.structure.index[kind], self.structure.meta[kind], np.ascontiguousarray(_cast(self.data[kind], dtype))
+            )
+            for kind in KINDS
+        }
+        address = "complex" if dtype is complex else "real"
+        callbacks = np.array([getattr(entry, address) for entry in self.callbacks], dtype=np.int64)
+        data = np.ascontiguousarray(_cast(self.signal_data, dtype))
+        return Model(**blocks, signals=Signals(self.structure.signals, self.knots, data), callbacks=callbacks)
+
+    @cached_property
+    def real(self) -> Model:
+        """The model in real numbers."""
+        return self.model(float)
+
+    @cached_property
+    def dual(self) -> Model:
+        """The model in complex numbers."""
+        return self.model(complex)
+
+
+def _cast(array: np.ndarray, dtype: type) -> np.ndarray:
+    return array.real.astype(float) if dtype is float else array.astype(complex)
+
+
+class Lowering:
+    """Collects the rows of the kernels while the components write them."""
+
+    def __init__(self, system: System) -> None:
+        self.gravity = system.gravity
+        self._system = system
+        self._index: dict[str, list] = {kind: [] for kind in KINDS}
+        self._meta: dict[str, list] = {kind: [] for kind in KINDS}
+        self._data: dict[str, list] = {kind: [] for kind in KINDS}
+        self._rows: dict[str, tuple[str, int]] = {}
+        self._signals: list[tuple[int, int, int, int]] = [(signal_kinds.TIME, 0, 0, 0)]
+        self._signal_data: list[Number] = [0.0]
+        self._knots: list[float] = [0.0]
+        self._callbacks: list[Callback] = []
+        self._jumps: set[float] = set()
+        self._owners: list[str] = []
+        self._failures = Failures()
+        self._bodies: dict[str, Body] = {}
+        self._coordinates: dict[str, np.ndarray] = {}
+        self._first: dict[str, int] = {}
+
+    # -- what components call ------------------------------------------------------------------------------------
+
+    def add(
+        self, kind: str, index: Sequence[int | None], meta: Sequence[int], data: Sequence[Number], name: str = ""
+    ) -> None:
+        """One row of a kind; the row can be found again by a component's name."""
+        owner = name or (self._owners[-1] if kind == "joints" else "")
+        if owner:
+            self._rows[owner] = (kind, len(self._index[kind]))
+        slots = [_ABSENT if entry is None else entry for entry in index]
+        self._index[kind].append(slots + [_ABSENT] * (KINDS[kind].WIDTH - len(slots)))
+        self._meta[kind].append([*meta, *[0] * (_META[kind] - len(meta))])
+        self._data[kind].append(data)
+
+    def add_many(self, kind: str, index: np.ndarray, data: Sequence[Number]) -> None:
+        """Rows of a kind, index (count, width), that share their numbers."""
+        self._index[kind].extend(index.tolist())
+        self._meta[kind].extend([[]] * len(index))
+        self._data[kind].extend([data] * len(index))
+
+    def multipliers(self, owner: str, count: int) -> list[int | None]:
+        """Unknowns of ``count`` constraints of a joint."""
+        first = len(self._owners)
+        self._owners += [owner] * count
+        return list(range(first, first + count))
+
+    def signal(self, course: Course) -> int:
+        """Number of a function of time."""
+        signal = as_signal(course)
+        kind, data, knots = signal.lower(self)
+        first = len(self._callbacks) if kind == signal_kinds.CUSTOM else len(self._signal_data)
+        if isinstance(signal, Custom):
+            self._callbacks.append(signal_callback(signal.function, signal.rate, signal.second, self._failures))
+        self._signals.append((kind, first, len(data), len(self._knots)))
+        self._signal_data += data
+        self._knots += knots
+        self._jumps.update(signal.jumps)
+        return len(self._signals) - 1
+
+    def callback(self, function: object, owner: str) -> int:
+        """Number of a force function of the user's."""
+        if not callable(function):
+            raise ModelError(f"user force {owner!r}: its function is {function!r}; expected something that can be called")
+        self._callbacks.append(force_callback(function, self._failures))
+        return len(self._callbacks) - 1
+
+    def pair(self, a: Side, b: Side | None, owner: str) -> Pair:
+        """The markers of two sides; a bare ground stands where the other side is."""
+        if isinstance(a, Ground) and (b is None or isinstance(b, Ground)):
+            raise ModelError(f"{owner!r}: it acts on the ground only; give it a point of a body")
+        first = self._stand(b if isinstance(a, Ground) and b is not None else a, owner)
+        second = self._stand(a if b is None or isinstance(b, Ground) else b, owner)
+        sides = self._marker(a, owner, first), self._marker(b or Ground(), owner, second)
+        dx, dy = second[0] - first[0], second[1] - first[1]
+        square = dx * dx + dy * dy
+        return Pair(
+            kinds=(sides[0].kind, sides[1].kind),
+            slots=[*sides[0].slots, *sides[1].slots],
+            data=[*sides[0].data, *sides[1].data],
+            distance=np.sqrt(square) if np.real(square) > 0 else 0.0,
+            rest_angle=second[2] - first[2],
+            wraps=int(markers.NODE in (sides[0].kind, sides[1].kind)),
+        )
+
+    # -- placing --------------------------------------------------------------------------------------------------
+
+    def _stand(self, side: Side | Place, owner: str) -> tuple[Number, Number, Number]:
+        """Position and angle of a side at first."""
+        if isinstance(side, GroundPoint):
+            return side.x, side.y, side.angle
+        if isinstance(side, Ground):
+            return 0.0, 0.0, 0.0
+        if isinstance(side, Point):
+            marker = self._known(side, owner)
+            return _stand(marker, self._coordinates[side.body.name])
+        return side[0], side[1], 0.0
+
+    def _known(self, point: Point, owner: str) -> Marker:
+        if self._bodies.get(point.body.name) is not point.body:
+            raise ModelError(
+                f"{owner!r}: its point {point} belongs to a body that is not in the system (or not yet); "
+                f"add {point.body.name!r} first"
+            )
+        return point.body.marker(point.name)
+
+    def _marker(self, side: Side, owner: str, stand: tuple[Number, Number, Number]) -> Marker:
+        if isinstance(side, Point):
+            marker = self._known(side, owner)
+            first = self._first[side.body.name]
+            return marker._replace(slots=tuple(None if k is None else first + k for k in marker.slots))
+        place = stand if isinstance(side, Ground) else (side.x, side.y, side.angle)
+        angle = 0.0 if isinstance(side, Ground) else place[2]
+        return Marker(markers.GROUND, (None,) * 4, (place[0], place[1], angle))
+
+    def run(self) -> Lowered:
+        """Place the bodies, let every component write its rows, and pack them."""
+        system = self._system
+        frames, velocities, kinds = [], [], []
+        for body in system.bodies:
+            x, y, _ = self._stand(body.place, body.name)
+            self._bodies[body.name] = body
+            self._first[body.name] = len(self._owners)
+            self._owners += [body.name] * body.size
+            own = body.coordinates(x, y, body.turn)
+            self._coordinates[body.name] = own
+            frames.append(np.array([x, y, body.turn]))
+            velocities.append(body.rigid_modes(own, frames[-1]) @ np.array(body.motion))
+            kinds += body.coordinate_kinds
+        n = len(self._owners)
+        if n == 0:
+            raise ModelError("the system has no body; add one")
+        for body in system.bodies:
+            body.lower(self, self._first[body.name])
+        for component in (*system.joints, *system.loads):
+            component.lower(self)
+        size = len(self._owners)
+        tail = np.zeros(size + 1 - n)
+        x = np.concatenate([*self._coordinates.values(), tail])
+        structure = Structure(
+            n=n,
+            size=size,
+            owners=tuple(self._owners),
+            first=dict(self._first),
+            kinds=tuple(kinds),
+            index={kind: _integers(self._index[kind], KINDS[kind].WIDTH, size) for kind in KINDS},
+            meta={kind: _integers(self._meta[kind], _META[kind], 0) for kind in KINDS},
+            rows=dict(self._rows),
+            signals=np.array(self._signals, dtype=np.int64),
+        )
+        return Lowered(
+            structure=structure,
+            bodies=dict(self._bodies),
+            data={kind: np.array(self._data[kind]).reshape(len(self._data[kind]), _DATA[kind]) for kind in KINDS},
+            signal_data=np.array(self._signal_data),
+            knots=np.array(self._knots),
+            callbacks=tuple(self._callbacks),
+            frames=np.array(frames),
+            rates=np.array([body.motion for body in system.bodies]),
+            x=x,
+            v=np.concatenate([*velocities, tail]),
+            jumps=tuple(sorted(time for time in self._jumps if np.isfinite(time))),
+            failures=self._failures,
+        )
+
+
+def lower(system: System) -> Lowered:
+    """Arrays of a system, with its bodies as placed."""
+    return Lowering(system).run()
+
+
+def _integers(rows: list, width: int, absent: int) -> np.ndarray:
+    array = np.array(rows, dtype=np.int64).reshape(len(rows), width)
+    array[array == _ABSENT] = absent
+    return array
+
+
+def _stand(marker: Marker, coordinates: np.ndarray) -> tuple[Number, Number, Number]:
+    """Position and angle of a marker of undeformed coordinates."""
+    own = [coordinates[k] if k is not None else 0.0 for k in marker.slots]
+    sx, sy, phi = marker.data
+    if marker.kind == markers.RIGID:
+        c, s = np.cos(own[2]), np.sin(own[2])
+        return own[0] + c * sx - s * sy, own[1] + s * sx + c * sy, own[2]
+    if marker.kind == markers.NODE:
+        real = np.arctan2(np.real(own[3]), np.real(own[2]))
+        # First-order imaginary part: the gradient has length one here.
+        tilt = np.imag(own[3]) * np.real(own[2]) - np.imag(own[2]) * np.real(own[3])
+        return own[0], own[1], (real + 1j * tilt if np.iscomplexobj(coordinates) else real) + phi
+    return own[0], own[1], 0.0

@@ -1,0 +1,66 @@
+"""A mechanism: bodies, joints, loads and gravity."""
+
+from collections.abc import Sequence
+from typing import TypeVar
+
+from dalembert.errors import InputError, ModelError, unknown
+from dalembert.multibody.bodies import Body
+from dalembert.multibody.fields import Number
+from dalembert.multibody.joints import Joint
+from dalembert.multibody.loads import Load
+from dalembert.multibody.points import Ground
+
+Component = TypeVar("Component", bound=Body | Joint | Load)
+
+
+class System:
+    """A planar mechanism, built by adding components.
+
+    Parameters
+    ----------
+    gravity : (float, float)
+        m/s^2.
+    driving : sequence of str
+        Placement coordinates that are kept as given while a closed loop is assembled, ``"<body>.angle"``,
+        ``"<body>.x"`` or ``"<body>.y"`` (of its placed point); the other bodies are moved, without deformation, until
+        the joints close. Their velocities are kept alike.
+
+    Examples
+    --------
+    >>> from dalembert.multibody import RevoluteJoint, RigidBar, System
+    >>> system = System()
+    >>> rod = system.add(RigidBar("rod", length=1.0, mass=1.0))
+    >>> joint = system.add(RevoluteJoint("pin", system.ground, rod.start))
+    >>> [component.name for component in (*system.bodies, *system.joints)]
+    ['rod', 'pin']
+    """
+
+    def __init__(self, gravity: tuple[Number, Number] = (0.0, -9.81), driving: Sequence[str] = ()) -> None:
+        self.gravity = gravity
+        self.driving = tuple(driving)
+        self.ground = Ground()
+        self.bodies: list[Body] = []
+        self.joints: list[Joint] = []
+        self.loads: list[Load] = []
+        self._names: set[str] = set()
+
+    def add(self, component: Component) -> Component:
+        """Add a body, a joint or a load, and hand it back."""
+        kinds = ((Body, self.bodies), (Joint, self.joints), (Load, self.loads))
+        for kind, members in kinds:
+            if isinstance(component, kind):
+                if component.name in self._names or component.name in ("ground", "system"):
+                    raise ModelError(
+                        f"{type(component).__name__} {component.name!r}: the name is taken; give each component its own"
+                    )
+                self._names.add(component.name)
+                members.append(component)
+                return component
+        raise InputError(f"{component!r} was added to a system; expected a body, a joint or a load")
+
+    def body(self, name: str) -> Body:
+        """The body of this name."""
+        for body in self.bodies:
+            if body.name == name:
+                return body
+        raise InputError(unknown("body", name, [body.name for body in self.bodies]))

@@ -3,136 +3,128 @@
 Joints on the level of accelerations, integrated by SciPy; the end values of the test set come out.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-# Joint by joint: body and point, body and point (body 0 is the ground).
-JOINTS = (
-    ((0, "O"), (1, "O")),
-    ((1, "F"), (2, "F")),
-    ((0, "B"), (3, "B")),
-    ((2, "E"), (3, "E")),
-    ((2, "E"), (4, "E")),
-    ((2, "E"), (6, "E")),
-    ((4, "G"), (5, "G")),
-    ((0, "A"), (5, "A")),
-    ((6, "H"), (7, "H")),
-    ((0, "A"), (7, "A")),
-)
 
+@dataclass(frozen=True)
+class Plane:
+    """Bodies by name (the ground is number 0); ``points[name]`` is (body, place against its centre of mass)."""
 
-def points(data: dict) -> list[dict[str, tuple[float, float]]]:
-    """Points of each body (0: the ground) in its own axes, from its centre of mass."""
-    s = data["geometry"]
-    placed = [
-        {"O": (0.0, 0.0), "F": (s["rr"], 0.0), "centre": (s["ra"], 0.0)},
-        {"F": (0.0, 0.0), "E": (-s["d"], 0.0), "centre": (-s["da"], 0.0)},
-        {"B": (0.0, 0.0), "E": (s["ss"], 0.0), "D": (s["sc"], s["sd"]), "centre": (s["sa"], s["sb"])},
-        {"G": (0.0, 0.0), "E": (s["e"], 0.0), "centre": (s["e"] - s["ea"], 0.0)},
-        {"A": (0.0, 0.0), "G": (s["zt"], 0.0), "centre": (s["ta"], s["tb"])},
-        {"H": (0.0, 0.0), "E": (s["zf"], 0.0), "centre": (s["zf"] - s["fa"], 0.0)},
-        {"A": (0.0, 0.0), "H": (s["u"], 0.0), "centre": (s["ua"], -s["ub"])},
-    ]
-    ground = {"O": (0.0, 0.0)} | {name: tuple(place) for name, place in data["ground"].items()}
-    return [ground] + [
-        {name: (x - own["centre"][0], y - own["centre"][1]) for name, (x, y) in own.items()} for own in placed
-    ]
+    points: dict[str, tuple[int, np.ndarray]]
+    inertias: np.ndarray
+    joints: list[tuple[str, str]]
+    names: list[str]
+    load: dict
 
+    @classmethod
+    def of(cls, data: dict) -> "Plane":
+        points = {f"ground.{name}": (0, np.array(place)) for name, place in data["ground"].items()}
+        for number, body in enumerate(data["bodies"], start=1):
+            for name, place in body["points"].items():
+                points[f"{body['name']}.{name}"] = (number, np.array(place) - body["centre"])
+        inertias = np.array([[body["mass"], body["mass"], body["inertia"]] for body in data["bodies"]])
+        names = [body["name"] for body in data["bodies"]]
+        return cls(points, inertias, list(data["joints"].values()), names, data["load"])
 
-def angles(q: np.ndarray) -> np.ndarray:
-    """Angles of the seven bodies, along their x axes, from the seven relative coordinates of the test set."""
-    beta, theta, gamma, phi, delta, omega, epsilon = q
-    return np.array(
-        [beta, beta + theta, gamma - np.pi / 2, phi + delta - np.pi / 2, delta, omega + epsilon, epsilon - np.pi / 2]
-    )
+    def arm(self, bodies: np.ndarray, point: str) -> tuple[int, np.ndarray]:
+        """Body of a point, and the vector to it from the centre of mass in fixed axes."""
+        body, place = self.points[point]
+        return body, turn(bodies[body, 2]) @ place
 
+    def at(self, bodies: np.ndarray, point: str) -> np.ndarray:
+        body, arm = self.arm(bodies, point)
+        return bodies[body, :2] + arm
 
-def placed(data: dict) -> np.ndarray:
-    """Initial coordinates (x, y, angle) of the seven bodies, each hung on one that is placed already, shape (7, 3)."""
-    own, turned = points(data), angles(np.array(data["initial"]["q"]))
-    state = np.zeros((8, 3))
-    state[1:, 2] = turned
-    hung = ((0, 1, "O"), (1, 2, "F"), (0, 3, "B"), (0, 5, "A"), (5, 4, "G"), (0, 7, "A"), (7, 6, "H"))
-    for carrier, body, name in hung:
-        state[body, :2] = at(state[carrier], own[carrier][name]) - turn(state[body, 2]) @ own[body][name]
-    return state[1:]
+    def accelerations(self, bodies: np.ndarray, rates: np.ndarray) -> tuple[np.ndarray, dict[tuple, np.ndarray]]:
+        """Accelerations (8, 3), the ground's included, and the force of each joint on its second body."""
+        count = len(self.joints)
+        forces = np.zeros_like(bodies)
+        forces[1, 2] = self.load["torque"]
+        spring = np.subtract(*(self.at(bodies, point) for point in reversed(self.load["spring"])))
+        length = np.hypot(*spring)
+        pull = -self.load["stiffness"] * (length - self.load["free_length"]) * spring / length
+        body, arm = self.arm(bodies, self.load["spring"][1])
+        forces[body] += [*pull, arm[0] * pull[1] - arm[1] * pull[0]]
+
+        jacobian, right = np.zeros((count, 2, *bodies.shape)), np.zeros((count, 2))
+        for row, sides in enumerate(self.joints):
+            for sign, point in zip((-1.0, 1.0), sides, strict=True):
+                body, arm = self.arm(bodies, point)
+                jacobian[row, :, body] = sign * np.array([[1.0, 0.0, -arm[1]], [0.0, 1.0, arm[0]]])
+                right[row] += sign * arm * rates[body, 2] ** 2
+        jacobian = jacobian[:, :, 1:].reshape(2 * count, -1)
+        corner = np.zeros((2 * count, 2 * count))
+        matrix = np.block([[np.diag(self.inertias.ravel()), -jacobian.T], [jacobian, corner]])
+        solution = np.linalg.solve(matrix, np.concatenate([forces[1:].ravel(), right.ravel()]))
+        accelerations = np.vstack([np.zeros(3), solution[: self.inertias.size].reshape(-1, 3)])
+        multipliers = solution[self.inertias.size :].reshape(-1, 2)
+        return accelerations, {tuple(sides): force for sides, force in zip(self.joints, multipliers, strict=True)}
 
 
 def turn(angle: float) -> np.ndarray:
     return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
 
 
-def at(body: np.ndarray, point: tuple[float, float]) -> np.ndarray:
-    return body[:2] + turn(body[2]) @ point
+def placed(data: dict, plane: Plane) -> np.ndarray:
+    """Coordinates (x, y, angle) of ground and bodies at first, shape (8, 3)."""
+    bodies = np.zeros((len(plane.names) + 1, 3))
+    bodies[1:, 2] = factors(data) @ data["initial"]["q"]
+    for number, body in enumerate(data["bodies"], start=1):
+        own, carrier = body["anchor"]
+        _, arm = plane.arm(bodies, f"{body['name']}.{own}")
+        bodies[number, :2] = plane.at(bodies, carrier) - arm
+    return bodies
 
 
-def accelerations(data: dict, own: list, state: np.ndarray, speed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Accelerations (7, 3) and forces of the joints (10, 2) on their second bodies."""
-    bodies, speeds = np.vstack([np.zeros(3), state]), np.vstack([np.zeros(3), speed])
-    inertia, load = data["inertia"], data["load"]
-    masses = np.column_stack([inertia["mass"], inertia["mass"], inertia["moment"]]).ravel()
-    forces = np.zeros((8, 3))
-    forces[1, 2] = load["torque"]
-    arm = turn(bodies[3, 2]) @ own[3]["D"]
-    spring = bodies[3, :2] + arm - own[0]["C"]
-    length = np.hypot(*spring)
-    pull = -load["stiffness"] * (length - load["free_length"]) * spring / length
-    forces[3] = [*pull, arm[0] * pull[1] - arm[1] * pull[0]]
-
-    jacobian, right = np.zeros((20, 24)), np.zeros(20)
-    for row, sides in enumerate(JOINTS):
-        for sign, (body, name) in zip((-1.0, 1.0), sides, strict=True):
-            arm = turn(bodies[body, 2]) @ own[body][name]
-            jacobian[2 * row : 2 * row + 2, 3 * body : 3 * body + 3] = sign * np.array(
-                [[1.0, 0.0, -arm[1]], [0.0, 1.0, arm[0]]]
-            )
-            right[2 * row : 2 * row + 2] += sign * arm * speeds[body, 2] ** 2
-    jacobian = jacobian[:, 3:]
-    matrix = np.block([[np.diag(masses), -jacobian.T], [jacobian, np.zeros((20, 20))]])
-    solution = np.linalg.solve(matrix, np.concatenate([forces[1:].ravel(), right]))
-    return solution[:21].reshape(7, 3), solution[21:].reshape(10, 2)
+def factors(data: dict) -> np.ndarray:
+    """Angles of the bodies are these factors times the seven coordinates of the test set."""
+    return np.array([body["angle"] for body in data["bodies"]], dtype=float)
 
 
-def relative(turned: np.ndarray) -> np.ndarray:
-    """The seven coordinates of the test set (or their rates) from angles (or angular rates) of the bodies."""
-    one, two, three, four, five, six, seven = turned
-    return np.array([one, two - one, three, four - five, five, six - seven, seven])
+def multipliers(forces: dict[tuple, np.ndarray]) -> np.ndarray:
+    """Those of the test set: forces at E on K3, K4 and K6."""
+    return np.concatenate([forces["K2.E", f"{body}.E"] for body in ("K3", "K4", "K6")])
 
 
-def multipliers(forces: np.ndarray) -> np.ndarray:
-    """Those of the test set: forces at E on bodies 3, 4 and 6."""
-    return forces[3:6].ravel()
+@pytest.fixture
+def data(reference) -> dict:
+    return reference("andrews")
 
 
-def test_initial_values(reference) -> None:
-    data = reference("andrews")
-    own, state = points(data), placed(data)
-    bodies = np.vstack([np.zeros(3), state])
-    gaps = [at(bodies[b], own[b][q]) - at(bodies[a], own[a][p]) for (a, p), (b, q) in JOINTS]
+def test_initial_values(data) -> None:
+    plane = Plane.of(data)
+    bodies = placed(data, plane)
+    gaps = [plane.at(bodies, second) - plane.at(bodies, first) for first, second in plane.joints]
     np.testing.assert_allclose(gaps, 0.0, atol=1e-16)
-    acceleration, forces = accelerations(data, own, state, np.zeros((7, 3)))
-    np.testing.assert_allclose(relative(acceleration[:, 2]), data["initial"]["acceleration"], rtol=1e-12, atol=1e-8)
+    acceleration, forces = plane.accelerations(bodies, np.zeros_like(bodies))
+    relative = np.linalg.solve(factors(data), acceleration[1:, 2])
+    np.testing.assert_allclose(relative, data["initial"]["acceleration"], rtol=1e-12, atol=1e-8)
     np.testing.assert_allclose(multipliers(forces), data["initial"]["multipliers"], rtol=1e-12, atol=1e-10)
 
 
-def test_end_values(reference) -> None:
-    data = reference("andrews")
-    own, end = points(data), data["end"]
+def test_end_values(data) -> None:
+    plane, end = Plane.of(data), data["end"]
 
     def motion(_: float, y: np.ndarray) -> np.ndarray:
-        state, speed = y.reshape(2, 7, 3)
-        return np.concatenate([y[21:], accelerations(data, own, state, speed)[0].ravel()])
+        bodies, rates = y.reshape(2, -1, 3)
+        return np.concatenate([rates.ravel(), plane.accelerations(bodies, rates)[0].ravel()])
 
-    start = np.concatenate([placed(data).ravel(), np.zeros(21)])
+    bodies = placed(data, plane)
+    start = np.concatenate([bodies.ravel(), np.zeros(bodies.size)])
     solution = solve_ivp(motion, (0.0, end["time"]), start, method="DOP853", rtol=1e-12, atol=1e-13)
     assert solution.success, solution.message
-    state, speed = solution.y[:, -1].reshape(2, 7, 3)
-    acceleration, forces = accelerations(data, own, state, speed)
-    q = relative(state[:, 2] - angles(np.zeros(7)))
+    bodies, rates = solution.y[:, -1].reshape(2, -1, 3)
+    accelerations, forces = plane.accelerations(bodies, rates)
+    q, velocity, acceleration = np.linalg.solve(
+        factors(data), np.column_stack([bodies[1:, 2], rates[1:, 2], accelerations[1:, 2]])
+    ).T
     assert q == pytest.approx(end["q"], rel=1e-8)
-    assert relative(speed[:, 2]) == pytest.approx(end["velocity"], rel=1e-7)
+    assert velocity == pytest.approx(end["velocity"], rel=1e-7)
     # The test set's own accelerations and multipliers (index 3) are good to 1.3e-6 of each: here they stand still from
     # a tolerance of 1e-11 on.
-    assert relative(acceleration[:, 2]) == pytest.approx(end["acceleration"], rel=2e-6)
+    assert acceleration == pytest.approx(end["acceleration"], rel=2e-6)
     assert multipliers(forces) == pytest.approx(end["multipliers"], rel=2e-6)

@@ -1,0 +1,132 @@
+"""Rigid mechanisms against published motions."""
+
+import numpy as np
+import pytest
+
+import dalembert as da
+
+TOPIC = "Rigid mechanisms"
+
+
+def undamped(step: float) -> da.GeneralizedAlpha:
+    return da.GeneralizedAlpha(step=step, spectral_radius=1.0)
+
+
+def test_simple_pendulum(reference, record_evidence) -> None:
+    data = reference("simple_pendulum")
+    model, values = data["model"], data["values"]
+    system = da.System(gravity=(0.0, -model["gravity"]))
+    mass = system.add(da.PointMass("mass", model["mass"], position=tuple(model["start"])))
+    system.add(da.DistanceJoint("rod", system.ground.point(0.0, 0.0), mass.centre, length=model["length"]))
+    trajectory = da.simulate(system, 10.0, solver=undamped(5e-5), times=np.array([0.0, *values["times"]]))
+    position = trajectory.channels(["mass.centre.x", "mass.centre.y"])[1:]
+    for time, expected, ours in zip(values["times"], values["position"], position, strict=True):
+        record_evidence(
+            f"simple pendulum (A01), x and y at {time:g} s",
+            expected,
+            ours,
+            unit="m",
+            tolerance=1e-6,
+            relative=True,
+            topic=TOPIC,
+            source=data["source"],
+        )
+
+
+def n_four_bar(model: dict, windows: int) -> da.System:
+    """N windows: uprights U0 ... UN on the ground, rods C1 ... CN across their upper ends."""
+    length, mass, angle = model["length"], model["mass"], model["angle"]
+    spin = -model["velocity"] / length
+    system = da.System(gravity=(0.0, -model["gravity"]))
+    before = None
+    for number in range(windows + 1):
+        foot = system.ground.point(number * length, 0.0)
+        upright = system.add(da.RigidBar(f"U{number}", length, mass, angle=angle, start=foot, angular_velocity=spin))
+        system.add(da.RevoluteJoint(f"foot{number}", foot, upright.start))
+        if before is not None:
+            across = system.add(
+                da.RigidBar(f"C{number}", length, mass, start=before.end, velocity=(model["velocity"], 0.0))
+            )
+            system.add(da.RevoluteJoint(f"left{number}", before.end, across.start))
+            system.add(da.RevoluteJoint(f"right{number}", upright.end, across.end))
+        before = upright
+    return system
+
+
+@pytest.mark.parametrize(
+    ("case", "step"), [(0, 1e-4), (1, 1e-4), pytest.param(2, 2e-4, marks=pytest.mark.slow)], ids=["N=1", "N=2", "N=40"]
+)
+def test_n_four_bar(reference, record_evidence, case: int, step: float) -> None:
+    data = reference("n_four_bar")
+    values = data["values"]
+    windows = values["windows"][case]
+    trajectory = da.simulate(
+        n_four_bar(data["model"], windows), values["time"], solver=undamped(step), times=np.array([0.0, values["time"]])
+    )
+    record_evidence(
+        f"four-bar mechanism with {windows} windows (A02), x and y of B0 at 10 s",
+        values["position"][case],
+        trajectory.channels(["U0.end.x", "U0.end.y"])[-1],
+        unit="m",
+        tolerance=1e-6,
+        relative=True,
+        topic=TOPIC,
+        source=data["source"],
+    )
+
+
+def two_link_arm(model: dict) -> da.System:
+    system = da.System(gravity=(0.0, -model["gravity"]))
+    upper, lower = zip(model["length"], model["mass"], model["angle"], strict=True)
+    first = system.add(da.RigidBar("upper", upper[0], upper[1], angle=upper[2]))
+    second = system.add(da.RigidBar("lower", lower[0], lower[1], angle=lower[2], start=first.end))
+    system.add(da.RevoluteJoint("O", system.ground, first.start))
+    system.add(da.RevoluteJoint("A", first.end, second.start))
+    return system
+
+
+def test_two_link_arm(reference, record_evidence) -> None:
+    data = reference("two_link_arm")
+    values = data["values"]
+    trajectory = da.simulate(
+        two_link_arm(data["model"]), 5.0, solver=undamped(2e-5), times=np.array([0.0, *values["times"]])
+    )
+    angles = trajectory.channels(["upper.centre.angle", "lower.centre.angle"])
+    common = {"topic": TOPIC, "source": data["source"], "relative": True}
+    record_evidence(
+        "two-link arm, energy at first",
+        values["energy"],
+        trajectory.energies["total"][0],
+        unit="J",
+        tolerance=1e-11,
+        **common,
+    )
+    for time, expected, ours in zip(values["times"], values["angles"], angles[1:], strict=True):
+        record_evidence(
+            f"two-link arm, both angles at {time:g} s", expected, ours, unit="rad", tolerance=1e-6, **common
+        )
+
+
+def test_slider_crank(reference, record_evidence) -> None:
+    data = reference("slider_crank")
+    model, values = data["model"], data["values"]
+    system = da.System(gravity=(0.0, 0.0))
+    crank = system.add(da.RigidBar("crank", model["crank_length"], model["crank_mass"]))
+    rod = system.add(da.RigidBar("rod", model["rod_length"], model["rod_mass"], start=crank.end))
+    slider = system.add(da.RigidBody("slider", model["slider_mass"], inertia=1.0, position=rod.end))
+    system.add(da.RevoluteJoint("O", system.ground, crank.start))
+    system.add(da.RevoluteJoint("A", crank.end, rod.start))
+    system.add(da.RevoluteJoint("B", rod.end, slider.centre))
+    system.add(da.PrismaticJoint("guide", system.ground, slider.centre))
+    system.add(da.Torque("motor", crank.centre, da.Step(model["torque"], 0.0, model["torque_end"])))
+    trajectory = da.simulate(system, 3.0, solver=undamped(2e-5), times=np.array([0.0, *values["times"]]))
+    record_evidence(
+        "slider-crank, crank angle at 1, 2 and 3 s",
+        values["crank_angle"],
+        trajectory.channels(["crank.centre.angle"])[1:, 0],
+        unit="rad",
+        tolerance=1e-6,
+        relative=True,
+        topic=TOPIC,
+        source=data["source"],
+    )

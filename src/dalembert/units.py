@@ -26,6 +26,7 @@ KNOWN = {
     "N*s/m": ("damping coefficient", "0.5 N*s/mm"),
     "N*m/rad": ("torsional stiffness", "2 N*m/deg"),
     "N*m*s/rad": ("torsional damping coefficient", "5 N*mm*s/rad"),
+    "N*m*s": ("torsional damping coefficient", "5 N*mm*s"),
     "m^2": ("area", "80 cm^2"),
     "m^4": ("second moment of area", "12 cm^4"),
     "J": ("energy", "3 kJ"),
@@ -120,6 +121,7 @@ def expected(unit: str | None) -> str:
         return "a number in SI units, or a number with its unit such as '400 mm'"
     if unit == "":
         return "a number without a unit such as 0.3"
+    unit = unit.replace("**", "^")
     if unit not in KNOWN:
         return f"a number in {unit}, or a number with a unit of that kind"
     word, example = KNOWN[unit]

@@ -44,6 +44,9 @@ class Expression:
     names: frozenset[str]
     tree: ast.expr = field(repr=False, compare=False)
 
+    def __str__(self) -> str:
+        return self.text
+
     @classmethod
     def of(cls, text: str) -> "Expression":
         """Expression read from text.

@@ -1,0 +1,170 @@
+"""The command line: ``dalembert run | check | list | report | schema``.
+
+Exit codes: 0 done, 1 the solver could not, 2 the input is wrong, 130 stopped by the user.
+"""
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from dalembert import __version__
+
+if TYPE_CHECKING:
+    from dalembert.study.folder import RunFolder
+
+app = typer.Typer(
+    name="dalembert",
+    help="Simulate mechanical systems, identify their parameters from measured motion, and bound what is uncertain.",
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+DONE, SOLVER_COULD_NOT, INPUT_WRONG, STOPPED = 0, 1, 2, 130
+
+StudyFile = Annotated[Path, typer.Argument(metavar="STUDY.toml", help="The study file.", show_default=False)]
+
+
+def main() -> None:
+    """Run the command line."""
+    app()
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"dalembert {__version__}")
+        raise typer.Exit
+
+
+Version = Annotated[bool, typer.Option("--version", help="Say the version and end.", is_eager=True, callback=_version)]
+
+
+@app.callback()
+def _options(version: Version = False) -> None:
+    pass
+
+
+@app.command()
+def run(
+    study: StudyFile,
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Folder of the run. By default runs/NAME, or NAME-2 and so on if that is taken."),
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace the run that is in the folder.")] = False,
+    seed: Annotated[int | None, typer.Option(min=0, help="Seed of all random numbers, instead of the study's.")] = None,
+) -> None:
+    """Do what a study says, in a run folder of its own."""
+    with _exit_codes():
+        from rich.console import Console
+
+        from dalembert.study import load, run_study
+        from dalembert.study.progress import Watch
+
+        _stop_on_terminate()
+        read = load(study)
+        if seed is not None:
+            read = read.with_seed(seed)
+        console = Console(stderr=True, soft_wrap=True)
+        watch = Watch(console, read.parameters.names)
+        with watch:
+            folder, outcome = run_study(read, out, force=force, listener=watch)
+        typer.echo(outcome.status)
+        typer.echo(f"report: {folder.report}")
+        if not outcome.success:
+            raise typer.Exit(SOLVER_COULD_NOT)
+
+
+@app.command()
+def check(study: StudyFile) -> None:
+    """Check a study, and say what it would run and about how many simulations."""
+    with _exit_codes():
+        from dalembert.study import load, plan
+
+        read = load(study)
+        typer.echo(f"{study}: in order; it {plan(read)}")
+
+
+@app.command("list")
+def list_runs(
+    runs: Annotated[Path, typer.Option(help="Folder that holds the runs.")] = Path("runs"),
+) -> None:
+    """List the runs with their states and best values."""
+    with _exit_codes():
+        from rich.console import Console
+
+        from dalembert.study.listing import rows, table
+
+        found = rows(runs)
+        if not found:
+            typer.echo(f"no runs in {runs}")
+        else:
+            Console(soft_wrap=True).print(table(found))
+
+
+@app.command()
+def report(
+    run: Annotated[Path, typer.Argument(metavar="RUN", help="Folder of the run, or its name in runs/.")],
+) -> None:
+    """Make the report of a run anew, from its result."""
+    with _exit_codes():
+        from dalembert.study import report_run
+
+        typer.echo(f"report: {report_run(_folder(run))}")
+
+
+@app.command()
+def schema() -> None:
+    """Print the JSON schema of study files, for editors."""
+    with _exit_codes():
+        import json
+
+        from dalembert.study import json_schema
+
+        typer.echo(json.dumps(json_schema(), indent=2, ensure_ascii=False))
+
+
+def _folder(run: Path) -> "RunFolder":
+    from dalembert.study.folder import RunFolder
+
+    named = RunFolder(Path("runs") / run)
+    return named if not run.exists() and named.is_run else RunFolder(run)
+
+
+@contextmanager
+def _exit_codes() -> Iterator[None]:
+    """Errors as sentences and exit codes, never as a traceback."""
+    from dalembert.errors import DalembertError, SolveError
+
+    try:
+        yield
+    except DalembertError as error:
+        code = SOLVER_COULD_NOT if isinstance(error, SolveError) else INPUT_WRONG
+        _complain(str(error), code)
+    except KeyboardInterrupt:
+        _complain("stopped; what the run wrote so far is in its folder", STOPPED)
+    except OSError as error:
+        _complain(f"{error.strerror or error}: {error.filename or 'a file of the run'}", SOLVER_COULD_NOT)
+
+
+def _complain(message: str, code: int) -> None:
+    typer.echo(message, err=True)
+    raise typer.Exit(code)
+
+
+def _stop_on_terminate() -> None:
+    """Treat a termination signal like Ctrl-C, so that the run's state says what happened."""
+    import signal
+
+    def stop(number: int, frame: object) -> None:
+        raise KeyboardInterrupt
+
+    signal.signal(signal.SIGTERM, stop)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,41 @@
+"""Which kinds a study file may name: found among the public names of the packages that define them."""
+
+import dataclasses
+import inspect
+from functools import cache
+
+ROLES = {"Body": "body", "Joint": "joint", "Load": "load", "Signal": "signal"}
+
+
+@cache
+def catalogue() -> dict[str, tuple[type, ...]]:
+    """Public dataclasses of :mod:`dalembert.multibody` by their role: body, joint, load, signal and solver.
+
+    The role is that of the base class: what derives from ``Body`` stands in ``[[model.body]]``. Solvers are what
+    :mod:`dalembert.multibody.integrators` defines.
+    """
+    from dalembert import multibody
+
+    found: dict[str, list[type]] = {role: [] for role in (*ROLES.values(), "solver")}
+    for name in dir(multibody):
+        kind = getattr(multibody, name)
+        if dataclasses.is_dataclass(kind) and isinstance(kind, type) and not inspect.isabstract(kind):
+            roles = [ROLES[base.__name__] for base in kind.__mro__[1:] if base.__name__ in ROLES]
+            if not roles and kind.__module__.startswith("dalembert.multibody.integrators"):
+                roles = ["solver"]
+            for role in roles:
+                found[role].append(kind)
+    return {role: tuple(kinds) for role, kinds in found.items()}
+
+
+@cache
+def methods() -> dict[str, type]:
+    """Methods of identification by the names that a study file gives them."""
+    from dalembert import optimize
+
+    return {
+        "least-squares": optimize.LeastSquares,
+        "standard-swarm": optimize.ParticleSwarm,
+        "improved-swarm": optimize.ImprovedParticleSwarm,
+        "scipy": optimize.Minimiser,
+    }

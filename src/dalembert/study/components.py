@@ -1,0 +1,160 @@
+"""Tables of the study file made from dataclasses, so that a new component, signal, solver or method has one by itself.
+
+The arguments of a dataclass's constructor become keys. ``field(metadata={"unit": "m"})`` makes a key a number with that
+unit, which an expression of parameters may give.
+"""
+
+import dataclasses
+import inspect
+import types
+import typing
+from collections.abc import Callable, Iterable, Mapping
+from functools import reduce
+from operator import or_
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import Discriminator, Field, Tag, create_model
+
+from dalembert.study.functions import FunctionName
+from dalembert.study.numbers import fixed, number
+from dalembert.study.places import place
+from dalembert.study.table import Name, StudyTable, checked
+
+FORM = "form"  # the key for an argument that is called kind, since the key kind names the dataclass
+_PLACES = {"Point", "GroundPoint", "Ground"}
+_NONE = type(None)
+
+
+class KindTable(StudyTable):
+    """A table made from a dataclass, and the dataclass that it is for."""
+
+    target: ClassVar[type]
+
+    def given(self) -> dict[str, Any]:
+        """The arguments that the study file gives; the dataclass has defaults for the others."""
+        own = [name for name in type(self).model_fields if name in self.model_fields_set and name != "kind"]
+        return {"kind" if name == FORM else name: getattr(self, name) for name in own}
+
+    def settings(self) -> Any:
+        """The dataclass itself, where no number depends on parameters."""
+        return checked(lambda: self.target(**{name: _tuples(value) for name, value in self.given().items()}))
+
+
+def table_of(
+    target: type, kind: str = "", *, signal: Any = None, default: bool = False, varying: bool = True
+) -> type[KindTable]:
+    """Table with the constructor's arguments of a dataclass as keys, and ``kind`` to tell it from others.
+
+    Parameters
+    ----------
+    target : dataclass
+    kind : str
+        The dataclass's name if empty.
+    signal : type, optional
+        Type of the tables that a key may take where the dataclass takes a signal.
+    default : bool
+        Whether this kind is meant when none is given.
+    varying : bool
+        Whether a number may be an expression of parameters.
+    """
+    kind = kind or target.__name__
+    hints = typing.get_type_hints(target.__init__)
+    fields = target.__dataclass_fields__  # dataclasses.fields leaves out the arguments that are no fields
+    keys: dict[str, Any] = {"kind": (Literal[kind], kind if default else ...)}  # pyright: ignore[reportInvalidTypeForm]
+    for name, argument in inspect.signature(target).parameters.items():
+        numeric = (number if varying else fixed)(fields[name].metadata.get("unit"))
+        key = _key(name, _bare(hints[name]), numeric, signal)
+        keys[FORM if name == "kind" else name] = (key, _default(argument))
+    table = create_model(kind, __base__=KindTable, __doc__=(target.__doc__ or kind).strip().split("\n")[0], **keys)
+    table.target = target
+    return table
+
+
+def one_of(tables: Iterable[type[StudyTable]], default: str = "") -> Any:
+    """Type of a key that takes any one of several tables, told apart by their ``kind``, or by the default one."""
+    tables = list(tables)
+    if not default:
+        union = reduce(or_, tables)
+        return Annotated[union, Field(discriminator="kind")] if len(tables) > 1 else union
+    tagged = [Annotated[table, Tag(typing.get_args(table.model_fields["kind"].annotation)[0])] for table in tables]
+    return Annotated[reduce(or_, tagged), Discriminator(lambda value: _kind(value, default))]
+
+
+def _kind(value: Any, default: str) -> str:
+    return value.get("kind", default) if isinstance(value, dict) else getattr(value, "kind", default)
+
+
+def _key(name: str, hint: Any, numeric: Any, signal: Any) -> Any:
+    """Type of the key for an argument."""
+    leaves = _leaves(hint)
+    if name == "name":
+        return Name if hint is str else hint
+    names = {getattr(leaf, "__name__", "") for leaf in leaves}
+    if names & _PLACES:
+        point = place(bare="Ground" in names)
+        return point | None if _NONE in leaves else point
+    if signal is not None and "Signal" in names:
+        return _told_apart(dict, "signal", signal, "number", numeric)
+    if Callable in leaves:
+        return FunctionName
+    return _plain(hint, numeric)
+
+
+def _plain(hint: Any, numeric: Any) -> Any:
+    """Type in which TOML gives what a hint takes: numbers with units, lists for tuples, tables for mappings."""
+    origin, arguments = typing.get_origin(hint), typing.get_args(hint)
+    if hint in (float, complex):
+        return numeric
+    if origin in (typing.Union, types.UnionType):
+        kinds = [argument for argument in arguments if argument not in (_NONE, float, complex)]
+        plain = reduce(or_, (_plain(kind, numeric) for kind in kinds)) if kinds else numeric
+        if kinds and {float, complex} & set(arguments):
+            plain = _told_apart(list, "list", plain, "number", numeric)
+        return plain | None if _NONE in arguments else plain
+    if origin is tuple and Ellipsis not in arguments:
+        return Annotated[
+            list[_plain(arguments[0], numeric)], Field(min_length=len(arguments), max_length=len(arguments))
+        ]
+    if isinstance(origin, type) and issubclass(origin, Mapping):
+        return dict[str, _plain(arguments[1], numeric)]
+    if isinstance(origin, type) and issubclass(origin, Iterable):
+        return list[_plain(arguments[0], numeric)]
+    return hint
+
+
+def _told_apart(kind: type, tag: str, given: Any, other_tag: str, other: Any) -> Any:
+    """Type of a key that takes one of two things, told apart by the kind of the value."""
+    kinds = (kind, KindTable)
+    return Annotated[
+        Annotated[given, Tag(tag)] | Annotated[other, Tag(other_tag)],
+        Discriminator(lambda value: tag if isinstance(value, kinds) else other_tag),
+    ]
+
+
+def _tuples(value: Any) -> Any:
+    """Lists as the tuples that dataclasses hold."""
+    return tuple(map(_tuples, value)) if isinstance(value, list) else value
+
+
+def _bare(hint: Any) -> Any:
+    return hint.type if isinstance(hint, dataclasses.InitVar) else hint
+
+
+def _leaves(hint: Any) -> set[Any]:
+    """Types that a hint is made of, without their arrangement.
+
+    >>> sorted(leaf.__name__ for leaf in _leaves(tuple[float, int]))
+    ['float', 'int', 'tuple']
+    """
+    origin = typing.get_origin(hint)
+    if origin is None or origin is Literal:
+        return {hint}
+    parts = [part for part in typing.get_args(hint) if part is not Ellipsis and not isinstance(part, list)]
+    return {origin}.union(*map(_leaves, parts))
+
+
+def _default(argument: inspect.Parameter) -> Any:
+    """Default of a key: the argument's where JSON can hold it, else none, since it is the dataclass's to give."""
+    if argument.default is inspect.Parameter.empty:
+        return ...
+    return argument.default if isinstance(argument.default, (int, float, str)) else None

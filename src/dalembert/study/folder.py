@@ -1,0 +1,196 @@
+"""The folder of a run: what ran, what happened, what came out, and in which state it is."""
+
+import hashlib
+import json
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from dalembert.errors import InputError
+from dalembert.study.files import replacing, write_text
+from dalembert.study.loader import load
+from dalembert.study.study import Study
+
+RUNNING = "running"
+FINISHED = "finished"
+FAILED = "failed"  # the solver could not
+INPUT = "input"  # what was given cannot run
+INTERRUPTED = "interrupted"  # stopped by the user
+KILLED = "killed"  # never written: the process of a running run is gone
+
+
+@dataclass(frozen=True)
+class RunFolder:
+    """A run's folder and the files in it.
+
+    ``study.toml`` is the study as run, byte for byte; ``inputs/`` holds the files that it names and ``inputs.json``
+    which is which; ``settings.json`` the study as understood, in SI units; ``events.jsonl``, ``state.json``,
+    ``result.nc`` and ``report.html`` say the rest.
+    """
+
+    path: Path
+
+    @property
+    def study(self) -> Path:
+        return self.path / "study.toml"
+
+    @property
+    def settings(self) -> Path:
+        return self.path / "settings.json"
+
+    @property
+    def inputs(self) -> Path:
+        return self.path / "inputs.json"
+
+    @property
+    def events(self) -> Path:
+        return self.path / "events.jsonl"
+
+    @property
+    def result(self) -> Path:
+        return self.path / "result.nc"
+
+    @property
+    def report(self) -> Path:
+        return self.path / "report.html"
+
+    @property
+    def is_run(self) -> bool:
+        """Whether this is a run's folder."""
+        return self._state.is_file()
+
+    @property
+    def _state(self) -> Path:
+        return self.path / "state.json"
+
+    @property
+    def _lock(self) -> Path:
+        return self.path / "lock"
+
+    def state(self) -> dict[str, Any]:
+        """State of the run: ``state``, ``since``, ``study``, ``task`` and more."""
+        try:
+            state = json.loads(self._state.read_text(encoding="utf-8"))
+        except FileNotFoundError:
+            raise InputError(f"{self.path} is no run folder: it has no state.json") from None
+        if state["state"] == RUNNING and not self._is_locked():
+            state["state"] = KILLED
+        return state
+
+    def set_state(self, state: str, **details: Any) -> None:
+        """Write the state, atomically."""
+        now = datetime.now(UTC).isoformat(timespec="seconds")
+        _write_json(self._state, {"state": state, "since": now, **details})
+
+    def keep(self, study: Study) -> None:
+        """Keep what runs: the study's bytes, its settings, its seed, and copies of the files that it names."""
+        with replacing(self.study) as temporary:
+            temporary.write_bytes(study.content)
+        _write_json(self.settings, study.settings)
+        copies = {}
+        for number, (name, path) in enumerate(study.files.items()):
+            (self.path / "inputs").mkdir(exist_ok=True)
+            copy = self.path / "inputs" / f"{number}-{path.name}"
+            shutil.copyfile(path, copy)
+            digest = hashlib.sha256(copy.read_bytes()).hexdigest()
+            copies[name] = {"copy": copy.relative_to(self.path).as_posix(), "sha256": digest}
+        seed = getattr(study.table, "seed", None)
+        origin = str(study.path.parent.resolve())
+        _write_json(self.inputs, {"name": study.name, "folder": origin, "seed": seed, "files": copies})
+
+    def kept(self) -> Study:
+        """The study as it ran, with the copies of its files."""
+        kept = json.loads(self.inputs.read_text(encoding="utf-8"))
+        files = {name: self.path / entry["copy"] for name, entry in kept["files"].items()}
+        study = load(self.study, name=kept["name"], folder=Path(kept["folder"]), files=files)
+        return study if kept["seed"] is None else study.with_seed(kept["seed"])
+
+    @contextmanager
+    def locked(self) -> Iterator[None]:
+        """Hold the folder: no other process may run in it, and the lock ends with this one, however it dies."""
+        import fcntl
+
+        with self._lock.open("w") as file:
+            try:
+                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except OSError:
+                raise InputError(
+                    f"a run is going on in {self.path}; wait for it, stop it, or choose another folder with --out"
+                ) from None
+            yield
+
+    def _is_locked(self) -> bool:
+        import fcntl
+
+        try:
+            with self._lock.open() as file:
+                fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
+        except FileNotFoundError:
+            return False
+        except OSError:
+            return True
+        return False
+
+
+def new_folder(name: str, out: Path | None = None, *, force: bool = False) -> RunFolder:
+    """Folder for a new run, made empty.
+
+    Without ``out`` it is ``runs/<name>``, or ``runs/<name>-2`` and so on while those are taken. With ``out`` or
+    ``force`` it is the one named, and what a run left there is removed only if ``force`` says so.
+
+    Raises
+    ------
+    InputError
+        If the folder is taken, is at work, or holds something that is not a run.
+    """
+    path = out or Path("runs") / name
+    if out is None and not force:
+        number = 2
+        while path.exists():
+            path = Path("runs") / f"{name}-{number}"
+            number += 1
+    folder = RunFolder(path)
+    if path.exists():
+        _empty(folder, force)
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"the run folder {path} cannot be made: {error.strerror}; choose another with --out") from None
+    return folder
+
+
+def _empty(folder: RunFolder, force: bool) -> None:
+    """Remove what a run left in a folder."""
+    if not folder.path.is_dir():
+        raise InputError(f"{folder.path} is a file; expected a folder for the run")
+    if not any(folder.path.iterdir()):
+        return
+    if not folder.is_run:
+        raise InputError(f"{folder.path} holds files that are no run's; choose an empty or new folder with --out")
+    state = folder.state()["state"]
+    if not force:
+        raise InputError(
+            f"{folder.path} holds a run ({state}); give --force to replace it, or choose another folder with --out"
+        )
+    with folder.locked():
+        for entry in folder.path.iterdir():
+            if entry.is_dir():
+                shutil.rmtree(entry)
+            elif entry.name != "lock":
+                entry.unlink()
+
+
+def _write_json(path: Path, content: Any) -> None:
+    write_text(path, json.dumps(content, indent=1, ensure_ascii=False) + "\n")
+
+
+def find_runs(root: Path) -> list[RunFolder]:
+    """All runs in a folder, by name."""
+    if not root.is_dir():
+        return []
+    runs = [RunFolder(path) for path in sorted(root.iterdir()) if path.is_dir()]
+    return [run for run in runs if run.is_run]

@@ -1,0 +1,122 @@
+"""Python functions that a study file names: ``"model.py:pendulum"`` or ``"package.module:function"``."""
+
+import importlib
+import importlib.util
+import re
+import sys
+import traceback
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+from typing import Annotated, Any
+
+from pydantic import PlainValidator, ValidationInfo, WithJsonSchema
+
+from dalembert.errors import InputError, unknown
+from dalembert.study.context import Context
+from dalembert.study.table import checked
+
+_WAYS = "'model.py:function' (a file beside the study) or 'package.module:function'"
+
+
+@dataclass(frozen=True)
+class FunctionReference:
+    """A function by name, imported when it is first needed.
+
+    Parameters
+    ----------
+    text : str
+        As the study file writes it.
+    path : Path or None
+        The file, None if a module is named.
+    folder : Path
+        The study's folder, from which the function's own imports are found.
+    """
+
+    text: str
+    path: Path | None
+    folder: Path
+
+    def __str__(self) -> str:
+        return self.text
+
+    def load(self) -> Callable[..., Any]:
+        """The function itself.
+
+        Raises
+        ------
+        InputError
+            If the file or module cannot be imported, or has no such function.
+        """
+        source, name = self.text.rsplit(":", 1)
+        with _importing_from(self.folder):
+            try:
+                module = importlib.import_module(source) if self.path is None else _module(self.path)
+            except Exception as error:  # whatever the user's file raises
+                raise InputError(f"{source} cannot be imported: {_told(error)}") from error
+        function = getattr(module, name, None)
+        if not callable(function):
+            known = [key for key, value in vars(module).items() if callable(value) and not key.startswith("_")]
+            raise InputError(unknown("function", name, known, where=source))
+        return function
+
+
+def read_function(value: object, context: Context) -> FunctionReference:
+    """Reference from what a study file says."""
+    if not isinstance(value, str) or not re.fullmatch(r"[^:]+:[^\W\d]\w*", value):
+        raise InputError(f"{value!r} was given; expected a function such as {_WAYS}")
+    source = value.rsplit(":", 1)[0]
+    if not source.endswith(".py"):
+        if not re.fullmatch(r"[^\W\d]\w*(\.[^\W\d]\w*)*", source):
+            raise InputError(f"{value!r} was given; expected a function such as {_WAYS}")
+        return FunctionReference(value, None, context.folder)
+    path = context.file(source)
+    if not path.is_file():
+        raise InputError(f"{value!r} was given, but there is no file {path}")
+    return FunctionReference(value, path, context.folder)
+
+
+def _read(value: Any, info: ValidationInfo) -> FunctionReference:
+    return checked(read_function, value, info.context if isinstance(info.context, Context) else Context())
+
+
+FunctionName = Annotated[
+    Any,
+    PlainValidator(_read),
+    WithJsonSchema({"type": "string", "description": f"a function such as {_WAYS}"}),
+]
+
+
+@contextmanager
+def _importing_from(folder: Path) -> Iterator[None]:
+    sys.path.insert(0, str(folder.resolve()))
+    try:
+        yield
+    finally:
+        sys.path.remove(str(folder.resolve()))
+
+
+def _module(path: Path) -> ModuleType:
+    name = f"dalembert_study_{path.stem}"
+    spec = importlib.util.spec_from_file_location(name, path)
+    if spec is None or spec.loader is None:
+        raise ImportError(f"{path} is no Python file")
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module  # dataclasses and pickles of the file look their module up
+    spec.loader.exec_module(module)
+    return module
+
+
+def _told(error: BaseException) -> str:
+    """An exception's type, message and last place, in one line."""
+    if isinstance(error, SyntaxError):
+        return f"SyntaxError: {error.msg} ({Path(error.filename or '').name}, line {error.lineno})"
+    frames = [frame for frame in traceback.extract_tb(error.__traceback__) if not _machinery(frame.filename)]
+    place = f" ({Path(frames[-1].filename).name}, line {frames[-1].lineno})" if frames else ""
+    return f"{type(error).__name__}: {error}{place}"
+
+
+def _machinery(filename: str) -> bool:
+    return filename.startswith("<frozen") or filename in (__file__, importlib.__file__)

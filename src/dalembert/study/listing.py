@@ -1,0 +1,50 @@
+"""The list of runs, with their states and best values."""
+
+from pathlib import Path
+
+from rich.table import Table
+from rich.text import Text
+
+from dalembert.study.events import last_progress
+from dalembert.study.folder import RunFolder, find_runs
+
+COLUMNS = ("run", "task", "state", "since", "best")
+_STYLES = {"finished": "green", "running": "cyan", "failed": "red", "input": "red", "killed": "red"}
+
+
+def rows(root: Path) -> list[dict[str, str]]:
+    """One row a run, by name."""
+    return [_row(folder) for folder in find_runs(root)]
+
+
+def table(found: list[dict[str, str]]) -> Table:
+    """The rows as a table."""
+    shown = Table(box=None, pad_edge=False)
+    for heading in COLUMNS:
+        shown.add_column(heading, overflow="fold")
+    for row in found:
+        shown.add_row(*(Text(row[key], _STYLES.get(row[key], "") if key == "state" else "") for key in COLUMNS))
+    return shown
+
+
+def _row(folder: RunFolder) -> dict[str, str]:
+    state = folder.state()
+    since = str(state.get("since", "")).replace("T", " ").removesuffix("+00:00")
+    return {
+        "run": folder.path.name,
+        "task": str(state.get("task", "")),
+        "state": str(state["state"]),
+        "since": since,
+        "best": _best(folder, state),
+    }
+
+
+def _best(folder: RunFolder, state: dict) -> str:
+    """Best fitness: of the result, or of the events while there is none."""
+    best = state.get("best") or {}
+    fitness = best.get("fitness")
+    if fitness is None:
+        event = last_progress(folder.events)
+        fitness = event["best"] if event else None
+    values = ", ".join(f"{name} = {value:.6g}" for name, value in best.get("values", {}).items())
+    return " ".join(part for part in ("" if fitness is None else f"{fitness:.4g}", values) if part)

@@ -1,0 +1,106 @@
+"""From a TOML file to a checked study; all mistakes at once, each with its file, table and key."""
+
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from dalembert.errors import InputError, unknown
+from dalembert.study.context import Context
+from dalembert.study.schema import study_file
+from dalembert.study.sentences import mistakes
+from dalembert.study.study import Study
+
+LARGEST = 10_000_000  # bytes; a study of this size is some other file
+
+
+def load(
+    path: str | Path, *, name: str = "", folder: Path | None = None, files: Mapping[str, Path] | None = None
+) -> Study:
+    """Read and check a study file.
+
+    Parameters
+    ----------
+    path : path
+    name : str
+        Name of the study; that in the file, or the file's own, if not given.
+    folder : Path, optional
+        Where the files that it names are looked for; its own folder if not given.
+    files : mapping of str to Path, optional
+        Files that it names and that lie elsewhere.
+
+    Raises
+    ------
+    InputError
+        With one line a mistake.
+    """
+    path = Path(path)
+    context = Context(folder or path.parent, files=dict(files or {}))
+    content, document = _read(path)
+    shared = _with_model_file(document, context, path)
+    names = {name for table in ("parameters", "constants") for name in _table(document, table)}
+    context.names = frozenset(names)
+    try:
+        file = study_file().model_validate(document, context=context)
+    except ValidationError as error:
+        lines = [
+            f"{shared if shared and place[:1] == ('model',) else path.name}: {text}"
+            for place, text in mistakes(error, document, context)
+        ]
+        raise InputError("\n".join(dict.fromkeys(lines))) from None
+    return Study(path, content, file, dict(context.used), name or file.study.name or path.stem)
+
+
+def _read(path: Path) -> tuple[bytes, dict[str, Any]]:
+    """Content of a TOML file, and its document."""
+    try:
+        if path.stat().st_size > LARGEST:
+            raise InputError(f"{path} has more than {LARGEST} bytes; expected a study file")
+        content = path.read_bytes()
+        return content, tomllib.loads(content.decode("utf-8"))
+    except FileNotFoundError:
+        near = [entry.name for entry in path.parent.glob("*.toml")] if path.parent.is_dir() else []
+        raise InputError(unknown("file", path.name, near, f"folder {path.parent}")) from None
+    except OSError as error:
+        raise InputError(f"{path} cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError as error:
+        line = error.object[: error.start].count(b"\n") + 1
+        raise InputError(f"{path}, line {line}: the file is not UTF-8 text") from None
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"{path}: no valid TOML: {error}") from None
+    except (RecursionError, ValueError) as error:
+        raise InputError(f"{path}: no valid TOML: {error}") from None
+
+
+def _with_model_file(document: dict[str, Any], context: Context, path: Path) -> str:
+    """Put the tables of ``[model] file = "..."`` in their place; the other file's name, or none."""
+    given = _table(document, "model").get("file")
+    if given is None:
+        return ""
+    if not isinstance(given, str) or len(document["model"]) > 1:
+        raise InputError(
+            f"{path.name}: [model], file: {given!r} was given; expected the name of a TOML file, "
+            "and no other key beside it in [model]"
+        )
+    _, shared = _read(context.file(given))
+    for table in shared:
+        if table not in ("model", "constants"):
+            raise InputError(
+                f"{given}: [{table}] stands in a model file; expected [model] and [constants] there, "
+                "and the rest in the study file"
+            )
+    if "file" in _table(shared, "model") or "model" not in shared:
+        raise InputError(f"{given}: expected a [model] table with the model itself")
+    document["model"] = shared["model"]
+    constants = _table(shared, "constants") | _table(document, "constants")
+    if constants:
+        document["constants"] = constants
+    return given
+
+
+def _table(document: Mapping[str, Any], name: str) -> dict[str, Any]:
+    """A table of a document, empty if it is not there or no table."""
+    table = document.get(name)
+    return table if isinstance(table, dict) else {}

@@ -1,0 +1,102 @@
+"""The table of a study file that describes its model: components as data, or a Python function."""
+
+from functools import cache
+from typing import Annotated, Any
+
+from pydantic import Field, create_model, model_validator
+
+from dalembert.errors import unknown
+from dalembert.study.catalogue import catalogue
+from dalembert.study.components import one_of, table_of
+from dalembert.study.functions import FunctionName
+from dalembert.study.numbers import number
+from dalembert.study.places import Place
+from dalembert.study.table import Read, StudyTable, problem
+from dalembert.units import is_quantity, si
+
+_TABLES = ("body", "joint", "load")
+
+
+class ModelTable(StudyTable):
+    """The model: bodies, joints and loads, or one Python function.
+
+    ``function`` maps parameters to a System, as ``body``, ``joint`` and ``load`` tables do; ``forward`` maps the
+    parameters' names and bounds to a ForwardModel of any kind.
+    """
+
+    file: str | None = Field(None, description="another TOML file, which holds the model's tables")
+    function: FunctionName | None = None
+    forward: FunctionName | None = None
+    arguments: dict[str, Any] = Field({}, description="fixed arguments of the function")
+    gravity: Annotated[list[Annotated[Any, Read(number("m/s^2"))]], Field(min_length=2, max_length=2)] | None = None
+    driving: list[str] = Field(
+        [], description="placement coordinates kept while a closed loop is assembled: 'AB.angle'"
+    )
+    body: list[Any] = []
+    joint: list[Any] = []
+    load: list[Any] = []
+
+    @property
+    def components(self) -> list[tuple[str, Any]]:
+        """All components in the order in which they are added, with the names of their tables."""
+        return [(table, component) for table in _TABLES for component in getattr(self, table)]
+
+    @property
+    def resolved_arguments(self) -> dict[str, Any]:
+        """The function's arguments, quantities with a unit in SI."""
+        return {
+            key: si(value, None, f"[model.arguments], {key}")
+            if isinstance(value, str) and is_quantity(value)
+            else value
+            for key, value in self.arguments.items()
+        }
+
+    @model_validator(mode="after")
+    def _check(self) -> "ModelTable":
+        ways = [name for name in ("function", "forward", "body") if getattr(self, name)]
+        if len(ways) != 1:
+            raise problem(
+                f"{' and '.join(ways) or 'neither body, function nor forward'} is given; expected either "
+                "[[model.body]] tables, or function = 'model.py:name', or forward = 'model.py:name'"
+            )
+        if "body" not in ways and (self.joint or self.load or self.gravity or self.driving):
+            raise problem(
+                "joint, load, gravity and driving belong to a model of [[model.body]] tables; here a function gives it"
+            )
+        if "body" in ways and self.arguments:
+            raise problem("arguments are for a function, and there is none")
+        wrong = [*_repeated(self.components), *_dangling(self.components)]
+        if wrong:
+            raise problem(*wrong)
+        return self
+
+
+def _repeated(components: list[tuple[str, Any]]) -> list[str]:
+    names = [component.name for _, component in components]
+    repeated = sorted({name for name in names if names.count(name) > 1})
+    return [f"{names.count(name)} components are called {name!r}; expected different names" for name in repeated]
+
+
+def _dangling(components: list[tuple[str, Any]]) -> list[str]:
+    """Sentences for places at bodies that are not there, or not yet."""
+    bodies = [component.name for table, component in components if table == "body"]
+    wrong = []
+    for table, component in components:
+        known = bodies[: bodies.index(component.name)] if table == "body" else bodies
+        for key, value in component.given().items():
+            if isinstance(value, Place) and value.body and value.body not in known:
+                late = "; a body must stand before those placed at it" if value.body in bodies else ""
+                text = unknown("body", value.body, known)
+                wrong.append(f"[[model.{table}]] {component.name!r}, {key}: {str(value)!r} was given; {text}{late}")
+    return wrong
+
+
+@cache
+def model_table() -> type[ModelTable]:
+    """The model's table with all kinds of components that there are."""
+    kinds = catalogue()
+    signal = one_of([table_of(target) for target in kinds["signal"]])
+    lists: dict[str, Any] = {
+        table: (list[one_of([table_of(target, signal=signal) for target in kinds[table]])], []) for table in _TABLES
+    }
+    return create_model("Model", __base__=ModelTable, __doc__=ModelTable.__doc__, **lists)

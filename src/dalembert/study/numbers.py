@@ -1,0 +1,123 @@
+"""Numbers of a study file: plain, with a unit, or as an expression of parameters and constants."""
+
+from collections.abc import Iterable
+from functools import cache
+from itertools import pairwise
+from typing import Annotated, Any
+
+import numpy as np
+from pydantic import (
+    AfterValidator,
+    Discriminator,
+    PlainValidator,
+    Tag,
+    ValidationInfo,
+    WithJsonSchema,
+    create_model,
+    model_validator,
+)
+
+from dalembert.errors import InputError, unknown
+from dalembert.study.context import Context
+from dalembert.study.expressions import Expression
+from dalembert.study.table import StudyTable, checked, problem
+from dalembert.units import expected, is_quantity, sentence, si
+
+
+def read_number(value: object, unit: str | None, names: Iterable[str] | None = ()) -> float | Expression:
+    """Number in SI units, or an expression of names; ``names`` None leaves those unchecked.
+
+    >>> read_number("400 mm", "m"), read_number("pi/4", "rad")
+    (0.4, 0.7853981633974483)
+    >>> read_number("-theta1", "rad", ["theta1"]).text
+    '-theta1'
+    """
+    if not isinstance(value, str) or is_quantity(value):
+        return si(value, unit)
+    try:
+        expression = Expression.of(value)
+        if not expression.names:
+            return si(expression({}), unit)
+        for name in sorted(expression.names - set(names if names is not None else expression.names)):
+            raise InputError(unknown("name", name, names or ()))
+    except InputError as error:
+        more = ", or an expression of parameters and constants" if names else ""
+        raise InputError(f"{sentence(value, unit, reason=str(error).split('; known: none')[0])}{more}") from None
+    return expression
+
+
+@cache
+def number(unit: str | None) -> Any:
+    """Type of a key whose number may depend on parameters."""
+
+    def read(value: Any, info: ValidationInfo) -> float | Expression:
+        names = info.context.names if isinstance(info.context, Context) else None
+        return checked(read_number, value, unit, names)
+
+    return Annotated[Any, PlainValidator(read), _schema(unit)]
+
+
+@cache
+def fixed(unit: str | None) -> Any:
+    """Type of a key whose number may not depend on parameters."""
+    return Annotated[float, PlainValidator(lambda value: checked(read_number, value, unit)), _schema(unit)]
+
+
+def _schema(unit: str | None) -> WithJsonSchema:
+    return WithJsonSchema({"anyOf": [{"type": "number"}, {"type": "string"}], "description": expected(unit)})
+
+
+class Grid(StudyTable):
+    """Evenly spaced numbers from ``start`` to ``end``, by their count or by their distance."""
+
+    start: float = 0.0
+    end: float
+    count: int | None = None
+    every: float | None = None
+
+    @model_validator(mode="after")
+    def _check(self) -> "Grid":
+        if (self.count is None) == (self.every is None):
+            raise problem("expected either count or every beside start and end")
+        if self.end <= self.start:
+            raise problem(f"start is {self.start:g} and end {self.end:g}; expected an end after the start")
+        if self.count is not None and self.count < 2:
+            raise problem(f"count is {self.count}; expected at least 2")
+        if self.every is not None and (self.every <= 0 or abs(self._steps - round(self._steps)) > 1e-9 * self._steps):
+            raise problem(
+                f"every is {self.every:g}, which does not divide the {self.end - self.start:g} from start to end; "
+                "expected a distance that does, or count instead"
+            )
+        return self
+
+    @property
+    def _steps(self) -> float:
+        return (self.end - self.start) / (self.every or 1.0)
+
+    @property
+    def values(self) -> np.ndarray:
+        """The numbers, shape (count,)."""
+        return np.linspace(self.start, self.end, self.count or round(self._steps) + 1)
+
+
+@cache
+def samples(unit: str | None) -> Any:
+    """Type of a key that takes increasing numbers: a list of them, or a :class:`Grid`; read as a tuple."""
+    one = fixed(unit)
+    fields: dict[str, Any] = {"start": (one, 0.0), "end": (one, ...), "every": (one | None, None)}
+    grid = create_model("Grid", __base__=Grid, **fields)
+    return Annotated[
+        Annotated[grid, Tag("grid")] | Annotated[list[one], Tag("list")],
+        Discriminator(lambda value: "grid" if isinstance(value, (dict, Grid)) else "list"),
+        AfterValidator(_increasing),
+    ]
+
+
+def _increasing(given: Grid | list[float]) -> tuple[float, ...]:
+    numbers = given.values.tolist() if isinstance(given, Grid) else given
+    if not numbers:
+        raise problem("an empty list was given; expected at least one number")
+    for earlier, later in pairwise(numbers):
+        if later <= earlier:
+            raise problem(f"{later:g} follows {earlier:g}; expected numbers that increase")
+    return tuple(numbers)

@@ -1,0 +1,87 @@
+"""Points of a mechanism as a study file writes them: ``"OA.end"``, ``"ground"``, ``"ground(0.3, 0)"``."""
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cache
+from typing import Annotated, Any
+
+from pydantic import PlainValidator, ValidationInfo, WithJsonSchema
+
+from dalembert.errors import InputError
+from dalembert.study.context import Context
+from dalembert.study.expressions import Expression
+from dalembert.study.numbers import read_number
+from dalembert.study.table import checked
+
+_POINT = re.compile(r"([^\W\d][\w-]*)\.([^\W\d][\w-]*)")
+_GROUND = re.compile(r"ground\s*\((.*)\)")
+_WAYS = "'OA.end', 'ground(0.3, 0)' or [0.3, 0.0]"
+Position = tuple[float | Expression, ...]
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where something stands: at a point of a body, or at a position on the ground.
+
+    Parameters
+    ----------
+    body, point : str
+        Names of the body and of its point; empty for the ground.
+    position : (x, y) or (x, y, angle), optional
+        Position on the ground; where the other side stands if not given.
+    """
+
+    body: str = ""
+    point: str = ""
+    position: Position | None = None
+
+    def __str__(self) -> str:
+        if self.position is None:
+            return f"{self.body}.{self.point}" if self.body else "ground"
+        return f"ground({', '.join(map(str, self.position))})"
+
+
+def read_place(value: object, names: Iterable[str] | None = None, *, bare: bool = True) -> Place:
+    """Place from what a study file says; ``bare`` allows ``"ground"`` without a position.
+
+    >>> read_place("AB.node2")
+    Place(body='AB', point='node2', position=None)
+    >>> str(read_place({"x": "300 mm", "y": 0}))
+    'ground(0.3, 0.0)'
+    """
+    match value:
+        case "ground" if bare:
+            return Place()
+        case str() if found := _GROUND.fullmatch(value.strip()):
+            return _on_ground(found[1].split(","), value, names)
+        case str() if found := _POINT.fullmatch(value.strip()):
+            return Place(found[1], found[2])
+        case {"x": x, "y": y, **rest} if not rest:
+            return _on_ground([x, y], value, names)
+        case [*numbers]:
+            return _on_ground(numbers, value, names)
+    raise InputError(f"{value!r} was given; expected a point such as {_ways(bare)}")
+
+
+def _on_ground(numbers: list, value: object, names: Iterable[str] | None) -> Place:
+    if len(numbers) not in (2, 3):
+        raise InputError(f"{value!r} was given; expected x and y, or x, y and an angle, such as 'ground(0.3, 0)'")
+    units = ("m", "m", "rad")
+    return Place(position=tuple(read_number(one, unit, names) for one, unit in zip(numbers, units, strict=False)))
+
+
+def _ways(bare: bool) -> str:
+    return f"'ground', {_WAYS}" if bare else _WAYS
+
+
+@cache
+def place(bare: bool = True) -> Any:
+    """Type of a key that takes a point; ``bare`` allows ``"ground"`` without a position."""
+
+    def read(value: Any, info: ValidationInfo) -> Place:
+        names = info.context.names if isinstance(info.context, Context) else None
+        return checked(lambda: read_place(value, names, bare=bare))
+
+    schema = {"type": ["string", "array", "object"], "description": f"a point such as {_ways(bare)}"}
+    return Annotated[Any, PlainValidator(read), WithJsonSchema(schema)]

@@ -1,0 +1,74 @@
+"""What a user sees of a run while it goes on: a live line on a terminal, now and then a line elsewhere."""
+
+from dataclasses import dataclass, field
+from time import monotonic
+from types import TracebackType
+from typing import Self
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+
+from dalembert.study.events import Event
+
+_EVERY = 2.0  # s between plain lines
+
+
+@dataclass
+class Watch:
+    """Listener of a run's events that prints how far it is.
+
+    Parameters
+    ----------
+    console : Console
+    names : tuple of str
+        Names of the parameters, for the best values.
+    """
+
+    console: Console
+    names: tuple[str, ...] = ()
+    _live: Progress | None = field(default=None, init=False)
+    _best: float = field(default=float("inf"), init=False)
+    _values: list[float] = field(default_factory=list, init=False)
+    _next: float = field(default=0.0, init=False)
+
+    def __enter__(self) -> Self:
+        if self.console.is_terminal:
+            columns = SpinnerColumn(), TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn()
+            self._live = Progress(*columns, console=self.console, transient=True)
+            self._live.start()
+            self._live.add_task("starting", total=None)
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self._live is not None:
+            self._live.stop()
+
+    def __call__(self, event: Event) -> None:
+        text, done, total = self._told(event)
+        if not text:
+            return
+        if self._live is not None:
+            self._live.update(self._live.task_ids[0], description=text, completed=done, total=total)
+        elif monotonic() >= self._next:
+            self._next = monotonic() + _EVERY
+            self.console.print(text, markup=False, highlight=False)
+
+    def _told(self, event: Event) -> tuple[str, int, int | None]:
+        """Text of an event, and how much is done of how much."""
+        match event:
+            case {"event": "iteration", "best": best, "values": values, "start": start, "simulations": simulations}:
+                if best is not None and best < self._best:
+                    self._best, self._values = best, values
+                return f"start {start + 1} · {simulations} simulations · {self._found}", 0, None
+            case {"event": "swept", "parameter": name, "value": value, "done": done, "total": total}:
+                return f"{name} = {value:.6g} · {done} of {total}", done, total
+            case {"event": "simulating", "end": end}:
+                return f"simulating to {end:g} s", 0, None
+        return "", 0, None
+
+    @property
+    def _found(self) -> str:
+        pairs = zip(self.names, self._values, strict=False)
+        return f"best {self._best:.4g} · " + ", ".join(f"{name} = {value:.6g}" for name, value in pairs)

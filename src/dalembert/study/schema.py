@@ -1,0 +1,91 @@
+"""The whole study file: its tables, and that they fit together."""
+
+from collections.abc import Mapping
+from functools import cache
+from typing import Annotated, Any
+
+from pydantic import (
+    AfterValidator,
+    BeforeValidator,
+    Field,
+    PlainValidator,
+    WithJsonSchema,
+    create_model,
+    model_validator,
+)
+
+from dalembert.study.catalogue import catalogue
+from dalembert.study.components import one_of, table_of
+from dalembert.study.data_table import DataTable
+from dalembert.study.model_table import ModelTable, model_table
+from dalembert.study.parameters import ParameterTable, check_names, read_constants
+from dalembert.study.table import Name, StudyTable, problem
+from dalembert.study.tasks import TASKS
+
+SOLVER = "GeneralizedAlpha"  # where [solver] names no kind
+
+
+class About(StudyTable):
+    """What the study is called."""
+
+    name: Name | None = Field(None, description="name of the run folder; the file's if not given")
+    title: str = Field("", description="heading of the report")
+    description: str = Field("", description="what the study is for, and what must come out")
+
+
+class StudyFile(StudyTable):
+    """A study: a model, and one task."""
+
+    study: About = Field(default_factory=lambda: About.model_validate({}))
+    constants: Annotated[
+        dict[str, Any],
+        PlainValidator(read_constants),
+        BeforeValidator(check_names),
+        WithJsonSchema({"type": "object", "additionalProperties": {"type": ["number", "string"]}}),
+    ] = Field({}, description="named numbers: '400 mm', or expressions of parameters and of constants before them")
+    parameters: Annotated[dict[str, ParameterTable], BeforeValidator(check_names)] = {}
+    model: ModelTable
+    solver: Any = None
+    data: DataTable | None = None
+
+    @model_validator(mode="after")
+    def _check(self) -> "StudyFile":
+        both = sorted(set(self.parameters) & set(self.constants))
+        if both:
+            raise problem(f"{', '.join(both)} is both a parameter and a constant; give each name once")
+        if len(self.tasks) != 1:
+            given = " and ".join(f"[{name}]" for name in self.tasks) or "no task"
+            raise problem(f"{given} is given; a study has one task, one of {', '.join(f'[{name}]' for name in TASKS)}")
+        (name,) = self.tasks
+        wrong = TASKS[name].wrong(self)
+        if wrong:
+            raise problem(*wrong)
+        return self
+
+    @property
+    def tasks(self) -> Mapping[str, StudyTable]:
+        """The tables of tasks that the file has, by name; exactly one once it is checked."""
+        return {name: table for name in TASKS if (table := getattr(self, name, None)) is not None}
+
+
+@cache
+def study_file() -> type[StudyFile]:
+    """The study file with all the kinds that there are."""
+    solver = one_of(
+        [table_of(target, default=target.__name__ == SOLVER, varying=False) for target in catalogue()["solver"]], SOLVER
+    )
+    fields: dict[str, Any] = {name: (task.table() | None, None) for name, task in TASKS.items()}
+    checked_solver: Any = Annotated[solver, AfterValidator(_buildable)]
+    fields |= {"model": (model_table(), ...), "solver": (checked_solver | None, None)}
+    return create_model("Study", __base__=StudyFile, __doc__=StudyFile.__doc__, **fields)
+
+
+def _buildable(table: Any) -> Any:
+    table.settings()
+    return table
+
+
+def json_schema() -> dict[str, Any]:
+    """JSON schema of a study file, for editors."""
+    schema = study_file().model_json_schema()
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "dalembert study", **schema}

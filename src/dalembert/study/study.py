@@ -1,0 +1,141 @@
+"""A study that was read and checked: its model, data and task, ready to run."""
+
+import hashlib
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from dalembert.errors import InputError
+from dalembert.forward import ForwardModel
+from dalembert.parameters import Parameters
+from dalembert.study.builder import FunctionBuilder, SystemBuilder
+from dalembert.study.schema import StudyFile
+from dalembert.study.table import StudyTable
+
+if TYPE_CHECKING:
+    from dalembert.data import Measurements
+    from dalembert.multibody import System, Trajectory
+
+Builder = SystemBuilder | FunctionBuilder
+
+
+def _plain(value: Any) -> Any:
+    """A table and what is in it as JSON can hold it, without the keys that the file leaves out."""
+    if isinstance(value, StudyTable):
+        given = {name: getattr(value, name) for name in type(value).model_fields if name in value.model_fields_set}
+        return _plain({name: entry for name, entry in given.items() if entry is not None})
+    if isinstance(value, Mapping):
+        return {str(name): _plain(entry) for name, entry in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(entry) for entry in value]
+    return value if isinstance(value, (int, float, str)) else str(value)
+
+
+@dataclass(frozen=True)
+class Study:
+    """A study file, understood.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    content : bytes
+        What it holds.
+    file : StudyFile
+        Its tables, checked.
+    files : mapping of str to Path
+        The other files that it names.
+    name : str
+        Name of its run folder.
+    """
+
+    path: Path
+    content: bytes
+    file: StudyFile
+    files: Mapping[str, Path]
+    name: str
+
+    @property
+    def title(self) -> str:
+        return self.file.study.title or self.name
+
+    @property
+    def task(self) -> str:
+        """Name of the task: simulate, identify or sweep."""
+        return next(iter(self.file.tasks))
+
+    @property
+    def table(self) -> Any:
+        """The task's table."""
+        return self.file.tasks[self.task]
+
+    @cached_property
+    def parameters(self) -> Parameters:
+        return Parameters(tuple(table.parameter(name) for name, table in self.file.parameters.items()))
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """All that the file says, in SI units, as JSON can hold it."""
+        return _plain(self.file)
+
+    @property
+    def has_system(self) -> bool:
+        """Whether the model is a mechanism, not a forward model of another kind."""
+        return self.file.model.forward is None
+
+    @cached_property
+    def builder(self) -> Builder:
+        """The model as a function from parameters to a System."""
+        model = self.file.model
+        if model.function is not None:
+            return FunctionBuilder(model.function.load(), model.resolved_arguments)
+        text = json.dumps({key: self.settings.get(key) for key in ("model", "constants")}, sort_keys=True)
+        return SystemBuilder(model, self.file.constants, hashlib.sha256(text.encode()).hexdigest())
+
+    @property
+    def solver(self) -> Any:
+        """The integrator that the file chooses."""
+        return self.file.solver.settings()
+
+    def system(self, vector: np.ndarray | None = None) -> "System":
+        """The mechanism at a parameter vector (parameters,), by default at the first guesses."""
+        return self.builder(**self.parameters.mapping(self.parameters.start if vector is None else vector))
+
+    def motion(self, end: float, vector: np.ndarray | None = None, times: np.ndarray | None = None) -> "Trajectory":
+        """The mechanism's motion until ``end`` (s) at a parameter vector."""
+        from dalembert.multibody import simulate
+
+        return simulate(self.system(vector), end, solver=self.solver, times=times)
+
+    def forward(self, channels: Sequence[str], samples: np.ndarray) -> ForwardModel:
+        """The model between parameters and channels, at samples of its coordinate."""
+        if self.has_system:
+            from dalembert.multibody import TimeResponse
+
+            return TimeResponse(self.builder, self.parameters, channels, samples, solver=self.solver)
+        reference = self.file.model.forward
+        assert reference is not None  # or there is a system
+        model = reference.load()(self.parameters, **self.file.model.resolved_arguments)
+        if not isinstance(model, ForwardModel):
+            raise InputError(
+                f"{reference} returned a {type(model).__name__}; expected a ForwardModel such as PythonModel"
+            )
+        return model
+
+    def data(self) -> "Measurements":
+        """The measured data."""
+        if self.file.data is None:
+            raise InputError(f"{self.path}: there is no [data] table")
+        return self.file.data.read()
+
+    def with_seed(self, seed: int) -> "Study":
+        """The same study with another seed."""
+        if "seed" not in type(self.table).model_fields:
+            raise InputError(f"a seed was given, but [{self.task}] draws no random numbers; leave it out")
+        table = self.table.model_copy(update={"seed": seed})
+        return replace(self, file=self.file.model_copy(update={self.task: table}))

@@ -1,0 +1,179 @@
+"""Identify: parameters from measured data."""
+
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from pydantic import AfterValidator, Discriminator, Field, Tag, create_model
+
+from dalembert.errors import InputError, unknown
+from dalembert.optimize.minimiser import NAMES as MINIMISERS
+from dalembert.optimize.minimiser import Minimiser
+from dalembert.study.catalogue import methods
+from dalembert.study.components import one_of, table_of
+from dalembert.study.numbers import fixed
+from dalembert.study.table import Read, StudyTable, checked
+from dalembert.study.tasks.task import Outcome, Task
+
+if TYPE_CHECKING:
+    from dalembert.inverse import Fit
+    from dalembert.multibody import Trajectory
+    from dalembert.study.events import Emit
+    from dalembert.study.study import Study
+
+DEFAULT = "least-squares"
+
+
+class IdentifyTable(StudyTable):
+    """Identify the parameters from the data."""
+
+    method: Any = DEFAULT
+    starts: int = Field(8, ge=1, description="starting points of local methods, or independent swarms")
+    seed: int = Field(0, ge=0, description="of all random numbers")
+    polish: bool = Field(False, description="end with least squares from the best point found")
+    horizon: Literal["growing"] | None = Field(None, description="'growing' compares ever longer parts of the data")
+    weights: dict[str, Annotated[float, Read(fixed(None))]] | None = Field(
+        None, description="weight of each channel; from deviations if not given"
+    )
+
+
+@cache
+def identify_table() -> type[IdentifyTable]:
+    """The task's table with all the methods that there are."""
+    tables = one_of([table_of(target, name, varying=False) for name, target in methods().items()])
+    method = Annotated[
+        Annotated[str, Tag("name")] | Annotated[tables, Tag("table")],
+        Discriminator(lambda value: "name" if isinstance(value, str) else "table"),
+        AfterValidator(_buildable),
+    ]
+    name = f"'{DEFAULT}', 'standard-swarm', 'improved-swarm', a minimiser of SciPy, or a table with kind and settings"
+    fields: dict[str, Any] = {"method": (method, Field(DEFAULT, description=name))}
+    return create_model("Identify", __base__=IdentifyTable, **fields)
+
+
+def settings(method: Any) -> Any:
+    """The method's dataclass: from its table, or with its defaults from its name."""
+    if not isinstance(method, str):
+        return method.settings()
+    known = {name: kind for name, kind in methods().items() if name != "scipy"}
+    if method in known:
+        return known[method]()
+    if method.lower() not in map(str.lower, MINIMISERS):
+        raise InputError(unknown("method", method, [*known, *MINIMISERS]))
+    return Minimiser(method)
+
+
+def _buildable(method: Any) -> Any:
+    checked(settings, method)
+    return method
+
+
+@dataclass(frozen=True)
+class Identification(Outcome):
+    """A fit, and the motion at its values if the model is a mechanism."""
+
+    study: "Study"
+    fit: "Fit"
+
+    @property
+    def success(self) -> bool:
+        return self.fit.success
+
+    @property
+    def status(self) -> str:
+        return self.fit.status
+
+    @property
+    def best(self) -> dict[str, Any]:
+        return {"fitness": self.fit.fitness, "values": self.fit.parameters.mapping(self.fit.values)}
+
+    def save(self, path: Path) -> None:
+        self.fit.save(path)
+
+    def report(self, path: Path) -> None:
+        from dalembert.report import report
+
+        study = self.study
+        report(
+            self.fit,
+            path,
+            title=study.title,
+            trajectory=self._motion(),
+            notes=study.file.study.description,
+            study=study.content.decode(),
+        )
+
+    def _motion(self) -> "Trajectory | None":
+        if not self.study.has_system:
+            return None
+        return self.study.motion(float(self.fit.data.coordinate.values[-1]), self.fit.values)
+
+
+class Identify(Task):
+    """The task ``[identify]``."""
+
+    def table(self) -> type[StudyTable]:
+        return identify_table()
+
+    def wrong(self, file: Any) -> list[str]:
+        wrong = []
+        if not file.parameters:
+            wrong.append("[identify] needs at least one [parameters.NAME] table")
+        if file.data is None:
+            wrong.append("[identify] needs a [data] table")
+        if file.model.forward is None and file.solver is None:
+            wrong.append("the table [solver] is missing; expected at least its step")
+        if file.data is not None and file.identify.weights is not None:
+            channels, weights = file.data.columns, file.identify.weights
+            where = "[identify], weights"
+            wrong += [f"{where}: no weight is given for channel {name!r}" for name in channels if name not in weights]
+            wrong += [unknown("channel", name, channels, where) for name in weights if name not in channels]
+        return wrong
+
+    def plan(self, study: "Study") -> str:
+        data = study.data()
+        study.forward(data.channels, data.coordinate.values)
+        method = settings(study.table.method)
+        particles, iterations = getattr(method, "particles", 0), getattr(method, "iterations", 0)
+        names = ", ".join(study.parameters.names)
+        if particles:
+            cost = f"{particles} particles × {iterations} iterations = {particles * iterations} simulations a swarm"
+        elif study.table.method == DEFAULT:
+            cost = (
+                f"about {study.table.starts * 10 * (1 + len(study.parameters))} simulations with sensitivities counted"
+            )
+        else:
+            cost = "as many simulations as the minimiser asks for"
+        return (
+            f"identifies {names} from {len(data.coordinate.values)} samples of {', '.join(data.channels)} "
+            f"by {type(method).__name__}, {study.table.starts} starts: {cost}"
+        )
+
+    def run(self, study: "Study", emit: "Emit") -> Outcome:
+        from dalembert.inverse import identify
+        from dalembert.inverse.events import as_record
+
+        data, table = study.data(), study.table
+
+        def tell(event: Any) -> None:
+            record = as_record(event)
+            emit(record.pop("event"), **record)
+
+        fit = identify(
+            study.forward(data.channels, data.coordinate.values),
+            data,
+            method=settings(table.method),
+            starts=table.starts,
+            seed=table.seed,
+            weights=None if table.weights is None else [table.weights[channel] for channel in data.channels],
+            polish=table.polish,
+            horizon=table.horizon,
+            on_event=tell,
+        )
+        return Identification(study, fit)
+
+    def load(self, study: "Study", path: Path) -> Outcome:
+        from dalembert.inverse import Fit
+
+        return Identification(study, Fit.load(path))

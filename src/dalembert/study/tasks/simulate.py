@@ -1,0 +1,107 @@
+"""Simulate: the motion of a mechanism at the first guesses of its parameters."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from dalembert.study.numbers import fixed, samples
+from dalembert.study.table import Read, StudyTable, problem
+from dalembert.study.tasks.task import Outcome, Task
+
+if TYPE_CHECKING:
+    from dalembert.multibody import Trajectory
+    from dalembert.study.events import Emit
+    from dalembert.study.study import Study
+
+
+class SimulateTable(StudyTable):
+    """Simulate the mechanism until ``end``."""
+
+    end: Annotated[float, Read(fixed("s"))] | None = Field(None, description="last time; that of times if not given")
+    times: Annotated[tuple[float, ...], Read(samples("s"))] | None = Field(
+        None, description="output times; every step if not given"
+    )
+    points: list[str] = Field([], description="points whose paths the report draws: 'AB.end'")
+
+    @model_validator(mode="after")
+    def _check(self) -> "SimulateTable":
+        if self.end is None and self.times is None:
+            raise problem("neither end nor times is given; expected one of them")
+        if self.end is not None and self.end <= 0:
+            raise problem(f"end is {self.end:g} s; expected a time after 0")
+        if self.end is not None and self.times is not None and self.times[-1] > self.end:
+            raise problem(f"the last of times is {self.times[-1]:g} s, after end = {self.end:g} s")
+        return self
+
+    @property
+    def last(self) -> float:
+        """Last time, s."""
+        if self.end is not None:
+            return self.end
+        assert self.times is not None  # checked above
+        return self.times[-1]
+
+
+@dataclass(frozen=True)
+class Motion(Outcome):
+    """A simulated motion."""
+
+    study: "Study"
+    trajectory: "Trajectory"
+
+    @property
+    def success(self) -> bool:
+        return True
+
+    @property
+    def status(self) -> str:
+        return f"simulated to {self.trajectory.times[-1]:g} s"
+
+    @property
+    def best(self) -> dict[str, Any]:
+        return {}
+
+    def save(self, path: Path) -> None:
+        self.trajectory.save(path)
+
+    def report(self, path: Path) -> None:
+        from dalembert.report import report
+
+        study = self.study
+        report(
+            self.trajectory,
+            path,
+            title=study.title,
+            notes=study.file.study.description,
+            study=study.content.decode(),
+            points=study.table.points,
+        )
+
+
+class Simulate(Task):
+    """The task ``[simulate]``."""
+
+    def table(self) -> type[StudyTable]:
+        return SimulateTable
+
+    def wrong(self, file: Any) -> list[str]:
+        if file.model.forward is not None:
+            return ["[simulate] needs a mechanism; a forward model is for [identify] and [sweep]"]
+        return [] if file.solver else ["the table [solver] is missing; expected at least its step"]
+
+    def plan(self, study: "Study") -> str:
+        study.system()
+        return f"simulates the motion to {study.table.last:g} s: 1 simulation"
+
+    def run(self, study: "Study", emit: "Emit") -> Outcome:
+        emit("simulating", end=study.table.last)
+        times = study.table.times
+        return Motion(study, study.motion(study.table.last, times=None if times is None else np.array(times)))
+
+    def load(self, study: "Study", path: Path) -> Outcome:
+        from dalembert.multibody import Trajectory
+
+        return Motion(study, Trajectory.load(path))

@@ -1,0 +1,262 @@
+"""Sweep: responses and their sensitivities at one instant, along one parameter after another."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import numpy as np
+from pydantic import Discriminator, Field, Tag, model_validator
+
+from dalembert.errors import InputError, SolveError, unknown
+from dalembert.forward import ForwardModel
+from dalembert.study.numbers import fixed, samples
+from dalembert.study.table import Read, StudyTable, problem
+from dalembert.study.tasks.task import Outcome, Task
+
+if TYPE_CHECKING:
+    from dalembert.study.events import Emit
+    from dalembert.study.study import Study
+
+
+class BoundsTable(StudyTable):
+    """Evenly spaced values between the parameter's bounds."""
+
+    count: int = Field(ge=2)
+
+
+Along = Annotated[
+    Annotated[BoundsTable, Tag("count")] | Annotated[samples(None), Tag("values")],
+    Discriminator(lambda value: "count" if isinstance(value, dict) and set(value) <= {"count"} else "values"),
+]
+
+
+class SweepTable(StudyTable):
+    """Move one parameter at a time, the others at their first guesses, and look at one instant."""
+
+    at: Annotated[float, Read(fixed(None))] = Field(description="the instant: a time in s")
+    channels: list[str] = Field(min_length=1)
+    sensitivities: bool = Field(True, description="whether to compute the derivatives too")
+    over: dict[str, Along] = Field(
+        min_length=1, description="values of each parameter: { count = 41 } between its bounds, a list, or a range"
+    )
+
+    @model_validator(mode="after")
+    def _check(self) -> "SweepTable":
+        if len(set(self.channels)) < len(self.channels):
+            raise problem("channels are repeated; give each once")
+        return self
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """Responses along one parameter.
+
+    Parameters
+    ----------
+    parameter, unit : str
+    values : array, shape (samples,)
+    channels, units : tuple of str
+    responses : array, shape (samples, channels)
+        NaN where the simulation failed.
+    sensitivities : array, shape (samples, channels), or None
+        Derivatives of the responses with respect to this parameter.
+    """
+
+    parameter: str
+    unit: str
+    values: np.ndarray
+    channels: tuple[str, ...]
+    units: tuple[str, ...]
+    responses: np.ndarray
+    sensitivities: np.ndarray | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Sweep(Outcome):
+    """One curve a parameter, at one instant that ``at`` names."""
+
+    study: "Study" = field(repr=False)
+    at: str
+    curves: tuple[Curve, ...]
+
+    @property
+    def failed(self) -> int:
+        """Simulations that failed."""
+        return sum(int(np.isnan(curve.responses).any(axis=1).sum()) for curve in self.curves)
+
+    @property
+    def success(self) -> bool:
+        return self.failed == 0
+
+    @property
+    def status(self) -> str:
+        count = sum(len(curve.values) for curve in self.curves)
+        failed = f"; {self.failed} of them failed, see events.jsonl" if self.failed else ""
+        return f"{count} points along {', '.join(curve.parameter for curve in self.curves)}{failed}"
+
+    @property
+    def best(self) -> dict[str, Any]:
+        return {}
+
+    def save(self, path: Path) -> None:
+        import xarray as xr
+
+        tree = xr.DataTree.from_dict({f"/{curve.parameter}": _dataset(curve) for curve in self.curves})
+        tree.attrs["at"] = self.at
+        tree.to_netcdf(path, engine="h5netcdf")
+
+    def report(self, path: Path) -> None:
+        from dalembert.report import report
+
+        about = self.study.file.study
+        report(self, path, title=self.study.title, notes=about.description, study=self.study.content.decode())
+
+
+class SweepTask(Task):
+    """The task ``[sweep]``."""
+
+    def table(self) -> type[StudyTable]:
+        return SweepTable
+
+    def wrong(self, file: Any) -> list[str]:
+        wrong = [
+            unknown("parameter", name, file.parameters, "[sweep.over]") for name in file.sweep.over
+            if name not in file.parameters
+        ]  # fmt: skip
+        if file.model.forward is None and file.solver is None:
+            wrong.append("the table [solver] is missing; expected at least its step")
+        return wrong
+
+    def plan(self, study: "Study") -> str:
+        model = _model(study)
+        _sample(model, study.table.at)
+        _columns(model, study.table.channels)
+        values = {name: len(_values(study, name)) for name in study.table.over}
+        count = sum(values.values())
+        each = f", each with {len(study.parameters)} sensitivities" if study.table.sensitivities else ""
+        along = ", ".join(f"{name} ({number})" for name, number in values.items())
+        return f"sweeps {along} at {_instant(model, study.table.at)}: {count} simulations{each}"
+
+    def run(self, study: "Study", emit: "Emit") -> Outcome:
+        model = _model(study)
+        total = sum(len(_values(study, name)) for name in study.table.over)
+        curves, done = [], 0
+        for name in study.table.over:
+            curve = _empty(study, model, name)
+            for row, failure in _fill(study, model, curve):
+                done += 1
+                details = {"parameter": name, "value": float(curve.values[row]), "done": done, "total": total}
+                emit("swept", **details, failure=failure)
+            curves.append(curve)
+        return Sweep(study, _instant(model, study.table.at), tuple(curves))
+
+    def load(self, study: "Study", path: Path) -> Outcome:
+        import xarray as xr
+
+        with xr.open_datatree(path, engine="h5netcdf") as tree:
+            curves = tuple(_curve(name, node.to_dataset().load()) for name, node in tree.children.items())
+            return Sweep(study, tree.attrs["at"], curves)
+
+
+def _model(study: "Study") -> ForwardModel:
+    return study.forward(study.table.channels, np.array([study.table.at]))
+
+
+def _instant(model: ForwardModel, at: float) -> str:
+    return f"{model.coordinate.name} {at:g} {model.coordinate.unit}".strip()
+
+
+def _sample(model: ForwardModel, at: float) -> int:
+    """Number of the model's sample at an instant."""
+    values = model.coordinate.values
+    nearest = int(np.argmin(np.abs(values - at)))
+    if abs(values[nearest] - at) > 1e-9 * max(1.0, abs(at)):
+        raise InputError(
+            f"[sweep], at: {at:g} was given, but the model has no sample there; the nearest is {values[nearest]:g}"
+        )
+    return nearest
+
+
+def _columns(model: ForwardModel, channels: list[str]) -> list[int]:
+    names = [channel.name for channel in model.channels]
+    for channel in channels:
+        if channel not in names:
+            raise InputError(unknown("channel", channel, names, "[sweep], channels"))
+    return [names.index(channel) for channel in channels]
+
+
+def _values(study: "Study", name: str) -> np.ndarray:
+    """Values of a parameter, shape (samples,)."""
+    along = study.table.over[name]
+    if not isinstance(along, BoundsTable):
+        return np.array(along)
+    parameter = next(item for item in study.parameters if item.name == name)
+    return np.linspace(parameter.lower, parameter.upper, along.count)
+
+
+def _empty(study: "Study", model: ForwardModel, name: str) -> Curve:
+    """A curve with NaN where responses will stand."""
+    values = _values(study, name)
+    channels = [model.channels[column] for column in _columns(model, study.table.channels)]
+    shape = (len(values), len(channels))
+    unit = next(item.unit for item in study.parameters if item.name == name)
+    slopes = np.full(shape, np.nan) if study.table.sensitivities else None
+    names, units = tuple(c.name for c in channels), tuple(c.unit for c in channels)
+    return Curve(name, unit, values, names, units, np.full(shape, np.nan), slopes)
+
+
+def _fill(study: "Study", model: ForwardModel, curve: Curve) -> Iterator[tuple[int, str | None]]:
+    """Simulate each point of a curve; yields its number and why it failed, if it did."""
+    sample, columns = _sample(model, study.table.at), _columns(model, list(curve.channels))
+    place = study.parameters.names.index(curve.parameter)
+    for row, value in enumerate(curve.values):
+        vector = study.parameters.start.copy()
+        vector[place] = value
+        failure = None
+        try:
+            if curve.sensitivities is None:
+                response = model.evaluate(vector[None]).only()[0]
+            else:
+                response, jacobian = model.linearise(vector)
+                curve.sensitivities[row] = jacobian[sample, columns, place]
+            curve.responses[row] = response[sample, columns]
+        except SolveError as error:
+            failure = str(error)
+        yield row, failure
+
+
+def _dataset(curve: Curve) -> Any:
+    """A curve as xarray's Dataset, with units as attributes."""
+    import xarray as xr
+
+    variables = {
+        name: (curve.parameter, curve.responses[:, column], {"units": unit, "role": "response"})
+        for column, (name, unit) in enumerate(zip(curve.channels, curve.units, strict=True))
+    }
+    if curve.sensitivities is not None:
+        variables |= {
+            f"d({name})": (
+                curve.parameter,
+                curve.sensitivities[:, column],
+                {"units": f"{unit}/({curve.unit or '1'})", "role": "sensitivity"},
+            )
+            for column, (name, unit) in enumerate(zip(curve.channels, curve.units, strict=True))
+        }
+    return xr.Dataset(variables, {curve.parameter: (curve.parameter, curve.values, {"units": curve.unit})})
+
+
+def _curve(name: str, dataset: Any) -> Curve:
+    """A curve from a Dataset."""
+    channels = tuple(key for key, column in dataset.data_vars.items() if column.attrs["role"] == "response")
+    responses = np.stack([dataset[channel].values for channel in channels], axis=1)
+    slopes = [dataset[f"d({channel})"].values for channel in channels if f"d({channel})" in dataset]
+    return Curve(
+        name,
+        dataset[name].attrs["units"],
+        dataset[name].values,
+        channels,
+        tuple(dataset[channel].attrs["units"] for channel in channels),
+        responses,
+        np.stack(slopes, axis=1) if slopes else None,
+    )

@@ -1,0 +1,60 @@
+"""What a task of a study file is, and what it hands back."""
+
+from abc import ABC, abstractmethod
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol
+
+from dalembert.study.table import StudyTable
+
+if TYPE_CHECKING:
+    from dalembert.study.events import Emit
+    from dalembert.study.study import Study
+
+
+class Outcome(Protocol):
+    """What a task found."""
+
+    @property
+    def success(self) -> bool: ...
+
+    @property
+    def status(self) -> str:
+        """What came out, or what could not, in a sentence."""
+        ...
+
+    @property
+    def best(self) -> dict[str, Any]:
+        """Few numbers for the list of runs."""
+        ...
+
+    def save(self, path: Path) -> None:
+        """Write the result as NetCDF."""
+        ...
+
+    def report(self, path: Path) -> None:
+        """Write the HTML report."""
+        ...
+
+
+class Task(ABC):
+    """One thing that a study file can ask for: a table, its meaning, its run and its result."""
+
+    @abstractmethod
+    def table(self) -> type[StudyTable]:
+        """Schema of the task's table."""
+
+    @abstractmethod
+    def wrong(self, file: Any) -> list[str]:
+        """Sentences about what the task misses elsewhere in the file."""
+
+    @abstractmethod
+    def plan(self, study: "Study") -> str:
+        """What would run, and about how many simulations, in a sentence; raises what running would raise at once."""
+
+    @abstractmethod
+    def run(self, study: "Study", emit: "Emit") -> Outcome:
+        """Do it."""
+
+    @abstractmethod
+    def load(self, study: "Study", path: Path) -> Outcome:
+        """What a run found, from its result file."""

@@ -62,7 +62,9 @@ def contents(
 def _motion(trajectory: TrajectoryLike, points: tuple[str, ...], fit: FitLike | None = None) -> list[Section]:
     drawing = trajectory.drawing()
     measured = {} if fit is None else motion.measured(fit.data.channels, fit.data.values)
-    return [Motion(drawing, motion.paths(trajectory, drawing, points or tuple(measured)), measured)]
+    known = set(trajectory.channel_names)
+    followed = points or tuple(point for point in measured if {f"{point}.x", f"{point}.y"} <= known)
+    return [Motion(drawing, motion.paths(trajectory, drawing, followed), measured)]
 
 
 def _telling(fit: FitLike) -> list[Section]:

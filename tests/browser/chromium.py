@@ -1,0 +1,144 @@
+"""Chromium by its DevTools protocol over a pipe: messages are JSON, each ended by a zero byte."""
+
+import json
+import os
+import select
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+OPTIONS = (
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--remote-debugging-pipe",
+)
+PATIENCE = 60.0
+LAUNCH = """
+import fcntl, os, sys
+there = [fcntl.fcntl(int(pipe), fcntl.F_DUPFD, 10) for pipe in sys.argv[1:3]]
+os.dup2(there[0], 3)
+os.dup2(there[1], 4)
+os.execv(sys.argv[3], sys.argv[3:])
+"""
+"""The browser reads at descriptor 3 and writes at 4, whatever the pipes' ends are called here."""
+
+
+class Chromium:
+    """A running browser."""
+
+    def __init__(self, program: Path, profile: Path) -> None:
+        read_here, write_there = os.pipe()
+        read_there, write_here = os.pipe()
+        command = [sys.executable, "-c", LAUNCH, str(read_there), str(write_there), str(program), *OPTIONS]
+        self.process = subprocess.Popen(
+            [*command, f"--user-data-dir={profile}", "about:blank"],
+            pass_fds=(read_there, write_there),
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+        os.close(read_there)
+        os.close(write_there)
+        self.reader, self.writer = read_here, write_here
+        self.buffer, self.number = b"", 0
+        self.events: list[dict[str, Any]] = []
+
+    def open(
+        self, path: Path, *, width: int = 1200, height: int = 900, scheme: str = "light", touch: bool = False
+    ) -> "Tab":
+        """A new tab with a file in it, once it says that its figures are drawn."""
+        target = self.send("Target.createTarget", url="about:blank")["targetId"]
+        session = self.send("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
+        tab = Tab(self, session)
+        for domain in ("Page", "Runtime", "Log", "Network"):
+            tab.send(f"{domain}.enable")
+        tab.send("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
+        tab.send("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=touch)
+        tab.send("Emulation.setTouchEmulationEnabled", enabled=touch)
+        tab.send("Page.navigate", url=path.as_uri())
+        tab.until("document.documentElement?.dataset.ready === 'yes'")
+        return tab
+
+    def send(self, method: str, session: str | None = None, **parameters: Any) -> dict[str, Any]:
+        """Answer to one command; events that come meanwhile are kept."""
+        self.number += 1
+        message = {"id": self.number, "method": method, "params": parameters}
+        os.write(self.writer, json.dumps(message | ({"sessionId": session} if session else {})).encode() + b"\0")
+        while True:
+            answer = self._read()
+            if answer.get("id") == self.number:
+                assert "error" not in answer, f"{method}: {answer['error']}"
+                return answer["result"]
+            self.events.append(answer)
+
+    def close(self) -> None:
+        self.send("Browser.close")
+        self.process.wait(PATIENCE)
+        os.close(self.reader)
+        os.close(self.writer)
+
+    def _read(self) -> dict[str, Any]:
+        while b"\0" not in self.buffer:
+            assert select.select([self.reader], [], [], PATIENCE)[0], "the browser does not answer"
+            piece = os.read(self.reader, 1 << 20)
+            assert piece, "the browser ended"
+            self.buffer += piece
+        message, _, self.buffer = self.buffer.partition(b"\0")
+        return json.loads(message)
+
+
+class Tab:
+    """A page in the browser."""
+
+    def __init__(self, browser: Chromium, session: str) -> None:
+        self.browser, self.session = browser, session
+
+    def send(self, method: str, **parameters: Any) -> dict[str, Any]:
+        return self.browser.send(method, self.session, **parameters)
+
+    def run(self, script: str) -> Any:
+        """Value of a script, of its promise if it gives one."""
+        answer = self.send("Runtime.evaluate", expression=script, awaitPromise=True, returnByValue=True)
+        assert "exceptionDetails" not in answer, answer["exceptionDetails"]
+        return answer["result"].get("value")
+
+    def until(self, script: str) -> None:
+        """Wait until a script says true."""
+        end = time.monotonic() + PATIENCE
+        while not self.run(script):
+            assert time.monotonic() < end, f"never came true: {script}"
+            time.sleep(0.05)
+
+    def press(self, key: str) -> None:
+        """Press and release a key."""
+        text = {"Enter": "\r", "Space": " "}.get(key, "")
+        name = " " if key == "Space" else key
+        code = {"Tab": 9, "Enter": 13, "Space": 32, "End": 35, "Home": 36, "ArrowRight": 39}[key]
+        for kind in ("keyDown", "keyUp"):
+            self.send("Input.dispatchKeyEvent", type=kind, key=name, code=key, text=text, windowsVirtualKeyCode=code)
+
+    @property
+    def complaints(self) -> list[str]:
+        """What the page wrote to the console, threw, or was refused."""
+        kinds = ("Runtime.consoleAPICalled", "Runtime.exceptionThrown", "Log.entryAdded")
+        return [json.dumps(event["params"]) for event in self._own(*kinds)]
+
+    @property
+    def requests(self) -> list[str]:
+        """Addresses that the page asked for, those it holds in itself left out."""
+        asked = [event["params"]["request"]["url"] for event in self._own("Network.requestWillBeSent")]
+        return [address for address in asked if not address.startswith(("data:", "blob:"))]
+
+    def _own(self, *methods: str) -> list[dict[str, Any]]:
+        return [
+            event
+            for event in self.browser.events
+            if event.get("sessionId") == self.session and event["method"] in methods
+        ]

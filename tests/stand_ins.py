@@ -118,9 +118,23 @@ def sweep() -> SimpleNamespace:
     slopes = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     channels = ("AB.end.x", "AB.end.y")
     first = SimpleNamespace(
-        parameter="theta1", unit="rad", values=angle, channels=channels, responses=values, sensitivities=slopes
+        parameter="theta1",
+        unit="rad",
+        values=angle,
+        channels=channels,
+        units=("m", "m"),
+        responses=values,
+        sensitivities=slopes,
     )
     second = SimpleNamespace(
-        parameter="theta2", unit="rad", values=angle, channels=channels, responses=values, sensitivities=None
+        parameter="theta2",
+        unit="rad",
+        values=angle,
+        channels=channels,
+        units=("m", "m"),
+        responses=values,
+        sensitivities=None,
     )
-    return SimpleNamespace(at="time 0.5 s", curves=(first, second))
+    return SimpleNamespace(
+        at="time 0.5 s", success=True, status="42 points along theta1, theta2.", curves=(first, second)
+    )

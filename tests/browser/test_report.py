@@ -41,7 +41,7 @@ def test_names_are_shown_and_never_run(chromium, path):
     tab = chromium.open(path)
     assert tab.run("document.title") == "Pendulum"
     assert tab.run("document.images.length") == 0
-    assert tab.run("document.querySelector('#figure-responses-1 .legendtext').textContent") == "<b>AB</b>.x computed"
+    assert tab.run("document.querySelector('#figure-responses-1 .legendtext').textContent") == "<b>AB</b>.x measured"
     assert NASTY in tab.run("[...document.querySelectorAll('#figure-parameters text')].map((text) => text.textContent)")
 
 

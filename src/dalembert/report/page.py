@@ -41,7 +41,7 @@ def report(
     trajectory : Trajectory, optional
         Motion at the identified values, drawn with the measured points of a fit.
     notes : str or sequence of str
-        Paragraphs to stand under the headline.
+        Paragraphs to stand under the headline; in one text, empty lines part them.
     study : str, optional
         Text of the study file, for the provenance.
     points : sequence of str
@@ -57,8 +57,15 @@ def report(
     InputError
         For a result that is none of a fit, a trajectory and a sweep.
     """
-    paragraphs = [notes] if isinstance(notes, str) else list(notes)
-    sections = contents(result, title=title, trajectory=trajectory, notes=paragraphs, study=study, points=tuple(points))
+    paragraphs = notes.strip().split("\n\n") if isinstance(notes, str) else notes
+    sections = contents(
+        result,
+        title=title,
+        trajectory=trajectory,
+        notes=[text for text in paragraphs if text],
+        study=study,
+        points=tuple(points),
+    )
     environment = _environment()
     scripts = [Markup(get_plotlyjs()), Markup(_packaged("page.js"))]
     page = environment.get_template("page.html").render(

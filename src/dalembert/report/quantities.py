@@ -21,27 +21,31 @@ QUANTITIES = {
 }
 
 
-def quantity(channel: str) -> str:
-    """Axis label of a channel.
+def quantity(channel: str, unit: str = "") -> str:
+    """Axis label of a channel; its unit if the name does not tell it.
 
     Examples
     --------
-    >>> quantity("AB.end.x"), quantity("O.torque"), quantity("gauge 7")
-    ('position (m)', 'torque (N m)', 'response')
+    >>> quantity("AB.end.x"), quantity("O.torque"), quantity("gauge 7", "V")
+    ('position (m)', 'torque (N m)', 'response (V)')
     """
-    return labelled(*QUANTITIES.get(channel.rpartition(".")[2], ("response", "")))
+    return labelled(*_known(channel, unit))
 
 
-def derivative(channel: str, unit: str) -> str:
-    """Axis label of a channel's derivative along something in ``unit``.
+def derivative(channel: str, along: str, unit: str = "") -> str:
+    """Axis label of a channel's derivative by something that has the unit ``along``.
 
     Examples
     --------
     >>> derivative("AB.end.x", "rad"), derivative("AB.end.x", ""), derivative("gauge 7", "rad")
     ('derivative (m/rad)', 'derivative (m)', 'derivative')
     """
-    own = QUANTITIES.get(channel.rpartition(".")[2], ("", ""))[1]
-    return labelled("derivative", f"{own}/{unit}" if own and unit else own)
+    own = _known(channel, unit)[1]
+    return labelled("derivative", f"{own}/{along}" if own and along else own)
+
+
+def _known(channel: str, unit: str) -> tuple[str, str]:
+    return QUANTITIES.get(channel.rpartition(".")[2], ("response", unit))
 
 
 def labelled(name: str, unit: str) -> str:

@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from dalembert.errors import InputError
+from dalembert.parameters import Parameter, Parameters
 from dalembert.report import charts
 from dalembert.report.charts.singular_values import combination
 from dalembert.report.look import LIGHT
@@ -86,6 +87,17 @@ def test_a_parameter_on_its_bound_is_marked():
     assert values.text == ("0.78531 rad", "0.65000 rad")
     np.testing.assert_allclose(values.error_x.arrayminus, [2 * 2.1e-4 / 0.4, 2 * 3.3e-4 / 0.25])
     np.testing.assert_allclose(values.error_x.array, [2 * 2.1e-4 / 0.4, 0.0])
+
+
+def test_a_parameter_whose_logarithm_is_searched_is_placed_by_it():
+    result = fit()
+    result.parameters = Parameters((Parameter("E", 1e6, 1e10), Parameter("d", 1e-12, 1.0)))
+    result.values, result.deviations = np.array([1e8, 1e-9]), np.array([np.nan, 1.0])
+    values = charts.parameters(result).data[-1]
+    np.testing.assert_allclose(values.x, [0.5, 0.25])
+    np.testing.assert_allclose(values.error_x.arrayminus, [0.0, 0.25])
+    np.testing.assert_allclose(values.error_x.array, [0.0, 0.75])
+    assert values.marker.symbol == ("circle", "circle")
 
 
 def test_unknown_deviations_draw_no_bar():

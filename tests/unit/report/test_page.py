@@ -150,7 +150,7 @@ def test_every_figure_is_in_the_page_with_its_numbers(whole):
     assert set(drawn) - {"singular-values"} == set(figures(fit(), trajectory=motion()))
     places = {attrs["id"] for tag, attrs in page.tags if "canvas" in attrs.get("class", "")}
     assert places == {f"figure-{name}" for name in drawn}
-    packed = drawn["responses-1"]["data"][0]["y"]
+    packed = next(trace["y"] for trace in drawn["responses-1"]["data"] if trace["name"] == "AB.end.x computed")
     values = np.frombuffer(base64.b64decode(packed["bdata"]), dtype=packed["dtype"])
     np.testing.assert_array_equal(values, fit().response[:, 0])
     assert "updatemenus" not in drawn["mechanism"]["layout"]
@@ -223,6 +223,29 @@ def test_a_sweep_has_its_report(tmp_path):
     ]
     assert len(page.table("sweep-2")) == 22
     assert list(figures(sweep())) == ["sweep-1", "sweep-2"]
+
+
+def test_a_sweep_with_gaps_says_so(tmp_path):
+    gaps = sweep()
+    gaps.success, gaps.status = False, "42 points; 1 of them failed."
+    gaps.curves[0].responses[3] = np.nan
+    text = _page(report(gaps, tmp_path / "sweep.html")).text
+    assert "! incomplete" in text
+    assert "1 of them failed." in text
+
+
+def test_a_start_that_failed_and_a_swarm_that_scattered_itself_have_their_rows(tmp_path):
+    result = fit()
+    result.starts[2].fitness, result.starts[2].success = float("inf"), False
+    result.starts[2].start = np.full(2, np.nan)
+    rows = _page(report(result, tmp_path / "a.html")).table("starts")
+    assert rows[-1][:4] == ["3", "inf", "9", "not converged"]
+
+
+def test_notes_in_one_text_are_parted_by_empty_lines(tmp_path):
+    text = report(motion(), tmp_path / "a.html", notes="One.\n\nTwo & three.").read_text()
+    assert re.findall(r'<p class="note">(.*)</p>', text) == ["One.", "Two &amp; three."]
+    assert 'class="note"' not in report(motion(), tmp_path / "b.html", notes="").read_text()
 
 
 def test_something_else_is_refused(tmp_path):

@@ -58,3 +58,11 @@ def test_a_sweep_draws_responses_and_slopes():
     assert figure.layout.xaxis2.title.text == "theta1 (rad)"
     assert figure.layout.yaxis2.title.text == "derivative (m/rad)"
     assert len(charts.sweep(second).data) == 2
+
+
+def test_the_unit_of_a_channel_is_given_where_its_name_does_not_tell_it():
+    curve = sweep().curves[0]
+    curve.channels, curve.units = ("gauge 1", "gauge 2"), ("V", "V")
+    figure = charts.sweep(curve)
+    assert figure.layout.yaxis.title.text == "response (V)"
+    assert figure.layout.yaxis2.title.text == "derivative (V/rad)"

@@ -13,10 +13,10 @@ def positive(values: np.ndarray) -> np.ndarray:
 
     Examples
     --------
-    >>> positive(np.array([1e-3, 0.0])).tolist()
-    [0.001, nan]
+    >>> positive(np.array([1e-3, 0.0, np.inf])).tolist()
+    [0.001, nan, nan]
     """
-    return np.where(values > 0, values, np.nan)
+    return np.where((values > 0) & np.isfinite(values), values, np.nan)
 
 
 def logarithmic(figure: go.Figure, along: str = "y") -> dict[str, Any]:

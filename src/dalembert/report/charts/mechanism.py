@@ -136,7 +136,7 @@ def _path(name: str, path: np.ndarray) -> go.Scatter:
 
 
 def _crosses(name: str, points: np.ndarray) -> go.Scatter:
-    points = np.asarray(points)[:: max(1, len(points) // 500)]
+    points = np.asarray(points)[:: max(1, len(points) // 150)]
     marker = {"symbol": "x-thin", "size": 6, "line": {"width": 1.25, "color": LIGHT.ink}}
     return go.Scatter(x=points[:, 0], y=points[:, 1], name=f"{plain(name)} measured", mode="markers", marker=marker)
 

@@ -3,16 +3,19 @@
 import numpy as np
 import plotly.graph_objects as go
 
+from dalembert.parameters import Parameters
 from dalembert.report.digits import shown
 from dalembert.report.look import LIGHT, plain, themed
 from dalembert.report.needs import FitLike
 
 ON_BOUND = 1e-6
-"""Fraction of the range within which a value counts as on its bound."""
+"""Part of the way between the bounds within which a value counts as on one."""
 
 
 def parameters(fit: FitLike, *, title: str = "Parameters within their bounds") -> go.Figure:
     """Each value where it lies between its bounds, with two standard deviations; a value on a bound is a diamond.
+
+    Where the logarithm of a parameter is searched, the way between its bounds is logarithmic too.
 
     Parameters
     ----------
@@ -24,16 +27,16 @@ def parameters(fit: FitLike, *, title: str = "Parameters within their bounds") -
     plotly.graph_objects.Figure
     """
     box = fit.parameters
-    width = box.upper - box.lower
-    place, spread = (fit.values - box.lower) / width, 2 * np.asarray(fit.deviations, dtype=float) / width
+    deviations = np.asarray(fit.deviations, dtype=float)
+    spread = np.where(np.isfinite(deviations), 2 * deviations, 0.0)
+    place, low, high = (
+        placed(box, box.clip(values)) for values in (fit.values, fit.values - spread, fit.values + spread)
+    )
     stuck = on_bound(fit)
     texts = [
         f"{shown(value, deviation)} {plain(item.unit)}".strip()
         for item, value, deviation in zip(box, fit.values, fit.deviations, strict=True)
     ]
-    bar = np.where(np.isfinite(spread), spread, 0.0)
-    right = np.minimum(bar, 1 - place.clip(None, 1))
-    left = np.minimum(bar, place.clip(0, None))
     names = [plain(name) for name in box.names]
     track = {"color": LIGHT.grid, "width": 8}
     figure = go.Figure(
@@ -47,8 +50,8 @@ def parameters(fit: FitLike, *, title: str = "Parameters within their bounds") -
             x=place,
             y=names,
             error_x={
-                "array": right,
-                "arrayminus": left,
+                "array": high - place,
+                "arrayminus": place - low,
                 "symmetric": False,
                 "thickness": 2,
                 "width": 6,
@@ -75,6 +78,16 @@ def parameters(fit: FitLike, *, title: str = "Parameters within their bounds") -
 
 def on_bound(fit: FitLike) -> np.ndarray:
     """Mask (parameters,) of the values that lie on a bound."""
-    box = fit.parameters
-    near = ON_BOUND * (box.upper - box.lower)
-    return (fit.values <= box.lower + near) | (fit.values >= box.upper - near)
+    place = placed(fit.parameters, fit.values)
+    return (place <= ON_BOUND) | (place >= 1 - ON_BOUND)
+
+
+def placed(box: Parameters, values: np.ndarray) -> np.ndarray:
+    """How far on the way from its lower to its upper bound each value lies, shape (parameters,)."""
+    logarithmic = np.array([item.logarithmic for item in box], dtype=bool)
+    low, at, high = (np.where(logarithmic, _log(each, logarithmic), each) for each in (box.lower, values, box.upper))
+    return (at - low) / (high - low)
+
+
+def _log(values: np.ndarray, where: np.ndarray) -> np.ndarray:
+    return np.log(np.where(where, values, 1.0))

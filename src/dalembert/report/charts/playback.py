@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from dalembert.report.digits import shown
+from dalembert.report.look import LIGHT
 
 FRAMES = 150
 FRAMES_A_SECOND = 25
@@ -95,7 +96,11 @@ def controls(playback: Playback) -> dict[str, Any]:
         "sliders": [
             {
                 "steps": steps,
-                "currentvalue": {"prefix": "t = ", "suffix": f" s, {playback.pace}", "font": {"size": 12}},
+                "currentvalue": {
+                    "prefix": "t = ",
+                    "suffix": f" s, {playback.pace}",
+                    "font": {"size": 12, "color": LIGHT.ink},
+                },
                 "ticklen": 0,
                 "minorticklen": 0,
                 "font": {"color": "rgba(0, 0, 0, 0)", "size": 1},

@@ -1,8 +1,8 @@
 """Responses beside the data they were fitted to, with what is left over below."""
 
 from collections.abc import Sequence
+from typing import Any
 
-import numpy as np
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
@@ -11,6 +11,9 @@ from dalembert.report.look import LIGHT, plain, themed
 from dalembert.report.needs import FitLike
 from dalembert.report.quantities import labelled, quantity
 from dalembert.report.thin import thin
+
+FEW = 200
+"""Samples up to which each is drawn as a circle of its own."""
 
 
 def responses(fit: FitLike, channels: Sequence[str] | None = None, *, title: str = "Response and data") -> go.Figure:
@@ -55,24 +58,21 @@ def responses(fit: FitLike, channels: Sequence[str] | None = None, *, title: str
 def _channel(figure: go.Figure, fit: FitLike, column: int, colour: str) -> None:
     at, name = fit.data.coordinate.values, plain(fit.data.channels[column])
     measured, computed = fit.data.values[:, column], fit.response[:, column]
-    residual = computed - measured
-    few = len(at) <= 200
-    kept, left = thin(computed), thin(residual)
-    dots = {"color": colour, "size": 7 if few else 3, "symbol": "circle-open" if few else "circle"}
-    both = {"legendgroup": name, "line": {"color": colour, "width": 2}}
-    line = go.Scatter(x=at[kept], y=computed[kept], name=f"{name} computed", mode="lines", **both)
-    data = thin(measured)
-    circles = go.Scatter(x=at[data], y=measured[data], name=f"{name} measured", mode="markers", marker=dots, **both)
-    rest = go.Scatter(
-        x=at[left],
-        y=residual[left],
-        name=f"{name} residual",
-        mode="lines+markers" if few else "lines",
-        showlegend=False,
-    ).update(legendgroup=name, line={"color": colour, "width": 1}, marker={"color": colour, "size": 4})
-    figure.add_trace(line, row=1, col=1)
-    figure.add_trace(circles, row=1, col=1)
-    figure.add_trace(rest, row=2, col=1)
-    if fit.data.deviations is not None and np.isfinite(fit.data.deviations[column]):
+    few = len(at) <= FEW
+    dots = (
+        {"color": colour, "size": 7, "symbol": "circle-open"} if few else {"color": colour, "size": 3, "opacity": 0.4}
+    )
+    small = {"color": colour, "size": 4}
+    for word, values, row, style in (
+        ("measured", measured, 1, {"mode": "markers", "marker": dots}),
+        ("computed", computed, 1, {"mode": "lines", "line": {"color": colour, "width": 2}}),
+        ("residual", computed - measured, 2, {"mode": "lines+markers" if few else "lines", "marker": small}),
+    ):
+        kept = thin(values)
+        trace = go.Scatter(x=at[kept], y=values[kept], name=f"{name} {word}", legendgroup=name, showlegend=row == 1)
+        figure.add_trace(trace.update(style), row=row, col=1)
+    figure.update_traces(line={"color": colour, "width": 1}, selector={"name": f"{name} residual"})
+    if fit.data.deviations is not None:
+        line: Any = {"color": colour, "width": 1, "dash": "dot"}
         for bound in (-2 * fit.data.deviations[column], 2 * fit.data.deviations[column]):
-            figure.add_hline(y=bound, row=2, col=1, line={"color": colour, "width": 1, "dash": "dot"})  # pyright: ignore[reportArgumentType]
+            figure.add_hline(y=bound, row=2, col=1, line=line)  # pyright: ignore[reportArgumentType]

@@ -38,7 +38,10 @@ def sweep(curve: CurveLike, at: str = "", *, title: str | None = None) -> go.Fig
         figure.add_scatter(x=curve.values, y=curve.responses[:, place], row=1, col=1, **style)
         if slopes is not None:
             figure.add_scatter(x=curve.values, y=slopes[:, place], row=2, col=1, showlegend=False, **style)
-    labels = {(quantity(channel), derivative(channel, plain(curve.unit))) for channel in curve.channels}
+    labels = {
+        (quantity(channel, plain(unit)), derivative(channel, plain(curve.unit), plain(unit)))
+        for channel, unit in zip(curve.channels, curve.units, strict=True)
+    }
     label, slope = labels.pop() if len(labels) == 1 else ("response", "derivative")
     name = plain(curve.parameter)
     themed(figure, title or f"Response along {name}{' at ' + plain(at) if at else ''}", height=300 + 160 * (rows - 1))

@@ -78,8 +78,9 @@ def of_sweep(sweep: SweepLike, title: str | None, notes: Sequence[str]) -> Headl
     """Headline of a sweep."""
     facts = [Fact(f"values of {curve.parameter}", str(len(curve.values))) for curve in sweep.curves]
     names = ", ".join(curve.parameter for curve in sweep.curves)
-    status = f"Responses at {sweep.at}, one parameter varied at a time: {names}."
-    return Headline(title or "Parameter sweep", "swept", True, status, facts[:MOST_VALUES], notes)
+    status = f"Responses at {sweep.at}, one parameter varied at a time: {names}. {sweep.status}"
+    verdict = "swept" if sweep.success else "incomplete"
+    return Headline(title or "Parameter sweep", verdict, sweep.success, status, facts[:MOST_VALUES], notes)
 
 
 def largest(series: Mapping[str, np.ndarray], key: str) -> float:

@@ -41,7 +41,7 @@ class Search(Section):
         rows = [
             (
                 cell(number + 1),
-                cell(float(start.fitness)),
+                cell(float(start.fitness), digits=4),
                 cell(int(start.simulations)),
                 cell("converged" if start.success else "not converged", mark=not start.success),
                 cell(start.message),

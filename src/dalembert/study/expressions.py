@@ -56,10 +56,11 @@ class Expression:
         InputError
             If it is not arithmetic, or uses something that is not offered.
         """
+        text = text.strip()
         if len(text) > _LONGEST:
             raise InputError(f"an expression of {len(text)} characters was given; expected at most {_LONGEST}")
         try:
-            tree = ast.parse(text.strip(), mode="eval").body
+            tree = ast.parse(text, mode="eval").body
             return cls(text, frozenset(_names(tree)), tree)
         except (SyntaxError, ValueError, RecursionError, MemoryError):
             raise InputError(f"{text!r} is no arithmetic expression") from None
@@ -84,7 +85,7 @@ def _names(node: ast.expr) -> set[str]:
             pass
         case ast.Constant(value=int() | float()):
             return set()
-        case ast.Name(id=name):
+        case ast.Name(id=name) if name not in FUNCTIONS:
             return set() if name in CONSTANTS else {name}
         case ast.UnaryOp(op=op, operand=operand) if type(op) in _UNARY:
             return _names(operand)

@@ -62,7 +62,8 @@ def _read(path: Path) -> tuple[bytes, dict[str, Any]]:
         return content, tomllib.loads(content.decode("utf-8"))
     except FileNotFoundError:
         near = [entry.name for entry in path.parent.glob("*.toml")] if path.parent.is_dir() else []
-        raise InputError(unknown("file", path.name, near, f"folder {path.parent}")) from None
+        where = "" if path.parent == Path() else f"folder {path.parent}"
+        raise InputError(unknown("study file", path.name, near, where)) from None
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror}") from None
     except UnicodeDecodeError as error:
@@ -94,7 +95,8 @@ def _with_model_file(document: dict[str, Any], context: Context, path: Path) -> 
     if "file" in _table(shared, "model") or "model" not in shared:
         raise InputError(f"{given}: expected a [model] table with the model itself")
     document["model"] = shared["model"]
-    constants = _table(shared, "constants") | _table(document, "constants")
+    own = _table(document, "constants")  # first, so that the model's constants may use the study's
+    constants = own | {name: value for name, value in _table(shared, "constants").items() if name not in own}
     if constants:
         document["constants"] = constants
     return given

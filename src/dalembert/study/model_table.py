@@ -55,9 +55,10 @@ class ModelTable(StudyTable):
     def _check(self) -> "ModelTable":
         ways = [name for name in ("function", "forward", "body") if getattr(self, name)]
         if len(ways) != 1:
+            given = f"{' and '.join(ways)} are" if ways else "neither body, function nor forward is"
             raise problem(
-                f"{' and '.join(ways) or 'neither body, function nor forward'} is given; expected either "
-                "[[model.body]] tables, or function = 'model.py:name', or forward = 'model.py:name'"
+                f"{given} given; expected either [[model.body]] tables, or function = 'model.py:name', "
+                "or forward = 'model.py:name'"
             )
         if "body" not in ways and (self.joint or self.load or self.gravity or self.driving):
             raise problem(

@@ -54,8 +54,9 @@ class StudyFile(StudyTable):
         if both:
             raise problem(f"{', '.join(both)} is both a parameter and a constant; give each name once")
         if len(self.tasks) != 1:
-            given = " and ".join(f"[{name}]" for name in self.tasks) or "no task"
-            raise problem(f"{given} is given; a study has one task, one of {', '.join(f'[{name}]' for name in TASKS)}")
+            names = " and ".join(f"[{name}]" for name in self.tasks)
+            given = f"{names} are given" if names else "no task is given"
+            raise problem(f"{given}; a study has one task, one of {', '.join(f'[{name}]' for name in TASKS)}")
         (name,) = self.tasks
         wrong = TASKS[name].wrong(self)
         if wrong:

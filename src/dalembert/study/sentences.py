@@ -1,6 +1,7 @@
 """What pydantic finds wrong in a study file, in sentences that a user can act on."""
 
 import ast
+import re
 from collections.abc import Iterable
 from difflib import get_close_matches
 from typing import Any
@@ -10,6 +11,7 @@ from pydantic import ValidationError
 from dalembert.errors import unknown
 from dalembert.study.context import Context
 
+_TABLE = re.compile(r"\[\[?[a-z]")
 _EXPECTED = {
     "int": "a whole number",
     "float": "a number",
@@ -47,8 +49,13 @@ def mistakes(error: ValidationError, document: Any, context: Context) -> list[tu
             texts = [unknown("key", str(key), context.known_keys(table))]
         else:
             texts = _texts(entry)
-        found += [(tuple(path), f"{place(document, path)}: {text}" if path else text) for text in texts]
+        found += [(tuple(path), _placed(document, path, text)) for text in texts]
     return found
+
+
+def _placed(document: Any, path: list[str | int], text: str) -> str:
+    """Sentence with its place in front, unless it begins with a table by itself."""
+    return text if not path or _TABLE.match(text) else f"{place(document, path)}: {text}"
 
 
 def place(document: Any, path: Iterable[str | int]) -> str:

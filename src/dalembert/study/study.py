@@ -3,7 +3,7 @@
 import hashlib
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -81,7 +81,10 @@ class Study:
     @property
     def settings(self) -> dict[str, Any]:
         """All that the file says, in SI units, as JSON can hold it."""
-        return _plain(self.file)
+        parameters = {item.name: asdict(item) for item in self.parameters}
+        for name, entries in parameters.items():
+            parameters[name] = {key: entry for key, entry in entries.items() if entry is not None and key != "name"}
+        return _plain(self.file) | {"parameters": parameters}
 
     @property
     def has_system(self) -> bool:

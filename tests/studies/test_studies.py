@@ -1,0 +1,73 @@
+"""Each study in studies/ runs and gives the numbers that its expected.toml lists."""
+
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from dalembert.study import Study, load, plan, run_study
+from dalembert.study.tasks import TASKS, Outcome
+
+STUDIES = Path(__file__).parents[2] / "studies"
+EXPECTED = {
+    path.parent / study: rows
+    for path in sorted(STUDIES.glob("*/expected.toml"))
+    for study, rows in tomllib.loads(path.read_text(encoding="utf-8")).items()
+}
+FILES = [
+    path
+    for path in sorted(STUDIES.glob("*/*.toml"))
+    if TASKS.keys() & tomllib.loads(path.read_text(encoding="utf-8")).keys()
+]
+
+
+def name(path: Path) -> str:
+    return path.relative_to(STUDIES).as_posix()
+
+
+def found(study: Study, outcome: Outcome, row: dict[str, Any]) -> float:
+    """The number that a row of expected.toml asks for."""
+    quantity = row["quantity"]
+    match study.task:
+        case "identify":
+            return outcome.best["fitness"] if quantity == "fitness" else outcome.best["values"][quantity]
+        case "simulate":
+            trajectory: Any = getattr(outcome, "trajectory")  # noqa: B009 (an outcome of this task has one)
+            sample = int(np.argmin(np.abs(trajectory.times - row["at"])))
+            assert trajectory.times[sample] == pytest.approx(row["at"], abs=1e-9)
+            return float(trajectory.channels([quantity])[sample, 0])
+        case "sweep":
+            curve = next(curve for curve in getattr(outcome, "curves") if curve.parameter == row["along"])  # noqa: B009
+            sample = int(np.argmin(np.abs(curve.values - row["at"])))
+            assert curve.values[sample] == pytest.approx(row["at"], abs=1e-9)
+            return float(curve.responses[sample, curve.channels.index(quantity)])
+    raise AssertionError(study.task)
+
+
+@pytest.mark.parametrize("path", FILES, ids=name)
+def test_study_is_in_order(path):
+    assert "simulation" in plan(load(path))
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        pytest.param(p, marks=pytest.mark.slow) if any(r.get("slow") for r in rows) else p
+        for p, rows in EXPECTED.items()
+    ],
+    ids=name,
+)
+def test_study_gives_what_is_expected(path, tmp_path):
+    study = load(path)
+    folder, outcome = run_study(study, tmp_path / "run")
+    assert outcome.success, outcome.status
+    assert folder.report.stat().st_size > 10_000
+    for row in EXPECTED[path]:
+        assert found(study, outcome, row) == pytest.approx(row["value"], abs=row["tolerance"]), row
+
+
+def test_every_study_has_expected_numbers_and_a_readme():
+    assert set(FILES) == set(EXPECTED)
+    assert all((path.parent / "README.md").is_file() for path in FILES)

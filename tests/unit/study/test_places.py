@@ -1,0 +1,44 @@
+"""Points of a mechanism as study files write them."""
+
+import pytest
+
+from dalembert.errors import InputError
+from dalembert.study.expressions import Expression
+from dalembert.study.places import Place, read_place
+
+
+@pytest.mark.parametrize(
+    ("given", "place"),
+    [
+        ("OA.end", Place("OA", "end")),
+        ("bar-2.node3", Place("bar-2", "node3")),
+        ("ground", Place()),
+        ("ground(0.3, -100 mm)", Place(position=(0.3, -0.1))),
+        ("ground(0, L/2, 90 deg)", Place(position=(0.0, Expression.of("L/2"), 1.5707963267948966))),
+        ([1, "2 m"], Place(position=(1.0, 2.0))),
+        ({"x": 1, "y": "L"}, Place(position=(1.0, Expression.of("L")))),
+    ],
+)
+def test_places(given, place):
+    assert str(read_place(given, ["L"])) == str(place)
+    assert read_place(given, ["L"]) == place
+
+
+@pytest.mark.parametrize("given", ["OA", "OA.", ".end", "OA.end.x", "", 3, None, {"x": 1}, {"x": 1, "y": 2, "z": 3}])
+def test_what_is_no_place(given):
+    with pytest.raises(InputError) as caught:
+        read_place(given)
+    assert str(caught.value) == (
+        f"{given!r} was given; expected a point such as 'ground', 'OA.end', 'ground(0.3, 0)' or [0.3, 0.0]"
+    )
+
+
+def test_a_start_on_the_ground_needs_a_position():
+    with pytest.raises(InputError, match=r"^'ground' was given; expected a point such as 'OA\.end',"):
+        read_place("ground", bare=False)
+
+
+@pytest.mark.parametrize("given", ["ground(1)", "ground()", [1], [1, 2, 3, 4], []])
+def test_too_few_or_too_many_numbers(given):
+    with pytest.raises(InputError, match=r"expected x and y|was given; expected a length"):
+        read_place(given)

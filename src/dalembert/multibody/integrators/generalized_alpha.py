@@ -8,7 +8,7 @@ import numpy as np
 from dalembert.errors import InputError, unknown
 from dalembert.multibody.kernels import signals
 from dalembert.multibody.kernels.assembly import constraint_rates, largest, residual, tangent
-from dalembert.multibody.kernels.compiled import compiled
+from dalembert.multibody.kernels.compiled import compiled, kernel
 from dalembert.multibody.kernels.dual import STEP
 from dalembert.multibody.kernels.linear import factorise, solve, storage
 from dalembert.multibody.kernels.model import select, workspace
@@ -17,7 +17,8 @@ from dalembert.multibody.kernels.motion import Motion, advance, coefficients, co
 STARTS = ("consistent", "zero")
 DONE, NEWTON_FAILED, SINGULAR, TOO_MANY_STEPS = range(4)
 _MOST_ITERATIONS = 12
-_SLOW = 0.3  # contraction above which the kept factorisation is renewed
+_SLOW = 0.3  # contraction at which an iteration is not worth going on with the kept factorisation
+_AGED = 0.02  # contraction at which the next step begins with a new one
 _HALVINGS = 8  # of a fixed step that Newton does not converge on
 _UNITS = 1 << _HALVINGS
 _ROUNDING = 4e-15  # relative corrections of this size are rounding
@@ -41,7 +42,8 @@ class GeneralizedAlpha:
     tolerance : float
         Of the local error, relative to each coordinate's scale; for ``adaptive``.
     newton_tolerance : float
-        Of the coordinates at each step, relative to their scale.
+        Of the coordinates at each step, relative to their scale. An error of a coordinate is 2 / step times as large in
+        the velocity and adds up over the steps, so it must lie far below the accuracy that is wanted.
     most_steps : int
         After which an adaptive run gives up.
 
@@ -56,7 +58,7 @@ class GeneralizedAlpha:
     initial_acceleration: str = "consistent"
     adaptive: bool = False
     tolerance: float = 1e-6
-    newton_tolerance: float = 1e-12
+    newton_tolerance: float = 1e-14
     most_steps: int = 10_000_000
 
     def __post_init__(self) -> None:
@@ -110,7 +112,11 @@ class Log(NamedTuple):
 
 
 class _Newton(NamedTuple):
-    """Work of the Newton iteration; ``memory``: step of the kept factorisation (0: none), contraction seen."""
+    """Work of the Newton iteration.
+
+    ``memory``: step for which the kept factorisation was made (0: none), contraction seen last. ``slope``: rate of change
+    of accelerations and multipliers over the last step, for the prediction of the next one.
+    """
 
     factors: tuple
     work: tuple
@@ -118,6 +124,7 @@ class _Newton(NamedTuple):
     r: np.ndarray
     delta: np.ndarray
     memory: np.ndarray
+    slope: np.ndarray
 
 
 @compiled
@@ -127,7 +134,7 @@ def _signals(model, t, within, work):
     )
 
 
-@compiled
+@kernel
 def _lift(n, state, direction, target):
     """Complex state: the real one plus the imaginary step along a direction."""
     for i in range(len(state.x)):
@@ -137,7 +144,7 @@ def _lift(n, state, direction, target):
         target[2, i] = complex(state.a[i], STEP * direction.a[i])
 
 
-@compiled
+@kernel
 def _renew(problem, dual, c, new, newton):
     tangent(
         dual, problem.slots, problem.n, new.x, new.v, new.a, (c.dq, c.dv, 1.0), (1.0, 1.0 / c.dq), newton.dual_work,
@@ -147,49 +154,75 @@ def _renew(problem, dual, c, new, newton):
     return newton.memory[0] != 0.0
 
 
-@compiled
+@kernel
+def _predict(n, c, old, slope, new):
+    """Accelerations and multipliers of the new state, by those of the old one and their last change."""
+    for i in range(n):
+        new.a[i] = old.a[i] + c.step * slope[i]
+    for i in range(n, len(old.x) - 1):
+        new.x[i] = old.x[i] + c.step * slope[i]
+    advance(n, c, old, new)
+
+
+@kernel
+def _learn(n, c, old, new, slope):
+    """Change of accelerations and multipliers over a step."""
+    for i in range(n):
+        slope[i] = (new.a[i] - old.a[i]) / c.step
+    for i in range(n, len(old.x) - 1):
+        slope[i] = (new.x[i] - old.x[i]) / c.step
+
+
+@kernel
+def _correct(n, c, scale, delta, old, new):
+    """Apply a Newton correction: its size against the scales, and the coordinate that moved most."""
+    norm, worst = 0.0, 0
+    for i in range(n):
+        new.a[i] -= delta[i]
+        moved = c.dq * abs(delta[i]) / scale[i]
+        if not moved <= norm:
+            norm, worst = moved, i
+    for i in range(n, len(old.x) - 1):
+        new.x[i] -= delta[i]
+    advance(n, c, old, new)
+    return norm, worst
+
+
+@kernel
 def _converge(problem, model, dual, c, tolerance, old, new, newton, log):
-    """Newton iteration on the new accelerations and multipliers: status, and the unknown that moved most."""
-    n, size = problem.n, len(old.x) - 1
-    kept = newton.memory[0]
-    fresh = False
-    if not (0.8 * kept < c.step < 1.25 * kept):
-        advance(n, c, old, new)
+    """Newton iteration on the new accelerations and multipliers: status, and iterations or the unknown that moved most."""
+    n, memory = problem.n, newton.memory
+    _predict(n, c, old, newton.slope, new)
+    fresh = not (0.8 * memory[0] < c.step < 1.25 * memory[0]) or memory[1] > _AGED
+    if fresh:
+        log.counts[2] += 1
         if not _renew(problem, dual, c, new, newton):
             return SINGULAR, 0
-        log.counts[2] += 1
-        fresh = True
-        newton.memory[1] = 0.9
-    advance(n, c, old, new)
-    before, worst = 0.0, 0
-    for iteration in range(_MOST_ITERATIONS):
+        memory[1] = _AGED
+    before = 0.0
+    for iteration in range(1, _MOST_ITERATIONS + 1):
         residual(model, n, new.x, new.v, new.a, newton.work, 1.0 / c.dq, newton.r)
         solve(problem.layout, problem.lapack, newton.factors, newton.r, newton.delta)
         log.counts[1] += 1
-        norm, worst = 0.0, 0
-        for i in range(n):
-            new.a[i] -= newton.delta[i]
-            moved = c.dq * abs(newton.delta[i]) / problem.scale[i]
-            if not moved <= norm:
-                norm, worst = moved, i
-        for i in range(n, size):
-            new.x[i] -= newton.delta[i]
+        norm, worst = _correct(n, c, problem.scale, newton.delta, old, new)
         if not norm < 1e100:
-            return NEWTON_FAILED, worst
-        advance(n, c, old, new)
-        if iteration > 0:
-            newton.memory[1] = norm / before
-        rate = newton.memory[1]
-        if norm <= _ROUNDING or (rate < 1.0 and norm * rate / (1.0 - rate) <= tolerance):
-            return DONE, iteration + 1
-        if (rate > _SLOW and iteration > 0) or iteration == 5:
+            break
+        if norm <= _ROUNDING:
+            return DONE, iteration
+        if iteration > 1:
+            memory[1] = norm / before
+        rate = memory[1]
+        if rate < 1.0 and norm * rate / (1.0 - rate) <= tolerance:
+            return DONE, iteration
+        if iteration > 1 and rate > _SLOW:
             if fresh and rate > 2.0:
-                return NEWTON_FAILED, worst
+                break
+            log.counts[2] += 1
             if not _renew(problem, dual, c, new, newton):
                 return SINGULAR, worst
-            log.counts[2] += 1
             fresh = True
         before = norm
+    memory[0] = 0.0
     return NEWTON_FAILED, worst
 
 
@@ -290,7 +323,9 @@ def integrate(problem, settings, model, dual, directions, state, dstates, out, d
     copy(state, new)
     dolds = Motion(np.zeros_like(dstates.x), np.zeros_like(dstates.x), np.zeros_like(dstates.x), np.zeros_like(dstates.x))
     work, dual_work = workspace(model), workspace(dual)
-    newton = _Newton(storage(problem.layout), work, dual_work, np.zeros(width), np.zeros(width), np.array([0.0, 0.9]))
+    newton = _Newton(
+        storage(problem.layout), work, dual_work, np.zeros(width), np.zeros(width), np.zeros(2), np.zeros(width)
+    )
     exact = storage(problem.exact_layout)
     lifted = np.zeros((3, width), np.complex128)
     buffers = np.zeros(width, np.complex128), np.zeros(width), np.zeros(width)
@@ -300,6 +335,7 @@ def integrate(problem, settings, model, dual, directions, state, dstates, out, d
     for stretch in range(len(problem.edges) - 1):
         begin, end = problem.edges[stretch], problem.edges[stretch + 1]
         within = 0.5 * (begin + end)
+        newton.slope[:] = 0.0
         if stretch > 0 or settings.consistent:
             if not _accelerate(
                 problem, model, dual, directions, begin, within, new, dstates, work, dual_work, lifted, exact, buffers
@@ -337,8 +373,7 @@ def integrate(problem, settings, model, dual, directions, state, dstates, out, d
             if status != DONE or error > 1.0:
                 log.counts[3] += 1
                 copy(old, new)
-                if status != DONE:
-                    newton.memory[0] = 0.0
+                newton.slope[:] = 0.0
                 if settings.adaptive:
                     length *= max(0.2, 0.9 * error ** (-1 / 3)) if status == DONE else 0.25
                     if length < 1e-12 * (end - begin):
@@ -352,6 +387,7 @@ def integrate(problem, settings, model, dual, directions, state, dstates, out, d
                 log.iterations[log.counts[0]] = detail
                 log.ends[log.counts[0]] = target
             log.counts[0] += 1
+            _learn(n, c, old, new, newton.slope)
             if differentiated:
                 dolds.x[:], dolds.v[:], dolds.a[:], dolds.w[:] = dstates.x, dstates.v, dstates.a, dstates.w
                 _differentiate(

@@ -1,11 +1,11 @@
 """Residual, tangent, constraint rates and energies of a whole model, from the kernels of its components."""
 
 from dalembert.multibody.kernels import beam, body, cable, friction, joints, load, spring, user
-from dalembert.multibody.kernels.compiled import compiled
+from dalembert.multibody.kernels.compiled import compiled, inlined, kernel
 from dalembert.multibody.kernels.dual import STEP, real
 
 
-@compiled
+@inlined
 def gather(index, e, width, x, v, a, work):
     """Copy the unknowns of component ``e`` to the local vectors."""
     for i in range(width):
@@ -13,23 +13,24 @@ def gather(index, e, width, x, v, a, work):
         work.x[i], work.v[i], work.a[i] = x[g], v[g], a[g]
 
 
-@compiled
-def _add_residual(kernel, width, block, callbacks, x, v, a, work, r):
+@inlined
+def _add_residual(function, width, block, callbacks, x, v, a, work, r):
     index = block.index
     for e in range(len(index)):
         gather(index, e, width, x, v, a, work)
-        kernel(work.x, work.v, work.a, work.signals, callbacks, block.data, block.meta, e, work.r)
+        function(work.x, work.v, work.a, work.signals, callbacks, block.data, block.meta, e, work.r)
         for i in range(width):
             r[index[e, i]] += work.r[i]
 
 
-@compiled
+@kernel
 def residual(model, n, x, v, a, work, scale, r):
     """Fill ``r`` (N + 1,): the equations of motion, then the constraints times ``scale``.
 
     The signals in ``work`` hold the time.
     """
-    r[:] = 0.0
+    for i in range(len(r)):
+        r[i] = 0.0
     c = model.callbacks
     _add_residual(beam.residual, beam.WIDTH, model.beams, c, x, v, a, work, r)
     _add_residual(cable.residual, cable.WIDTH, model.cables, c, x, v, a, work, r)
@@ -40,12 +41,13 @@ def residual(model, n, x, v, a, work, scale, r):
     _add_residual(load.residual, load.WIDTH, model.loads, c, x, v, a, work, r)
     _add_residual(user.residual, user.WIDTH, model.users, c, x, v, a, work, r)
     last = len(r) - 1
-    r[n:last] *= scale
+    for i in range(n, last):
+        r[i] *= scale
     r[last] = 0.0
 
 
-@compiled
-def _add_tangent(kernel, width, block, slots, callbacks, n, x, v, a, by, rows, work, matrix):
+@inlined
+def _add_tangent(function, width, block, slots, callbacks, n, x, v, a, by, rows, work, matrix):
     index, last = block.index, len(x) - 1
     for e in range(len(index)):
         gather(index, e, width, x, v, a, work)
@@ -59,7 +61,7 @@ def _add_tangent(kernel, width, block, slots, callbacks, n, x, v, a, by, rows, w
                 work.a[j] += 1j * STEP * by[2]
             else:
                 work.x[j] += 1j * STEP
-            kernel(work.x, work.v, work.a, work.signals, callbacks, block.data, block.meta, e, work.r)
+            function(work.x, work.v, work.a, work.signals, callbacks, block.data, block.meta, e, work.r)
             work.x[j], work.v[j], work.a[j] = x[column], v[column], a[column]
             for i in range(width):
                 row = index[e, i]
@@ -67,14 +69,15 @@ def _add_tangent(kernel, width, block, slots, callbacks, n, x, v, a, by, rows, w
                     matrix[slots[e, i, j]] += work.r[i].imag / STEP * (rows[0] if row < n else rows[1])
 
 
-@compiled
+@kernel
 def tangent(dual, slots, n, x, v, a, by, rows, work, matrix):
     """Fill the flat ``matrix`` with the derivative of the residual along ``by[0] dq + by[1] dv + by[2] da``, and dlambda.
 
     Rows of the equations of motion are multiplied by ``rows[0]``, those of the constraints by ``rows[1]``. ``dual`` is
     the model in complex numbers; each component's columns come from the complex step.
     """
-    matrix[:] = 0.0
+    for i in range(len(matrix)):
+        matrix[i] = 0.0
     c = dual.callbacks
     _add_tangent(beam.residual, beam.WIDTH, dual.beams, slots.beams, c, n, x, v, a, by, rows, work, matrix)
     _add_tangent(cable.residual, cable.WIDTH, dual.cables, slots.cables, c, n, x, v, a, by, rows, work, matrix)
@@ -86,7 +89,7 @@ def tangent(dual, slots, n, x, v, a, by, rows, work, matrix):
     _add_tangent(user.residual, user.WIDTH, dual.users, slots.users, c, n, x, v, a, by, rows, work, matrix)
 
 
-@compiled
+@kernel
 def constraint_rates(model, n, x, v, a, work, rate, second):
     """Fill ``rate`` and ``second`` (N + 1,) with the first and second time derivatives of the constraints."""
     block = model.joints
@@ -100,10 +103,10 @@ def constraint_rates(model, n, x, v, a, work, rate, second):
 
 
 @compiled
-def _sum_energy(kernel, width, block, callbacks, x, v, work, totals):
+def _sum_energy(function, width, block, callbacks, x, v, work, totals):
     for e in range(len(block.index)):
         gather(block.index, e, width, x, v, v, work)
-        kinetic, potential, power = kernel(
+        kinetic, potential, power = function(
             work.x[:width], work.v[:width], work.signals, callbacks, block.data, block.meta, e
         )
         totals[0] += kinetic
@@ -114,7 +117,8 @@ def _sum_energy(kernel, width, block, callbacks, x, v, work, totals):
 @compiled
 def energies(model, x, v, work, totals):
     """Fill ``totals`` (3,): kinetic energy, potential energy, power of all that is not conservative."""
-    totals[:] = 0.0
+    for i in range(3):
+        totals[i] = 0.0
     c = model.callbacks
     _sum_energy(beam.energy, beam.WIDTH, model.beams, c, x, v, work, totals)
     _sum_energy(cable.energy, cable.WIDTH, model.cables, c, x, v, work, totals)
@@ -126,7 +130,7 @@ def energies(model, x, v, work, totals):
     _sum_energy(user.energy, user.WIDTH, model.users, c, x, v, work, totals)
 
 
-@compiled
+@kernel
 def largest(values, scale, n):
     """Largest |real part| of the first ``n`` values against their scales; NaN if one is not finite."""
     most = 0.0

@@ -11,7 +11,7 @@ retardation time of the material damping, gravity (gx, gy).
 import numpy as np
 
 from dalembert.multibody.kernels import hermite
-from dalembert.multibody.kernels.compiled import compiled
+from dalembert.multibody.kernels.compiled import compiled, inlined, kernel
 from dalembert.multibody.kernels.dual import reciprocal
 
 WIDTH = 12
@@ -21,7 +21,7 @@ ACROSS = np.array([-0.5, 0.5]) / np.sqrt(3.0)
 S1, S2, S5 = 6 * XI * (XI - 1), 1 - 4 * XI + 3 * XI**2, 3 * XI**2 - 2 * XI
 
 
-@compiled
+@inlined
 def residual(x, v, a, signals, callbacks, data, meta, e, r):
     """M a + elastic and damping forces - weight."""
     for i in range(WIDTH):
@@ -77,7 +77,7 @@ def residual(x, v, a, signals, callbacks, data, meta, e, r):
         r[i + 6] += rotatory * (a[i] / 6 + a[i + 6] / 3)
 
 
-@compiled
+@inlined
 def _strain_rates(v, xi, s1, s2, s5, y_over_h, fx, fy, nx, ny):
     """Rates of (E_xx, E_yy, 2 E_xy) at one Gauss point."""
     gx = s1 * (v[0] - v[6]) + s2 * v[2] + s5 * v[8] + y_over_h * (v[10] - v[4])

@@ -4,12 +4,12 @@ Local coordinates (x, y, theta) of the centre of mass; a point mass has no theta
 Data: mass, moment of inertia about the centre, gravity (gx, gy).
 """
 
-from dalembert.multibody.kernels.compiled import compiled
+from dalembert.multibody.kernels.compiled import inlined, kernel
 
 WIDTH = 3
 
 
-@compiled
+@inlined
 def residual(x, v, a, signals, callbacks, data, meta, e, r):
     """m a - m g and J alpha."""
     mass, inertia = data[e, 0], data[e, 1]
@@ -18,7 +18,7 @@ def residual(x, v, a, signals, callbacks, data, meta, e, r):
     r[2] = inertia * a[2]
 
 
-@compiled
+@kernel
 def energy(x, v, signals, callbacks, data, meta, e):
     """Kinetic energy, potential energy, power of other forces."""
     mass, inertia = data[e, 0], data[e, 1]

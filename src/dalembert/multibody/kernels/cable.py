@@ -10,7 +10,7 @@ gravity (gx, gy).
 import numpy as np
 
 from dalembert.multibody.kernels import hermite
-from dalembert.multibody.kernels.compiled import compiled
+from dalembert.multibody.kernels.compiled import compiled, inlined, kernel
 from dalembert.multibody.kernels.dual import reciprocal, root
 
 WIDTH = 8
@@ -29,13 +29,13 @@ AW, A1, A2, A5, _, _, _ = _gauss(5)
 BW, B1, B2, B5, C1, C2, C5 = _gauss(3)
 
 
-@compiled
+@inlined
 def _line(s1, s2, s5, x):
     """s1 (r1 - r2) + s2 r1' + s5 r2', both components."""
     return s1 * (x[0] - x[4]) + s2 * x[2] + s5 * x[6], s1 * (x[1] - x[5]) + s2 * x[3] + s5 * x[7]
 
 
-@compiled
+@inlined
 def _spread(s1, s2, s5, fx, fy, r):
     """Transpose of `_line`."""
     r[0] += s1 * fx
@@ -48,7 +48,7 @@ def _spread(s1, s2, s5, fx, fy, r):
     r[7] += s5 * fy
 
 
-@compiled
+@inlined
 def _curvature(tx, ty, cx, cy):
     """Curvature, and its derivatives by r' = (tx, ty); those by r'' are (-ty, tx) over the square, the last value."""
     square = reciprocal(tx * tx + ty * ty)
@@ -56,7 +56,7 @@ def _curvature(tx, ty, cx, cy):
     return kappa, (cy - 2 * kappa * tx) * square, -(cx + 2 * kappa * ty) * square, square
 
 
-@compiled
+@inlined
 def residual(x, v, a, signals, callbacks, data, meta, e, r):
     """M a + elastic and damping forces - weight."""
     for i in range(WIDTH):

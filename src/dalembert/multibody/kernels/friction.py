@@ -6,14 +6,14 @@ sign tanh(rate/transition) turns.
 """
 
 from dalembert.multibody.kernels import joints
-from dalembert.multibody.kernels.compiled import compiled
+from dalembert.multibody.kernels.compiled import inlined, kernel
 from dalembert.multibody.kernels.dual import root, tanh
 
 WIDTH = joints.WIDTH
 _TINY = 1e-18  # keeps |reaction| differentiable where the reaction vanishes, N^2
 
 
-@compiled
+@inlined
 def _rate(x, v, data, meta, e):
     """Rate of turning or of sliding."""
     if meta[e, 0] == joints.REVOLUTE:
@@ -23,7 +23,7 @@ def _rate(x, v, data, meta, e):
     return c * ux + s * uy
 
 
-@compiled
+@inlined
 def _resistance(x, rate, data, meta, e):
     """Friction torque (revolute) or force (prismatic) against the rate."""
     normal = x[8] * x[8]
@@ -33,7 +33,7 @@ def _resistance(x, rate, data, meta, e):
     return data[e, 8] * rate + coulomb * tanh(rate / data[e, 11])
 
 
-@compiled
+@inlined
 def residual(x, v, a, signals, callbacks, data, meta, e, r):
     """Friction torque or force on both bodies."""
     for i in range(WIDTH):
@@ -46,7 +46,7 @@ def residual(x, v, a, signals, callbacks, data, meta, e, r):
         joints.push_pair(x, data, meta, e, resistance * c, resistance * s, r)
 
 
-@compiled
+@kernel
 def energy(x, v, signals, callbacks, data, meta, e):
     """No energy; the power that friction takes."""
     rate = _rate(x, v, data, meta, e)

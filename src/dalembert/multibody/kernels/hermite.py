@@ -3,10 +3,10 @@
 Coordinates of one direction: (r1, r1', r2, r2') at slots (i, j, k, l); length ``h``, mass ``m``.
 """
 
-from dalembert.multibody.kernels.compiled import compiled
+from dalembert.multibody.kernels.compiled import inlined
 
 
-@compiled
+@inlined
 def inertia(m, h, i, j, k, l, a, r):  # noqa: E741 - the four slots in order
     """Add the consistent mass matrix times ``a`` to ``r``, one direction."""
     h2 = h * h
@@ -16,7 +16,7 @@ def inertia(m, h, i, j, k, l, a, r):  # noqa: E741 - the four slots in order
     r[l] += m * (-13 / 420 * h * a[i] - h2 / 140 * a[j] - 11 / 210 * h * a[k] + h2 / 105 * a[l])
 
 
-@compiled
+@inlined
 def weight(m, h, g, i, j, k, l, r):  # noqa: E741 - the four slots in order
     """Subtract the weight ``m g`` of one direction from ``r``."""
     r[i] -= 0.5 * m * g
@@ -25,7 +25,7 @@ def weight(m, h, g, i, j, k, l, r):  # noqa: E741 - the four slots in order
     r[l] += m * g * h / 12
 
 
-@compiled
+@inlined
 def centre(h, i, j, k, l, x):  # noqa: E741 - the four slots in order
     """Mean of the line's coordinate, one direction: its centre of mass."""
     return 0.5 * (x[i] + x[k]) + h / 12 * (x[j] - x[l])

@@ -8,7 +8,7 @@ fixed or prismatic joint, then the axis angle of a prismatic joint against the f
 Meta: joint kind, marker kinds of a and b, signal of a prescribed motion, 1 where a node's angle must be wrapped.
 """
 
-from dalembert.multibody.kernels.compiled import compiled
+from dalembert.multibody.kernels.compiled import inlined, kernel
 from dalembert.multibody.kernels.dual import root, sin_cos, wrapped
 from dalembert.multibody.kernels.markers import acceleration, angle, direction, position, push, spin, spin_rate, twist, velocity
 
@@ -17,7 +17,7 @@ MULTIPLIERS = 8  # slot of the first one
 REVOLUTE, FIXED, PRISMATIC, DISTANCE, MOTION_X, MOTION_Y, MOTION_ANGLE = range(7)
 
 
-@compiled
+@inlined
 def separation(x, data, meta, e):
     """Position of b against a."""
     ax, ay = position(meta[e, 1], 0, x, data[e, 0], data[e, 1])
@@ -25,7 +25,7 @@ def separation(x, data, meta, e):
     return bx - ax, by - ay
 
 
-@compiled
+@inlined
 def separation_rate(x, v, data, meta, e):
     """Velocity of b against a."""
     ax, ay = velocity(meta[e, 1], 0, x, v, data[e, 0], data[e, 1])
@@ -33,39 +33,39 @@ def separation_rate(x, v, data, meta, e):
     return bx - ax, by - ay
 
 
-@compiled
+@inlined
 def relative_angle(x, data, meta, e):
     """Angle of b against a."""
     return angle(meta[e, 2], 4, x, data[e, 5]) - angle(meta[e, 1], 0, x, data[e, 2])
 
 
-@compiled
+@inlined
 def relative_spin(x, v, meta, e):
     """Angular velocity of b against a."""
     return spin(meta[e, 2], 4, x, v) - spin(meta[e, 1], 0, x, v)
 
 
-@compiled
+@inlined
 def push_pair(x, data, meta, e, fx, fy, r):
     """Force (fx, fy) on b and its opposite on a."""
     push(meta[e, 2], 4, x, data[e, 3], data[e, 4], fx, fy, r)
     push(meta[e, 1], 0, x, data[e, 0], data[e, 1], -fx, -fy, r)
 
 
-@compiled
+@inlined
 def twist_pair(x, meta, e, torque, r):
     """Torque on b and its opposite on a."""
     twist(meta[e, 2], 4, x, torque, r)
     twist(meta[e, 1], 0, x, -torque, r)
 
 
-@compiled
+@inlined
 def axis(x, data, meta, e):
     """Unit vector of a prismatic joint's axis, which turns with a."""
     return direction(meta[e, 1], 0, x, data[e, 2] + data[e, 7])
 
 
-@compiled
+@inlined
 def residual(x, v, a, signals, callbacks, data, meta, e, r):
     """Constraint forces in the coordinates' slots, constraints in the multipliers' slots."""
     for i in range(WIDTH):
@@ -102,7 +102,7 @@ def residual(x, v, a, signals, callbacks, data, meta, e, r):
         r[8] = wrapped(gap) if meta[e, 4] == 1 else gap
 
 
-@compiled
+@kernel
 def rates(x, v, a, signals, data, meta, e, rate, second):
     """First and second time derivatives of the constraints, into ``rate`` and ``second`` of shape (3,)."""
     kind = meta[e, 0]
@@ -138,7 +138,7 @@ def rates(x, v, a, signals, data, meta, e, rate, second):
         second[0] = last - signals[signal, 2]
 
 
-@compiled
+@kernel
 def energy(x, v, signals, callbacks, data, meta, e):
     """No energy; the power that a prescribed motion feeds in."""
     zero = 0.0 * data[e, 0]
@@ -148,7 +148,7 @@ def energy(x, v, signals, callbacks, data, meta, e):
     return zero, zero, power
 
 
-@compiled
+@kernel
 def reaction(x, data, meta, e):
     """Force (fx, fy) and torque that the joint exerts on b."""
     kind = meta[e, 0]

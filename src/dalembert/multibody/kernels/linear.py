@@ -10,7 +10,7 @@ import numpy as np
 from numba.extending import get_cython_function_address
 
 from dalembert.multibody.kernels.callback import call
-from dalembert.multibody.kernels.compiled import compiled
+from dalembert.multibody.kernels.compiled import compiled, inlined, kernel
 
 DENSE, BAND = range(2)
 #: Addresses of LAPACK's routines as SciPy carries them; data to the kernels, see `callback`.
@@ -42,7 +42,7 @@ class Factors(NamedTuple):
     letter: np.ndarray
 
 
-@compiled
+@kernel
 def lead(layout):
     """Length of a stored column."""
     return layout.size if layout.kind == DENSE else 2 * layout.lower + layout.upper + 1
@@ -60,10 +60,11 @@ def storage(layout):
     )
 
 
-@compiled
+@kernel
 def factorise(layout, lapack, factors):
     """Factorise (or invert) the matrix; whether it was regular."""
-    factors.factored[:] = factors.matrix
+    for i in range(len(factors.matrix)):
+        factors.factored[i] = factors.matrix[i]
     n = factors.numbers
     size, ld, lower, upper, room, info = n[0:1], n[1:2], n[2:3], n[3:4], n[4:5], n[6:7]
     if layout.kind == DENSE:
@@ -75,18 +76,29 @@ def factorise(layout, lapack, factors):
     return info[0] == 0
 
 
-@compiled
+@inlined
+def _multiply(matrix, size, given, answer):
+    """Product of a square matrix by columns with a vector, four columns at a time."""
+    for i in range(size):
+        answer[i] = 0.0
+    whole = size // 4 * 4
+    for j in range(0, whole, 4):
+        a, b, c, d = given[j], given[j + 1], given[j + 2], given[j + 3]
+        k, l, m, n = j * size, (j + 1) * size, (j + 2) * size, (j + 3) * size  # noqa: E741 - the four columns in order
+        for i in range(size):
+            answer[i] += matrix[k + i] * a + matrix[l + i] * b + matrix[m + i] * c + matrix[n + i] * d
+    for j in range(whole, size):
+        a, k = given[j], j * size
+        for i in range(size):
+            answer[i] += matrix[k + i] * a
+
+
+@kernel
 def solve(layout, lapack, factors, given, answer):
     """Solve for the first N entries of ``given``, into those of ``answer``."""
     size = layout.size
     if layout.kind == DENSE:
-        inverse = factors.factored
-        for i in range(size):
-            answer[i] = 0.0
-        for j in range(size):
-            factor, column = given[j], j * size
-            for i in range(size):
-                answer[i] += inverse[column + i] * factor
+        _multiply(factors.factored, size, given, answer)
         return
     n, order, buffer = factors.numbers, layout.order, factors.buffer
     for i in range(size):

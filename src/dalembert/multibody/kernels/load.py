@@ -4,14 +4,14 @@ Local coordinates: marker a that is loaded (slots 0-3) and, for a torque between
 Data: (sx, sy, phi) of a and of b. Meta: kind, marker kinds of a and b, signal of x or of the torque, signal of y.
 """
 
-from dalembert.multibody.kernels.compiled import compiled
+from dalembert.multibody.kernels.compiled import inlined, kernel
 from dalembert.multibody.kernels.markers import direction, push, spin, twist, velocity
 
 WIDTH = 8
 FORCE, FOLLOWER, TORQUE = range(3)
 
 
-@compiled
+@inlined
 def _force(x, signals, data, meta, e):
     """Force in the fixed axes."""
     fx, fy = signals[meta[e, 3], 0], signals[meta[e, 4], 0]
@@ -21,7 +21,7 @@ def _force(x, signals, data, meta, e):
     return fx, fy
 
 
-@compiled
+@inlined
 def residual(x, v, a, signals, callbacks, data, meta, e, r):
     """The load with its sign turned: it stands on the left."""
     for i in range(WIDTH):
@@ -35,7 +35,7 @@ def residual(x, v, a, signals, callbacks, data, meta, e, r):
         push(meta[e, 1], 0, x, data[e, 0], data[e, 1], -fx, -fy, r)
 
 
-@compiled
+@kernel
 def energy(x, v, signals, callbacks, data, meta, e):
     """No energy; the power of the load."""
     zero = 0.0 * data[e, 0]

@@ -12,13 +12,13 @@ NODE    x, y, gx, gy               phi: angle of the frame against the gradient 
 ======  =========================  ====================================================
 """
 
-from dalembert.multibody.kernels.compiled import compiled
+from dalembert.multibody.kernels.compiled import inlined
 from dalembert.multibody.kernels.dual import angle_of, reciprocal, root, sin_cos
 
 GROUND, RIGID, MASS, NODE = range(4)
 
 
-@compiled
+@inlined
 def position(kind, k, x, sx, sy):
     """Position of a marker."""
     if kind == GROUND:
@@ -29,7 +29,7 @@ def position(kind, k, x, sx, sy):
     return x[k], x[k + 1]
 
 
-@compiled
+@inlined
 def velocity(kind, k, x, v, sx, sy):
     """Velocity of a marker."""
     if kind == GROUND:
@@ -40,7 +40,7 @@ def velocity(kind, k, x, v, sx, sy):
     return v[k], v[k + 1]
 
 
-@compiled
+@inlined
 def acceleration(kind, k, x, v, a, sx, sy):
     """Acceleration of a marker."""
     if kind == GROUND:
@@ -53,7 +53,7 @@ def acceleration(kind, k, x, v, a, sx, sy):
     return a[k], a[k + 1]
 
 
-@compiled
+@inlined
 def direction(kind, k, x, phi):
     """Cosine and sine of a marker's angle."""
     if kind == NODE:
@@ -68,7 +68,7 @@ def direction(kind, k, x, phi):
     return c, s
 
 
-@compiled
+@inlined
 def angle(kind, k, x, phi):
     """Angle of a marker, unbounded for rigid bodies, within (-pi, pi] plus phi for nodes of beams."""
     if kind == NODE:
@@ -78,7 +78,7 @@ def angle(kind, k, x, phi):
     return phi
 
 
-@compiled
+@inlined
 def spin(kind, k, x, v):
     """Angular velocity of a marker."""
     if kind == NODE:
@@ -89,7 +89,7 @@ def spin(kind, k, x, v):
     return 0.0 * v[0]
 
 
-@compiled
+@inlined
 def spin_rate(kind, k, x, v, a):
     """Angular acceleration of a marker."""
     if kind == NODE:
@@ -103,7 +103,7 @@ def spin_rate(kind, k, x, v, a):
     return 0.0 * v[0]
 
 
-@compiled
+@inlined
 def push(kind, k, x, sx, sy, fx, fy, r):
     """Add the generalised force of a force (fx, fy) at a marker to the local vector ``r``."""
     if kind == GROUND:
@@ -115,7 +115,7 @@ def push(kind, k, x, sx, sy, fx, fy, r):
         r[k + 2] += (c * sx - s * sy) * fy - (s * sx + c * sy) * fx
 
 
-@compiled
+@inlined
 def twist(kind, k, x, torque, r):
     """Add the generalised force of a torque at a marker to the local vector ``r``."""
     if kind == RIGID:

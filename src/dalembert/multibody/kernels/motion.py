@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dalembert.multibody.kernels.compiled import compiled
+from dalembert.multibody.kernels.compiled import compiled, kernel
 
 
 class Motion(NamedTuple):
@@ -37,22 +37,20 @@ def still(size):
     return Motion(np.zeros(size), np.zeros(size), np.zeros(size), np.zeros(size))
 
 
-@compiled
+@kernel
 def copy(source, target):
     """Copy one state into another."""
-    target.x[:] = source.x
-    target.v[:] = source.v
-    target.a[:] = source.a
-    target.w[:] = source.w
+    for i in range(len(source.x)):
+        target.x[i], target.v[i], target.a[i], target.w[i] = source.x[i], source.v[i], source.a[i], source.w[i]
 
 
-@compiled
+@kernel
 def row(stack, d):
     """State ``d`` of a stack of states."""
     return Motion(stack.x[d], stack.v[d], stack.a[d], stack.w[d])
 
 
-@compiled
+@kernel
 def coefficients(step, spectral_radius):
     """Coefficients of generalized-alpha (Arnold and Bruels 2007) for a step and a spectral radius at infinity."""
     alpha_m = (2 * spectral_radius - 1) / (spectral_radius + 1)
@@ -63,7 +61,7 @@ def coefficients(step, spectral_radius):
     return Coefficients(step, step * step * beta * share, step * gamma * share, alpha_m, alpha_f, beta, gamma)
 
 
-@compiled
+@kernel
 def advance(n, c, old, new):
     """Algorithmic accelerations, velocities and coordinates that belong to the new accelerations; linear in its states."""
     h = c.step
@@ -80,7 +78,7 @@ def advance(n, c, old, new):
         new.v[i] = old.v[i] + early * w0 + late * w1
 
 
-@compiled
+@kernel
 def interpolate(n, h, s, old, new, x, v, a):
     """State at the fraction ``s`` of a step of length ``h``: cubic for coordinates and velocities, linear for the rest."""
     s0, s1 = 1 - 3 * s * s + 2 * s**3, 3 * s * s - 2 * s**3

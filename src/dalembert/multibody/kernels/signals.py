@@ -9,13 +9,13 @@ import math
 import numpy as np
 
 from dalembert.multibody.kernels.callback import call
-from dalembert.multibody.kernels.compiled import compiled
+from dalembert.multibody.kernels.compiled import compiled, kernel
 from dalembert.multibody.kernels.dual import sin_cos
 
 TIME, CONSTANT, STEP, HARMONIC, POLYNOMIAL, PIECEWISE, CUSTOM = range(7)
 
 
-@compiled
+@kernel
 def _polynomial(data, first, count, t):
     """Value and two derivatives of data[first] + data[first + 1] t + ..."""
     value, rate, second = 0.0 * data[first], 0.0 * data[first], 0.0 * data[first]
@@ -26,7 +26,7 @@ def _polynomial(data, first, count, t):
     return value, rate, second
 
 
-@compiled
+@kernel
 def _segment(knots, first, count, t):
     """Number of the interval of `count` + 1 knots that holds t; the last one beyond the end."""
     low, high = 0, count - 1
@@ -81,7 +81,7 @@ def evaluate(index, data, knots, callbacks, t, within, out):
             out[n, 0], out[n, 1], out[n, 2] = answer[0], answer[1], answer[2]
 
 
-@compiled
+@kernel
 def finite(values):
     """Whether every real part is finite."""
     for value in values.flat:

@@ -5,7 +5,7 @@ stiffness, damping, cubic stiffness. Meta: kind, marker kinds of a and b, [unuse
 """
 
 from dalembert.multibody.kernels import joints
-from dalembert.multibody.kernels.compiled import compiled
+from dalembert.multibody.kernels.compiled import inlined, kernel
 from dalembert.multibody.kernels.dual import root, wrapped
 
 WIDTH = 8
@@ -13,7 +13,7 @@ TRANSLATION, TORSION = range(2)
 _TINY = 1e-30  # keeps the direction of a spring of no length defined, m^2
 
 
-@compiled
+@inlined
 def stretch(x, v, data, meta, e):
     """Elongation (or twist) and its rate."""
     if meta[e, 0] == TORSION:
@@ -27,14 +27,14 @@ def stretch(x, v, data, meta, e):
     return length - data[e, 6], (dx * ux + dy * uy) / length
 
 
-@compiled
+@inlined
 def tension(x, v, data, meta, e):
     """Force (or torque) with which the spring pulls its ends together."""
     elongation, rate = stretch(x, v, data, meta, e)
     return data[e, 8] * elongation + data[e, 10] * elongation**3 + data[e, 9] * rate
 
 
-@compiled
+@inlined
 def residual(x, v, a, signals, callbacks, data, meta, e, r):
     """Tension on both ends."""
     for i in range(WIDTH):
@@ -48,7 +48,7 @@ def residual(x, v, a, signals, callbacks, data, meta, e, r):
         joints.push_pair(x, data, meta, e, per_length * dx, per_length * dy, r)
 
 
-@compiled
+@kernel
 def energy(x, v, signals, callbacks, data, meta, e):
     """No kinetic energy; energy stored; power of the damper."""
     elongation, rate = stretch(x, v, data, meta, e)

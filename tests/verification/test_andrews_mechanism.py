@@ -1,7 +1,6 @@
 """Andrews' squeezing mechanism: seven bodies, ten joints, thousands of radians a second."""
 
 import numpy as np
-import pytest
 
 import dalembert as da
 
@@ -41,17 +40,13 @@ def channels(data: dict) -> list[str]:
     return motion + [f"{joint}.force_{axis}" for joint in ("E3", "E4", "E6") for axis in "xy"]
 
 
-@pytest.mark.slow
 def test_end_values_of_the_test_set(reference, record_evidence) -> None:
     data = reference("andrews")
     end = data["end"]
     system, factors = andrews(data)
-    trajectory = da.simulate(
-        system,
-        end["time"],
-        solver=da.GeneralizedAlpha(step=1e-7, spectral_radius=0.9),
-        times=np.array([0.0, end["time"]]),
-    )
+    # Accelerations of index 3 carry the rounding of positions over the step squared: a finer step would not help them.
+    solver = da.GeneralizedAlpha(step=5e-7, spectral_radius=0.5, newton_tolerance=1e-15)
+    trajectory = da.simulate(system, end["time"], solver=solver, times=np.array([0.0, end["time"]]))
     values = trajectory.channels(channels(data))[-1]
     coordinates = np.linalg.solve(factors, values[:21].reshape(3, 7).T).T
     rows = {

@@ -9,7 +9,7 @@ TOPIC = "Rigid mechanisms"
 
 
 def fine(step: float) -> da.GeneralizedAlpha:
-    return da.GeneralizedAlpha(step=step, spectral_radius=0.9)
+    return da.GeneralizedAlpha(step=step, spectral_radius=0.9, newton_tolerance=1e-15)
 
 
 def test_simple_pendulum(reference, record_evidence) -> None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy as np
 from pydantic import Discriminator, Field, Tag, model_validator
 
-from dalembert.errors import InputError, SolveError, unknown
+from dalembert.errors import DalembertError, InputError, unknown
 from dalembert.forward import ForwardModel
 from dalembert.study.numbers import fixed, samples
 from dalembert.study.table import Read, StudyTable, problem
@@ -17,6 +17,8 @@ from dalembert.study.tasks.task import Outcome, Task
 if TYPE_CHECKING:
     from dalembert.study.events import Emit
     from dalembert.study.study import Study
+
+_BATCH = 64  # points between two events
 
 
 class BoundsTable(StudyTable):
@@ -210,19 +212,25 @@ def _fill(study: "Study", model: ForwardModel, curve: Curve) -> Iterator[tuple[i
     """Simulate each point of a curve; yields its number and why it failed, if it did."""
     sample, columns = _sample(model, study.table.at), _columns(model, list(curve.channels))
     place = study.parameters.names.index(curve.parameter)
-    for row, value in enumerate(curve.values):
-        vector = study.parameters.start.copy()
-        vector[place] = value
+    vectors = np.tile(study.parameters.start, (len(curve.values), 1))
+    vectors[:, place] = curve.values
+    if curve.sensitivities is None:
+        for first in range(0, len(vectors), _BATCH):
+            responses = model.evaluate(vectors[first : first + _BATCH])
+            for row, failure in enumerate(responses.failures, start=first):
+                curve.responses[row] = responses.values[row - first, sample, columns]
+                yield row, failure
+        return
+    for row, vector in enumerate(vectors):
         failure = None
         try:
-            if curve.sensitivities is None:
-                response = model.evaluate(vector[None]).only()[0]
-            else:
-                response, jacobian = model.linearise(vector)
-                curve.sensitivities[row] = jacobian[sample, columns, place]
+            response, jacobian = model.linearise(vector)
             curve.responses[row] = response[sample, columns]
-        except SolveError as error:
-            failure = str(error)
+            curve.sensitivities[row] = jacobian[sample, columns, place]
+        except InputError:  # a model that cannot be differentiated at all
+            raise
+        except Exception as error:  # whatever a user's function raises is this point's failure
+            failure = str(error) if isinstance(error, DalembertError) else f"{type(error).__name__}: {error}"
         yield row, failure
 
 

@@ -1,0 +1,146 @@
+"""The real command, as a user starts it: what it prints, and its exit codes."""
+
+import json
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from dalembert import __version__
+
+COMMAND = Path(sys.executable).with_name("dalembert")
+DECAY = """
+import numpy as np
+from dalembert.forward import PythonModel
+
+times = np.linspace(0, 1, 11)
+
+def decay(parameters):
+    return PythonModel(response, parameters, ["x"], times)
+
+def response(rate):
+    if np.real(rate) > 2.5:
+        raise ValueError("too fast")
+    return np.exp(-rate * times)
+"""
+SWEEP = """
+[parameters]
+rate = { lower = 0.5, upper = "2 1/s" }
+[model]
+forward = "decay.py:decay"
+[sweep]
+at = 0.5
+channels = ["x"]
+over = { rate = { count = 4 } }
+"""
+
+
+@pytest.fixture
+def dalembert(tmp_path):
+    (tmp_path / "decay.py").write_text(DECAY)
+    (tmp_path / "decay.toml").write_text(SWEEP)
+
+    def run(*arguments: str) -> subprocess.CompletedProcess[str]:
+        command = [COMMAND, *arguments]
+        return subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=120, check=False)
+
+    return run
+
+
+def test_run_list_report(dalembert, tmp_path):
+    ran = dalembert("run", "decay.toml")
+    assert (ran.returncode, ran.stdout) == (0, "4 points along rate\nreport: runs/decay/report.html\n")
+    assert (tmp_path / "runs/decay/report.html").stat().st_size > 100_000
+    again = dalembert("run", "decay.toml", "--force")
+    assert (again.returncode, again.stdout) == (0, ran.stdout)
+    listed = dalembert("list")
+    assert listed.returncode == 0
+    assert listed.stdout.split()[:8] == ["run", "task", "state", "since", "best", "decay", "sweep", "finished"]
+    made = dalembert("report", "decay")
+    assert (made.returncode, made.stdout) == (0, "report: runs/decay/report.html\n")
+    assert dalembert("report", "runs/decay").stdout == made.stdout
+
+
+def test_check(dalembert):
+    checked = dalembert("check", "decay.toml")
+    assert checked.returncode == 0
+    assert checked.stdout == (
+        "decay.toml: in order; it sweeps rate (4) at time 0.5 s: 4 simulations, each with 1 sensitivities\n"
+    )
+
+
+def test_exit_code_1_if_the_solver_could_not(dalembert, tmp_path):
+    (tmp_path / "decay.toml").write_text(SWEEP.replace("2 1/s", "3 1/s"))
+    ran = dalembert("run", "decay.toml")
+    assert ran.returncode == 1
+    assert ran.stdout.startswith("4 points along rate; 1 of them failed, see events.jsonl\n")
+    assert "failed" in dalembert("list").stdout
+
+
+@pytest.mark.parametrize("command", ["run", "check"])
+def test_exit_code_2_if_the_input_is_wrong(dalembert, tmp_path, command):
+    (tmp_path / "decay.toml").write_text(SWEEP.replace("lower", "lowwer").replace("at = 0.5", 'at = "0.5 X"'))
+    ran = dalembert(command, "decay.toml")
+    assert (ran.returncode, ran.stdout) == (2, "")
+    assert ran.stderr.splitlines() == [
+        "decay.toml: [parameters.rate]: the key 'lower' is missing",
+        "decay.toml: [parameters.rate]: unknown key 'lowwer'; did you mean 'lower'?",
+        "decay.toml: [sweep], at: '0.5 X' was given, but the unit 'X' is unknown; expected a number in SI units, "
+        "or a number with its unit such as '400 mm'",
+    ]
+    assert not (tmp_path / "runs").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["run", "dekay.toml"], "unknown study file 'dekay.toml'; did you mean 'decay.toml'?"),
+        (["report", "nothing"], "nothing is no run folder: it has no state.json"),
+        (["run", "decay.toml", "--out", "decay.py"], "decay.py is a file; expected a folder for the run"),
+        (
+            ["run", "decay.toml", "--out", "decay.py/run"],
+            "the run folder decay.py/run cannot be made: Not a directory; choose another with --out",
+        ),
+        (["run", "decay.toml", "--seed", "3"], "a seed was given, but [sweep] draws no random numbers; leave it out"),
+    ],
+)
+def test_what_cannot_be_meant(dalembert, arguments, message):
+    ran = dalembert(*arguments)
+    assert (ran.returncode, ran.stdout, ran.stderr) == (2, "", message + "\n")
+
+
+def test_usage_errors_are_input_errors(dalembert):
+    assert dalembert("run").returncode == 2
+    assert dalembert("runn", "decay.toml").returncode == 2
+
+
+def test_list_of_nothing(dalembert):
+    assert dalembert("list").stdout == "no runs in runs\n"
+
+
+def test_schema_is_json(dalembert):
+    shown = dalembert("schema")
+    assert shown.returncode == 0
+    assert json.loads(shown.stdout)["properties"].keys() >= {"study", "model", "parameters", "data"}
+
+
+def test_version(dalembert):
+    assert dalembert("--version").stdout == f"dalembert {__version__}\n"
+
+
+def test_help_answers_at_once(dalembert):
+    """Half a second, and nothing heavy imported on the way."""
+    seconds = []
+    for _ in range(3):
+        began = time.perf_counter()
+        shown = dalembert("--help")
+        seconds.append(time.perf_counter() - began)
+        assert shown.returncode == 0
+        assert all(word in shown.stdout for word in ("run", "check", "list", "report", "schema"))
+    assert min(seconds) < 0.5
+    code = (
+        "import sys, dalembert.cli; print(*sorted({'numpy', 'pydantic', 'numba', 'scipy', 'pint'} & set(sys.modules)))"
+    )
+    assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "\n"

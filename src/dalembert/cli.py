@@ -73,7 +73,7 @@ def run(
         watch = Watch(console, read.parameters.names)
         with watch:
             folder, outcome = run_study(read, out, force=force, listener=watch)
-        typer.echo(outcome.status)
+        typer.echo(outcome.summary)
         typer.echo(f"report: {folder.report}")
         if not outcome.success:
             raise typer.Exit(SOLVER_COULD_NOT)
@@ -103,7 +103,7 @@ def list_runs(
         if not found:
             typer.echo(f"no runs in {runs}")
         else:
-            Console(soft_wrap=True).print(table(found))
+            Console(width=None if sys.stdout.isatty() else 200).print(table(found))
 
 
 @app.command()

@@ -1,7 +1,5 @@
 """The function from parameters to a System that a study file's model is."""
 
-import hashlib
-import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -29,13 +27,10 @@ class SystemBuilder:
     ----------
     model : ModelTable
     constants : mapping of str to float or Expression
-    fingerprint : str
-        Hash of all that the model says.
     """
 
     model: ModelTable
     constants: Mapping[str, float | Expression]
-    fingerprint: str
 
     def __call__(self, **parameters: complex) -> "System":
         from dalembert.multibody import System
@@ -65,12 +60,6 @@ class FunctionBuilder:
 
     function: Callable[..., "System"]
     arguments: Mapping[str, Any]
-
-    @property
-    def fingerprint(self) -> str:
-        """Hash of the source of the function's file, and of the arguments."""
-        source = inspect.getsource(inspect.getmodule(self.function) or self.function)
-        return hashlib.sha256(f"{source}\n{sorted(self.arguments.items())}".encode()).hexdigest()
 
     def __call__(self, **parameters: complex) -> "System":
         from dalembert.multibody import System

@@ -1,7 +1,5 @@
 """A study that was read and checked: its model, data and task, ready to run."""
 
-import hashlib
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
@@ -97,8 +95,7 @@ class Study:
         model = self.file.model
         if model.function is not None:
             return FunctionBuilder(model.function.load(), model.resolved_arguments)
-        text = json.dumps({key: self.settings.get(key) for key in ("model", "constants")}, sort_keys=True)
-        return SystemBuilder(model, self.file.constants, hashlib.sha256(text.encode()).hexdigest())
+        return SystemBuilder(model, self.file.constants)
 
     @property
     def solver(self) -> Any:
@@ -120,7 +117,8 @@ class Study:
         if self.has_system:
             from dalembert.multibody import TimeResponse
 
-            return TimeResponse(self.builder, self.parameters, channels, samples, solver=self.solver)
+            response: Any = TimeResponse(self.builder, self.parameters, channels, samples, solver=self.solver)
+            return response
         reference = self.file.model.forward
         assert reference is not None  # or there is a system
         model = reference.load()(self.parameters, **self.file.model.resolved_arguments)

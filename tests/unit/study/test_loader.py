@@ -115,12 +115,6 @@ def test_a_model_is_complex_safe(write):
     assert rod.length == 1.0
 
 
-def test_the_fingerprint_tells_models_apart(write):
-    one, same = load(write(PENDULUM)), load(write(PENDULUM + "\n# a remark\n"))
-    other = load(write(PENDULUM.replace('"L"', "2.0")))
-    assert one.builder.fingerprint == same.builder.fingerprint != other.builder.fingerprint
-
-
 def test_a_model_may_stand_in_a_file_of_its_own(write):
     model = PENDULUM[PENDULUM.index("[constants]") : PENDULUM.index("[solver]")]
     write(model.replace('L = "1 m"', 'L = "3 m"'), "model.toml")

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic import AfterValidator, Discriminator, Field, Tag, create_model
 
 from dalembert.errors import InputError, unknown
+from dalembert.optimize import LeastSquares, Minimiser, Swarm
 from dalembert.optimize.minimiser import NAMES as MINIMISERS
-from dalembert.optimize.minimiser import Minimiser
 from dalembert.study.catalogue import methods
 from dalembert.study.components import one_of, table_of
 from dalembert.study.numbers import fixed
@@ -18,7 +18,6 @@ from dalembert.study.tasks.task import Outcome, Task
 
 if TYPE_CHECKING:
     from dalembert.inverse import Fit
-    from dalembert.multibody import Trajectory
     from dalembert.study.events import Emit
     from dalembert.study.study import Study
 
@@ -29,10 +28,13 @@ class IdentifyTable(StudyTable):
     """Identify the parameters from the data."""
 
     method: Any = DEFAULT
-    starts: int = Field(8, ge=1, description="starting points of local methods, or independent swarms")
+    starts: int | None = Field(None, ge=1, description="starts at most; 8 for least squares, 1 for others if not given")
     seed: int = Field(0, ge=0, description="of all random numbers")
     polish: bool = Field(False, description="end with least squares from the best point found")
-    horizon: Literal["growing"] | None = Field(None, description="'growing' compares ever longer parts of the data")
+    horizon: Literal["auto", "growing", "whole"] = Field(
+        "auto",
+        description="'growing' fits ever longer parts of the data, 'auto' does so for some starts, 'whole' never",
+    )
     weights: dict[str, Annotated[float, Read(fixed(None))]] | None = Field(
         None, description="weight of each channel; from deviations if not given"
     )
@@ -64,6 +66,18 @@ def settings(method: Any) -> Any:
     return Minimiser(method)
 
 
+def _cost(method: Any, starts: int | None, parameters: int) -> str:
+    """A method's name, and about how many simulations it takes."""
+    name = type(method).__name__
+    if isinstance(method, LeastSquares):
+        one = 10 * (1 + parameters)
+        return f"{name}: about {one} simulations a start, sensitivities counted, and at most {starts or 8} starts"
+    if isinstance(method, Swarm):
+        sizes = f"{starts or 1} x {method.particles} particles x {method.iterations} iterations"
+        return f"{name}: {sizes} = {method.particles * method.iterations * (starts or 1)} simulations"
+    return f"{name} {getattr(method, 'name', '')}: as many simulations as it asks for"
+
+
 def _buildable(method: Any) -> Any:
     checked(settings, method)
     return method
@@ -85,6 +99,10 @@ class Identification(Outcome):
         return self.fit.status
 
     @property
+    def summary(self) -> str:
+        return self.fit.summary()
+
+    @property
     def best(self) -> dict[str, Any]:
         return {"fitness": self.fit.fitness, "values": self.fit.parameters.mapping(self.fit.values)}
 
@@ -104,7 +122,7 @@ class Identification(Outcome):
             study=study.content.decode(),
         )
 
-    def _motion(self) -> "Trajectory | None":
+    def _motion(self) -> Any:
         if not self.study.has_system:
             return None
         return self.study.motion(float(self.fit.data.coordinate.values[-1]), self.fit.values)
@@ -132,22 +150,11 @@ class Identify(Task):
         return wrong
 
     def plan(self, study: "Study") -> str:
-        data = study.data()
-        study.forward(data.channels, data.coordinate.values)
-        method = settings(study.table.method)
-        particles, iterations = getattr(method, "particles", 0), getattr(method, "iterations", 0)
-        names = ", ".join(study.parameters.names)
-        if particles:
-            cost = f"{particles} particles × {iterations} iterations = {particles * iterations} simulations a swarm"
-        elif study.table.method == DEFAULT:
-            cost = (
-                f"about {study.table.starts * 10 * (1 + len(study.parameters))} simulations with sensitivities counted"
-            )
-        else:
-            cost = "as many simulations as the minimiser asks for"
+        data, table = study.data(), study.table
+        study.forward(data.channels, data.coordinate.values).evaluate(study.parameters.start[None]).only()
         return (
-            f"identifies {names} from {len(data.coordinate.values)} samples of {', '.join(data.channels)} "
-            f"by {type(method).__name__}, {study.table.starts} starts: {cost}"
+            f"identifies {', '.join(study.parameters.names)} from {len(data.coordinate.values)} samples of "
+            f"{', '.join(data.channels)} by {_cost(settings(table.method), table.starts, len(study.parameters))}"
         )
 
     def run(self, study: "Study", emit: "Emit") -> Outcome:
@@ -168,7 +175,7 @@ class Identify(Task):
             seed=table.seed,
             weights=None if table.weights is None else [table.weights[channel] for channel in data.channels],
             polish=table.polish,
-            horizon=table.horizon,
+            horizon=None if table.horizon == "whole" else table.horizon,
             on_event=tell,
         )
         return Identification(study, fit)

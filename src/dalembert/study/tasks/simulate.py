@@ -12,7 +12,6 @@ from dalembert.study.table import Read, StudyTable, problem
 from dalembert.study.tasks.task import Outcome, Task
 
 if TYPE_CHECKING:
-    from dalembert.multibody import Trajectory
     from dalembert.study.events import Emit
     from dalembert.study.study import Study
 
@@ -24,6 +23,7 @@ class SimulateTable(StudyTable):
     times: Annotated[tuple[float, ...], Read(samples("s"))] | None = Field(
         None, description="output times; every step if not given"
     )
+    channels: list[str] = Field([], description="what the result keeps: 'AB.end.x'; every channel if not given")
     points: list[str] = Field([], description="points whose paths the report draws: 'AB.end'")
 
     @model_validator(mode="after")
@@ -50,7 +50,7 @@ class Motion(Outcome):
     """A simulated motion."""
 
     study: "Study"
-    trajectory: "Trajectory"
+    trajectory: Any
 
     @property
     def success(self) -> bool:
@@ -61,11 +61,15 @@ class Motion(Outcome):
         return f"simulated to {self.trajectory.times[-1]:g} s"
 
     @property
+    def summary(self) -> str:
+        return self.trajectory.summary()
+
+    @property
     def best(self) -> dict[str, Any]:
         return {}
 
     def save(self, path: Path) -> None:
-        self.trajectory.save(path)
+        self.trajectory.save(path, self.study.table.channels or None)
 
     def report(self, path: Path) -> None:
         from dalembert.report import report
@@ -102,6 +106,5 @@ class Simulate(Task):
         return Motion(study, study.motion(study.table.last, times=None if times is None else np.array(times)))
 
     def load(self, study: "Study", path: Path) -> Outcome:
-        from dalembert.multibody import Trajectory
-
-        return Motion(study, Trajectory.load(path))
+        """The motion again: a result does not keep all that a drawing needs, and the same study moves the same."""
+        return self.run(study, lambda *_, **__: None)

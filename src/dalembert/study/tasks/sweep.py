@@ -98,6 +98,10 @@ class Sweep(Outcome):
         return f"{count} points along {', '.join(curve.parameter for curve in self.curves)}{failed}"
 
     @property
+    def summary(self) -> str:
+        return self.status
+
+    @property
     def best(self) -> dict[str, Any]:
         return {}
 

@@ -23,6 +23,11 @@ class Outcome(Protocol):
         ...
 
     @property
+    def summary(self) -> str:
+        """What came out, in a few lines for a terminal."""
+        ...
+
+    @property
     def best(self) -> dict[str, Any]:
         """Few numbers for the list of runs."""
         ...

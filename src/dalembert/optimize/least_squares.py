@@ -20,8 +20,9 @@ class LeastSquares:
     trials : int
         Most residuals to compute.
     tolerance : float
-        Ends when a step is shorter than this relative to one unit a parameter, or lowers the sum of squares by less
-        than this fraction.
+        Ends when a step is shorter than this, relative to one unit a parameter.
+    gain : float
+        Ends when a step, going as foreseen, lowers the sum of squares by less than this fraction.
 
     Notes
     -----
@@ -39,12 +40,14 @@ class LeastSquares:
 
     trials: int = 50
     tolerance: float = 1e-10
+    gain: float = 1e-8
 
     def __post_init__(self) -> None:
         if self.trials < 1:
             raise InputError(f"LeastSquares: trials is {self.trials}; expected at least 1")
-        if not np.finfo(float).eps <= self.tolerance < 1:
-            raise InputError(f"LeastSquares: tolerance is {self.tolerance}; expected a number from 2.3e-16 to 1")
+        for name in ("tolerance", "gain"):
+            if not np.finfo(float).eps < getattr(self, name) < 1:
+                raise InputError(f"LeastSquares: {name} is {getattr(self, name)}; expected a number from 3e-16 to 1")
 
     def minimise(
         self,
@@ -93,15 +96,17 @@ class LeastSquares:
             iterations += 1
             return jacobian(place(u)) * unit
 
-        if not np.all(np.isfinite(fun(np.ones_like(origin)))):
+        one = np.ones_like(origin)
+        first = fun(one)
+        if not np.all(np.isfinite(first)):
             return Minimum(origin, np.inf, False, "the first point could not be simulated", 0, evaluations)
         result = least_squares(
-            fun,
-            np.ones_like(origin),
+            lambda u: first if evaluations == 1 and np.array_equal(u, one) else fun(u),
+            one,
             jac,  # pyright: ignore[reportArgumentType]
             bounds=(1 + (low - origin) / unit, 1 + (high - origin) / unit),
             method="trf",
-            ftol=self.tolerance,
+            ftol=self.gain,
             xtol=self.tolerance,
             # An absolute threshold on the gradient would depend on the units of the data.
             gtol=None,  # pyright: ignore[reportArgumentType]
@@ -113,4 +118,5 @@ class LeastSquares:
             3: "converged: the parameters move no more",
             4: "converged: neither parameters nor sum of squares move any more",
         }[result.status]
-        return Minimum(x_best, best, result.status > 0, message, max(0, iterations - 1), evaluations)
+        stationary = result.status in (3, 4)
+        return Minimum(x_best, best, result.status > 0, message, max(0, iterations - 1), evaluations, stationary)

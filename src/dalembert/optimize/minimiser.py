@@ -59,7 +59,14 @@ class Minimiser:
             raise InputError(unknown("minimiser", self.name, NAMES))
         object.__setattr__(self, "name", spelled[self.name.lower()])
         if self.name in GLOBAL:
-            taken = set(signature(getattr(so, self.name)).parameters) - {"func", "bounds", "rng", "x0", "callback"}
+            taken = set(signature(getattr(so, self.name)).parameters) - {
+                "func",
+                "bounds",
+                "rng",
+                "x0",
+                "args",
+                "callback",
+            }
             for option in self.options:
                 if option not in taken:
                     raise InputError(unknown("option", option, taken, f"Minimiser({self.name!r})"))

@@ -47,6 +47,8 @@ class Minimum:
     message : str
         Why it stopped, in a sentence.
     iterations, evaluations : int
+    stationary : bool
+        Whether it stopped because x moves no more; going on with finer settings would change nothing.
     """
 
     x: np.ndarray
@@ -55,6 +57,7 @@ class Minimum:
     message: str
     iterations: int
     evaluations: int
+    stationary: bool = False
 
 
 def fitness_of(objective: Objective, points: np.ndarray) -> np.ndarray:

@@ -1,0 +1,85 @@
+"""One start of least squares: a local descent, its horizon growing if asked."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from dalembert.errors import SolveError
+from dalembert.inverse.problem import Linearisation, Problem
+from dalembert.optimize import LeastSquares, Progress
+
+
+@dataclass(frozen=True, eq=False)
+class End:
+    """Where a start ended: a search point (parameters,), its fitness over all samples, and how it was reached.
+
+    At a ``stationary`` end a finer descent would change nothing.
+    """
+
+    point: np.ndarray
+    fitness: float
+    success: bool
+    message: str
+    stationary: bool = False
+    linearisation: Linearisation | None = None
+
+
+class _Memo:
+    """Residual and jacobian of a problem at search points, so that a point is simulated at most twice.
+
+    After an accepted point the next one is simulated with its sensitivities at once, since it will most likely be
+    accepted too; after a rejected one without.
+    """
+
+    def __init__(self, problem: Problem) -> None:
+        self.problem, self.hopeful = problem, True
+        self.at: Linearisation | None = None
+
+    def residual(self, point: np.ndarray) -> np.ndarray:
+        vector, hopeful = self.problem.search.vectors(point), self.hopeful
+        self.hopeful = False
+        if not hopeful:
+            return self.problem.residual(self.problem.responses(vector[None])[0])
+        try:
+            at = self.problem.linearise(vector)
+        except SolveError:
+            return np.full(self.problem.weights.size, np.nan)
+        self.at = at
+        return self.problem.residual(at.response)
+
+    def jacobian(self, point: np.ndarray) -> np.ndarray:
+        vector = self.problem.search.vectors(point)
+        if self.at is None or not np.array_equal(self.at.vector, vector):
+            self.at = self.problem.linearise(vector)
+        self.hopeful = True
+        return self.problem.slopes(self.at)
+
+
+def descend(ladder: Sequence[Problem], method: LeastSquares, point: np.ndarray) -> End:
+    """Least squares from a search point on each problem of a ladder, the last one the whole problem.
+
+    The shorter horizons only lead the way and are left early.
+    """
+    for problem in ladder[:-1]:
+        point = _local(problem, replace(method, trials=10, tolerance=1e-3, gain=1e-2), point).point
+    return _local(ladder[-1], method, point)
+
+
+def _local(problem: Problem, method: LeastSquares, point: np.ndarray) -> End:
+    memo, journal, search = _Memo(problem), problem.journal, problem.search
+    best = End(point, np.inf, False, "")
+
+    def progress(now: Progress) -> None:
+        nonlocal best
+        best = End(now.x, now.best, False, "")
+        journal.step(now.best, search.vectors(now.x), problem.samples)
+
+    try:
+        found = method.minimise(memo.residual, memo.jacobian, search.lower, search.upper, point, on_iteration=progress)
+    except SolveError as error:
+        return replace(best, message=f"the sensitivities could not be computed: {error}")
+    message = found.message if np.isfinite(found.fitness) else f"{found.message}: {journal.failures[-1]}"
+    at = memo.at
+    kept = at if at is not None and np.array_equal(at.vector, search.vectors(found.x)) else None
+    return End(found.x, found.fitness, found.success, message, found.stationary, kept)

@@ -1,0 +1,108 @@
+"""What the data tell about the parameters: standard deviations, correlation, and combinations."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from dalembert.parameters import Parameters
+
+INDISTINGUISHABLE = 0.99
+"""Correlation from which two parameters are said to be hard to tell apart."""
+
+UNSEEN = 1e-10
+"""Singular values below this fraction of the largest are zero to the accuracy of a simulation."""
+
+
+@dataclass(frozen=True, eq=False)
+class Estimate:
+    """Standard deviations (parameters,) and correlation (parameters, parameters) of identified parameters.
+
+    ``singular_values`` (parameters,), largest first, are those of W^½ ∂R/∂p · scale; the rows of ``directions``
+    (parameters, parameters) are the combinations of p/scale that they belong to.
+    """
+
+    deviations: np.ndarray
+    correlation: np.ndarray
+    singular_values: np.ndarray
+    directions: np.ndarray
+
+
+def estimate(slopes: np.ndarray, scale: np.ndarray, variance: float) -> Estimate:
+    """Estimate from the linearised least squares problem, covariance s² (JᵀWJ)⁻¹.
+
+    Parameters
+    ----------
+    slopes : array, shape (values, parameters)
+        W^½ ∂R/∂p · scale, from the singular values of which everything follows.
+    scale : array, shape (parameters,)
+    variance : float
+        s², the variance of a weighted residual.
+
+    Notes
+    -----
+    A combination that the response does not see leaves the deviations of its parameters infinite, and correlates them
+    fully.
+
+    Examples
+    --------
+    The mean of four values with variance 0.04 has the deviation 0.2/√4.
+
+    >>> estimate(np.ones((4, 1)), np.ones(1), variance=0.04).deviations
+    array([0.1])
+    """
+    short = max(0, len(scale) - len(slopes))
+    _, singular, directions = np.linalg.svd(np.pad(slopes, ((0, short), (0, 0))), full_matrices=False)
+    unseen = singular <= UNSEEN * max(singular[0], np.finfo(float).tiny)
+    inverse = 1 / np.where(unseen, UNSEEN * max(singular[0], np.finfo(float).tiny), singular)
+    spread = directions.T * inverse  # (parameters, combinations): spread @ spread.T is (JᵀWJ)⁻¹
+    size = np.linalg.norm(spread, axis=1)
+    correlation = (spread / size[:, None]) @ (spread / size[:, None]).T
+    correlation = np.clip((correlation + correlation.T) / 2, -1, 1)
+    np.fill_diagonal(correlation, 1.0)
+    lost = np.any(np.abs(directions[unseen]) > 1e-6, axis=0)
+    return Estimate(np.where(lost, np.inf, np.sqrt(variance) * size * scale), correlation, singular, directions)
+
+
+@dataclass(frozen=True, eq=False)
+class Identifiability:
+    """What the data can tell, in numbers as in :class:`Estimate` and in plain sentences."""
+
+    singular_values: np.ndarray
+    directions: np.ndarray
+    sentences: tuple[str, ...]
+
+    def __str__(self) -> str:
+        return "\n".join(self.sentences) or "The data tell every parameter, and tell them apart."
+
+
+def sentences(parameters: Parameters, values: np.ndarray, told: Estimate) -> tuple[str, ...]:
+    """Plain sentences on parameters at a bound, unseen by the response, known badly, or hard to tell apart."""
+    if not np.all(np.isfinite(told.singular_values)):
+        return ("What the data tell could not be computed: the model gave no sensitivities at the identified values.",)
+    width = parameters.upper - parameters.lower
+    guess = width / np.sqrt(12)
+    found = []
+    for k, item in enumerate(parameters):
+        side = "lower" if values[k] - item.lower < 1e-6 * width[k] else "upper"
+        bound = getattr(item, side)
+        if abs(values[k] - bound) < 1e-6 * width[k]:
+            found.append(
+                f"{item.name!r} sits on its {side} bound {bound:.6g}; widen the bound if the true value may lie beyond."
+            )
+        if np.isinf(told.deviations[k]):
+            found.append(
+                f"{item.name!r} is not told by the data: it, or a combination that it is part of, leaves the response "
+                "as it is; fix it, or measure another channel."
+            )
+        elif told.deviations[k] > guess[k]:
+            found.append(
+                f"{item.name!r} is hardly told by the data: its deviation {told.deviations[k]:.3g} exceeds the "
+                f"{guess[k]:.3g} of a mere guess between its bounds; fix it, or measure more."
+            )
+    for i, j in zip(*np.triu_indices(len(parameters), 1), strict=True):
+        if abs(told.correlation[i, j]) > INDISTINGUISHABLE:
+            found.append(
+                f"{parameters.names[i]!r} and {parameters.names[j]!r} can hardly be told apart (correlation "
+                f"{told.correlation[i, j]:.4f}); fix one of them, or measure what tells them apart."
+            )
+    return tuple(found)

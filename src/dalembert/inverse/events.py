@@ -1,0 +1,112 @@
+"""What a running identification tells: one small dataclass an event, the same for progress bar, log and result."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from typing import Any, ClassVar
+
+import numpy as np
+
+
+@dataclass(frozen=True, eq=False)
+class StartBegan:
+    """A start sets out; ``values`` (parameters,) is where, or None where the method scatters its own points."""
+
+    kind: ClassVar[str] = "start-began"
+    start: int
+    simulations: int
+    values: np.ndarray | None
+
+
+@dataclass(frozen=True, eq=False)
+class Screened:
+    """Points of a Latin hypercube were simulated to choose starts from; ``best`` is the lowest fitness among them."""
+
+    kind: ClassVar[str] = "screened"
+    points: int
+    failed: int
+    simulations: int
+    best: float
+
+
+@dataclass(frozen=True, eq=False)
+class Step:
+    """One iteration of one start.
+
+    Parameters
+    ----------
+    start, iteration : int
+    simulations : int
+        Spent so far by the whole identification; a response with its sensitivities counts as 1 + parameters.
+    best : float
+        Lowest fitness of this start so far, over its first ``samples`` samples.
+    values : array, shape (parameters,)
+        Where it was found.
+    samples : int
+        Samples compared; fewer than all while the horizon still grows.
+    """
+
+    kind: ClassVar[str] = "iteration"
+    start: int
+    iteration: int
+    simulations: int
+    best: float
+    values: np.ndarray
+    samples: int
+
+
+@dataclass(frozen=True, eq=False)
+class StartEnd:
+    """How one start ended.
+
+    Parameters
+    ----------
+    start, end : array, shape (parameters,)
+        NaN where a swarm scattered its own points.
+    fitness : float
+        Over all samples; infinite for a start that failed.
+    success : bool
+    message : str
+    simulations : int
+        Spent by this start alone.
+    """
+
+    kind: ClassVar[str] = "start-ended"
+    start: np.ndarray
+    end: np.ndarray
+    fitness: float
+    success: bool
+    message: str
+    simulations: int
+
+
+@dataclass(frozen=True, eq=False)
+class Finished:
+    """The identification is done."""
+
+    kind: ClassVar[str] = "finished"
+    success: bool
+    status: str
+    fitness: float
+    values: np.ndarray
+    simulations: int
+
+
+Event = StartBegan | Screened | Step | StartEnd | Finished
+OnEvent = Callable[[Event], None]
+
+
+def as_record(event: Event) -> dict[str, Any]:
+    """The event as a mapping that JSON can hold: ``event`` names its kind, a number that is not finite becomes None.
+
+    >>> as_record(Step(0, 1, 3, float("inf"), np.array([0.5]), 41))["best"] is None
+    True
+    >>> as_record(Screened(16, 0, 19, 0.5))
+    {'event': 'screened', 'points': 16, 'failed': 0, 'simulations': 19, 'best': 0.5}
+    """
+    return {"event": event.kind} | {field.name: _plain(getattr(event, field.name)) for field in fields(event)}
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, np.ndarray):
+        return [_plain(entry) for entry in value.tolist()]
+    return None if isinstance(value, float) and not np.isfinite(value) else value

@@ -1,0 +1,121 @@
+"""The result of an identification."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from dalembert.data import Measurements
+from dalembert.hooks import hook
+from dalembert.inverse.estimate import Estimate, Identifiability, sentences
+from dalembert.inverse.events import StartEnd, Step
+from dalembert.parameters import Parameters
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """Identified parameters, how well they are known, and how they were found.
+
+    Parameters
+    ----------
+    parameters : Parameters
+    values, deviations : array, shape (parameters,)
+        Identified values and their standard deviations: from given deviations of the data if there are any and no
+        weights were given, else from the variance of the residuals. NaN where they could not be computed.
+    correlation : array, shape (parameters, parameters)
+    singular_values : array, shape (parameters,)
+        Of W^½ ∂R/∂p · scale, largest first.
+    directions : array, shape (parameters, parameters)
+        A row a singular value: the combination of p/scale that it belongs to.
+    fitness : float
+        Σ W (R − data)² over samples and channels.
+    response, residuals : array, shape (samples, channels)
+        R at ``values``, and R − data.
+    data : Measurements
+    weights : array, shape (samples, channels)
+        W.
+    history : tuple of Step
+        Best fitness along each start, where all samples were compared.
+    starts : tuple of StartEnd
+    success : bool
+    status : str
+        How it went and what to do, in full sentences.
+    method : str
+    simulations : int
+        A response with its sensitivities counts as 1 + parameters.
+    provenance : mapping
+        Versions, seed, hashes of model and data, method and settings.
+    """
+
+    parameters: Parameters
+    values: np.ndarray
+    deviations: np.ndarray
+    correlation: np.ndarray
+    singular_values: np.ndarray
+    directions: np.ndarray
+    fitness: float
+    response: np.ndarray
+    data: Measurements
+    weights: np.ndarray
+    history: tuple[Step, ...]
+    starts: tuple[StartEnd, ...]
+    success: bool
+    status: str
+    method: str
+    simulations: int
+    provenance: Mapping[str, Any]
+
+    @property
+    def residuals(self) -> np.ndarray:
+        return self.response - self.data.values
+
+    @property
+    def estimates(self) -> dict[str, float]:
+        """Identified values by name."""
+        return self.parameters.mapping(self.values)
+
+    def identifiability(self) -> Identifiability:
+        """What the data can tell: singular values, combinations, and sentences on what they cannot."""
+        told = Estimate(self.deviations, self.correlation, self.singular_values, self.directions)
+        return Identifiability(self.singular_values, self.directions, sentences(self.parameters, self.values, told))
+
+    def summary(self) -> str:
+        """The result as a text table with its status."""
+        from dalembert.inverse.summary import summary
+
+        return summary(self)
+
+    def save(self, path: str | Path) -> None:
+        """Write everything to a NetCDF-4 file; :meth:`load` gives back the same bits."""
+        from dalembert.inverse.storage import save
+
+        save(self, path)
+
+    @staticmethod
+    def load(path: str | Path) -> "Fit":
+        """A fit that was saved.
+
+        Raises
+        ------
+        DataError
+            For a file that is not there, or holds no fit.
+        """
+        from dalembert.inverse.storage import load
+
+        return load(path)
+
+    def to_xarray(self) -> Any:
+        """Everything as an :class:`xarray.Dataset`, with units as attributes."""
+        from dalembert.inverse.storage import to_xarray
+
+        return to_xarray(self)
+
+    def figures(self) -> dict[str, Any]:
+        """Plotly figures by name."""
+        return hook("figures")(self)
+
+    def report(self, path: str | Path) -> Any:
+        """Write an HTML report that opens offline."""
+        return hook("report")(self, path)

@@ -1,0 +1,51 @@
+"""The running account of an identification: what was simulated, and what each start did."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from dalembert.inverse.events import Event, OnEvent, Screened, StartBegan, StartEnd, Step
+
+
+@dataclass
+class Journal:
+    """Counts simulations, keeps history and ends, and passes every event on.
+
+    Parameters
+    ----------
+    samples : int
+        Samples of the whole data; only steps that compare all of them enter the history.
+    on_event : callable, optional
+    """
+
+    samples: int
+    on_event: OnEvent | None = None
+    simulations: int = 0
+    failures: list[str] = field(default_factory=list)
+    history: list[Step] = field(default_factory=list)
+    starts: list[StartEnd] = field(default_factory=list)
+    _iteration: int = 0
+    _before: int = 0
+
+    def tell(self, event: Event) -> None:
+        if self.on_event is not None:
+            self.on_event(event)
+
+    def began(self, values: np.ndarray | None) -> None:
+        self._iteration, self._before = 0, self.simulations
+        self.tell(StartBegan(len(self.starts), self.simulations, values))
+
+    def step(self, best: float, values: np.ndarray, samples: int) -> None:
+        step = Step(len(self.starts), self._iteration, self.simulations, best, values, samples)
+        self._iteration += 1
+        if samples == self.samples:
+            self.history.append(step)
+        self.tell(step)
+
+    def ended(self, start: np.ndarray, end: np.ndarray, fitness: float, success: bool, message: str) -> None:
+        self.starts.append(StartEnd(start, end, fitness, success, message, self.simulations - self._before))
+        self.tell(self.starts[-1])
+
+    def screened(self, fitness: np.ndarray) -> None:
+        failed = int(np.sum(~np.isfinite(fitness)))
+        self.tell(Screened(len(fitness), failed, self.simulations, float(np.min(fitness))))

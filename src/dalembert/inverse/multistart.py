@@ -1,0 +1,117 @@
+"""Many starts of least squares, chosen among screened points and led by a growing horizon."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+from scipy.stats import qmc
+
+from dalembert.inverse.descent import End, descend
+from dalembert.inverse.noise import NoiseFloor, random_residuals
+from dalembert.inverse.problem import Problem
+from dalembert.optimize import LeastSquares
+
+HORIZONS = ("auto", "growing", None)
+
+SCREENED = 8
+"""Points simulated to choose starts from, a parameter and start."""
+
+
+def multistart(
+    problem: Problem,
+    method: LeastSquares,
+    floor: NoiseFloor,
+    *,
+    starts: int,
+    seed: int,
+    horizon: str | None,
+    start: np.ndarray,
+) -> list[End]:
+    """Ends of up to ``starts`` descents from search points.
+
+    Stops early when an end reaches a conclusive noise floor, or, from the third start on, when the best end has been
+    reached twice and leaves residuals that look like noise. With more than one start each is left once a step gains
+    less than a thousandth of the fitness; the best end is to be polished.
+    """
+    ladder = [problem.first(samples) for samples in horizons(problem, horizon)]
+    hasty = method if starts == 1 else replace(method, gain=max(1e-3, method.gain))
+    journal, search = problem.journal, problem.search
+    ends: list[End] = []
+    for point, rung in _attempts(ladder, starts, seed, horizon, start):
+        values = search.vectors(point)
+        journal.began(values)
+        end = descend(ladder[rung:], hasty, point)
+        journal.ended(values, search.vectors(end.point), end.fitness, end.success, end.message)
+        ends.append(end)
+        settled = floor.conclusive and end.fitness <= floor.fitness
+        if settled or len(ends) == starts or (len(ends) >= 3 and _reproduced(problem, ends)):
+            break
+    return ends
+
+
+def horizons(problem: Problem, horizon: str | None) -> list[int]:
+    """Numbers of samples from short to all: an eighth, a quarter, a half, all, but none too few to tell anything."""
+    if horizon is None:
+        return [problem.samples]
+    least = max(3, -(-2 * len(problem.search.lower) // problem.weights.shape[1]))
+    return [problem.samples // part for part in (8, 4, 2) if problem.samples // part >= least] + [problem.samples]
+
+
+def _attempts(
+    ladder: list[Problem], starts: int, seed: int, horizon: str | None, first: np.ndarray
+) -> Iterator[tuple[np.ndarray, int]]:
+    """Search points to start from, each with the rung of the ladder to begin on.
+
+    The given start comes first, its horizon growing from the shortest. Then points of a Latin hypercube are simulated
+    in one batch, and the rungs take turns to name the best point left by the misfit over their own horizon: all
+    samples every second time, half of them every fourth, a quarter every eighth and so on, since noise misleads short
+    horizons and long ones hold more false minima.
+    """
+    yield first, 0
+    points, scores = _screen(ladder, SCREENED * starts * len(first), seed)
+    search = ladder[-1].search
+    longest = len(ladder) - (2 if horizon == "growing" and len(ladder) > 1 else 1)
+    free = np.isfinite(scores[-1])
+    turn = 0
+    while free.any():
+        turn += 1
+        rung = max(0, longest - ((turn & -turn).bit_length() - 1))  # one rung down for each factor 2 in the turn
+        chosen = int(np.argmin(np.where(free, scores[rung], np.inf)))
+        free &= np.max(np.abs(points - points[chosen]) / (search.upper - search.lower), axis=1) > 0.05
+        yield points[chosen], rung
+
+
+def _screen(ladder: list[Problem], count: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
+    """Points (count, parameters) of a Latin hypercube, and their misfit over each horizon, (rungs, count)."""
+    whole = ladder[-1]
+    points = hypercube(whole, count, seed)
+    squares = whole.weights * (whole.responses(whole.search.vectors(points)) - whole.data.values) ** 2
+    scores = np.array([squares[:, : rung.samples].sum(axis=(1, 2)) for rung in ladder])
+    scores = np.where(np.isfinite(scores), scores, np.inf)
+    whole.journal.screened(scores[-1])
+    return points, scores
+
+
+def hypercube(problem: Problem, count: int, seed: int) -> np.ndarray:
+    """Search points (count, parameters) of a Latin hypercube over the box."""
+    low, high = problem.search.lower, problem.search.upper
+    sampler = qmc.LatinHypercube(len(low), rng=np.random.default_rng((seed, 1)))
+    return low + (high - low) * sampler.random(count)
+
+
+def _reproduced(problem: Problem, ends: list[End]) -> bool:
+    """Whether a second end cannot be told from the best one by the data, and the residuals look like noise.
+
+    Two ends cannot be told apart when fitness and linearised residuals differ by less than one variance of the noise,
+    fitness/(values − parameters).
+    """
+    best, *others = sorted(ends, key=lambda end: end.fitness)
+    at = best.linearisation
+    freedom = problem.compared - len(best.point)
+    if at is None or freedom <= 0 or not random_residuals(problem.residual(at.response), problem.weights.shape):
+        return False
+    slopes, variance = problem.slopes(at), best.fitness / freedom
+    return any(
+        end.fitness - best.fitness < variance and np.sum((slopes @ (end.point - best.point)) ** 2) < variance
+        for end in others
+    )

@@ -1,0 +1,77 @@
+"""How small a misfit can become: the noise that the data are known to have."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import chi2
+
+from dalembert.inverse.problem import Problem
+
+SMALL = 1e-6
+"""Noise below this fraction (0.1 % squared) of the signal's squares is small: a minimum that reaches it is the one."""
+
+
+@dataclass(frozen=True)
+class NoiseFloor:
+    """Fitness that known noise alone explains.
+
+    Parameters
+    ----------
+    fitness : float
+        99.9 % quantile of the fitness at the true parameters.
+    source : str
+        Where the noise is known from.
+    conclusive : bool
+        Whether reaching the floor shows that no better minimum need be looked for: the noise is so small against the
+        signal that a false minimum would not get there.
+    """
+
+    fitness: float
+    source: str
+    conclusive: bool
+
+
+def noise_floor(problem: Problem) -> NoiseFloor:
+    """Floor from given deviations, from the digits that the data are rounded to, and from arithmetic.
+
+    The variance of a value is the given one, plus q²/12 for data rounded to multiples of q, plus the square of a
+    millionth of its channel's spread.
+    """
+    data, weights = problem.data, problem.weights
+    given = np.zeros(len(data.channels)) if data.deviations is None else data.deviations
+    quanta = np.array([quantum(column) for column in data.values.T])
+    spread = data.values.std(axis=0)
+    expected = float(np.sum(weights * (given**2 + quanta**2 / 12 + (1e-6 * spread) ** 2)))
+    signal = float(np.sum(weights * (data.values - data.values.mean(axis=0)) ** 2))
+    source = "given deviations" if given.any() else "rounding of the data" if quanta.any() else "arithmetic"
+    return NoiseFloor(
+        expected * float(chi2.ppf(0.999, problem.compared)) / problem.compared, source, expected < SMALL * signal
+    )
+
+
+def quantum(column: np.ndarray) -> float:
+    """Unit of the last decimal that data (samples,) are rounded to; 0 where they are not, or span too few units to say.
+
+    >>> quantum(np.array([0.1234, -0.5, 1.25])), quantum(np.array([0.0, 1.0, 2.0])), quantum(np.sqrt(np.arange(9.0)))
+    (0.0001, 0.0, 0.0)
+    """
+    for decimals in range(13):
+        scaled = column * 10.0**decimals
+        if np.all(np.abs(scaled - np.rint(scaled)) < 1e-6):
+            return 10.0**-decimals if np.ptp(scaled) > 1000 else 0.0
+    return 0.0
+
+
+def autocorrelation(residual: np.ndarray, shape: tuple[int, int]) -> float:
+    """Correlation of neighbouring samples of weighted residuals, flat from (samples, channels), over all channels.
+
+    >>> autocorrelation(np.array([1.0, -1.0, 1.0, -1.0]), (4, 1))
+    -0.75
+    """
+    table = residual.reshape(shape)
+    return float(np.sum(table[1:] * table[:-1]) / max(np.sum(table**2), np.finfo(float).tiny))
+
+
+def random_residuals(residual: np.ndarray, shape: tuple[int, int]) -> bool:
+    """Whether residuals look like noise: their autocorrelation is within three of its deviations, 1/√values."""
+    return abs(autocorrelation(residual, shape)) < 3 / np.sqrt(residual.size)

@@ -1,0 +1,86 @@
+"""Starts of any other method than least squares, and the least squares that may polish them."""
+
+from functools import partial
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from dalembert.errors import SolveError
+from dalembert.inverse.descent import End, descend
+from dalembert.inverse.multistart import hypercube
+from dalembert.inverse.noise import NoiseFloor
+from dalembert.inverse.problem import Problem
+from dalembert.optimize import LeastSquares, Minimiser, Minimum, Objective, OnIteration, Progress
+
+
+class Method(Protocol):
+    """A minimiser of a fitness that comes in batches, such as the swarms and :class:`~dalembert.optimize.Minimiser`."""
+
+    def minimise(
+        self,
+        objective: Objective,
+        lower: ArrayLike,
+        upper: ArrayLike,
+        seed: int,
+        *,
+        start: ArrayLike | None = None,
+        on_iteration: OnIteration | None = None,
+    ) -> Minimum: ...
+
+
+def runs(
+    problem: Problem, method: Method, floor: NoiseFloor, *, starts: int, seed: int, start: np.ndarray | None
+) -> list[End]:
+    """Ends of up to ``starts`` runs, the first from the search point ``start`` if there is one, seeds counting up.
+
+    Local minimisers begin the other runs at points of a Latin hypercube; swarms scatter their own points.
+    """
+    points: list[np.ndarray | None] = [start, *[None] * (starts - 1)]
+    if isinstance(method, Minimiser):
+        points[1:] = list(hypercube(problem, starts, seed))[1:]
+    ends: list[End] = []
+    for number, point in enumerate(points):
+        ends.append(_run(problem, method, seed + number, point))
+        if floor.conclusive and ends[-1].fitness <= floor.fitness:
+            break
+    return ends
+
+
+def polished(problem: Problem, method: LeastSquares, best: End) -> End:
+    """Where least squares ends from ``best``, as a start of its own; ``best`` if it comes no further."""
+    journal, vector = problem.journal, problem.search.vectors(best.point)
+    journal.began(vector)
+    end = descend([problem], method, best.point)
+    journal.ended(vector, problem.search.vectors(end.point), end.fitness, end.success, f"polished: {end.message}")
+    return end if end.fitness <= best.fitness else best
+
+
+def _run(problem: Problem, method: Method, seed: int, point: np.ndarray | None) -> End:
+    journal, search = problem.journal, problem.search
+    begin = None if point is None else search.vectors(point)
+    minimise = method.minimise
+    if isinstance(method, Minimiser):
+        minimise = partial(method.minimise, gradient=problem.gradient)
+    best = End(np.full_like(search.lower, np.nan), np.inf, False, "")
+
+    def progress(now: Progress) -> None:
+        nonlocal best
+        best = End(now.x, now.best, False, "")
+        journal.step(now.best, search.vectors(now.x), problem.samples)
+
+    journal.began(begin)
+    try:
+        found = minimise(problem.fitness, search.lower, search.upper, seed, start=point, on_iteration=progress)
+        end = End(found.x, found.fitness, found.success, found.message)
+    except SolveError as error:  # a gradient that could not be computed
+        end = End(best.point, best.fitness, False, f"the sensitivities could not be computed: {error}")
+    nowhere = np.full_like(search.lower, np.nan)
+    journal.ended(
+        nowhere if begin is None else begin,
+        search.vectors(end.point) if np.isfinite(end.fitness) else nowhere,
+        end.fitness,
+        end.success,
+        end.message,
+    )
+    return end

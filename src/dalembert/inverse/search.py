@@ -1,0 +1,54 @@
+"""The coordinates in which parameters are searched."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from dalembert.parameters import Parameters
+
+
+@dataclass(frozen=True)
+class Search:
+    """Search coordinates z of parameters p: p/scale, or ln(p/lower) for parameters whose logarithm is searched.
+
+    Examples
+    --------
+    >>> search = Search(Parameters.of({"angle": (-2.0, 4.0), "modulus": (1e6, 1e9)}))
+    >>> search.points(np.array([2.0, 1e6])).tolist()
+    [0.5, 0.0]
+    >>> search.vectors(np.array([0.5, np.log(10)])).round().tolist()
+    [2.0, 10000000.0]
+    """
+
+    parameters: Parameters
+
+    @cached_property
+    def logarithmic(self) -> np.ndarray:
+        """Mask of the parameters whose logarithm is searched, shape (parameters,)."""
+        return np.array([item.logarithmic for item in self.parameters], dtype=bool)
+
+    @cached_property
+    def _unit(self) -> np.ndarray:
+        return np.where(self.logarithmic, self.parameters.lower, self.parameters.scale)
+
+    @cached_property
+    def lower(self) -> np.ndarray:
+        return self.points(self.parameters.lower)
+
+    @cached_property
+    def upper(self) -> np.ndarray:
+        return self.points(self.parameters.upper)
+
+    def points(self, vectors: np.ndarray) -> np.ndarray:
+        """Coordinates of parameter vectors, both (..., parameters)."""
+        ratio = vectors / self._unit
+        return np.where(self.logarithmic, np.log(np.where(self.logarithmic, ratio, 1.0)), ratio)
+
+    def vectors(self, points: np.ndarray) -> np.ndarray:
+        """Parameter vectors at coordinates, both (..., parameters), inside the bounds."""
+        return self.parameters.clip(self._unit * np.where(self.logarithmic, np.exp(points * self.logarithmic), points))
+
+    def slope(self, vector: np.ndarray) -> np.ndarray:
+        """dp/dz at a parameter vector, both (parameters,)."""
+        return np.where(self.logarithmic, vector, self._unit)

@@ -1,0 +1,36 @@
+"""How an identification went, in full sentences with advice."""
+
+import numpy as np
+
+from dalembert.inverse.descent import End
+from dalembert.inverse.noise import NoiseFloor, autocorrelation, random_residuals
+from dalembert.inverse.problem import Problem
+
+
+def status(problem: Problem, best: End, response: np.ndarray, floor: NoiseFloor) -> str:
+    """Whether it converged, how the misfit compares with the known noise, and whether the residuals look like noise."""
+    parts = ["Converged." if best.success else f"Not converged: {best.message}."]
+    ended = [start.fitness for start in problem.journal.starts]
+    if len(ended) > 1:
+        there = sum(fitness <= best.fitness * (1 + 1e-3) + floor.fitness * 1e-3 for fitness in ended)
+        parts.append(f"{there} of {len(ended)} starts ended with the best fitness.")
+    failed = len(problem.journal.failures)
+    if failed:
+        parts.append(f"{failed} simulations failed and were passed over, the first: {problem.journal.failures[0]}.")
+    residual = problem.residual(response)
+    if best.fitness <= floor.fitness:
+        parts.append(f"The misfit is at the floor that the noise of the data allows (known from {floor.source}).")
+    elif not random_residuals(residual, problem.weights.shape):
+        parts.append(
+            "The residuals are no mere noise, neighbouring samples correlate by "
+            f"{autocorrelation(residual, problem.weights.shape):.2f}; look whether the model lacks something, "
+            "the bounds leave the true values out, or more starts find a better minimum."
+        )
+    elif floor.source == "given deviations":
+        parts.append(
+            f"The misfit is {np.sqrt(best.fitness / floor.fitness):.2g} times what the given deviations allow; look "
+            "whether they are too small, the model lacks something, or more starts find a better minimum."
+        )
+    else:
+        parts.append("What remains looks like noise; give the data's deviations to have it checked against them.")
+    return " ".join(parts)

@@ -1,0 +1,23 @@
+"""A fit as text."""
+
+import numpy as np
+
+from dalembert.inverse.fit import Fit
+
+
+def summary(fit: Fit) -> str:
+    """Table of parameters with deviations, unit and bounds; then fitness, effort, status and warnings."""
+    rows = [("parameter", "value", "± deviation", "unit", "bounds")]
+    for item, value, deviation in zip(fit.parameters, fit.values, fit.deviations, strict=True):
+        known = "unknown" if np.isnan(deviation) else f"{deviation:.2g}"
+        rows.append((item.name, f"{value:.7g}", known, item.unit, f"{item.lower:.6g} to {item.upper:.6g}"))
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    table = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
+    table.insert(1, "─" * (sum(widths) + 2 * (len(widths) - 1)))
+    facts = [
+        f"method       {fit.method}",
+        f"fitness      {fit.fitness:.6g} (weighted sum of squares of {fit.response.size} values)",
+        f"simulations  {fit.simulations}",
+        f"starts       {len(fit.starts)}",
+    ]
+    return "\n".join([*table, "", *facts, "", fit.status, *fit.identifiability().sentences])

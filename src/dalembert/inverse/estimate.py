@@ -52,8 +52,9 @@ def estimate(slopes: np.ndarray, scale: np.ndarray, variance: float) -> Estimate
     """
     short = max(0, len(scale) - len(slopes))
     _, singular, directions = np.linalg.svd(np.pad(slopes, ((0, short), (0, 0))), full_matrices=False)
-    unseen = singular <= UNSEEN * max(singular[0], np.finfo(float).tiny)
-    inverse = 1 / np.where(unseen, UNSEEN * max(singular[0], np.finfo(float).tiny), singular)
+    least = UNSEEN * (singular[0] or 1.0)
+    unseen = singular <= least
+    inverse = 1 / np.maximum(singular, least)
     spread = directions.T * inverse  # (parameters, combinations): spread @ spread.T is (JᵀWJ)⁻¹
     size = np.linalg.norm(spread, axis=1)
     correlation = (spread / size[:, None]) @ (spread / size[:, None]).T

@@ -31,7 +31,7 @@ def identify(
     start: Mapping[str, float] | ArrayLike | None = None,
     weights: ArrayLike | None = None,
     polish: bool = False,
-    horizon: str | None = "auto",
+    horizon: str | None = "growing",
     on_event: OnEvent | None = None,
 ) -> Fit:
     """Parameters p of a model that make its response R(p) agree with measurements: least Σ W (R(p) − data)².
@@ -53,9 +53,9 @@ def identify(
         W; 1/deviation² of each channel if the data have deviations, else 1.
     polish : bool
         Whether least squares goes on from where another method ends.
-    horizon : {"auto", "growing", None}
+    horizon : {"growing", None}
         For least squares: ``"growing"`` fits an eighth, a quarter, a half of the samples, then all, each from the end
-        of the one before; ``"auto"`` does so for the first start and some of the others; None never.
+        of the one before; None fits all samples at once.
     on_event : callable, optional
         Called with each event (see :mod:`dalembert.inverse.events`) as it happens.
 
@@ -78,7 +78,9 @@ def identify(
     (``Parameter.log`` overrules). A failed simulation is infinitely bad, and never ends the run.
 
     The first least squares start is ``start`` or ``Parameters.start``. If it does not settle the matter, 8 points a
-    parameter and start of a Latin hypercube are simulated in one batch, and the best of them become further starts.
+    parameter and start of a Latin hypercube are simulated in one batch, and further starts are those of the least
+    misfit over half, a quarter, an eighth of the samples in turn. The best end is polished at last.
+
     The matter is settled when a misfit is within the 99.9 % quantile of noise known to be below 0.1 % of the signal
     (from given deviations or from rounding of the data; with neither, a millionth of the signal), or, from the third
     start on, when the best end was reached twice and leaves residuals whose autocorrelation looks like noise.
@@ -97,7 +99,8 @@ def identify(
     method = _method(method)
     squares = isinstance(method, LeastSquares)
     starts = _starts(starts, 8 if squares else 1)
-    _check_horizon(horizon, squares)
+    if horizon not in HORIZONS:
+        raise InputError(unknown("horizon", str(horizon), [name for name in HORIZONS if name]))
     journal = Journal(len(data.coordinate.values), on_event)
     problem = pose(model, data, weights, journal)
     origin = None if start is None else _origin(problem, start)
@@ -171,13 +174,6 @@ def _starts(given: int | None, usual: int) -> int:
     if given is not None and given < 1:
         raise InputError(f"starts is {given}; expected at least 1")
     return usual if given is None else given
-
-
-def _check_horizon(horizon: str | None, squares: bool) -> None:
-    if horizon not in HORIZONS:
-        raise InputError(unknown("horizon", str(horizon), [name for name in HORIZONS if name]))
-    if horizon == "growing" and not squares:
-        raise InputError("horizon='growing' is for least squares; leave it out, or leave out method")
 
 
 def _origin(problem: Problem, start: Mapping[str, float] | ArrayLike) -> np.ndarray:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import count
 
 import numpy as np
 from scipy.stats import qmc
@@ -11,10 +12,13 @@ from dalembert.inverse.noise import NoiseFloor, random_residuals
 from dalembert.inverse.problem import Problem
 from dalembert.optimize import LeastSquares
 
-HORIZONS = ("auto", "growing", None)
+HORIZONS = ("growing", None)
 
 SCREENED = 8
 """Points simulated to choose starts from, a parameter and start."""
+
+APART = 0.05
+"""Chosen points keep this part of the box's width from each other."""
 
 
 def multistart(
@@ -37,7 +41,7 @@ def multistart(
     hasty = method if starts == 1 else replace(method, gain=max(1e-3, method.gain))
     journal, search = problem.journal, problem.search
     ends: list[End] = []
-    for point, rung in _attempts(ladder, starts, seed, horizon, start):
+    for point, rung in _attempts(ladder, starts, seed, start):
         values = search.vectors(point)
         journal.began(values)
         end = descend(ladder[rung:], hasty, point)
@@ -57,34 +61,31 @@ def horizons(problem: Problem, horizon: str | None) -> list[int]:
     return [problem.samples // part for part in (8, 4, 2) if problem.samples // part >= least] + [problem.samples]
 
 
-def _attempts(
-    ladder: list[Problem], starts: int, seed: int, horizon: str | None, first: np.ndarray
-) -> Iterator[tuple[np.ndarray, int]]:
+def _attempts(ladder: list[Problem], starts: int, seed: int, first: np.ndarray) -> Iterator[tuple[np.ndarray, int]]:
     """Search points to start from, each with the rung of the ladder to begin on.
 
     The given start comes first, its horizon growing from the shortest. Then points of a Latin hypercube are simulated
-    in one batch, and the rungs take turns to name the best point left by the misfit over their own horizon: all
-    samples every second time, half of them every fourth, a quarter every eighth and so on, since noise misleads short
-    horizons and long ones hold more false minima.
+    in one batch, and the horizons, half of the samples, a quarter, an eighth, take turns to name the best point left
+    by the misfit over themselves and to grow from it: the longer ones stand above the noise, the shorter ones hold
+    fewer false minima.
     """
     yield first, 0
     points, scores = _screen(ladder, SCREENED * starts * len(first), seed)
-    search = ladder[-1].search
-    longest = len(ladder) - (2 if horizon == "growing" and len(ladder) > 1 else 1)
+    search, longest = ladder[-1].search, max(0, len(ladder) - 2)
     free = np.isfinite(scores[-1])
-    turn = 0
-    while free.any():
-        turn += 1
-        rung = max(0, longest - ((turn & -turn).bit_length() - 1))  # one rung down for each factor 2 in the turn
+    for turn in count():
+        if not free.any():
+            return
+        rung = longest - turn % (longest + 1)
         chosen = int(np.argmin(np.where(free, scores[rung], np.inf)))
-        free &= np.max(np.abs(points - points[chosen]) / (search.upper - search.lower), axis=1) > 0.05
+        free &= np.max(np.abs(points - points[chosen]) / (search.upper - search.lower), axis=1) > APART
         yield points[chosen], rung
 
 
-def _screen(ladder: list[Problem], count: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
-    """Points (count, parameters) of a Latin hypercube, and their misfit over each horizon, (rungs, count)."""
+def _screen(ladder: list[Problem], number: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
+    """Points (number, parameters) of a Latin hypercube, and their misfit over each horizon, (rungs, number)."""
     whole = ladder[-1]
-    points = hypercube(whole, count, seed)
+    points = hypercube(whole, number, seed)
     squares = whole.weights * (whole.responses(whole.search.vectors(points)) - whole.data.values) ** 2
     scores = np.array([squares[:, : rung.samples].sum(axis=(1, 2)) for rung in ladder])
     scores = np.where(np.isfinite(scores), scores, np.inf)
@@ -92,11 +93,11 @@ def _screen(ladder: list[Problem], count: int, seed: int) -> tuple[np.ndarray, n
     return points, scores
 
 
-def hypercube(problem: Problem, count: int, seed: int) -> np.ndarray:
-    """Search points (count, parameters) of a Latin hypercube over the box."""
+def hypercube(problem: Problem, number: int, seed: int) -> np.ndarray:
+    """Search points (number, parameters) of a Latin hypercube over the box."""
     low, high = problem.search.lower, problem.search.upper
     sampler = qmc.LatinHypercube(len(low), rng=np.random.default_rng((seed, 1)))
-    return low + (high - low) * sampler.random(count)
+    return low + (high - low) * sampler.random(number)
 
 
 def _reproduced(problem: Problem, ends: list[End]) -> bool:

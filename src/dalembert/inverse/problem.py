@@ -113,8 +113,11 @@ class Problem:
         return jacobian.reshape(-1, len(at.vector))
 
     def gradient(self, point: np.ndarray) -> np.ndarray:
-        """Gradient of the fitness at a search point, both (parameters,)."""
-        at = self.linearise(self.search.vectors(point))
+        """Gradient of the fitness at a search point, both (parameters,); zero where the sample fails."""
+        try:
+            at = self.linearise(self.search.vectors(point))
+        except SolveError:
+            return np.zeros_like(point)
         return 2 * self.slopes(at).T @ self.residual(at.response)
 
     def _named(self, vector: np.ndarray) -> str:

@@ -6,7 +6,6 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dalembert.errors import SolveError
 from dalembert.inverse.descent import End, descend
 from dalembert.inverse.multistart import hypercube
 from dalembert.inverse.noise import NoiseFloor
@@ -62,19 +61,13 @@ def _run(problem: Problem, method: Method, seed: int, point: np.ndarray | None) 
     minimise = method.minimise
     if isinstance(method, Minimiser):
         minimise = partial(method.minimise, gradient=problem.gradient)
-    best = End(np.full_like(search.lower, np.nan), np.inf, False, "")
 
     def progress(now: Progress) -> None:
-        nonlocal best
-        best = End(now.x, now.best, False, "")
         journal.step(now.best, search.vectors(now.x), problem.samples)
 
     journal.began(begin)
-    try:
-        found = minimise(problem.fitness, search.lower, search.upper, seed, start=point, on_iteration=progress)
-        end = End(found.x, found.fitness, found.success, found.message)
-    except SolveError as error:  # a gradient that could not be computed
-        end = End(best.point, best.fitness, False, f"the sensitivities could not be computed: {error}")
+    found = minimise(problem.fitness, search.lower, search.upper, seed, start=point, on_iteration=progress)
+    end = End(found.x, found.fitness, found.success, found.message, found.stationary)
     nowhere = np.full_like(search.lower, np.nan)
     journal.ended(
         nowhere if begin is None else begin,

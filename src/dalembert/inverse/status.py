@@ -18,6 +18,10 @@ def status(problem: Problem, best: End, response: np.ndarray, floor: NoiseFloor)
     if failed:
         parts.append(f"{failed} simulations failed and were passed over, the first: {problem.journal.failures[0]}.")
     residual = problem.residual(response)
+    if best.fitness > floor.fitness:
+        spread = np.sum(problem.weights * (problem.data.values - problem.data.values.mean(axis=0)) ** 2)
+        share = 1 - best.fitness / max(spread, np.finfo(float).tiny)
+        parts.append(f"The response explains {100 * share:.4g} % of the data's variation.")
     if best.fitness <= floor.fitness:
         parts.append(f"The misfit is at the floor that the noise of the data allows (known from {floor.source}).")
     elif not random_residuals(residual, problem.weights.shape):

@@ -129,5 +129,5 @@ class ImprovedParticleSwarm(Swarm):
 def subset_means(rng: np.random.Generator, rows: np.ndarray, fraction: float, count: int) -> np.ndarray:
     """Means of ``count`` random subsets of the rows, shape (count, columns), each of the given fraction of them."""
     size = max(1, round(fraction * len(rows)))
-    chosen = np.argsort(rng.random((count, len(rows))), axis=1)[:, :size]
+    chosen = np.argpartition(rng.random((count, len(rows))), size - 1, axis=1)[:, :size]
     return rows[chosen].mean(axis=1)

@@ -74,49 +74,85 @@ class LeastSquares:
         """
         low, high = box(lower, upper)
         origin = np.clip(np.asarray(start, dtype=float), low, high)
-        unit = np.broadcast_to(np.asarray(scale, dtype=float), origin.shape)
-        best, x_best, evaluations, iterations = np.inf, origin, 0, 0
-
-        def place(u: np.ndarray) -> np.ndarray:
-            return np.clip(origin + (u - 1) * unit, low, high)
-
-        def fun(u: np.ndarray) -> np.ndarray:
-            nonlocal evaluations, best, x_best
-            evaluations += 1
-            value = residual(place(u))
-            squares = value @ value
-            if squares < best:
-                best, x_best = float(squares), place(u)
-            return value
-
-        def jac(u: np.ndarray) -> np.ndarray:
-            nonlocal iterations
-            if on_iteration is not None:
-                on_iteration(Progress(iterations, evaluations, best, x_best))
-            iterations += 1
-            return jacobian(place(u)) * unit
-
-        one = np.ones_like(origin)
-        first = fun(one)
-        if not np.all(np.isfinite(first)):
-            return Minimum(origin, np.inf, False, "the first point could not be simulated", 0, evaluations)
-        result = least_squares(
-            lambda u: first if evaluations == 1 and np.array_equal(u, one) else fun(u),
-            one,
-            jac,  # pyright: ignore[reportArgumentType]
-            bounds=(1 + (low - origin) / unit, 1 + (high - origin) / unit),
-            method="trf",
-            ftol=self.gain,
-            xtol=self.tolerance,
-            # An absolute threshold on the gradient would depend on the units of the data.
-            gtol=None,  # pyright: ignore[reportArgumentType]
-            max_nfev=self.trials,
-        )
+        path = _Path(residual, jacobian, low, high, origin, np.broadcast_to(scale, origin.shape), on_iteration)
+        try:
+            if not np.all(np.isfinite(path.residual(path.one))):
+                return path.minimum(False, "the first point could not be simulated", False)
+            result = least_squares(
+                path.residual,
+                path.one,
+                path.jacobian,  # pyright: ignore[reportArgumentType]
+                bounds=(1 + (low - origin) / path.unit, 1 + (high - origin) / path.unit),
+                method="trf",
+                ftol=self.gain,
+                xtol=self.tolerance,
+                # An absolute threshold on the gradient would depend on the units of the data.
+                gtol=None,  # pyright: ignore[reportArgumentType]
+                max_nfev=self.trials,
+            )
+        except _Settled as settled:
+            return path.minimum(True, str(settled), True)
         message = {
             0: f"stopped after {self.trials} trial points, not converged; allow more with LeastSquares(trials=...)",
             2: "converged: the sum of squares falls no more",
             3: "converged: the parameters move no more",
             4: "converged: neither parameters nor sum of squares move any more",
         }[result.status]
-        stationary = result.status in (3, 4)
-        return Minimum(x_best, best, result.status > 0, message, max(0, iterations - 1), evaluations, stationary)
+        return path.minimum(result.status > 0, message, result.status in (3, 4))
+
+
+class _Settled(Exception):
+    """Nothing is left to minimise, where SciPy would divide zero by zero; the message says why."""
+
+
+class _Path:
+    """Residual and jacobian as SciPy calls them, in u = 1 + (x − origin)/unit; counts, and keeps the best point."""
+
+    def __init__(
+        self,
+        residual: Callable[[np.ndarray], np.ndarray],
+        jacobian: Callable[[np.ndarray], np.ndarray],
+        low: np.ndarray,
+        high: np.ndarray,
+        origin: np.ndarray,
+        unit: np.ndarray,
+        on_iteration: OnIteration | None,
+    ) -> None:
+        self._residual, self._jacobian, self.on_iteration = residual, jacobian, on_iteration
+        self.low, self.high, self.origin, self.unit = low, high, origin, unit
+        self.one = np.ones_like(origin)
+        self.best, self.x, self.evaluations, self.iterations = np.inf, origin, 0, 0
+        self.last: tuple[np.ndarray, np.ndarray] | None = None
+
+    def place(self, u: np.ndarray) -> np.ndarray:
+        return np.clip(self.origin + (u - 1) * self.unit, self.low, self.high)
+
+    def residual(self, u: np.ndarray) -> np.ndarray:
+        if self.last is not None and np.array_equal(self.last[0], u):  # SciPy asks again for the first point
+            return self.last[1]
+        value = self._residual(self.place(u))
+        self.evaluations += 1
+        self.last = (u.copy(), value)
+        squares = float(value @ value)
+        if squares < self.best:
+            self.best, self.x = squares, self.place(u)
+        if squares == 0:
+            self.tell()
+            raise _Settled("converged: the fit is perfect")
+        return value
+
+    def jacobian(self, u: np.ndarray) -> np.ndarray:
+        self.tell()
+        slopes = self._jacobian(self.place(u)) * self.unit
+        if not slopes.any():
+            raise _Settled("converged: the residual does not change with the parameters")
+        return slopes
+
+    def tell(self) -> None:
+        if self.on_iteration is not None:
+            self.on_iteration(Progress(self.iterations, self.evaluations, self.best, self.x))
+        self.iterations += 1
+
+    def minimum(self, success: bool, message: str, stationary: bool) -> Minimum:
+        iterations = max(0, self.iterations - 1)
+        return Minimum(self.x, self.best, success, message, iterations, self.evaluations, stationary)

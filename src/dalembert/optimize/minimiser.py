@@ -19,7 +19,8 @@ GRADIENT = ("CG", "BFGS", "Newton-CG", "L-BFGS-B", "TNC", "SLSQP", "trust-constr
 GLOBAL = ("differential_evolution", "dual_annealing", "basinhopping", "shgo", "direct")
 NAMES = (*BOUNDED, *UNBOUNDED, *GLOBAL)
 
-FAILED = 1e100  # SciPy's methods subtract fitness values, which infinities do not survive
+FAILED = 10.0
+"""How much worse than the worst a failed sample is told to be: SciPy interpolates, which no infinity survives."""
 
 
 @dataclass(frozen=True)
@@ -148,7 +149,7 @@ class _Watched:
 
     def __init__(self, objective: Objective, low: np.ndarray, high: np.ndarray, on_iteration: OnIteration | None):
         self.objective, self.low, self.high, self.on_iteration = objective, low, high, on_iteration
-        self.evaluations, self.improvements, self.best, self.x = 0, 0, np.inf, (low + high) / 2
+        self.evaluations, self.improvements, self.best, self.worst, self.x = 0, 0, np.inf, 1.0, (low + high) / 2
 
     def one(self, x: np.ndarray) -> float:
         """Fitness of one point (parameters,)."""
@@ -168,4 +169,6 @@ class _Watched:
             self.improvements += 1
             if self.on_iteration is not None:
                 self.on_iteration(Progress(self.improvements, self.evaluations, self.best, self.x))
-        return np.where(np.isfinite(fitness), fitness, FAILED)
+        fine = np.isfinite(fitness)
+        self.worst = max([self.worst, *np.abs(fitness[fine])])
+        return np.where(fine, fitness, FAILED * self.worst)

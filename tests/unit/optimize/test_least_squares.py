@@ -61,6 +61,12 @@ def test_a_start_that_fails_is_told_and_not_raised():
     assert found.message == "the first point could not be simulated"
 
 
+def test_a_residual_that_sees_nothing_ends_at_once():
+    found = LeastSquares().minimise(lambda x: np.ones(3), lambda x: np.zeros((3, 2)), [0, 0], [1, 1], [0.2, 0.3])
+    assert (found.success, found.evaluations, found.x.tolist()) == (True, 1, [0.2, 0.3])
+    assert found.message == "converged: the residual does not change with the parameters"
+
+
 def test_too_few_trials_are_told():
     data = decay([2.0, 3.0])
     found = LeastSquares(trials=3).minimise(lambda x: decay(x) - data, slope, [0, 0], [10, 10], [8, 0.5])

@@ -35,7 +35,11 @@ def assembled(system: System) -> Lowered:
     lowered = lower(system)
     if lowered.structure.size == lowered.structure.n:
         return lowered
-    model = lowered.dual if lowered.is_complex else lowered.real
+    model = lowered.real
+    if lowered.is_complex:
+        model = lowered.dual
+        cast = {name: getattr(lowered, name).astype(complex) for name in ("frames", "rates", "x", "v")}
+        lowered = replace(lowered, **cast)
     free = _free(system)
     frames = _close(system.bodies, lowered, model, free)
     lowered = replace(lowered, frames=frames, x=_coordinates(system.bodies, lowered, frames))

@@ -7,12 +7,12 @@ import numpy as np
 
 from dalembert.errors import InputError, unknown
 from dalembert.multibody.kernels import signals
-from dalembert.multibody.kernels.assembly import constraint_rates, largest, residual, tangent
+from dalembert.multibody.kernels.assembly import constraint_rates, residual, tangent
 from dalembert.multibody.kernels.compiled import compiled, kernel
 from dalembert.multibody.kernels.dual import STEP
 from dalembert.multibody.kernels.linear import factorise, solve, storage
 from dalembert.multibody.kernels.model import select, workspace
-from dalembert.multibody.kernels.motion import Motion, advance, coefficients, copy, interpolate, row, still
+from dalembert.multibody.kernels.motion import Motion, advance, clear, coefficients, copy, interpolate, row, still
 
 STARTS = ("consistent", "zero")
 DONE, NEWTON_FAILED, SINGULAR, TOO_MANY_STEPS = range(4)
@@ -21,7 +21,9 @@ _SLOW = 0.3  # contraction at which an iteration is not worth going on with the 
 _AGED = 0.02  # contraction at which the next step begins with a new one
 _HALVINGS = 8  # of a fixed step that Newton does not converge on
 _UNITS = 1 << _HALVINGS
-_ROUNDING = 4e-15  # relative corrections of this size are rounding
+# Relative corrections that stop to shrink are rounding below the first size, and below the second one if a nearly singular
+# position magnifies it.
+_ROUNDING, _MAGNIFIED = 1e-12, 1e-9
 
 
 @dataclass(frozen=True)
@@ -43,7 +45,7 @@ class GeneralizedAlpha:
         Of the local error, relative to each coordinate's scale; for ``adaptive``.
     newton_tolerance : float
         Of the coordinates at each step, relative to their scale. An error of a coordinate is 2 / step times as large in
-        the velocity and adds up over the steps, so it must lie far below the accuracy that is wanted.
+        the velocity and adds up over the steps; so the default is rounding.
     most_steps : int
         After which an adaptive run gives up.
 
@@ -58,7 +60,7 @@ class GeneralizedAlpha:
     initial_acceleration: str = "consistent"
     adaptive: bool = False
     tolerance: float = 1e-6
-    newton_tolerance: float = 1e-14
+    newton_tolerance: float = 2e-15
     most_steps: int = 10_000_000
 
     def __post_init__(self) -> None:
@@ -89,7 +91,8 @@ class Problem(NamedTuple):
     """What does not change from sample to sample: sizes, scales, where matrix entries go, LAPACK, times.
 
     ``n`` coordinates; ``scale`` (N + 1,); ``slots`` and ``layout`` of the Newton matrix; those of the sensitivities,
-    whose matrix is renewed at each step; ``edges`` of the smooth stretches of motion; ``times`` of the output.
+    whose matrix is renewed at each step; ``times`` of the output. ``edges`` (samples, -) of the smooth stretches of
+    motion, and how many ``stretches`` each sample has.
     """
 
     n: int
@@ -99,8 +102,9 @@ class Problem(NamedTuple):
     exact_slots: tuple
     exact_layout: tuple
     lapack: np.ndarray
-    edges: np.ndarray
     times: np.ndarray
+    edges: np.ndarray
+    stretches: np.ndarray
 
 
 class Log(NamedTuple):
@@ -199,21 +203,21 @@ def _converge(problem, model, dual, c, tolerance, old, new, newton, log):
         if not _renew(problem, dual, c, new, newton):
             return SINGULAR, 0
         memory[1] = _AGED
-    before = 0.0
+    before, norm, worst = 0.0, 1.0, 0
     for iteration in range(1, _MOST_ITERATIONS + 1):
         residual(model, n, new.x, new.v, new.a, newton.work, 1.0 / c.dq, newton.r)
         solve(problem.layout, problem.lapack, newton.factors, newton.r, newton.delta)
         log.counts[1] += 1
         norm, worst = _correct(n, c, problem.scale, newton.delta, old, new)
-        if not norm < 1e100:
+        if not norm < 1e100 or norm <= tolerance:
             break
-        if norm <= _ROUNDING:
-            return DONE, iteration
-        if iteration > 1:
-            memory[1] = norm / before
-        rate = memory[1]
+        rate = memory[1] if iteration == 1 else norm / before
         if rate < 1.0 and norm * rate / (1.0 - rate) <= tolerance:
-            return DONE, iteration
+            break
+        if iteration > 2 and rate > 0.5 and norm <= _ROUNDING:
+            break
+        if iteration > 1:
+            memory[1] = rate
         if iteration > 1 and rate > _SLOW:
             if fresh and rate > 2.0:
                 break
@@ -222,8 +226,20 @@ def _converge(problem, model, dual, c, tolerance, old, new, newton, log):
                 return SINGULAR, worst
             fresh = True
         before = norm
+    if norm <= _MAGNIFIED:
+        return DONE, iteration
     memory[0] = 0.0
     return NEWTON_FAILED, worst
+
+
+@kernel
+def _subtract(n, correction, state):
+    """Take a correction off the accelerations and multipliers, which are also the algorithmic accelerations."""
+    for i in range(n):
+        state.a[i] -= correction[i]
+        state.w[i] = state.a[i]
+    for i in range(n, len(state.x) - 1):
+        state.x[i] -= correction[i]
 
 
 @compiled
@@ -238,8 +254,7 @@ def _differentiate(problem, dual, directions, c, t, within, old, new, dolds, dne
     for d in range(len(dolds.x)):
         model = select(directions, d)
         dold, dnew = row(dolds, d), row(dnews, d)
-        dnew.a[:] = dold.a
-        dnew.x[n:size] = dold.x[n:size]
+        copy(dnew, dold)
         advance(n, c, dold, dnew)
         _lift(n, new, dnew, lifted)
         _signals(model, t, within, dual_work)
@@ -247,12 +262,20 @@ def _differentiate(problem, dual, directions, c, t, within, old, new, dolds, dne
         for i in range(size):
             delta[i] = r[i].imag / STEP
         solve(problem.exact_layout, problem.lapack, exact, delta, answer)
-        for i in range(n):
-            dnew.a[i] -= answer[i]
-        for i in range(n, size):
-            dnew.x[i] -= answer[i]
+        _subtract(n, answer, dnew)
         advance(n, c, dold, dnew)
     return regular
+
+
+@kernel
+def _initial_matrix(problem, dual, state, dual_work, constraints, exact):
+    """Factorised matrix of the equations of motion beside the constraints at acceleration level; whether it is regular."""
+    arguments = (dual, problem.exact_slots, problem.n, state.x, state.v, state.a)
+    tangent(*arguments, (1.0, 0.0, 0.0), (0.0, 1.0), dual_work, constraints)
+    tangent(*arguments, (0.0, 0.0, 1.0), (1.0, 0.0), dual_work, exact.matrix)
+    for i in range(len(constraints)):
+        exact.matrix[i] += constraints[i]
+    return factorise(problem.exact_layout, problem.lapack, exact)
 
 
 @compiled
@@ -260,27 +283,19 @@ def _accelerate(problem, model, dual, directions, t, within, state, dstates, wor
     """Accelerations and multipliers that satisfy the equations of motion, and their derivatives."""
     n, last = problem.n, len(state.x) - 1
     r, delta, answer = buffers
-    rate, second = np.zeros(last + 1), np.zeros(last + 1)
-    drate, dsecond = np.zeros(last + 1, np.complex128), np.zeros(last + 1, np.complex128)
+    rate, second, constraints = np.zeros(last + 1), np.zeros(last + 1), np.zeros(len(exact.matrix))
+    drate, dsecond = np.zeros(last + 1, r.dtype), np.zeros(last + 1, r.dtype)
     _signals(model, t, within, work)
     _signals(dual, t, within, dual_work)
-    for _ in range(2):  # twice: friction may depend on the multipliers
-        args = (dual, problem.exact_slots, n, state.x, state.v, state.a)
-        constraints = np.empty_like(exact.matrix)
-        tangent(*args, (1.0, 0.0, 0.0), (0.0, 1.0), dual_work, constraints)
-        tangent(*args, (0.0, 0.0, 1.0), (1.0, 0.0), dual_work, exact.matrix)
-        exact.matrix[:] += constraints
-        if not factorise(problem.exact_layout, problem.lapack, exact):
+    for iteration in range(4):  # linear but for friction that depends on the multipliers
+        if iteration % 2 == 0 and not _initial_matrix(problem, dual, state, dual_work, constraints, exact):
             return False
-        for _ in range(2):
-            residual(model, n, state.x, state.v, state.a, work, 1.0, answer)
-            constraint_rates(model, n, state.x, state.v, state.a, work, rate, second)
-            delta[:n] = answer[:n]
-            delta[n:] = second[n:]
-            solve(problem.exact_layout, problem.lapack, exact, delta, answer)
-            state.a[:n] -= answer[:n]
-            state.x[n:last] -= answer[n:last]
-    state.w[:] = state.a
+        residual(model, n, state.x, state.v, state.a, work, 1.0, delta)
+        constraint_rates(model, n, state.x, state.v, state.a, work, rate, second)
+        for i in range(n, last):
+            delta[i] = second[i]
+        solve(problem.exact_layout, problem.lapack, exact, delta, answer)
+        _subtract(n, answer, state)
     for d in range(len(dstates.x)):
         tilted, dstate = select(directions, d), row(dstates, d)
         _signals(tilted, t, within, dual_work)
@@ -290,34 +305,43 @@ def _accelerate(problem, model, dual, directions, t, within, state, dstates, wor
         for i in range(last):
             delta[i] = (r[i].imag if i < n else dsecond[i].imag) / STEP
         solve(problem.exact_layout, problem.lapack, exact, delta, answer)
-        dstate.a[:n] -= answer[:n]
-        dstate.x[n:last] -= answer[n:last]
-        dstate.w[:] = dstate.a
+        _subtract(n, answer, dstate)
     return True
 
 
 @compiled
-def integrate(problem, settings, model, dual, directions, state, dstates, out, dout, log):
-    """Run from ``problem.edges[0]`` to the last edge and fill the states at the output times.
+def integrate(problem, settings, models, duals, directions, states, dstates, out, dout, log, ends):
+    """Run a stack of samples from ``problem.edges[sample, 0]`` to the last edge; fill the states at the output times.
 
     Parameters
     ----------
     problem, settings : Problem, Settings
-    model, dual : Model
-        In real and in complex numbers.
+    models, duals : Model
+        Stacks in real and in complex numbers, one a sample.
     directions : Model
-        Stack of complex models, one a direction of differentiation; may be empty.
-    state, dstates : Motion
-        At the start, and its derivatives (directions, N + 1); overwritten.
+        Stack of complex models, one a direction of differentiation; empty if there is more than one sample.
+    states : Motion
+        At the start, (samples, N + 1); overwritten.
+    dstates : Motion
+        Derivatives at the start, (directions, N + 1); overwritten.
     out, dout : Motion
-        Arrays (times, N + 1) and (directions, times, N + 1); ``w`` is not used.
+        Arrays (samples, times, N + 1) and (directions, times, N + 1); ``w`` is not used.
     log : Log
-
-    Returns
-    -------
-    status, time, unknown : int, float, int
-        `DONE`, or the reason, with the time reached and the unknown that moved most.
+        Of the last sample.
+    ends : array, shape (samples, 3)
+        Status (`DONE`, or the reason), time reached, unknown that moved most.
     """
+    for sample in range(len(states.x)):
+        clear(log.counts)
+        ends[sample, 0], ends[sample, 1], ends[sample, 2] = _integrate(
+            problem, problem.edges[sample, : problem.stretches[sample] + 1], settings, select(models, sample),
+            select(duals, sample), directions, row(states, sample), dstates, row(out, sample), dout, log,
+        )  # fmt: skip
+
+
+@compiled
+def _integrate(problem, edges, settings, model, dual, directions, state, dstates, out, dout, log):
+    """Run one sample: status, time reached, and the unknown that moved most."""
     n, width = problem.n, len(state.x)
     old, new = still(width), still(width)
     copy(state, new)
@@ -332,10 +356,10 @@ def integrate(problem, settings, model, dual, directions, state, dstates, out, d
     differentiated = len(dstates.x) > 0
     due = 0
     length = settings.step
-    for stretch in range(len(problem.edges) - 1):
-        begin, end = problem.edges[stretch], problem.edges[stretch + 1]
+    for stretch in range(len(edges) - 1):
+        begin, end = edges[stretch], edges[stretch + 1]
         within = 0.5 * (begin + end)
-        newton.slope[:] = 0.0
+        clear(newton.slope)
         if stretch > 0 or settings.consistent:
             if not _accelerate(
                 problem, model, dual, directions, begin, within, new, dstates, work, dual_work, lifted, exact, buffers
@@ -373,7 +397,7 @@ def integrate(problem, settings, model, dual, directions, state, dstates, out, d
             if status != DONE or error > 1.0:
                 log.counts[3] += 1
                 copy(old, new)
-                newton.slope[:] = 0.0
+                clear(newton.slope)
                 if settings.adaptive:
                     length *= max(0.2, 0.9 * error ** (-1 / 3)) if status == DONE else 0.25
                     if length < 1e-12 * (end - begin):
@@ -389,7 +413,6 @@ def integrate(problem, settings, model, dual, directions, state, dstates, out, d
             log.counts[0] += 1
             _learn(n, c, old, new, newton.slope)
             if differentiated:
-                dolds.x[:], dolds.v[:], dolds.a[:], dolds.w[:] = dstates.x, dstates.v, dstates.a, dstates.w
                 _differentiate(
                     problem, dual, directions, c, target, within, old, new, dolds, dstates, exact, dual_work, lifted,
                     buffers,
@@ -410,17 +433,12 @@ def integrate(problem, settings, model, dual, directions, state, dstates, out, d
                 if level > 0 and unit % (2 * stride) == 0:
                     level -= 1
     copy(new, state)
-    return DONE, problem.edges[-1], 0
+    return DONE, edges[-1], 0
 
 
 @compiled
 def _record(n, length, share, old, new, dolds, dnews, out, dout, due):
     """Write the states at an output time."""
-    if share > 1.0 - 1e-9:
-        out.x[due], out.v[due], out.a[due] = new.x, new.v, new.a
-        for d in range(len(dnews.x)):
-            dout.x[d, due], dout.v[d, due], dout.a[d, due] = dnews.x[d], dnews.v[d], dnews.a[d]
-        return
     interpolate(n, length, share, old, new, out.x[due], out.v[due], out.a[due])
     for d in range(len(dnews.x)):
         interpolate(n, length, share, row(dolds, d), row(dnews, d), dout.x[d, due], dout.v[d, due], dout.a[d, due])

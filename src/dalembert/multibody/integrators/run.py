@@ -45,39 +45,69 @@ class Run:
 def run(
     lowered: Lowered,
     solver: GeneralizedAlpha,
-    end: float,
     times: np.ndarray,
+    end: float,
     tilted: Sequence[Lowered] = (),
     problem: Problem | None = None,
 ) -> Run:
     """Integrate from 0 to ``end``; ``tilted`` are the models along the directions of differentiation."""
-    problem = problem or make_problem(lowered, end, times)
-    width = lowered.structure.size + 1
-    directions = stack([entry.dual for entry in tilted], lowered.dual)
-    state = _state(lowered.x.real, lowered.v.real)
-    dstates = _zeros(len(tilted), width)
-    for d, entry in enumerate(tilted):
-        dstates.x[d], dstates.v[d] = entry.x.imag / STEP, entry.v.imag / STEP
-    out, dout = _zeros(len(times), width), _zeros(len(tilted), len(times), width)
-    steps = 0 if solver.adaptive else int(np.ceil(end / solver.step)) + len(problem.edges)
-    log = Log(np.zeros(4, dtype=np.int64), np.zeros(max(steps, 100_000), dtype=np.int64), np.zeros(max(steps, 100_000)))
-    status, time, unknown = alpha.integrate(
-        problem, settings(solver), lowered.real, lowered.dual, directions, state, dstates, out, dout, log
-    )
-    taken = min(int(log.counts[0]), len(log.iterations))
-    reason = None if status == alpha.DONE else explain(lowered, solver, status, time, unknown)
-    return Run(reason, times, out, dout, log.counts, log.iterations[:taken].copy(), log.ends[:taken].copy())
+    steps = 0 if solver.adaptive else int(np.ceil(end / solver.step)) + 2 * len(lowered.jumps) + 2
+    return _call([lowered], tilted, solver, times, end, problem or make_problem(lowered, times), max(steps, 100_000))[0]
 
 
-def make_problem(lowered: Lowered, end: float, times: np.ndarray) -> Problem:
+def run_ensemble(
+    samples: Sequence[Lowered], solver: GeneralizedAlpha, times: np.ndarray, end: float, problem: Problem
+) -> list[Run]:
+    """Runs of samples that share a structure, in one compiled loop that leaves the interpreter's lock free."""
+    return _call(samples, (), solver, times, end, problem, 0) if samples else []
+
+
+def _call(
+    samples: Sequence[Lowered],
+    tilted: Sequence[Lowered],
+    solver: GeneralizedAlpha,
+    times: np.ndarray,
+    end: float,
+    problem: Problem,
+    logged: int,
+) -> list[Run]:
+    first, width = samples[0], samples[0].structure.size + 1
+    stretches = [[0.0, *(time for time in entry.jumps if 0 < time < end), end] for entry in samples]
+    edges = np.zeros((len(samples), max(map(len, stretches))))
+    for own, given in zip(edges, stretches, strict=True):
+        own[: len(given)] = given
+    problem = problem._replace(edges=edges, stretches=np.array([len(given) - 1 for given in stretches]))
+    states, dstates = _zeros(len(samples), width), _zeros(len(tilted), width)
+    for number, entry in enumerate(samples):
+        states.x[number], states.v[number] = entry.x.real, entry.v.real
+    for number, entry in enumerate(tilted):
+        dstates.x[number], dstates.v[number] = entry.x.imag / STEP, entry.v.imag / STEP
+    out, dout = _zeros(len(samples), len(times), width), _zeros(len(tilted), len(times), width)
+    log = Log(np.zeros(4, dtype=np.int64), np.zeros(logged, dtype=np.int64), np.zeros(logged))
+    ends = np.zeros((len(samples), 3))
+    alpha.integrate(
+        problem, settings(solver), stack([entry.real for entry in samples], first.real),
+        stack([entry.dual for entry in samples], first.dual), stack([entry.dual for entry in tilted], first.dual), states,
+        dstates, out, dout, log, ends,
+    )  # fmt: skip
+    taken = min(int(log.counts[0]), logged)
+    runs = []
+    for number, (lowered, (status, time, unknown)) in enumerate(zip(samples, ends, strict=True)):
+        reason = None if status == alpha.DONE else explain(lowered, solver, int(status), time, int(unknown))
+        own = Motion(out.x[number], out.v[number], out.a[number], out.w[number])
+        runs.append(Run(reason, times, own, dout, log.counts, log.iterations[:taken].copy(), log.ends[:taken].copy()))
+    return runs
+
+
+def make_problem(lowered: Lowered, times: np.ndarray) -> Problem:
     """What all samples of a structure share."""
     structure = lowered.structure
     slots, layout = structure.kept
     exact_slots, exact_layout = structure.fresh
-    edges = np.array([0.0, *(time for time in lowered.jumps if 0 < time < end), end])
     return Problem(
-        structure.n, scales(lowered), slots, layout, exact_slots, exact_layout, LAPACK, edges, np.asarray(times, dtype=float)
-    )
+        structure.n, scales(lowered), slots, layout, exact_slots, exact_layout, LAPACK, np.asarray(times, dtype=float),
+        np.zeros((0, 0)), np.zeros(0, dtype=np.int64),
+    )  # fmt: skip
 
 
 def settings(solver: GeneralizedAlpha) -> Settings:
@@ -125,11 +155,6 @@ def explain(lowered: Lowered, solver: GeneralizedAlpha, status: int, time: float
         f"{solver.step:g} s was cut down {'' if solver.adaptive else 'to 1/256 '}for it; take a smaller step, or check "
         "the component's stiffness, loads and dimensions"
     )
-
-
-def _state(x: np.ndarray, v: np.ndarray) -> Motion:
-    zeros = np.zeros_like(x, dtype=float)
-    return Motion(x.astype(float), v.astype(float), zeros.copy(), zeros)
 
 
 def _zeros(*shape: int) -> Motion:

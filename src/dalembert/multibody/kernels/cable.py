@@ -7,13 +7,16 @@ Data: length h, axial stiffness EA, bending stiffness EI, mass, retardation time
 gravity (gx, gy).
 """
 
+import math
+
 import numpy as np
 
 from dalembert.multibody.kernels import hermite
-from dalembert.multibody.kernels.compiled import compiled, inlined, kernel
+from dalembert.multibody.kernels.compiled import inlined, kernel
 from dalembert.multibody.kernels.dual import reciprocal, root
 
 WIDTH = 8
+DAMPING = 4  # column of the retardation time
 
 
 def _gauss(points: int) -> tuple[np.ndarray, ...]:
@@ -92,16 +95,68 @@ def residual(x, v, a, signals, callbacks, data, meta, e, r):
     hermite.weight(mass, h, data[e, 6], 1, 3, 5, 7, r)
 
 
-@compiled
+@kernel
+def tangent(x, data, e, by, matrix):
+    """Fill the local ``matrix`` (8, 8) with by[0] K + by[2] M of an element without damping; real numbers.
+
+    Stretch: EA ((1 - 1/g) I + t t^T / g^3), t = r', g = |t|. Bending: EI (k_z k_z^T + k k_zz) for z = (t, c), c = r'',
+    with k = t x c / g^2, p = (c_y, -c_x), k_t = p / g^2 - 2 k t / g^2,
+    k_tt = -2 (p t^T + t p^T + k g^2 I) / g^4 + 8 k t t^T / g^4, k_c = (-t_y, t_x) / g^2 and
+    k_tc = [[0, 1], [-1, 0]] / g^2 - 2 t k_c^T / g^2.
+    """
+    for i in range(WIDTH):
+        for j in range(WIDTH):
+            matrix[i, j] = 0.0
+    h, axial, bending, mass = data[e, 0].real, data[e, 1].real, data[e, 2].real, data[e, 3].real
+    across = 1.0 / h
+    for g in range(5):
+        s = A1[g] * across, A2[g], -A1[g] * across, A5[g]
+        tx, ty = _line(s[0], s[1], s[3], x)
+        inverse = 1.0 / math.sqrt(tx * tx + ty * ty)
+        cubed, rest = inverse * inverse * inverse, 1.0 - inverse
+        block = rest + tx * tx * cubed, tx * ty * cubed, tx * ty * cubed, rest + ty * ty * cubed
+        w = by[0] * AW[g] * h * axial
+        for i in range(4):
+            for j in range(4):
+                hermite.spread(matrix, 2 * i, 2 * j, w * s[i] * s[j], block)
+    for g in range(3):
+        s = B1[g] * across, B2[g], -B1[g] * across, B5[g]
+        c = C1[g] * across * across, C2[g] * across, -C1[g] * across * across, C5[g] * across
+        tx, ty = _line(s[0], s[1], s[3], x)
+        cx, cy = _line(c[0], c[1], c[3], x)
+        kappa, px, py, square = _curvature(tx, ty, cx, cy)
+        qx, qy = -ty * square, tx * square
+        two, eight = 2 * kappa * square, 8 * kappa * square * square
+        tt = (
+            px * px + kappa * (-4 * cy * tx * square * square - two + eight * tx * tx),
+            px * py + kappa * (2 * (cx * tx - cy * ty) * square * square + eight * tx * ty),
+            px * py + kappa * (2 * (cx * tx - cy * ty) * square * square + eight * tx * ty),
+            py * py + kappa * (4 * cx * ty * square * square - two + eight * ty * ty),
+        )
+        tc = (
+            px * qx - two * tx * qx,
+            px * qy + kappa * square - two * tx * qy,
+            py * qx - kappa * square - two * ty * qx,
+            py * qy - two * ty * qy,
+        )
+        ct = tc[0], tc[2], tc[1], tc[3]
+        cc = qx * qx, qx * qy, qx * qy, qy * qy
+        w = by[0] * BW[g] * h * bending
+        for i in range(4):
+            for j in range(4):
+                hermite.spread(matrix, 2 * i, 2 * j, w * s[i] * s[j], tt)
+                hermite.spread(matrix, 2 * i, 2 * j, w * s[i] * c[j], tc)
+                hermite.spread(matrix, 2 * i, 2 * j, w * c[i] * s[j], ct)
+                hermite.spread(matrix, 2 * i, 2 * j, w * c[i] * c[j], cc)
+    hermite.mass_matrix(mass, h, 0, 2, 4, 6, by[2], matrix)
+    hermite.mass_matrix(mass, h, 1, 3, 5, 7, by[2], matrix)
+
+
+@kernel
 def energy(x, v, signals, callbacks, data, meta, e):
     """Kinetic energy, strain and gravity energy, power of the material damping."""
     h, axial, bending, mass, delay = data[e, 0], data[e, 1], data[e, 2], data[e, 3], data[e, 4]
-    momentum = np.zeros_like(x)
-    hermite.inertia(mass, h, 0, 2, 4, 6, v, momentum)
-    hermite.inertia(mass, h, 1, 3, 5, 7, v, momentum)
-    kinetic = 0.0 * h
-    for i in range(WIDTH):
-        kinetic += 0.5 * v[i] * momentum[i]
+    kinetic = hermite.kinetic(mass, h, 0, 2, 4, 6, v) + hermite.kinetic(mass, h, 1, 3, 5, 7, v)
     potential = -mass * (data[e, 5] * hermite.centre(h, 0, 2, 4, 6, x) + data[e, 6] * hermite.centre(h, 1, 3, 5, 7, x))
     power = 0.0 * h
     across = 1.0 / h

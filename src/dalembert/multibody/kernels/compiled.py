@@ -1,14 +1,44 @@
 """How kernels are compiled: once for a machine, kept on disk, without the interpreter's lock."""
 
+import hashlib
+from contextlib import suppress
+from pathlib import Path
+
 from numba import njit
+
+_MULTIBODY = Path(__file__).parent.parent
+
+
+def _forget_stale() -> None:
+    """Remove compiled kernels that were made from other sources.
+
+    Numba looks only at the file of a function itself, not at those of the functions that it calls, so that an edited
+    kernel would live on inside its callers.
+    """
+    sources = sorted([*_MULTIBODY.glob("kernels/*.py"), *_MULTIBODY.glob("integrators/*.py")])
+    digest = hashlib.sha256(b"".join(source.read_bytes() for source in sources)).hexdigest()
+    stamp = _MULTIBODY / "kernels" / "__pycache__" / "sources.sha256"
+    with suppress(OSError):  # a folder that cannot be written holds no cache either
+        if stamp.exists() and stamp.read_text() == digest:
+            return
+        for cached in _MULTIBODY.glob("**/__pycache__/*.nb[ci]"):
+            cached.unlink(missing_ok=True)
+        stamp.parent.mkdir(exist_ok=True)
+        stamp.write_text(digest)
+
+
+_forget_stale()
 
 # No fast-math: results must be the same bits on every run, and NaN must stay visible.
 _OPTIONS = {"cache": True, "nogil": True, "error_model": "numpy"}
 
-#: For functions that make arrays.
-compiled = njit(**_OPTIONS)
-#: For functions that make none: without the counting of references to their arguments, which would take more time than
+#: For functions that make arrays, or return them or views of them.
+compiled = njit(**_OPTIONS, _nrt=True)
+#: For functions that do neither: without the counting of references to their arguments, which would take more time than
 #: the mechanics of a small model (measured: 1.1 against 0.2 microseconds a residual of two bodies and two joints).
 kernel = njit(**_OPTIONS, _nrt=False)
 #: The same for small functions that stand inside others: written into their callers.
 inlined = njit(**_OPTIONS, _nrt=False, forceinline=True)
+#: The same for loops over components, which are specialised by a kernel: written out before types are inferred, which
+#: saves a compilation each.
+template = njit(**_OPTIONS, _nrt=False, inline="always")

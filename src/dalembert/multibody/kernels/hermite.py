@@ -29,3 +29,43 @@ def weight(m, h, g, i, j, k, l, r):  # noqa: E741 - the four slots in order
 def centre(h, i, j, k, l, x):  # noqa: E741 - the four slots in order
     """Mean of the line's coordinate, one direction: its centre of mass."""
     return 0.5 * (x[i] + x[k]) + h / 12 * (x[j] - x[l])
+
+
+@inlined
+def kinetic(m, h, i, j, k, l, v):  # noqa: E741 - the four slots in order
+    """Half of the velocities' quadratic form with the consistent mass matrix, one direction."""
+    square = 13 / 70 * (v[i] * v[i] + v[k] * v[k]) + h * h / 210 * (v[j] * v[j] + v[l] * v[l])
+    ends = 9 / 70 * v[i] * v[k] - h * h / 140 * v[j] * v[l]
+    mixed = 11 / 210 * (v[i] * v[j] - v[k] * v[l]) + 13 / 420 * (v[k] * v[j] - v[i] * v[l])
+    return m * (square + ends + h * mixed)
+
+
+@inlined
+def mass_matrix(m, h, i, j, k, l, factor, matrix):  # noqa: E741 - the four slots in order
+    """Add ``factor`` times the consistent mass matrix of one direction to the local ``matrix``."""
+    c = factor * m
+    matrix[i, i] += 13 / 35 * c
+    matrix[k, k] += 13 / 35 * c
+    matrix[j, j] += h * h / 105 * c
+    matrix[l, l] += h * h / 105 * c
+    _both(matrix, i, j, 11 / 210 * h * c)
+    _both(matrix, i, k, 9 / 70 * c)
+    _both(matrix, i, l, -13 / 420 * h * c)
+    _both(matrix, j, k, 13 / 420 * h * c)
+    _both(matrix, j, l, -h * h / 140 * c)
+    _both(matrix, k, l, -11 / 210 * h * c)
+
+
+@inlined
+def _both(matrix, i, j, value):
+    matrix[i, j] += value
+    matrix[j, i] += value
+
+
+@inlined
+def spread(matrix, i, j, factor, block):
+    """Add ``factor`` times a 2 x 2 ``block`` (xx, xy, yx, yy) between the vectors at slots i and j."""
+    matrix[i, j] += factor * block[0]
+    matrix[i, j + 1] += factor * block[1]
+    matrix[i + 1, j] += factor * block[2]
+    matrix[i + 1, j + 1] += factor * block[3]

@@ -103,8 +103,8 @@ def residual(x, v, a, signals, callbacks, data, meta, e, r):
 
 
 @kernel
-def rates(x, v, a, signals, data, meta, e, rate, second):
-    """First and second time derivatives of the constraints, into ``rate`` and ``second`` of shape (3,)."""
+def rates(x, v, a, signals, data, meta, e, out):
+    """First and second time derivatives of the constraints, into the first and the last three of ``out`` (6,)."""
     kind = meta[e, 0]
     dx, dy = separation(x, data, meta, e)
     ux, uy = separation_rate(x, v, data, meta, e)
@@ -114,28 +114,28 @@ def rates(x, v, a, signals, data, meta, e, rate, second):
     turn = relative_spin(x, v, meta, e)
     swing = spin_rate(meta[e, 2], 4, x, v, a) - spin_rate(meta[e, 1], 0, x, v, a)
     if kind == REVOLUTE or kind == FIXED:
-        rate[0], rate[1] = ux, uy
-        second[0], second[1] = wx, wy
+        out[0], out[1] = ux, uy
+        out[3], out[4] = wx, wy
     if kind == PRISMATIC:
         c, s = axis(x, data, meta, e)
         along, across, along_rate = c * dx + s * dy, c * dy - s * dx, c * ux + s * uy
         own, own_rate = spin(meta[e, 1], 0, x, v), spin_rate(meta[e, 1], 0, x, v, a)
-        rate[0] = c * uy - s * ux - own * along
-        second[0] = c * wy - s * wx - 2 * own * along_rate - own_rate * along - own * own * across
+        out[0] = c * uy - s * ux - own * along
+        out[3] = c * wy - s * wx - 2 * own * along_rate - own_rate * along - own * own * across
     if kind == FIXED or kind == PRISMATIC:
         row = 2 if kind == FIXED else 1
         sine, cosine = sin_cos(relative_angle(x, data, meta, e) - data[e, 6])
-        rate[row] = cosine * turn
-        second[row] = cosine * swing - sine * turn * turn
+        out[row] = cosine * turn
+        out[3 + row] = cosine * swing - sine * turn * turn
     if kind == DISTANCE:
-        rate[0] = (dx * ux + dy * uy) / data[e, 6]
-        second[0] = (ux * ux + uy * uy + dx * wx + dy * wy) / data[e, 6]
+        out[0] = (dx * ux + dy * uy) / data[e, 6]
+        out[3] = (ux * ux + uy * uy + dx * wx + dy * wy) / data[e, 6]
     if kind >= MOTION_X:
         signal = meta[e, 3]
         first = ux if kind == MOTION_X else (uy if kind == MOTION_Y else turn)
-        rate[0] = first - signals[signal, 1]
+        out[0] = first - signals[signal, 1]
         last = wx if kind == MOTION_X else (wy if kind == MOTION_Y else swing)
-        second[0] = last - signals[signal, 2]
+        out[3] = last - signals[signal, 2]
 
 
 @kernel

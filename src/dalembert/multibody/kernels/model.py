@@ -70,13 +70,15 @@ class Slots(NamedTuple):
 
 
 class Work(NamedTuple):
-    """Local vectors of one component, and the signals' values."""
+    """Local vectors of one component, the signals' values, and a local vector and matrix in real numbers."""
 
     x: np.ndarray
     v: np.ndarray
     a: np.ndarray
     r: np.ndarray
     signals: np.ndarray
+    real: np.ndarray
+    matrix: np.ndarray
 
 
 @compiled
@@ -106,4 +108,5 @@ def workspace(model):
     """Local vectors in the arithmetic of the model."""
     zero = model.signals.data[:1] * 0
     local = np.zeros((4, WIDEST), zero.dtype)
-    return Work(local[0], local[1], local[2], local[3], np.zeros((len(model.signals.index), 3), zero.dtype))
+    values = np.zeros((len(model.signals.index), 3), zero.dtype)
+    return Work(local[0], local[1], local[2], local[3], values, np.zeros(WIDEST), np.zeros((WIDEST, WIDEST)))

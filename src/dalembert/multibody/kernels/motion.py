@@ -38,13 +38,20 @@ def still(size):
 
 
 @kernel
+def clear(array):
+    """Fill a vector with zeros."""
+    for i in range(len(array)):
+        array[i] = 0
+
+
+@kernel
 def copy(source, target):
     """Copy one state into another."""
     for i in range(len(source.x)):
         target.x[i], target.v[i], target.a[i], target.w[i] = source.x[i], source.v[i], source.a[i], source.w[i]
 
 
-@kernel
+@compiled
 def row(stack, d):
     """State ``d`` of a stack of states."""
     return Motion(stack.x[d], stack.v[d], stack.a[d], stack.w[d])
@@ -81,6 +88,10 @@ def advance(n, c, old, new):
 @kernel
 def interpolate(n, h, s, old, new, x, v, a):
     """State at the fraction ``s`` of a step of length ``h``: cubic for coordinates and velocities, linear for the rest."""
+    if s > 1.0 - 1e-9:
+        for i in range(len(x)):
+            x[i], v[i], a[i] = new.x[i], new.v[i], new.a[i]
+        return
     s0, s1 = 1 - 3 * s * s + 2 * s**3, 3 * s * s - 2 * s**3
     t0, t1 = h * (s - 2 * s * s + s**3), h * (s**3 - s * s)
     for i in range(n):

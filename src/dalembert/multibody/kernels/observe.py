@@ -4,8 +4,6 @@ A channel is a quantity of one row of a block laid out as those of :mod:`joints`
 axes is the pair (ground, point).
 """
 
-import numpy as np
-
 from dalembert.multibody.kernels import joints, spring
 from dalembert.multibody.kernels.assembly import energies, gather
 from dalembert.multibody.kernels.compiled import compiled
@@ -37,13 +35,12 @@ def _pair(quantity, x, v, a, data, meta, e):
 @compiled
 def observe(model, quantities, index, meta, data, x, v, a, work, out):
     """Fill ``out`` (samples, channels) from the states x, v, a (samples, N + 1)."""
-    totals = np.zeros(3, out.dtype)
     for s in range(len(x)):
         for e in range(len(quantities)):
             quantity = quantities[e]
             if quantity >= KINETIC:
-                energies(model, x[s], v[s], work, totals)
-                out[s, e] = totals[0] + totals[1] if quantity == TOTAL else totals[quantity - KINETIC]
+                energies(model, x[s], v[s], work, work.r)
+                out[s, e] = work.r[0] + work.r[1] if quantity == TOTAL else work.r[quantity - KINETIC]
                 continue
             gather(index, e, joints.WIDTH, x[s], v[s], a[s], work)
             if quantity <= ACCELERATION:

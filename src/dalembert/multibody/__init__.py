@@ -1,0 +1,47 @@
+"""Flexible and rigid planar mechanisms in time."""
+
+from dalembert.multibody.beams import AncfBeam, AncfCable
+from dalembert.multibody.bodies import PointMass, RigidBar, RigidBody
+from dalembert.multibody.drawing import Drawing
+from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha
+from dalembert.multibody.joints import DistanceJoint, FixedJoint, PrescribedMotion, PrismaticJoint, RevoluteJoint
+from dalembert.multibody.loads import Force, Spring, Torque, TorsionSpring, UserForce
+from dalembert.multibody.points import Ground, GroundPoint, Point
+from dalembert.multibody.signals import Constant, Custom, Harmonic, Polynomial, Step, Table
+from dalembert.multibody.simulate import simulate
+from dalembert.multibody.system import System
+from dalembert.multibody.time_response import TimeResponse
+from dalembert.multibody.trajectory import Trajectory
+
+__all__ = [
+    "AncfBeam",
+    "AncfCable",
+    "Constant",
+    "Custom",
+    "DistanceJoint",
+    "Drawing",
+    "FixedJoint",
+    "Force",
+    "GeneralizedAlpha",
+    "Ground",
+    "GroundPoint",
+    "Harmonic",
+    "Point",
+    "PointMass",
+    "Polynomial",
+    "PrescribedMotion",
+    "PrismaticJoint",
+    "RevoluteJoint",
+    "RigidBar",
+    "RigidBody",
+    "Spring",
+    "Step",
+    "System",
+    "Table",
+    "TimeResponse",
+    "Torque",
+    "TorsionSpring",
+    "Trajectory",
+    "UserForce",
+    "simulate",
+]

@@ -1,0 +1,85 @@
+"""Motion of a system in time."""
+
+import numpy as np
+
+from dalembert.errors import InputError, SolveError
+from dalembert.multibody.assemble import assembled, refuse_redundancy
+from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha
+from dalembert.multibody.integrators.run import run
+from dalembert.multibody.system import System
+from dalembert.multibody.trajectory import Trajectory
+
+_ADAPTIVE_OUTPUTS = 1001
+
+
+def simulate(
+    system: System, end: float, solver: GeneralizedAlpha | None = None, times: np.ndarray | None = None
+) -> Trajectory:
+    """Integrate the motion of a system from time 0.
+
+    Parameters
+    ----------
+    system : System
+    end : float
+        s.
+    solver : GeneralizedAlpha, optional
+        Steps of ``end`` / 1000 if not given.
+    times : array, shape (samples,), optional
+        Output times in s, increasing, within [0, end]. Every step if not given; 1001 equal ones if the step is adaptive.
+        Between steps the motion is interpolated (cubic in coordinates and velocities).
+
+    Returns
+    -------
+    Trajectory
+
+    Raises
+    ------
+    InputError
+        For times that do not increase or lie outside the motion.
+    ModelError
+        Where the mechanism cannot be assembled or has redundant constraints.
+    SolveError
+        Where the solver could not go on, with time and component.
+
+    Examples
+    --------
+    >>> from dalembert.multibody import DistanceJoint, GeneralizedAlpha, PointMass, System, simulate
+    >>> system = System()
+    >>> bob = system.add(PointMass("bob", mass=1.0, position=(-1.0, 0.0)))
+    >>> rod = system.add(DistanceJoint("rod", system.ground.point(0.0, 0.0), bob.centre))
+    >>> trajectory = simulate(system, end=1.0, solver=GeneralizedAlpha(step=1e-3))
+    >>> trajectory.channels(["bob.centre.x"])[-1].round(3)
+    array([0.986])
+    """
+    if not (np.isfinite(end) and end > 0):
+        raise InputError(f"simulate: end is {end}; expected a positive number of seconds")
+    solver = solver or GeneralizedAlpha(step=end / 1000)
+    lowered = assembled(system)
+    refuse_redundancy(lowered)
+    times = output_times(solver, end, lowered.jumps) if times is None else checked(times, end)
+    result = run(lowered, solver, times, end)
+    if result.reason:
+        raise SolveError(result.reason)
+    return Trajectory(system, lowered, solver, result)
+
+
+def output_times(solver: GeneralizedAlpha, end: float, jumps: tuple[float, ...] = ()) -> np.ndarray:
+    """Every step of a fixed step, shape (samples,)."""
+    if solver.adaptive:
+        return np.linspace(0.0, end, _ADAPTIVE_OUTPUTS)
+    edges = [0.0, *(time for time in jumps if 0 < time < end), end]
+    parts = [np.zeros(1)]
+    for begin, stop in zip(edges[:-1], edges[1:], strict=True):
+        steps = max(1, int(np.ceil((stop - begin) / solver.step - 1e-6)))
+        parts.append(begin + (stop - begin) / steps * np.arange(1, steps + 1))
+    return np.concatenate(parts)
+
+
+def checked(times: np.ndarray, end: float) -> np.ndarray:
+    """Output times as an array, refused where they cannot be meant."""
+    times = np.asarray(times, dtype=float)
+    if times.ndim != 1 or len(times) == 0 or not np.all(np.diff(times) > 0):
+        raise InputError("times: expected a list of increasing numbers of seconds")
+    if times[0] < 0 or times[-1] > end * (1 + 1e-12):
+        raise InputError(f"times: they reach from {times[0]:g} to {times[-1]:g} s; expected them within [0, {end:g}] s")
+    return times

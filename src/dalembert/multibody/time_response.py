@@ -1,0 +1,239 @@
+"""The response of a mechanism in time as a forward model."""
+
+import hashlib
+import os
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+
+from dalembert.errors import DalembertError, InputError, SolveError
+from dalembert.forward import Channel, Coordinate, Responses
+from dalembert.multibody.assemble import assembled, refuse_redundancy
+from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha, Problem
+from dalembert.multibody.integrators.run import make_problem, run, run_ensemble
+from dalembert.multibody.kernels.dual import STEP
+from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.observe import Observer, observer
+from dalembert.multibody.simulate import checked
+from dalembert.multibody.system import System
+from dalembert.parameters import Parameter, Parameters
+
+
+@dataclass(frozen=True)
+class TimeResponse:
+    """Channels of a mechanism at given times, as a function of parameters.
+
+    Parameters
+    ----------
+    builder : callable
+        ``builder(**parameters) -> System``; called with floats, and with complex numbers for derivatives.
+    parameters : mapping of str to (lower, upper), or Parameters
+    channels : sequence of str
+        Such as ``"AB.end.x"``; see :meth:`Trajectory.channel_names`.
+    times : array, shape (samples,)
+        s; the motion starts at 0 and ends at the last one.
+    solver : GeneralizedAlpha, optional
+        Steps of a thousandth of the motion if not given.
+    workers : int, optional
+        Threads of an ensemble; as many as there are cores if not given.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from dalembert.multibody import DistanceJoint, PointMass, System, TimeResponse
+    >>> def pendulum(length):
+    ...     system = System()
+    ...     bob = system.add(PointMass("bob", mass=1.0, position=(length, 0.0)))
+    ...     system.add(DistanceJoint("rod", system.ground.point(0.0, 0.0), bob.centre))
+    ...     return system
+    >>> model = TimeResponse(pendulum, {"length": (0.5, 2.0)}, ["bob.centre.x"], np.array([0.0, 0.5]))
+    >>> model.evaluate(np.array([[1.0], [2.0]])).values.round(3).tolist()
+    [[[1.0], [0.142]], [[2.0], [1.418]]]
+    >>> model.jacobian(np.array([1.0])).shape
+    (2, 1, 1)
+    """
+
+    builder: Callable[..., System]
+    parameters: Parameters
+    channel_names: tuple[str, ...]
+    times: np.ndarray
+    solver: GeneralizedAlpha
+    workers: int = field(default=1, compare=False)
+
+    def __init__(
+        self,
+        builder: Callable[..., System],
+        parameters: Parameters | Mapping[str, Parameter | tuple[float, float]],
+        channels: Sequence[str],
+        times: np.ndarray,
+        solver: GeneralizedAlpha | None = None,
+        workers: int | None = None,
+    ) -> None:
+        times = np.asarray(times, dtype=float)
+        times = checked(times, times[-1] if times.ndim == 1 and len(times) else 0.0)
+        if times[-1] <= 0:
+            raise InputError("TimeResponse: the last of the times is 0 s; expected a motion of some duration")
+        if not channels:
+            raise InputError("TimeResponse: no channels were given; name at least one, such as 'AB.end.x'")
+        for name, value in (
+            ("builder", builder),
+            ("parameters", Parameters.of(parameters)),
+            ("channel_names", tuple(channels)),
+            ("times", times),
+            ("solver", solver or GeneralizedAlpha(step=float(times[-1]) / 1000)),
+            ("workers", workers or len(os.sched_getaffinity(0))),
+        ):
+            object.__setattr__(self, name, value)
+
+    @property
+    def channels(self) -> tuple[Channel, ...]:
+        """Channels with their units."""
+        return self._frame.observer.channels
+
+    @property
+    def coordinate(self) -> Coordinate:
+        """The times of the samples."""
+        return Coordinate("time", "s", self.times)
+
+    @cached_property
+    def fingerprint(self) -> str:
+        """Hash of the mechanism at the parameters' first guesses, the channels, the times and the solver."""
+        lowered = self._frame.lowered
+        digest = hashlib.sha256(repr((self.parameters.names, self.channel_names, self.solver)).encode())
+        for array in (self.times, lowered.x, lowered.v, lowered.signal_data, lowered.knots, *lowered.data.values()):
+            digest.update(np.ascontiguousarray(array).tobytes())
+        for kind in lowered.structure.index:
+            digest.update(lowered.structure.index[kind].tobytes() + lowered.structure.meta[kind].tobytes())
+        return digest.hexdigest()
+
+    def evaluate(self, vectors: np.ndarray) -> Responses:
+        """Responses of a batch over all cores; ``vectors`` (batch, parameters), values (batch, samples, channels).
+
+        A sample that fails is marked with its reason, and its values are NaN.
+        """
+        vectors = np.atleast_2d(np.asarray(vectors, dtype=float))
+        values = np.full((len(vectors), len(self.times), len(self.channel_names)), np.nan)
+        failures: list[str | None] = [None] * len(vectors)
+        frame = self._frame
+
+        def work(rows: np.ndarray) -> None:
+            samples: list[tuple[int, Lowered]] = []
+            for row in rows:
+                try:
+                    samples.append((row, self._lower(vectors[row])))
+                except DalembertError as error:
+                    failures[row] = str(error)
+                except Exception as error:  # the user's builder raised: this sample's failure, not the batch's
+                    failures[row] = f"{type(error).__name__}: {error}"
+            runs = run_ensemble([own for _, own in samples], self.solver, self.times, self.times[-1], frame.problem)
+            for (row, lowered), result in zip(samples, runs, strict=True):
+                failures[row] = result.reason
+                if result.reason is None:
+                    states = result.states
+                    values[row] = frame.observer.read(lowered, lowered.real, states.x, states.v, states.a)
+
+        parts = _parts(len(vectors), self.workers)
+        if self.workers == 1 or len(parts) == 1:
+            for part in parts:
+                work(part)
+        else:
+            with ThreadPoolExecutor(self.workers) as pool:
+                list(pool.map(work, parts))
+        return Responses(values, tuple(failures))
+
+    def jacobian(self, vector: np.ndarray) -> np.ndarray:
+        """Exact derivative of the discrete response, (samples, channels, parameters)."""
+        return self.linearise(vector)[1]
+
+    def linearise(self, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Response (samples, channels) and its exact derivative (samples, channels, parameters), in one run.
+
+        Raises
+        ------
+        InputError
+            Where the builder cannot run in complex numbers.
+        SolveError
+            Where the solver could not go on.
+        """
+        vector = self.parameters.vector(vector).astype(float)
+        frame = self._frame
+        lowered = self._lower(vector)
+        tilted = [self._tilt(vector, column) for column in range(len(vector))]
+        result = run(lowered, self.solver, self.times, self.times[-1], tilted, frame.problem)
+        if result.reason:
+            raise SolveError(result.reason)
+        states, slopes = result.states, result.derivatives
+        values = frame.observer.read(lowered, lowered.real, states.x, states.v, states.a)
+        jacobian = np.empty((*values.shape, len(vector)))
+        for column, own in enumerate(tilted):
+            lifted = [
+                real + 1j * STEP * slope[column]
+                for real, slope in zip(states[:3], slopes[:3], strict=True)
+            ]
+            response = frame.observer.read(own, own.dual, *lifted)
+            jacobian[:, :, column] = response.imag / (STEP * self.parameters.scale[column])
+        return values, jacobian
+
+    def first(self, samples: int) -> "TimeResponse":
+        """The same model, cut to its first ``samples`` samples; its simulations end earlier."""
+        return TimeResponse(
+            self.builder, self.parameters, self.channel_names, self.times[:samples], self.solver, self.workers
+        )
+
+    def system(self, vector: np.ndarray) -> System:
+        """The mechanism at a parameter vector (parameters,)."""
+        return self.builder(**self.parameters.mapping(vector))
+
+    @cached_property
+    def _frame(self) -> "_Frame":
+        system = self.builder(**self.parameters.mapping(self.parameters.start))
+        lowered = assembled(system)
+        refuse_redundancy(lowered)
+        problem = make_problem(lowered, self.times)
+        return _Frame(lowered, problem, observer(system, lowered, self.channel_names))
+
+    def _lower(self, vector: np.ndarray) -> Lowered:
+        """Arrays of one sample, in the structure of the first."""
+        return self._fit(assembled(self.builder(**dict(zip(self.parameters.names, vector.tolist(), strict=True)))))
+
+    def _tilt(self, vector: np.ndarray, column: int) -> Lowered:
+        """Arrays of the model along one parameter, moved by a complex step of its scale."""
+        tilted = vector.astype(complex)
+        tilted[column] += 1j * STEP * self.parameters.scale[column]
+        given = dict(zip(self.parameters.names, vector.tolist(), strict=True))
+        given[self.parameters.names[column]] = complex(tilted[column])
+        try:
+            return self._fit(assembled(self.builder(**given)))
+        except TypeError as error:
+            raise InputError(
+                f"the model's function cannot run in complex numbers, as exact derivatives by {self.parameters.names[column]!r} "
+                f"need ({error}); use NumPy's functions instead of those of math, and no float() or comparison on "
+                "parameters; or wrap the model in a PythonModel with derivative='central-differences'"
+            ) from error
+
+    def _fit(self, lowered: Lowered) -> Lowered:
+        structure = self._frame.lowered.structure
+        if not structure.same(lowered.structure):
+            raise InputError(
+                "the model's function returned systems of different structure for different parameters; "
+                "parameters may change numbers, not the number or the kinds of components"
+            )
+        return replace(lowered, structure=structure)
+
+
+@dataclass(frozen=True)
+class _Frame:
+    """What all samples share, from the system at the parameters' first guesses."""
+
+    lowered: Lowered
+    problem: Problem
+    observer: Observer
+
+
+def _parts(count: int, workers: int) -> list[np.ndarray]:
+    """Rows of a batch cut into parts: small enough that no worker waits long for another at the end."""
+    size = max(1, min(16, -(-count // (4 * workers))))
+    return [np.arange(begin, min(begin + size, count)) for begin in range(0, count, size)]

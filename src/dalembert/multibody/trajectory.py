@@ -1,0 +1,124 @@
+"""A simulated motion: channels, energies, constraint violations, reactions and what is needed to draw it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from dalembert.multibody.drawing import Drawing, draw
+from dalembert.multibody.evaluate import energies, violations
+from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha
+from dalembert.multibody.integrators.run import Run
+from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.observe import channel_names, observer
+from dalembert.multibody.system import System
+
+
+@dataclass(frozen=True, eq=False)
+class Trajectory:
+    """The motion of a system, as :func:`simulate` returns it."""
+
+    system: System
+    lowered: Lowered
+    solver: GeneralizedAlpha
+    run: Run
+
+    @property
+    def times(self) -> np.ndarray:
+        """Output times, s, (samples,)."""
+        return self.run.times
+
+    @cached_property
+    def channel_names(self) -> tuple[str, ...]:
+        """All channels that the system offers."""
+        return channel_names(self.system)
+
+    def channels(self, names: Sequence[str]) -> np.ndarray:
+        """Values of channels in SI units, (samples, channels).
+
+        Raises
+        ------
+        InputError
+            For an unknown name, with the nearest ones.
+        """
+        states = self.run.states
+        return observer(self.system, self.lowered, tuple(names)).read(
+            self.lowered, self.lowered.real, states.x, states.v, states.a
+        )
+
+    def reactions(self, joint: str) -> np.ndarray:
+        """Force (N) along x and y and torque (N m) of a joint on its second side, (samples, 3)."""
+        return self.channels([f"{joint}.force_x", f"{joint}.force_y", f"{joint}.torque"])
+
+    @cached_property
+    def energies(self) -> dict[str, np.ndarray]:
+        """Energies in J, each (samples,): kinetic, potential, total, work of loads and losses, and their balance.
+
+        The work is the trapezoidal integral of the power over the output times; balance = total - work - first total, which
+        an exact motion keeps at zero.
+        """
+        states = self.run.states
+        kinetic, potential, power = energies(self.lowered.real, states.x, states.v, self.times, self._within).T
+        steps = np.diff(self.times) * (power[1:] + power[:-1]) / 2
+        work = np.concatenate([[0.0], np.cumsum(steps)])
+        total = kinetic + potential
+        return {
+            "kinetic": kinetic, "potential": potential, "total": total, "work": work, "balance": total - work - total[0],
+        }  # fmt: skip
+
+    @cached_property
+    def violations(self) -> dict[str, np.ndarray]:
+        """Largest constraint violations (m or rad, and per s and s^2), each (samples,)."""
+        states = self.run.states
+        levels = violations(self.lowered, states.x, states.v, states.a, self.times, self._within).T
+        return dict(zip(("position", "velocity", "acceleration"), levels, strict=True))
+
+    @property
+    def newton_iterations(self) -> np.ndarray:
+        """Newton iterations of each step, (steps,)."""
+        return self.run.iterations
+
+    @property
+    def _within(self) -> np.ndarray:
+        """Times on the same side of every jump of a load as the motion just before each output time."""
+        return np.maximum(self.times - 1e-9 * self.times[-1], 0.0)
+
+    def drawing(self, points: int = 8) -> Drawing:
+        """Lines of the bodies and places of the joints over time; ``points`` a beam element."""
+        return draw(self.system, self.lowered, self.times, self.run.states.x, points)
+
+    def to_xarray(self, names: Sequence[str] | None = None) -> xr.Dataset:
+        """Channels (all if not named), energies and violations, labelled with units."""
+        names = tuple(names or self.channel_names)
+        channels = observer(self.system, self.lowered, names).channels
+        values = self.channels(names)
+        variables: dict = {
+            channel.name: ("time", values[:, column], {"units": channel.unit}) for column, channel in enumerate(channels)
+        }
+        variables |= {f"energy.{name}": ("time", value, {"units": "J"}) for name, value in self.energies.items()}
+        variables |= {f"violation.{name}": ("time", value) for name, value in self.violations.items()}
+        coordinates = {"time": ("time", self.times, {"units": "s"})}
+        return xr.Dataset(variables, coordinates, {"solver": repr(self.solver), "steps": int(self.run.counts[0])})
+
+    def save(self, path: str | Path, names: Sequence[str] | None = None) -> None:
+        """Write :meth:`to_xarray` as NetCDF-4."""
+        self.to_xarray(names).to_netcdf(path, engine="h5netcdf")
+
+    def summary(self) -> str:
+        """A few lines: steps, Newton iterations, energy balance and constraint violations."""
+        steps, iterations, factorisations, rejected = self.run.counts
+        worst = {name: np.max(np.abs(value)) for name, value in self.violations.items()}
+        kinetic = np.ptp(self.energies["kinetic"])
+        return "\n".join(
+            [
+                f"{self.times[-1]:g} s in {steps} steps ({rejected} rejected), {iterations / max(steps, 1):.2f} Newton "
+                f"iterations a step, {factorisations} factorisations",
+                f"energy: largest imbalance {np.max(np.abs(self.energies['balance'])):.3g} J, "
+                f"range of the kinetic energy {kinetic:.3g} J",
+                "constraints: largest violation "
+                + ", ".join(f"{name} {value:.2g}" for name, value in worst.items()),
+            ]
+        )

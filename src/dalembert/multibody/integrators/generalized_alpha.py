@@ -21,8 +21,8 @@ _SLOW = 0.3  # contraction at which an iteration is not worth going on with the 
 _AGED = 0.02  # contraction at which the next step begins with a new one
 _HALVINGS = 8  # of a fixed step that Newton does not converge on
 _UNITS = 1 << _HALVINGS
-# Relative corrections that stop to shrink are rounding below the first size, and below the second one if a nearly singular
-# position magnifies it.
+# Relative corrections that stop to shrink are rounding below the first size, and below the second one if a nearly
+# singular position magnifies it.
 _ROUNDING, _MAGNIFIED = 1e-12, 1e-9
 
 
@@ -67,7 +67,9 @@ class GeneralizedAlpha:
         if not (np.isfinite(self.step) and self.step > 0):
             raise InputError(f"GeneralizedAlpha: step is {self.step}; expected a positive number of seconds")
         if not 0 <= self.spectral_radius <= 1:
-            raise InputError(f"GeneralizedAlpha: spectral_radius is {self.spectral_radius}; expected a number in [0, 1]")
+            raise InputError(
+                f"GeneralizedAlpha: spectral_radius is {self.spectral_radius}; expected a number in [0, 1]"
+            )
         if self.initial_acceleration not in STARTS:
             raise InputError(unknown("initial_acceleration", self.initial_acceleration, STARTS, "GeneralizedAlpha"))
         for name in ("tolerance", "newton_tolerance"):
@@ -108,7 +110,7 @@ class Problem(NamedTuple):
 
 
 class Log(NamedTuple):
-    """Of one run: steps, Newton iterations, factorisations, rejected steps; iterations of each step while room lasts."""
+    """Of one run: steps, Newton iterations, factorisations, rejected steps; iterations a step while room lasts."""
 
     counts: np.ndarray
     iterations: np.ndarray
@@ -118,8 +120,8 @@ class Log(NamedTuple):
 class _Newton(NamedTuple):
     """Work of the Newton iteration.
 
-    ``memory``: step for which the kept factorisation was made (0: none), contraction seen last. ``slope``: rate of change
-    of accelerations and multipliers over the last step, for the prediction of the next one.
+    ``memory``: step for which the kept factorisation was made (0: none), contraction seen last. ``slope``: rate of
+    change of accelerations and multipliers over the last step, for the prediction of the next one.
     """
 
     factors: tuple
@@ -194,7 +196,7 @@ def _correct(n, c, scale, delta, old, new):
 
 @kernel
 def _converge(problem, model, dual, c, tolerance, old, new, newton, log):
-    """Newton iteration on the new accelerations and multipliers: status, and iterations or the unknown that moved most."""
+    """Newton iteration on new accelerations and multipliers: status, and iterations or the unknown that moved most."""
     n, memory = problem.n, newton.memory
     _predict(n, c, old, newton.slope, new)
     fresh = not (0.8 * memory[0] < c.step < 1.25 * memory[0]) or memory[1] > _AGED
@@ -269,7 +271,7 @@ def _differentiate(problem, dual, directions, c, t, within, old, new, dolds, dne
 
 @kernel
 def _initial_matrix(problem, dual, state, dual_work, constraints, exact):
-    """Factorised matrix of the equations of motion beside the constraints at acceleration level; whether it is regular."""
+    """Factorised matrix of motion beside the constraints at acceleration level; whether it is regular."""
     arguments = (dual, problem.exact_slots, problem.n, state.x, state.v, state.a)
     tangent(*arguments, (1.0, 0.0, 0.0), (0.0, 1.0), dual_work, constraints)
     tangent(*arguments, (0.0, 0.0, 1.0), (1.0, 0.0), dual_work, exact.matrix)
@@ -345,7 +347,9 @@ def _integrate(problem, edges, settings, model, dual, directions, state, dstates
     n, width = problem.n, len(state.x)
     old, new = still(width), still(width)
     copy(state, new)
-    dolds = Motion(np.zeros_like(dstates.x), np.zeros_like(dstates.x), np.zeros_like(dstates.x), np.zeros_like(dstates.x))
+    dolds = Motion(
+        np.zeros_like(dstates.x), np.zeros_like(dstates.x), np.zeros_like(dstates.x), np.zeros_like(dstates.x)
+    )
     work, dual_work = workspace(model), workspace(dual)
     newton = _Newton(
         storage(problem.layout), work, dual_work, np.zeros(width), np.zeros(width), np.zeros(2), np.zeros(width)

@@ -79,16 +79,16 @@ def _call(
     problem = problem._replace(edges=edges, stretches=np.array([len(given) - 1 for given in stretches]))
     states, dstates = _zeros(len(samples), width), _zeros(len(tilted), width)
     for number, entry in enumerate(samples):
-        states.x[number], states.v[number] = entry.x.real, entry.v.real
+        states.x[number], states.v[number] = np.real(entry.x), np.real(entry.v)
     for number, entry in enumerate(tilted):
-        dstates.x[number], dstates.v[number] = entry.x.imag / STEP, entry.v.imag / STEP
+        dstates.x[number], dstates.v[number] = np.imag(entry.x) / STEP, np.imag(entry.v) / STEP
     out, dout = _zeros(len(samples), len(times), width), _zeros(len(tilted), len(times), width)
     log = Log(np.zeros(4, dtype=np.int64), np.zeros(logged, dtype=np.int64), np.zeros(logged))
     ends = np.zeros((len(samples), 3))
     alpha.integrate(
         problem, settings(solver), stack([entry.real for entry in samples], first.real),
-        stack([entry.dual for entry in samples], first.dual), stack([entry.dual for entry in tilted], first.dual), states,
-        dstates, out, dout, log, ends,
+        stack([entry.dual for entry in samples], first.dual), stack([entry.dual for entry in tilted], first.dual),
+        states, dstates, out, dout, log, ends,
     )  # fmt: skip
     taken = min(int(log.counts[0]), logged)
     runs = []
@@ -132,8 +132,12 @@ def stack(models: Sequence[Model], like: Model) -> Model:
     blocks = {}
     for kind in KINDS:
         first: Block = getattr(like, kind)
-        blocks[kind] = Block(first.index, first.meta, joined([getattr(model, kind).data for model in models], first.data))
-    signals = Signals(like.signals.index, like.signals.knots, joined([m.signals.data for m in models], like.signals.data))
+        blocks[kind] = Block(
+            first.index, first.meta, joined([getattr(model, kind).data for model in models], first.data)
+        )
+    signals = Signals(
+        like.signals.index, like.signals.knots, joined([m.signals.data for m in models], like.signals.data)
+    )
     return Model(**blocks, signals=signals, callbacks=joined([m.callbacks for m in models], like.callbacks))
 
 
@@ -145,11 +149,14 @@ def explain(lowered: Lowered, solver: GeneralizedAlpha, status: int, time: float
         return f"a function of the user's failed near t = {time:.6g} s: {type(error).__name__}: {error}"
     if status == alpha.SINGULAR:
         return (
-            f"the equations of motion became singular at t = {time:.6g} s, at component {owner!r}: redundant constraints, "
-            "a massless part, or a singular position; start from another position or take a constraint out"
+            f"the equations of motion became singular at t = {time:.6g} s, at component {owner!r}: redundant "
+            "constraints, a massless part, or a singular position; start from another position or take a constraint out"
         )
     if status == alpha.TOO_MANY_STEPS:
-        return f"the adaptive step reached most_steps = {solver.most_steps} at t = {time:.6g} s; raise tolerance or most_steps"
+        return (
+            f"the adaptive step reached most_steps = {solver.most_steps} at t = {time:.6g} s; "
+            "raise tolerance or most_steps"
+        )
     return (
         f"Newton's iteration did not converge at t = {time:.6g} s, worst at component {owner!r}, though the step of "
         f"{solver.step:g} s was cut down {'' if solver.adaptive else 'to 1/256 '}for it; take a smaller step, or check "

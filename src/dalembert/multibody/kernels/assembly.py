@@ -48,7 +48,7 @@ def residual(model, n, x, v, a, work, scale, r):
 
 @template
 def _add_tangent(function, width, block, slots, callbacks, n, x, v, a, by, rows, work, matrix, damping=-1):
-    """Tangents by the complex step; of those components only whose number ``damping``, where one is named, is not zero."""
+    """Tangents by the complex step; only of components whose number ``damping``, where one is named, is not zero."""
     index, last = block.index, len(x) - 1
     for e in range(len(index)):
         if damping >= 0 and block.data[e, damping] == 0.0:
@@ -89,11 +89,11 @@ def _add_elements(function, damping, width, block, slots, n, x, by, rows, work, 
 
 @kernel
 def tangent(dual, slots, n, x, v, a, by, rows, work, matrix):
-    """Fill the flat ``matrix`` with the derivative of the residual along ``by[0] dq + by[1] dv + by[2] da``, and dlambda.
+    """Fill the flat ``matrix`` with the residual's derivative along ``by[0] dq + by[1] dv + by[2] da``, and dlambda.
 
     Rows of the equations of motion are multiplied by ``rows[0]``, those of the constraints by ``rows[1]``. ``dual`` is
-    the model in complex numbers; the columns of a component come from the complex step of its residual, but for undamped
-    beams, where the formula is five times as fast (the sensitivities need a tangent at each step).
+    the model in complex numbers; the columns of a component come from the complex step of its residual, but for
+    undamped beams, where the formula is five times as fast (the sensitivities need a tangent at each step).
     """
     for i in range(len(matrix)):
         matrix[i] = 0.0
@@ -106,7 +106,9 @@ def tangent(dual, slots, n, x, v, a, by, rows, work, matrix):
     _add_tangent(cable.residual, w, dual.cables, slots.cables, c, n, x, v, a, by, rows, work, matrix, d)
     _add_tangent(body.residual, body.WIDTH, dual.bodies, slots.bodies, c, n, x, v, a, by, rows, work, matrix)
     _add_tangent(joints.residual, joints.WIDTH, dual.joints, slots.joints, c, n, x, v, a, by, rows, work, matrix)
-    _add_tangent(friction.residual, friction.WIDTH, dual.frictions, slots.frictions, c, n, x, v, a, by, rows, work, matrix)
+    _add_tangent(
+        friction.residual, friction.WIDTH, dual.frictions, slots.frictions, c, n, x, v, a, by, rows, work, matrix
+    )
     _add_tangent(spring.residual, spring.WIDTH, dual.springs, slots.springs, c, n, x, v, a, by, rows, work, matrix)
     _add_tangent(load.residual, load.WIDTH, dual.loads, slots.loads, c, n, x, v, a, by, rows, work, matrix)
     _add_tangent(user.residual, user.WIDTH, dual.users, slots.users, c, n, x, v, a, by, rows, work, matrix)

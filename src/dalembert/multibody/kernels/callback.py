@@ -3,6 +3,8 @@
 The address is data, so that a new function needs no new compilation and compiled kernels can be kept on disk.
 """
 
+from typing import cast
+
 from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
@@ -11,7 +13,7 @@ from numba.extending import intrinsic
 @intrinsic
 def call(typingctx, address, *arrays):
     """Call the C function at ``address`` with the addresses of the first elements of contiguous arrays."""
-    signature = types.void(types.int64, types.StarArgTuple.from_types(arrays))
+    signature = types.void(types.int64, cast(types.Type, types.StarArgTuple.from_types(arrays)))
 
     def generate(context, builder, signature, arguments):
         import llvmlite.ir as ir

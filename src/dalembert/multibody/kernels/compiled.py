@@ -1,10 +1,14 @@
 """How kernels are compiled: once for a machine, kept on disk, without the interpreter's lock."""
 
 import hashlib
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
+from typing import Any, TypeVar, cast
 
 from numba import njit
+
+_Function = TypeVar("_Function", bound=Callable)
 
 _MULTIBODY = Path(__file__).parent.parent
 
@@ -30,15 +34,21 @@ def _forget_stale() -> None:
 _forget_stale()
 
 # No fast-math: results must be the same bits on every run, and NaN must stay visible.
-_OPTIONS = {"cache": True, "nogil": True, "error_model": "numpy"}
+_OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy"}
+
+
+def _decorator(**options: Any) -> Callable[[_Function], _Function]:
+    """Numba's decorator with options that its type stubs do not know; a kernel is called as the function it is from."""
+    return cast(Any, njit(**_OPTIONS, **options))
+
 
 #: For functions that make arrays, or return them or views of them.
-compiled = njit(**_OPTIONS, _nrt=True)
+compiled = _decorator(_nrt=True)
 #: For functions that do neither: without the counting of references to their arguments, which would take more time than
 #: the mechanics of a small model (measured: 1.1 against 0.2 microseconds a residual of two bodies and two joints).
-kernel = njit(**_OPTIONS, _nrt=False)
+kernel = _decorator(_nrt=False)
 #: The same for small functions that stand inside others: written into their callers.
-inlined = njit(**_OPTIONS, _nrt=False, forceinline=True)
+inlined = _decorator(_nrt=False, forceinline=True)
 #: The same for loops over components, which are specialised by a kernel: written out before types are inferred, which
 #: saves a compilation each.
-template = njit(**_OPTIONS, _nrt=False, inline="always")
+template = _decorator(_nrt=False, inline="always")

@@ -1,8 +1,8 @@
 """Friction in revolute and prismatic joints: viscous and smoothed Coulomb.
 
-Local unknowns and the first eight data are those of the joint (:mod:`joints`); behind them viscous coefficient, constant
-Coulomb torque (force), friction coefficient times pin radius (friction coefficient), and the rate at which the smoothed
-sign tanh(rate/transition) turns.
+Local unknowns and the first eight data are those of the joint (:mod:`joints`); behind them viscous coefficient,
+constant Coulomb torque (force), friction coefficient times pin radius (friction coefficient), and the rate at which the
+smoothed sign tanh(rate/transition) turns.
 """
 
 from dalembert.multibody.kernels import joints

@@ -10,7 +10,17 @@ Meta: joint kind, marker kinds of a and b, signal of a prescribed motion, 1 wher
 
 from dalembert.multibody.kernels.compiled import inlined, kernel
 from dalembert.multibody.kernels.dual import root, sin_cos, wrapped
-from dalembert.multibody.kernels.markers import acceleration, angle, direction, position, push, spin, spin_rate, twist, velocity
+from dalembert.multibody.kernels.markers import (
+    acceleration,
+    angle,
+    direction,
+    position,
+    push,
+    spin,
+    spin_rate,
+    twist,
+    velocity,
+)
 
 WIDTH = 11
 MULTIPLIERS = 8  # slot of the first one
@@ -71,7 +81,7 @@ def residual(x, v, a, signals, callbacks, data, meta, e, r):
     for i in range(WIDTH):
         r[i] = 0.0
     kind = meta[e, 0]
-    l0, l1, l2 = x[8], x[9], x[10]
+    l0, l1 = x[8], x[9]
     dx, dy = separation(x, data, meta, e)
     if kind == REVOLUTE or kind == FIXED:
         push_pair(x, data, meta, e, l0, l1, r)

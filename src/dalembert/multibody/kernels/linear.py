@@ -15,14 +15,17 @@ from dalembert.multibody.kernels.compiled import compiled, inlined, kernel
 DENSE, BAND = range(2)
 #: Addresses of LAPACK's routines as SciPy carries them; data to the kernels, see `callback`.
 LAPACK = np.array(
-    [get_cython_function_address("scipy.linalg.cython_lapack", name) for name in ("dgetrf", "dgetri", "dgbtrf", "dgbtrs")],
+    [
+        get_cython_function_address("scipy.linalg.cython_lapack", name)
+        for name in ("dgetrf", "dgetri", "dgbtrf", "dgbtrs")
+    ],
     dtype=np.int64,
 )
 _BLOCK = 32  # columns that dgetri treats at a time, for the size of its work array
 
 
 class Layout(NamedTuple):
-    """Where the entries of a matrix are kept: kind, size N, bands below and above, place of each unknown in the band."""
+    """Where a matrix's entries are kept: kind, size N, bands below and above, place of each unknown in the band."""
 
     kind: int
     size: int

@@ -8,7 +8,7 @@ from dalembert.multibody.kernels.compiled import compiled, kernel
 
 
 class Motion(NamedTuple):
-    """A state: unknowns x (N + 1: coordinates, multipliers, zero), velocities, accelerations, algorithmic accelerations.
+    """A state: unknowns x (N + 1: coordinates, multipliers, zero), velocities, accelerations, algorithmic ones.
 
     The same four arrays hold a state's derivative along one direction of the parameters.
     """
@@ -70,7 +70,7 @@ def coefficients(step, spectral_radius):
 
 @kernel
 def advance(n, c, old, new):
-    """Algorithmic accelerations, velocities and coordinates that belong to the new accelerations; linear in its states."""
+    """Algorithmic accelerations, velocities and coordinates of the new accelerations; linear in its states."""
     h = c.step
     scale = 1.0 / (1.0 - c.alpha_m)
     own, past = (1.0 - c.alpha_f) * scale, c.alpha_f * scale
@@ -87,7 +87,7 @@ def advance(n, c, old, new):
 
 @kernel
 def interpolate(n, h, s, old, new, x, v, a):
-    """State at the fraction ``s`` of a step of length ``h``: cubic for coordinates and velocities, linear for the rest."""
+    """State at the fraction ``s`` of a step ``h``: cubic for coordinates and velocities, linear for the rest."""
     if s > 1.0 - 1e-9:
         for i in range(len(x)):
             x[i], v[i], a[i] = new.x[i], new.v[i], new.a[i]

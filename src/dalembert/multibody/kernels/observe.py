@@ -9,9 +9,25 @@ from dalembert.multibody.kernels.assembly import energies, gather
 from dalembert.multibody.kernels.compiled import compiled
 from dalembert.multibody.kernels.markers import acceleration, spin_rate
 
-(X, Y, ANGLE, VX, VY, RATE, AX, AY, ACCELERATION, FORCE_X, FORCE_Y, TORQUE, STRETCH, TENSION, KINETIC, POTENTIAL, TOTAL) = (
-    range(17)
-)
+(
+    X,
+    Y,
+    ANGLE,
+    VX,
+    VY,
+    RATE,
+    AX,
+    AY,
+    ACCELERATION,
+    FORCE_X,
+    FORCE_Y,
+    TORQUE,
+    STRETCH,
+    TENSION,
+    KINETIC,
+    POTENTIAL,
+    TOTAL,
+) = range(17)
 
 
 @compiled

@@ -19,7 +19,7 @@ _TIME = 0  # signal that holds the time
 
 
 @compiled
-def _ask(x, v, signals, callbacks, data, meta, e):
+def _ask(x, v, signals, callbacks, data, meta, e) -> tuple[np.ndarray, np.ndarray]:
     given, answer = np.zeros(GIVEN, x.dtype), np.zeros(ANSWER, x.dtype)
     given[0] = signals[_TIME, 0]
     for side in range(2):

@@ -9,6 +9,7 @@ from dalembert.multibody.loads import Force, Spring, Torque, TorsionSpring, User
 from dalembert.multibody.points import Ground, GroundPoint, Point
 from dalembert.multibody.signals import Constant, Custom, Harmonic, Polynomial, Step, Table
 from dalembert.multibody.simulate import simulate
+from dalembert.multibody.statics import Equilibrium, Modes, equilibrium, modes
 from dalembert.multibody.system import System
 from dalembert.multibody.time_response import TimeResponse
 from dalembert.multibody.trajectory import Trajectory
@@ -20,12 +21,14 @@ __all__ = [
     "Custom",
     "DistanceJoint",
     "Drawing",
+    "Equilibrium",
     "FixedJoint",
     "Force",
     "GeneralizedAlpha",
     "Ground",
     "GroundPoint",
     "Harmonic",
+    "Modes",
     "Point",
     "PointMass",
     "Polynomial",
@@ -43,5 +46,7 @@ __all__ = [
     "TorsionSpring",
     "Trajectory",
     "UserForce",
+    "equilibrium",
+    "modes",
     "simulate",
 ]

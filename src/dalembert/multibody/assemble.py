@@ -24,8 +24,10 @@ _MOST_ITERATIONS = 60
 _FRAME = {"x": 0, "y": 1, "angle": 2}
 
 
-def assembled(system: System) -> Lowered:
+def assembled(system: System, tilted: bool = False) -> Lowered:
     """Arrays of a system whose joints are closed and whose velocities are consistent, at the start.
+
+    A ``tilted`` system is treated in complex numbers even if only functions of the user's hold the imaginary step.
 
     Raises
     ------
@@ -36,7 +38,7 @@ def assembled(system: System) -> Lowered:
     if lowered.structure.size == lowered.structure.n:
         return lowered
     model = lowered.real
-    if lowered.is_complex:
+    if lowered.is_complex or tilted:
         model = lowered.dual
         cast = {name: getattr(lowered, name).astype(complex) for name in ("frames", "rates", "x", "v")}
         lowered = replace(lowered, **cast)
@@ -127,6 +129,8 @@ def _close(bodies: Sequence[Body], lowered: Lowered, model: Model, free: np.ndar
         gaps = residual(lowered, model, x, still, still)[lowered.structure.n :]
         if _size(gaps) <= tolerance:
             return frames
+        if not np.all(np.isfinite(gaps)):
+            break
         jacobian = constraint_jacobian(lowered, x.real) @ _modes(bodies, lowered, frames.real)[:, free]
         step = np.linalg.lstsq(jacobian, -gaps, rcond=1e-10)[0]
         longest = np.abs(step.real).max(initial=0.0)
@@ -137,6 +141,8 @@ def _close(bodies: Sequence[Body], lowered: Lowered, model: Model, free: np.ndar
         if longest <= 1e-15 and _size(gaps) <= 1e3 * tolerance:
             return frames
     structure = lowered.structure
+    for error in (*lowered.failures.errors, *lowered.failures.inexact):
+        raise ModelError(f"the joints cannot be placed at the start: {type(error).__name__}: {error}") from error
     gaps = residual(lowered, model, _coordinates(bodies, lowered, frames), still, still)[structure.n :]
     worst = int(np.argmax(np.abs(gaps.real)))
     raise ModelError(

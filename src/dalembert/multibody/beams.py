@@ -143,7 +143,9 @@ class AncfBeam(_Ancf):
         if self.law not in LAWS:
             raise InputError(unknown("law", self.law, LAWS, owner))
         if not -1 < np.real(self.poisson_ratio) < 0.5:
-            raise InputError(f"{owner}: poisson_ratio is {np.real(self.poisson_ratio):g}; expected a number in (-1, 0.5)")
+            raise InputError(
+                f"{owner}: poisson_ratio is {np.real(self.poisson_ratio):g}; expected a number in (-1, 0.5)"
+            )
 
     @property
     def vectors(self) -> int:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from dalembert.errors import InputError, unknown
-from dalembert.multibody.fields import Number, number, pair, require, require_not_negative
+from dalembert.multibody.fields import Number, number, pair, require
 from dalembert.multibody.kernels import markers
 from dalembert.multibody.points import Place, Point
 
@@ -78,6 +78,11 @@ class Body:
     def turns(self) -> bool:
         """Whether the body has a direction."""
         return True
+
+    @property
+    def rigid(self) -> bool:
+        """Whether the distances of its points never change."""
+        return self.size <= 3
 
     @property
     def size(self) -> int:

@@ -1,13 +1,16 @@
 """Functions of the user's, made callable from kernels by address, in real and in complex arithmetic."""
 
 import ctypes
-from collections.abc import Callable
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
 from numba import carray, cfunc, complex128, float64, types
+from numba.core.errors import NumbaError
 from numba.core.registry import CPUDispatcher
 
 from dalembert.multibody.kernels.user import ANSWER, GIVEN
@@ -18,9 +21,13 @@ _RATE_STEP = 1e-5  # s, of the differences that stand in for a rate that is not 
 
 @dataclass
 class Failures:
-    """First exception of each run that a plain Python function raised; the answer was NaN there."""
+    """Exceptions that functions of the user's raised, with the component's name; the answer was NaN there.
+
+    Those ``inexact`` were raised for complex numbers only: the motion does not need them, its derivatives do.
+    """
 
     errors: list[Exception] = field(default_factory=list)
+    inexact: list[Exception] = field(default_factory=list)
 
 
 @dataclass(frozen=True)
@@ -32,15 +39,37 @@ class Callback:
     alive: tuple[Any, ...] = field(repr=False)
 
 
-def force_callback(function: Callable[..., Any], failures: Failures) -> Callback:
+@contextmanager
+def in_complex_numbers(strict: bool) -> Iterator[None]:
+    """Whether functions of the user's that drop an imaginary part have failed; without it the tangent is less exact."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error" if strict else "ignore", np.exceptions.ComplexWarning)
+        yield
+
+
+def force_callback(function: Callable[..., Any], owner: str, failures: Failures) -> Callback:
     """Callback of ``function(t, at, against) -> (fx, fy, torque)``."""
-    if isinstance(function, CPUDispatcher):
-        return _compiled_force(function)
-    return _plain(lambda given: function(given[0], given[1:7], given[7:13]), GIVEN, ANSWER, failures)
+
+    def plain(called: Callable[..., Any]) -> Callback:
+        return _plain(lambda given: called(given[0].real, given[1:7], given[7:13]), GIVEN, ANSWER, owner, failures)
+
+    if not isinstance(function, CPUDispatcher):
+        return plain(function)
+    real = _compiled_force(function, float64)
+    try:
+        return Callback(real.address, _compiled_force(function, complex128).address, (real,))
+    except NumbaError as error:
+        reason = error
+
+    def refuse(*_: Any) -> Any:
+        raise TypeError("Numba cannot compile it for complex numbers") from reason
+
+    inexact = plain(refuse)
+    return Callback(real.address, inexact.complex, (real, inexact))
 
 
 def signal_callback(
-    function: Callable, rate: Callable | None, second: Callable | None, failures: Failures
+    function: Callable, rate: Callable | None, second: Callable | None, owner: str, failures: Failures
 ) -> Callback:
     """Callback of a function of time: value, rate and second rate."""
     h = _RATE_STEP
@@ -57,17 +86,18 @@ def signal_callback(
             last = second(t) if second is not None else (ahead - 2 * value + behind) / h**2
         return value, first, last
 
-    return _plain(answer, 1, 3, failures)
+    return _plain(answer, 1, 3, owner, failures)
 
 
-def _plain(function: Callable[[np.ndarray], Any], given: int, answer: int, failures: Failures) -> Callback:
+def _plain(function: Callable[[np.ndarray], Any], given: int, answer: int, owner: str, failures: Failures) -> Callback:
     def trampoline(dtype: type) -> Any:
         def call(source: int, target: int) -> None:
             into = _view(target, answer, dtype)
             try:
                 into[:] = function(_view(source, given, dtype))
             except Exception as error:  # must not cross the compiled code
-                failures.errors.append(error)
+                error.args = (f"{error}, in the function of {owner!r}",)
+                (failures.inexact if dtype is complex else failures.errors).append(error)
                 into[:] = np.nan
 
         return _C_FUNCTION(call)
@@ -83,14 +113,10 @@ def _view(address: int, count: int, dtype: type) -> np.ndarray:
 
 
 @lru_cache(maxsize=64)
-def _compiled_force(function: CPUDispatcher) -> Callback:
-    def build(kind: Any) -> Any:
-        @cfunc(types.void(types.CPointer(kind), types.CPointer(kind)))
-        def call(source: Any, target: Any) -> None:
-            given, into = carray(source, GIVEN), carray(target, ANSWER)
-            into[0], into[1], into[2] = function(given[0].real, given[1:7], given[7:13])
+def _compiled_force(function: CPUDispatcher, kind: Any) -> Any:
+    @cfunc(types.void(types.CPointer(kind), types.CPointer(kind)))
+    def call(source: Any, target: Any) -> None:
+        given, into = carray(source, GIVEN), carray(target, ANSWER)
+        into[0], into[1], into[2] = function(given[0].real, given[1:7], given[7:13])
 
-        return call
-
-    pair = build(float64), build(complex128)
-    return Callback(pair[0].address, pair[1].address, pair)
+    return call

@@ -1,5 +1,9 @@
 """Residuals, matrices, constraint rates and energies of a lowered model, for use from Python."""
 
+import sys
+from functools import cache
+from pathlib import Path
+
 import numpy as np
 from scipy.sparse import coo_matrix, csr_matrix
 
@@ -52,8 +56,17 @@ def _violations(model, n, x, v, a, times, within, out):
             out[s, level] = 0.0 if width - 1 == n else np.abs(values[n : width - 1]).max()
 
 
+@cache
+def _announce_compilation() -> None:
+    """Say, once, that kernels will be compiled where no compiled ones are on disk."""
+    kept = Path(_residual._cache.cache_path)  # type: ignore[attr-defined] - Numba's cache of a compiled function
+    if not any(kept.glob("evaluate._residual-*.nbi")):
+        print("dalembert: compiling its kernels, once on this machine; this takes one to two minutes", file=sys.stderr)
+
+
 def residual(lowered: Lowered, model: Model, x: np.ndarray, v: np.ndarray, a: np.ndarray, t: float = 0.0) -> np.ndarray:
     """Equations of motion, then constraints, (N,)."""
+    _announce_compilation()
     r = np.zeros_like(x)
     _residual(model, lowered.structure.n, x, v, a, t, t, r)
     return r[:-1]

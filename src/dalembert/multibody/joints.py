@@ -9,12 +9,11 @@ import numpy as np
 from dalembert.errors import InputError, ModelError, unknown
 from dalembert.multibody.fields import Number, number, require, require_not_negative
 from dalembert.multibody.kernels import joints as kernel
-from dalembert.multibody.kernels import markers
-from dalembert.multibody.points import Side
-from dalembert.multibody.signals import Course
+from dalembert.multibody.points import Side, require_direction
+from dalembert.multibody.signals import Course, Step, Table
 
 if TYPE_CHECKING:
-    from dalembert.multibody.lowering import Lowering, Pair
+    from dalembert.multibody.lowering import Lowering
 
 
 @dataclass(frozen=True)
@@ -29,20 +28,15 @@ class Joint:
     def lower(self, lowering: "Lowering") -> None:
         """Write the rows of the kernels."""
 
-    def _oriented(self, pair: "Pair") -> None:
+    def _oriented(self, advice: str = "a revolute or distance joint, or a rigid body") -> None:
         """Refuse sides that have no direction."""
-        for side, kind in ((self.a, pair.kinds[0]), (self.b, pair.kinds[1])):
-            if kind == markers.MASS:
-                raise ModelError(
-                    f"{type(self).__name__} {self.name!r}: {side} is a point mass, which has no direction; "
-                    "use a revolute or distance joint, or a rigid body"
-                )
+        require_direction(f"{type(self).__name__} {self.name!r}", advice, self.a, self.b)
 
 
-def _friction(lowering: "Lowering", kind: int, index: list[int], pair: "Pair", rest: list[Number], *law: Number) -> None:
-    """Add the friction of a joint, where it has any."""
-    if any(value != 0 for value in law[:3]):
-        lowering.add("frictions", index, [kind, *pair.kinds, 0, pair.wraps], [*pair.data, *rest, *law])
+def _given(joint: "RevoluteJoint | PrismaticJoint") -> dict[str, Number]:
+    """Friction coefficients that are given; one that is zero stays in the model: it may be a parameter's bound."""
+    values = {name: getattr(joint, name) for name in ("viscous", "coulomb", "friction_coefficient")}
+    return {name: value for name, value in values.items() if value is not None}
 
 
 @dataclass(frozen=True)
@@ -61,28 +55,30 @@ class RevoluteJoint(Joint):
         With ``pin_radius`` (m): friction torque friction_coefficient x pin_radius x reaction force.
     slip_rate : float
         Relative angular velocity, rad/s, over which the Coulomb torque turns its sign, as tanh(rate / slip_rate).
+
+    Without any of the first three there is no friction; one that is zero may be a parameter's value.
     """
 
-    viscous: Number = number("N*m*s", 0.0)
-    coulomb: Number = number("N*m", 0.0)
-    friction_coefficient: Number = number("", 0.0)
+    viscous: Number | None = number("N*m*s", None)
+    coulomb: Number | None = number("N*m", None)
+    friction_coefficient: Number | None = number("", None)
     pin_radius: Number = number("m", 0.0)
     slip_rate: Number = number("rad/s", 1e-3)
 
     def __post_init__(self) -> None:
         owner = f"revolute joint {self.name!r}"
-        require_not_negative(
-            owner, viscous=self.viscous, coulomb=self.coulomb, friction_coefficient=self.friction_coefficient,
-            pin_radius=self.pin_radius,
-        )  # fmt: skip
+        require_not_negative(owner, pin_radius=self.pin_radius, **_given(self))
         require(owner, slip_rate=self.slip_rate)
 
     def lower(self, lowering: "Lowering") -> None:
         pair = lowering.pair(self.a, self.b, self.name)
         index = pair.slots + lowering.multipliers(self.name, 2)
         lowering.add("joints", index, [kernel.REVOLUTE, *pair.kinds, 0, pair.wraps], [*pair.data, 0.0, 0.0])
-        law = self.viscous, self.coulomb, self.friction_coefficient * self.pin_radius, self.slip_rate
-        _friction(lowering, kernel.REVOLUTE, index, pair, [0.0, 0.0], *law)
+        if _given(self):
+            self._oriented("a rigid body where a joint has friction")
+            law = self.viscous or 0.0, self.coulomb or 0.0, (self.friction_coefficient or 0.0) * self.pin_radius
+            meta = [kernel.REVOLUTE, *pair.kinds, 0, pair.wraps]
+            lowering.add("frictions", index, meta, [*pair.data, 0.0, 0.0, *law, self.slip_rate])
 
 
 @dataclass(frozen=True)
@@ -91,7 +87,7 @@ class FixedJoint(Joint):
 
     def lower(self, lowering: "Lowering") -> None:
         pair = lowering.pair(self.a, self.b, self.name)
-        self._oriented(pair)
+        self._oriented()
         index = pair.slots + lowering.multipliers(self.name, 3)
         lowering.add("joints", index, [kernel.FIXED, *pair.kinds, 0, pair.wraps], [*pair.data, pair.rest_angle, 0.0])
 
@@ -117,26 +113,26 @@ class PrismaticJoint(Joint):
     """
 
     angle: Number = number("rad", 0.0)
-    viscous: Number = number("N*s/m", 0.0)
-    coulomb: Number = number("N", 0.0)
-    friction_coefficient: Number = number("", 0.0)
+    viscous: Number | None = number("N*s/m", None)
+    coulomb: Number | None = number("N", None)
+    friction_coefficient: Number | None = number("", None)
     slip_velocity: Number = number("m/s", 1e-3)
 
     def __post_init__(self) -> None:
         owner = f"prismatic joint {self.name!r}"
-        require_not_negative(
-            owner, viscous=self.viscous, coulomb=self.coulomb, friction_coefficient=self.friction_coefficient
-        )
+        require_not_negative(owner, **_given(self))
         require(owner, slip_velocity=self.slip_velocity)
 
     def lower(self, lowering: "Lowering") -> None:
         pair = lowering.pair(self.a, self.b, self.name)
-        self._oriented(pair)
+        self._oriented()
         index = pair.slots + lowering.multipliers(self.name, 2)
         rest = [pair.rest_angle, self.angle]
-        lowering.add("joints", [*index, None], [kernel.PRISMATIC, *pair.kinds, 0, pair.wraps], [*pair.data, *rest])
-        law = self.viscous, self.coulomb, self.friction_coefficient, self.slip_velocity
-        _friction(lowering, kernel.PRISMATIC, [*index, None], pair, rest, *law)
+        meta = [kernel.PRISMATIC, *pair.kinds, 0, pair.wraps]
+        lowering.add("joints", [*index, None], meta, [*pair.data, *rest])
+        if _given(self):
+            law = self.viscous or 0.0, self.coulomb or 0.0, self.friction_coefficient or 0.0
+            lowering.add("frictions", [*index, None], meta, [*pair.data, *rest, *law, self.slip_velocity])
 
 
 @dataclass(frozen=True)
@@ -190,11 +186,16 @@ class PrescribedMotion(Joint):
     def __post_init__(self) -> None:
         if self.coordinate not in self._KINDS:
             raise InputError(unknown("coordinate", self.coordinate, self._KINDS, f"prescribed motion {self.name!r}"))
+        if isinstance(self.motion, Step) or (isinstance(self.motion, Table) and self.motion.kind == "linear"):
+            raise InputError(
+                f"prescribed motion {self.name!r}: the velocity of its {type(self.motion).__name__} jumps, which no "
+                "mechanism can follow; expected a smooth function of time, such as a cubic Table or a Polynomial"
+            )
 
     def lower(self, lowering: "Lowering") -> None:
         pair = lowering.pair(self.a, self.b, self.name)
         if self.coordinate == "angle":
-            self._oriented(pair)
+            self._oriented()
         index = pair.slots + lowering.multipliers(self.name, 1)
         meta = [self._KINDS[self.coordinate], *pair.kinds, lowering.signal(self.motion), pair.wraps]
         lowering.add("joints", index, meta, [*pair.data, 0.0, 0.0])

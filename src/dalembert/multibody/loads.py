@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from dalembert.multibody.fields import Number, number, require_not_negative
 from dalembert.multibody.kernels import load, spring
-from dalembert.multibody.points import Side
+from dalembert.multibody.points import Side, require_direction
 from dalembert.multibody.signals import Course
 
 if TYPE_CHECKING:
@@ -45,6 +45,8 @@ class Force(Load):
     follower: bool = False
 
     def lower(self, lowering: "Lowering") -> None:
+        if self.follower:
+            require_direction(f"follower force {self.name!r}", "a force that does not follow, or a rigid body", self.at)
         pair = lowering.pair(self.at, None, self.name)
         kind = load.FOLLOWER if self.follower else load.FORCE
         meta = [kind, *pair.kinds, lowering.signal(self.x), lowering.signal(self.y)]
@@ -69,6 +71,7 @@ class Torque(Load):
     against: Side | None = None
 
     def lower(self, lowering: "Lowering") -> None:
+        require_direction(f"torque {self.name!r}", "a force, or a rigid body", self.at, self.against)
         pair = lowering.pair(self.at, self.against, self.name)
         meta = [load.TORQUE, *pair.kinds, lowering.signal(self.torque), 0]
         lowering.add("loads", pair.slots, meta, pair.data)
@@ -140,6 +143,7 @@ class TorsionSpring(Load):
     cubic: Number = number("N*m/rad**3", 0.0)
 
     def lower(self, lowering: "Lowering") -> None:
+        require_direction(f"torsion spring {self.name!r}", "a spring, or a rigid body", self.a, self.b)
         pair = lowering.pair(self.a, self.b, self.name)
         free = pair.rest_angle if self.free_angle is None else self.free_angle
         meta = [spring.TORSION, *pair.kinds, 0, pair.wraps]

@@ -4,7 +4,7 @@ What depends only on the kinds and connections of components is a `Structure`, f
 ensemble; what depends on numbers is in `Lowered`.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence, ValuesView
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple
@@ -19,7 +19,7 @@ from dalembert.multibody.kernels import markers
 from dalembert.multibody.kernels import signals as signal_kinds
 from dalembert.multibody.kernels.model import KINDS, Block, Model, Signals
 from dalembert.multibody.points import Ground, GroundPoint, Place, Point, Side
-from dalembert.multibody.signals import Course, Custom, as_signal
+from dalembert.multibody.signals import Course, Custom, Signal, as_signal
 from dalembert.multibody.structure import Structure
 from dalembert.multibody.system import System
 
@@ -83,7 +83,9 @@ class Lowered:
         """The arrays in real or in complex numbers."""
         blocks = {
             kind: Block(
-                self.structure.index[kind], self.structure.meta[kind], np.ascontiguousarray(_cast(self.data[kind], dtype))
+                self.structure.index[kind],
+                self.structure.meta[kind],
+                np.ascontiguousarray(_cast(self.data[kind], dtype)),
             )
             for kind in KINDS
         }
@@ -123,6 +125,7 @@ class Lowering:
         self._callbacks: list[Callback] = []
         self._jumps: set[float] = set()
         self._owners: list[str] = []
+        self._component = ""  # that writes its rows
         self._failures = Failures()
         self._bodies: dict[str, Body] = {}
         self._coordinates: dict[str, np.ndarray] = {}
@@ -160,7 +163,8 @@ class Lowering:
         kind, data, knots = signal.lower(self)
         first = len(self._callbacks) if kind == signal_kinds.CUSTOM else len(self._signal_data)
         if isinstance(signal, Custom):
-            self._callbacks.append(signal_callback(signal.function, signal.rate, signal.second, self._failures))
+            functions = signal.function, signal.rate, signal.second
+            self._callbacks.append(signal_callback(*functions, self._component, self._failures))
         self._signals.append((kind, first, len(data), len(self._knots)))
         self._signal_data += data
         self._knots += knots
@@ -170,14 +174,21 @@ class Lowering:
     def callback(self, function: object, owner: str) -> int:
         """Number of a force function of the user's."""
         if not callable(function):
-            raise ModelError(f"user force {owner!r}: its function is {function!r}; expected something that can be called")
-        self._callbacks.append(force_callback(function, self._failures))
+            raise ModelError(
+                f"user force {owner!r}: its function is {function!r}; expected something that can be called"
+            )
+        self._callbacks.append(force_callback(function, owner, self._failures))
         return len(self._callbacks) - 1
 
     def pair(self, a: Side, b: Side | None, owner: str) -> Pair:
         """The markers of two sides; a bare ground stands where the other side is."""
-        if isinstance(a, Ground) and (b is None or isinstance(b, Ground)):
+        if not isinstance(a, Point) and not isinstance(b, Point):
             raise ModelError(f"{owner!r}: it acts on the ground only; give it a point of a body")
+        if isinstance(a, Point) and isinstance(b, Point) and a.body is b.body and a.body.rigid:
+            raise ModelError(
+                f"{owner!r}: both its points, {a} and {b}, belong to the same rigid body, so it does nothing; "
+                "give it points of two bodies, or of a body and the ground"
+            )
         first = self._stand(b if isinstance(a, Ground) and b is not None else a, owner)
         second = self._stand(a if b is None or isinstance(b, Ground) else b, owner)
         sides = self._marker(a, owner, first), self._marker(b or Ground(), owner, second)
@@ -222,6 +233,17 @@ class Lowering:
         angle = 0.0 if isinstance(side, Ground) else place[2]
         return Marker(markers.GROUND, (None,) * 4, (place[0], place[1], angle))
 
+    def _refuse_infinite(self) -> None:
+        """Raise for the first number of a component that is not finite."""
+        system = self._system
+        components = (*system.bodies, *system.joints, *system.loads)
+        parts = [("system", system), *((f"{type(part).__name__} {part.name!r}", part) for part in components)]
+        for owner, part in parts:
+            for name, value in vars(part).items():
+                numbers = value.lower(self)[1] if isinstance(value, Signal) else value
+                if not _finite(list(vars(value).values()) if isinstance(value, GroundPoint) else numbers):
+                    raise ModelError(f"{owner}: {name} is {value}; expected finite numbers")
+
     def run(self) -> Lowered:
         """Place the bodies, let every component write its rows, and pack them."""
         system = self._system
@@ -242,6 +264,7 @@ class Lowering:
         for body in system.bodies:
             body.lower(self, self._first[body.name])
         for component in (*system.joints, *system.loads):
+            self._component = component.name
             component.lower(self)
         size = len(self._owners)
         tail = np.zeros(size + 1 - n)
@@ -257,7 +280,7 @@ class Lowering:
             rows=dict(self._rows),
             signals=np.array(self._signals, dtype=np.int64),
         )
-        return Lowered(
+        lowered = Lowered(
             structure=structure,
             bodies=dict(self._bodies),
             data={kind: np.array(self._data[kind]).reshape(len(self._data[kind]), _DATA[kind]) for kind in KINDS},
@@ -271,11 +294,23 @@ class Lowering:
             jumps=tuple(sorted(time for time in self._jumps if np.isfinite(time))),
             failures=self._failures,
         )
+        if not all(np.all(np.isfinite(array)) for array in (x, lowered.v, lowered.signal_data, *lowered.data.values())):
+            self._refuse_infinite()
+        return lowered
 
 
 def lower(system: System) -> Lowered:
     """Arrays of a system, with its bodies as placed."""
     return Lowering(system).run()
+
+
+def _finite(value: object) -> bool:
+    """Whether all numbers of a field are finite."""
+    if isinstance(value, Mapping):
+        value = value.values()
+    if isinstance(value, tuple | list | np.ndarray | ValuesView):
+        return all(map(_finite, value))
+    return not isinstance(value, float | complex) or bool(np.isfinite(value))
 
 
 def _integers(rows: list, width: int, absent: int) -> np.ndarray:

@@ -109,14 +109,20 @@ def channel_names(system: System) -> tuple[str, ...]:
     """All channels that a system offers."""
     names = []
     for body in system.bodies:
-        names += [f"{body.name}.{point}.{entry}" for point in body.point_names for entry in _point_quantities(body.turns)]
+        names += [
+            f"{body.name}.{point}.{entry}" for point in body.point_names for entry in _point_quantities(body.turns)
+        ]
     names += [f"{joint.name}.{entry}" for joint in system.joints for entry in _OF_JOINT]
     names += [f"{load.name}.{entry}" for load in system.loads if hasattr(load, "stiffness") for entry in _OF_SPRING]
     return (*names, *(f"system.{entry}" for entry in _OF_SYSTEM))
 
 
 def _point_quantities(turns: bool) -> list[str]:
-    return [name for name, (code, _) in _OF_POINT.items() if turns or code not in (codes.ANGLE, codes.RATE, codes.ACCELERATION)]
+    return [
+        name
+        for name, (code, _) in _OF_POINT.items()
+        if turns or code not in (codes.ANGLE, codes.RATE, codes.ACCELERATION)
+    ]
 
 
 def _row(system: System, lowered: Lowered, name: str) -> _Row:

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from dalembert.errors import ModelError
 from dalembert.multibody.fields import Number
 
 if TYPE_CHECKING:
@@ -39,6 +40,13 @@ class Ground:
     def point(self, x: Number, y: Number, angle: Number = 0.0) -> GroundPoint:
         """A fixed point at (x, y) in m, its axes turned by ``angle`` in rad."""
         return GroundPoint(x, y, angle)
+
+
+def require_direction(owner: str, advice: str, *sides: Point | GroundPoint | Ground | None) -> None:
+    """Refuse sides that have no direction: those of point masses."""
+    for side in sides:
+        if isinstance(side, Point) and not side.body.turns:
+            raise ModelError(f"{owner}: {side} is a point mass, which has no direction; use {advice}")
 
 
 #: Where a body may start: coordinates in m, or a point of a body that was added before, or of the ground.

@@ -4,6 +4,7 @@ import numpy as np
 
 from dalembert.errors import InputError, SolveError
 from dalembert.multibody.assemble import assembled, refuse_redundancy
+from dalembert.multibody.callbacks import in_complex_numbers
 from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha
 from dalembert.multibody.integrators.run import run
 from dalembert.multibody.system import System
@@ -54,10 +55,11 @@ def simulate(
     if not (np.isfinite(end) and end > 0):
         raise InputError(f"simulate: end is {end}; expected a positive number of seconds")
     solver = solver or GeneralizedAlpha(step=end / 1000)
-    lowered = assembled(system)
-    refuse_redundancy(lowered)
-    times = output_times(solver, end, lowered.jumps) if times is None else checked(times, end)
-    result = run(lowered, solver, times, end)
+    with in_complex_numbers(strict=False):
+        lowered = assembled(system)
+        refuse_redundancy(lowered)
+        times = output_times(solver, end, lowered.jumps) if times is None else checked(times, end)
+        result = run(lowered, solver, times, end)
     if result.reason:
         raise SolveError(result.reason)
     return Trajectory(system, lowered, solver, result)

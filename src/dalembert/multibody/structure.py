@@ -47,7 +47,8 @@ class Structure:
             (self.n, self.size, self.owners) == (other.n, other.size, other.owners)
             and np.array_equal(self.signals, other.signals)
             and all(
-                np.array_equal(self.index[kind], other.index[kind]) and np.array_equal(self.meta[kind], other.meta[kind])
+                np.array_equal(self.index[kind], other.index[kind])
+                and np.array_equal(self.meta[kind], other.meta[kind])
                 for kind in KINDS
             )
         )

@@ -12,6 +12,7 @@ import numpy as np
 from dalembert.errors import DalembertError, InputError, SolveError
 from dalembert.forward import Channel, Coordinate, Responses
 from dalembert.multibody.assemble import assembled, refuse_redundancy
+from dalembert.multibody.callbacks import in_complex_numbers
 from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha, Problem
 from dalembert.multibody.integrators.run import make_problem, run, run_ensemble
 from dalembert.multibody.kernels.dual import STEP
@@ -136,12 +137,13 @@ class TimeResponse:
                     values[row] = frame.observer.read(lowered, lowered.real, states.x, states.v, states.a)
 
         parts = _parts(len(vectors), self.workers)
-        if self.workers == 1 or len(parts) == 1:
-            for part in parts:
-                work(part)
-        else:
-            with ThreadPoolExecutor(self.workers) as pool:
-                list(pool.map(work, parts))
+        with in_complex_numbers(strict=False):
+            if self.workers == 1 or len(parts) == 1:
+                for part in parts:
+                    work(part)
+            else:
+                with ThreadPoolExecutor(self.workers) as pool:
+                    list(pool.map(work, parts))
         return Responses(values, tuple(failures))
 
     def jacobian(self, vector: np.ndarray) -> np.ndarray:
@@ -154,25 +156,26 @@ class TimeResponse:
         Raises
         ------
         InputError
-            Where the builder cannot run in complex numbers.
+            Where the builder, or a function of the user's in the model, cannot run in complex numbers.
         SolveError
             Where the solver could not go on.
         """
         vector = self.parameters.vector(vector).astype(float)
         frame = self._frame
-        lowered = self._lower(vector)
-        tilted = [self._tilt(vector, column) for column in range(len(vector))]
-        result = run(lowered, self.solver, self.times, self.times[-1], tilted, frame.problem)
+        with in_complex_numbers(strict=True):
+            lowered = self._lower(vector)
+            tilted = [self._tilt(vector, column) for column in range(len(vector))]
+            result = run(lowered, self.solver, self.times, self.times[-1], tilted, frame.problem)
         if result.reason:
             raise SolveError(result.reason)
+        for name, own in zip(self.parameters.names, tilted, strict=True):
+            for error in (*lowered.failures.inexact, *own.failures.inexact):
+                raise _inexact(name, error) from error
         states, slopes = result.states, result.derivatives
         values = frame.observer.read(lowered, lowered.real, states.x, states.v, states.a)
         jacobian = np.empty((*values.shape, len(vector)))
         for column, own in enumerate(tilted):
-            lifted = [
-                real + 1j * STEP * slope[column]
-                for real, slope in zip(states[:3], slopes[:3], strict=True)
-            ]
+            lifted = [real + 1j * STEP * slope[column] for real, slope in zip(states[:3], slopes[:3], strict=True)]
             response = frame.observer.read(own, own.dual, *lifted)
             jacobian[:, :, column] = response.imag / (STEP * self.parameters.scale[column])
         return values, jacobian
@@ -206,13 +209,9 @@ class TimeResponse:
         given = dict(zip(self.parameters.names, vector.tolist(), strict=True))
         given[self.parameters.names[column]] = complex(tilted[column])
         try:
-            return self._fit(assembled(self.builder(**given)))
-        except TypeError as error:
-            raise InputError(
-                f"the model's function cannot run in complex numbers, as exact derivatives by {self.parameters.names[column]!r} "
-                f"need ({error}); use NumPy's functions instead of those of math, and no float() or comparison on "
-                "parameters; or wrap the model in a PythonModel with derivative='central-differences'"
-            ) from error
+            return self._fit(assembled(self.builder(**given), tilted=True))
+        except (TypeError, np.exceptions.ComplexWarning) as error:
+            raise _inexact(self.parameters.names[column], error) from error
 
     def _fit(self, lowered: Lowered) -> Lowered:
         structure = self._frame.lowered.structure
@@ -231,6 +230,14 @@ class _Frame:
     lowered: Lowered
     problem: Problem
     observer: Observer
+
+
+def _inexact(parameter: str, error: Exception) -> InputError:
+    return InputError(
+        f"the model's function cannot run in complex numbers, as exact derivatives by {parameter!r} need ({error}); "
+        "use NumPy's functions instead of those of math, and no float() or comparison on parameters; "
+        "or wrap the model in a PythonModel with derivative='central-differences'"
+    )
 
 
 def _parts(count: int, workers: int) -> list[np.ndarray]:

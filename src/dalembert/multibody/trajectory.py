@@ -57,17 +57,20 @@ class Trajectory:
     def energies(self) -> dict[str, np.ndarray]:
         """Energies in J, each (samples,): kinetic, potential, total, work of loads and losses, and their balance.
 
-        The work is the trapezoidal integral of the power over the output times; balance = total - work - first total, which
-        an exact motion keeps at zero.
+        The work is the trapezoidal integral of the power over the output times; balance = total - work - first total,
+        which an exact motion keeps at zero.
         """
         states = self.run.states
         kinetic, potential, power = energies(self.lowered.real, states.x, states.v, self.times, self._within).T
-        steps = np.diff(self.times) * (power[1:] + power[:-1]) / 2
+        after = power
+        if self.lowered.jumps:  # the power at the beginning of an interval may not be that at the end of the one before
+            within = self.times + 1e-9 * self.times[-1]
+            after = energies(self.lowered.real, states.x, states.v, self.times, within)[:, 2]
+        steps = np.diff(self.times) * (power[1:] + after[:-1]) / 2
         work = np.concatenate([[0.0], np.cumsum(steps)])
         total = kinetic + potential
-        return {
-            "kinetic": kinetic, "potential": potential, "total": total, "work": work, "balance": total - work - total[0],
-        }  # fmt: skip
+        balance = total - work - total[0]
+        return {"kinetic": kinetic, "potential": potential, "total": total, "work": work, "balance": balance}
 
     @cached_property
     def violations(self) -> dict[str, np.ndarray]:
@@ -96,7 +99,8 @@ class Trajectory:
         channels = observer(self.system, self.lowered, names).channels
         values = self.channels(names)
         variables: dict = {
-            channel.name: ("time", values[:, column], {"units": channel.unit}) for column, channel in enumerate(channels)
+            channel.name: ("time", values[:, column], {"units": channel.unit})
+            for column, channel in enumerate(channels)
         }
         variables |= {f"energy.{name}": ("time", value, {"units": "J"}) for name, value in self.energies.items()}
         variables |= {f"violation.{name}": ("time", value) for name, value in self.violations.items()}
@@ -118,7 +122,6 @@ class Trajectory:
                 f"iterations a step, {factorisations} factorisations",
                 f"energy: largest imbalance {np.max(np.abs(self.energies['balance'])):.3g} J, "
                 f"range of the kinetic energy {kinetic:.3g} J",
-                "constraints: largest violation "
-                + ", ".join(f"{name} {value:.2g}" for name, value in worst.items()),
+                "constraints: largest violation " + ", ".join(f"{name} {value:.2g}" for name, value in worst.items()),
             ]
         )

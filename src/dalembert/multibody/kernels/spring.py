@@ -31,7 +31,8 @@ def stretch(x, v, data, meta, e):
 def tension(x, v, data, meta, e):
     """Force (or torque) with which the spring pulls its ends together."""
     elongation, rate = stretch(x, v, data, meta, e)
-    return data[e, 8] * elongation + data[e, 10] * elongation**3 + data[e, 9] * rate
+    square = elongation * elongation  # not by **: the complex power loses the imaginary step of a negative number
+    return (data[e, 8] + data[e, 10] * square) * elongation + data[e, 9] * rate
 
 
 @inlined
@@ -52,5 +53,6 @@ def residual(x, v, a, signals, callbacks, data, meta, e, r):
 def energy(x, v, signals, callbacks, data, meta, e):
     """No kinetic energy; energy stored; power of the damper."""
     elongation, rate = stretch(x, v, data, meta, e)
-    stored = 0.5 * data[e, 8] * elongation**2 + 0.25 * data[e, 10] * elongation**4
+    square = elongation * elongation
+    stored = (0.5 * data[e, 8] + 0.25 * data[e, 10] * square) * square
     return 0.0 * stored, stored, -data[e, 9] * rate * rate

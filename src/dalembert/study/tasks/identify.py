@@ -31,9 +31,8 @@ class IdentifyTable(StudyTable):
     starts: int | None = Field(None, ge=1, description="starts at most; 8 for least squares, 1 for others if not given")
     seed: int = Field(0, ge=0, description="of all random numbers")
     polish: bool = Field(False, description="end with least squares from the best point found")
-    horizon: Literal["auto", "growing", "whole"] = Field(
-        "auto",
-        description="'growing' fits ever longer parts of the data, 'auto' does so for some starts, 'whole' never",
+    horizon: Literal["growing", "whole"] = Field(
+        "growing", description="'growing' fits ever longer parts of the data, 'whole' all of it from the beginning"
     )
     weights: dict[str, Annotated[float, Read(fixed(None))]] | None = Field(
         None, description="weight of each channel; from deviations if not given"

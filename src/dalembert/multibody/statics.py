@@ -1,0 +1,187 @@
+"""Equilibrium under load, and small vibrations about a state."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import eig, null_space
+from scipy.sparse.linalg import splu
+
+from dalembert.errors import SolveError
+from dalembert.multibody.assemble import assembled, refuse_redundancy, scales
+from dalembert.multibody.drawing import Drawing, draw
+from dalembert.multibody.evaluate import residual, tangent
+from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.observe import observer
+from dalembert.multibody.system import System
+
+_MOST_ITERATIONS = 30
+_SMALLEST_FRACTION = 1 / 1024
+
+
+@dataclass(frozen=True, eq=False)
+class Equilibrium:
+    """A state of rest under the loads at time 0, as :func:`equilibrium` returns it.
+
+    Parameters
+    ----------
+    system : System
+    lowered : Lowered
+    x : array, shape (N + 1,)
+        Coordinates and multipliers.
+    iterations : int
+        Newton iterations.
+    """
+
+    system: System
+    lowered: Lowered
+    x: np.ndarray
+    iterations: int
+
+    def channels(self, names: Sequence[str]) -> np.ndarray:
+        """Values of channels, (channels,)."""
+        still = np.zeros((1, len(self.x)))
+        own = observer(self.system, self.lowered, tuple(names))
+        return own.read(self.lowered, self.lowered.real, self.x[None], still, still)[0]
+
+    def drawing(self, points: int = 8) -> Drawing:
+        """Lines of the bodies and places of the joints, in one frame."""
+        return draw(self.system, self.lowered, np.zeros(1), self.x[None], points)
+
+
+@dataclass(frozen=True, eq=False)
+class Modes:
+    """Small vibrations about a state, as :func:`modes` returns them.
+
+    Parameters
+    ----------
+    frequencies : array, shape (modes,)
+        Hz, ascending; of the damped vibration.
+    damping_ratios : array, shape (modes,)
+    shapes : complex array, shape (N + 1, modes)
+        Of the coordinates, largest entry one.
+    """
+
+    frequencies: np.ndarray
+    damping_ratios: np.ndarray
+    shapes: np.ndarray
+
+
+def equilibrium(system: System) -> Equilibrium:
+    """State of rest under gravity and the loads at time 0, nearest to the first placement.
+
+    Newton's method; where it does not converge at once, gravity, loads and springs are raised in steps from the
+    undeformed state.
+
+    Parameters
+    ----------
+    system : System
+
+    Returns
+    -------
+    Equilibrium
+
+    Raises
+    ------
+    SolveError
+        Where there is no equilibrium near the first placement, or a motion is free of stiffness.
+
+    Examples
+    --------
+    >>> from dalembert.multibody import PointMass, Spring, System, equilibrium
+    >>> system = System()
+    >>> bob = system.add(PointMass("bob", mass=1.0, position=(0.0, -1.0)))
+    >>> spring = system.add(Spring("spring", system.ground.point(0, 0), bob.centre, stiffness=100.0, free_length=1.0))
+    >>> equilibrium(system).channels(["bob.centre.y"]).round(4)
+    array([-1.0981])
+    """
+    lowered = assembled(system)
+    refuse_redundancy(lowered)
+    still = np.zeros_like(lowered.x.real)
+
+    def forces(x: np.ndarray) -> np.ndarray:
+        return residual(lowered, lowered.real, x, still, still)
+
+    x = lowered.x.real.astype(float)
+    start = forces(x)
+    total, reached, fraction = 0, 0.0, 1.0
+    while reached < 1.0:
+        aim = min(1.0, reached + fraction)
+        found, iterations = _newton(lowered, lambda y, aim=aim: forces(y) - (1.0 - aim) * start, x)
+        total += iterations
+        if found is None:
+            fraction /= 2
+            if fraction < _SMALLEST_FRACTION:
+                raise SolveError(
+                    f"no equilibrium was found: Newton's method stopped at {100 * reached:.3g} % of the loads. A motion "
+                    "may be free of stiffness (add a joint or a spring), or the first placement is far from the "
+                    "equilibrium"
+                )
+            continue
+        x, reached, fraction = found, aim, 2 * fraction
+    return Equilibrium(system, lowered, x, total)
+
+
+def _newton(lowered: Lowered, forces, x: np.ndarray) -> tuple[np.ndarray | None, int]:
+    """Newton's method on coordinates and multipliers; None where it does not converge."""
+    n, still, scale = lowered.structure.n, np.zeros_like(x), scales(lowered)[:-1]
+    x = x.copy()
+    for iteration in range(1, _MOST_ITERATIONS + 1):
+        matrix = tangent(lowered, x, still, (1.0, 0.0, 0.0)).tocsc()
+        try:
+            step = splu(matrix).solve(forces(x))
+        except RuntimeError:  # exactly singular
+            return None, iteration
+        size = np.max(np.abs(step[:n]) / scale[:n])
+        if not np.isfinite(size) or size > 1e3:
+            return None, iteration
+        x[:-1] -= step * min(1.0, 0.5 / size)
+        if size < 1e-11:
+            return x, iteration
+    return None, _MOST_ITERATIONS
+
+
+def modes(state: System | Equilibrium, count: int | None = None) -> Modes:
+    """Frequencies, damping ratios and shapes of small vibrations that satisfy the joints.
+
+    The equations of motion are linearised about the state, with damping and with the stiffness of the joint forces there,
+    and projected on the motions that the joints leave free. Dense: for models to some thousand coordinates.
+
+    Parameters
+    ----------
+    state : System or Equilibrium
+        A system stands for its equilibrium.
+    count : int, optional
+        How many, from the lowest; all if not given.
+
+    Returns
+    -------
+    Modes
+
+    Examples
+    --------
+    >>> from dalembert.multibody import PointMass, Spring, System, modes
+    >>> system = System(gravity=(0.0, 0.0))
+    >>> bob = system.add(PointMass("bob", mass=1.0, position=(1.0, 0.0)))
+    >>> for name, place in (("right", (2.0, 0.0)), ("top", (1.0, 1.0))):
+    ...     _ = system.add(Spring(name, system.ground.point(*place), bob.centre, stiffness=400.0))
+    >>> modes(system).frequencies.round(4)  # sqrt(400) rad/s
+    array([3.1831, 3.1831])
+    """
+    state = state if isinstance(state, Equilibrium) else equilibrium(state)
+    lowered, x, n = state.lowered, state.x, state.lowered.structure.n
+    still = np.zeros_like(x)
+    stiffness = tangent(lowered, x, still, (1.0, 0.0, 0.0)).toarray()
+    damping = tangent(lowered, x, still, (0.0, 1.0, 0.0)).toarray()[:n, :n]
+    mass = tangent(lowered, x, still, (0.0, 0.0, 1.0)).toarray()[:n, :n]
+    free = null_space(stiffness[n:, :n] / scales(lowered)[n:-1, None]) if lowered.structure.size > n else np.eye(n)
+    k, c, m = (free.T @ matrix @ free for matrix in (stiffness[:n, :n], damping, mass))
+    size = len(k)
+    state_matrix = np.block([[np.zeros((size, size)), np.eye(size)], [-np.linalg.solve(m, np.hstack([k, c]))]])
+    roots, vectors = eig(state_matrix)
+    kept = np.flatnonzero(roots.imag > 0)
+    kept = kept[np.argsort(roots[kept].imag)][:count]
+    shapes = np.zeros((len(x), len(kept)), dtype=complex)
+    shapes[:n] = free @ vectors[:size, kept]
+    shapes /= shapes[np.argmax(np.abs(shapes), axis=0), np.arange(len(kept))]
+    return Modes(roots[kept].imag / (2 * np.pi), -roots[kept].real / np.abs(roots[kept]), shapes)

@@ -7,6 +7,7 @@ one more iteration makes the derivatives along a complex step exact.
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import cast
 
 import numpy as np
 from scipy.linalg import qr
@@ -40,8 +41,9 @@ def assembled(system: System, tilted: bool = False) -> Lowered:
     model = lowered.real
     if lowered.is_complex or tilted:
         model = lowered.dual
-        cast = {name: getattr(lowered, name).astype(complex) for name in ("frames", "rates", "x", "v")}
-        lowered = replace(lowered, **cast)
+        lowered = replace(
+            lowered, **{name: getattr(lowered, name).astype(complex) for name in ("frames", "rates", "x", "v")}
+        )
     free = _free(system)
     frames = _close(system.bodies, lowered, model, free)
     lowered = replace(lowered, frames=frames, x=_coordinates(system.bodies, lowered, frames))
@@ -49,11 +51,11 @@ def assembled(system: System, tilted: bool = False) -> Lowered:
 
 
 def scales(lowered: Lowered) -> np.ndarray:
-    """Typical size of each unknown, (N + 1,): the extent of the mechanism for positions, one for angles and gradients."""
+    """Typical size of each unknown, (N + 1,): the mechanism's extent for positions, one for angles and gradients."""
     n, kinds = lowered.structure.n, np.array(lowered.structure.kinds)
-    places = lowered.x.real[:n][kinds == "position"].reshape(-1, 2)
-    joints = lowered.data["joints"].real
-    arms = (joints[:, 0:2], joints[:, 3:5], lowered.data["beams"].real[:, :1], lowered.data["cables"].real[:, :1])
+    places = np.real(lowered.x)[:n][kinds == "position"].reshape(-1, 2)
+    joints, beams, cables = (np.real(lowered.data[kind]) for kind in ("joints", "beams", "cables"))
+    arms = (joints[:, 0:2], joints[:, 3:5], beams[:, :1], cables[:, :1])
     extent = max(np.ptp(places, axis=0).max(initial=0.0), *(np.abs(arm).max(initial=0.0) for arm in arms))
     scale = np.ones(lowered.structure.size + 1)
     scale[:n][kinds == "position"] = extent if extent > 0 else 1.0
@@ -71,17 +73,19 @@ def refuse_redundancy(lowered: Lowered) -> None:
     structure = lowered.structure
     if structure.size == structure.n:
         return
-    jacobian = constraint_jacobian(lowered, lowered.x.real)
+    jacobian = constraint_jacobian(lowered, np.real(lowered.x))
     dense = jacobian[:, np.unique(jacobian.indices)].toarray()
     dense /= np.linalg.norm(dense, axis=1, keepdims=True) + 1e-300
-    _, triangle, order = qr(dense.T, mode="economic", pivoting=True)
+    decomposed = qr(dense.T, mode="economic", pivoting=True)
+    _, triangle, order = cast(tuple[np.ndarray, np.ndarray, np.ndarray], decomposed)
     rank = int(np.sum(np.abs(np.diag(triangle)) > 1e-9))
     if rank < len(order):
         names = sorted({structure.owners[structure.n + row] for row in order[rank:]})
         raise ModelError(
             f"the constraints are redundant: {len(order)} were given, {rank} are independent at the start; "
-            f"those of {', '.join(map(repr, names))} follow from the others. Take a joint out or replace one by a joint "
-            "that holds less (a revolute joint instead of a fixed one), or start from a position that is not singular"
+            f"those of {', '.join(map(repr, names))} follow from the others. Take a joint out or replace one by a "
+            "joint that holds less (a revolute joint instead of a fixed one), or start from a position that is not "
+            "singular"
         )
 
 
@@ -116,7 +120,7 @@ def _modes(bodies: Sequence[Body], lowered: Lowered, frames: np.ndarray) -> np.n
 
 def _size(values: np.ndarray) -> float:
     """Largest entry, derivatives included."""
-    return max(np.abs(values.real).max(initial=0.0), np.abs(values.imag).max(initial=0.0) / STEP)
+    return max(np.abs(np.real(values)).max(initial=0.0), np.abs(np.imag(values)).max(initial=0.0) / STEP)
 
 
 def _close(bodies: Sequence[Body], lowered: Lowered, model: Model, free: np.ndarray) -> np.ndarray:
@@ -131,9 +135,9 @@ def _close(bodies: Sequence[Body], lowered: Lowered, model: Model, free: np.ndar
             return frames
         if not np.all(np.isfinite(gaps)):
             break
-        jacobian = constraint_jacobian(lowered, x.real) @ _modes(bodies, lowered, frames.real)[:, free]
+        jacobian = constraint_jacobian(lowered, np.real(x)) @ _modes(bodies, lowered, np.real(frames))[:, free]
         step = np.linalg.lstsq(jacobian, -gaps, rcond=1e-10)[0]
-        longest = np.abs(step.real).max(initial=0.0)
+        longest = np.abs(np.real(step)).max(initial=0.0)
         if not np.isfinite(longest):
             break
         frames = frames.copy()
@@ -144,10 +148,11 @@ def _close(bodies: Sequence[Body], lowered: Lowered, model: Model, free: np.ndar
     for error in (*lowered.failures.errors, *lowered.failures.inexact):
         raise ModelError(f"the joints cannot be placed at the start: {type(error).__name__}: {error}") from error
     gaps = residual(lowered, model, _coordinates(bodies, lowered, frames), still, still)[structure.n :]
-    worst = int(np.argmax(np.abs(gaps.real)))
+    open_by = np.abs(np.real(gaps))
+    worst = int(np.argmax(open_by))
     raise ModelError(
         f"the mechanism cannot be assembled: joint {structure.owners[structure.n + worst]!r} stays open by "
-        f"{abs(gaps.real[worst]):.3g} (m or rad). Check lengths and places of the bodies that it connects; a first "
+        f"{open_by[worst]:.3g} (m or rad). Check lengths and places of the bodies that it connects; a first "
         "placement nearer to the closed position may be needed, or fewer driving coordinates"
     )
 
@@ -162,18 +167,19 @@ def _consistent(bodies: Sequence[Body], lowered: Lowered, model: Model, free: np
     for _ in range(4):  # linear: once for the value, once for its derivative, once for rounding
         v = np.concatenate([np.tensordot(modes, rates, 2), tail])
         wrong, _ = constraint_rates(lowered, model, lowered.x, v, np.zeros_like(v))
-        speed = max(np.abs(v.real).max(initial=0.0), np.abs(wrong.real).max(initial=0.0), 1.0)
+        speed = max(np.abs(np.real(v)).max(initial=0.0), np.abs(np.real(wrong)).max(initial=0.0), 1.0)
         if _size(wrong) <= 10 * _CLOSED * speed:
             return v
         if jacobian is None:
-            jacobian = constraint_jacobian(lowered, lowered.x.real) @ modes[:, free].real
+            jacobian = constraint_jacobian(lowered, np.real(lowered.x)) @ np.real(modes[:, free])
         rates = rates.astype(np.result_type(rates, wrong))
         rates[free] += np.linalg.lstsq(jacobian, -wrong, rcond=1e-10)[0]
-    worst = int(np.argmax(np.abs(wrong.real)))
-    if np.abs(wrong.real[worst]) <= 1e-9 * speed:
+    remains = np.abs(np.real(wrong))
+    worst = int(np.argmax(remains))
+    if remains[worst] <= 1e-9 * speed:
         return v
     raise ModelError(
         f"no first velocities are consistent with the joints: at joint {lowered.structure.owners[n + worst]!r} "
-        f"{abs(wrong.real[worst]):.3g} (m/s or rad/s) remain. Check the velocities of the driving coordinates and of the "
+        f"{remains[worst]:.3g} (m/s or rad/s) remain. Check the velocities of the driving coordinates and of the "
         "prescribed motions"
     )

@@ -1,7 +1,7 @@
 """Flexible bars of ANCF elements, straight and undeformed at first."""
 
 from dataclasses import InitVar, dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -25,7 +25,7 @@ class _Ancf(Body):
     """
 
     length: Number = number("m")
-    elements: int = field()
+    elements: int = cast(Any, field())  # as a field of ours is to a type checker: any
     youngs_modulus: Number = number("Pa")
 
     @property

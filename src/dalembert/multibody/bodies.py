@@ -46,7 +46,8 @@ class Body:
     @property
     def motion(self) -> tuple[Number, Number, Number]:
         """Velocity of the placed point and angular velocity at first."""
-        return (*getattr(self, "velocity", (0.0, 0.0)), getattr(self, "angular_velocity", 0.0))
+        along, across = getattr(self, "velocity", (0.0, 0.0))
+        return along, across, getattr(self, "angular_velocity", 0.0)
 
     @property
     @abstractmethod

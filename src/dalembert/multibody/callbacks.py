@@ -6,12 +6,13 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import lru_cache
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
-from numba import carray, cfunc, complex128, float64, types
+from numba import cfunc, complex128, float64, types
 from numba.core.errors import NumbaError
 from numba.core.registry import CPUDispatcher
+from numba.np.numpy_support import carray
 
 from dalembert.multibody.kernels.user import ANSWER, GIVEN
 
@@ -103,13 +104,13 @@ def _plain(function: Callable[[np.ndarray], Any], given: int, answer: int, owner
         return _C_FUNCTION(call)
 
     pair = trampoline(float), trampoline(complex)
-    addresses = [ctypes.cast(entry, ctypes.c_void_p).value or 0 for entry in pair]
-    return Callback(*addresses, pair)
+    own, dual = (ctypes.cast(entry, ctypes.c_void_p).value or 0 for entry in pair)
+    return Callback(own, dual, pair)
 
 
 def _view(address: int, count: int, dtype: type) -> np.ndarray:
     buffer = (ctypes.c_double * (count * (2 if dtype is complex else 1))).from_address(address)
-    return np.frombuffer(buffer, dtype=dtype)
+    return np.frombuffer(cast(Any, buffer), dtype=dtype)  # NumPy's stubs do not know ctypes' arrays
 
 
 @lru_cache(maxsize=64)
@@ -117,6 +118,6 @@ def _compiled_force(function: CPUDispatcher, kind: Any) -> Any:
     @cfunc(types.void(types.CPointer(kind), types.CPointer(kind)))
     def call(source: Any, target: Any) -> None:
         given, into = carray(source, GIVEN), carray(target, ANSWER)
-        into[0], into[1], into[2] = function(given[0].real, given[1:7], given[7:13])
+        into[0], into[1], into[2] = function(np.real(given[0]), given[1:7], given[7:13])
 
     return call

@@ -5,7 +5,7 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
-from scipy.sparse import coo_matrix, csr_matrix
+from scipy.sparse import csr_matrix
 
 from dalembert.multibody.kernels import assembly, signals
 from dalembert.multibody.kernels.compiled import compiled
@@ -61,7 +61,7 @@ def _announce_compilation() -> None:
     """Say, once, that kernels will be compiled where no compiled ones are on disk."""
     kept = Path(_residual._cache.cache_path)  # type: ignore[attr-defined] - Numba's cache of a compiled function
     if not any(kept.glob("evaluate._residual-*.nbi")):
-        print("dalembert: compiling its kernels, once on this machine; this takes one to two minutes", file=sys.stderr)
+        sys.stderr.write("dalembert: compiling its kernels, once on this machine; this takes one to two minutes\n")
 
 
 def residual(lowered: Lowered, model: Model, x: np.ndarray, v: np.ndarray, a: np.ndarray, t: float = 0.0) -> np.ndarray:
@@ -86,7 +86,7 @@ def tangent(
     values = np.zeros(len(i))
     _tangent(lowered.dual, Slots(*slots), structure.n, x, v, np.zeros_like(x), t, t, by, rows, values)
     inside = (i < structure.size) & (j < structure.size)
-    return coo_matrix((values[inside], (i[inside], j[inside])), shape=(structure.size, structure.size)).tocsr()
+    return csr_matrix((values[inside], (i[inside], j[inside])), shape=(structure.size, structure.size))
 
 
 def constraint_jacobian(lowered: Lowered, x: np.ndarray, t: float = 0.0) -> csr_matrix:

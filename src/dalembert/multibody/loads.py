@@ -162,8 +162,8 @@ class UserForce(Load):
     at : Point
     function : callable
         ``function(t, at, against) -> (fx, fy, torque)`` in N and N m; ``at`` and ``against`` are arrays
-        (x, y, vx, vy, angle, angular velocity), in the fixed axes. Under ``numba.njit`` it runs compiled; a plain Python
-        function is called at every iteration, which is some hundred times slower.
+        (x, y, vx, vy, angle, angular velocity), in the fixed axes. Under ``numba.njit`` it runs compiled; a plain
+        Python function is called at every iteration, which is some hundred times slower.
     against : Point, optional
     """
 

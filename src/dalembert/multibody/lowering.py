@@ -1,7 +1,7 @@
 """From a system of components to the arrays of the kernels.
 
-What depends only on the kinds and connections of components is a `Structure`, found once and shared by all samples of an
-ensemble; what depends on numbers is in `Lowered`.
+What depends only on the kinds and connections of components is a `Structure`, found once and shared by all samples of
+an ensemble; what depends on numbers is in `Lowered`.
 """
 
 from collections.abc import Mapping, Sequence, ValuesView
@@ -106,7 +106,7 @@ class Lowered:
 
 
 def _cast(array: np.ndarray, dtype: type) -> np.ndarray:
-    return array.real.astype(float) if dtype is float else array.astype(complex)
+    return np.real(array).astype(float) if dtype is float else array.astype(complex)
 
 
 class Lowering:

@@ -26,7 +26,8 @@ _OF_JOINT = {
 }  # fmt: skip
 _OF_SPRING = {"elongation": (codes.STRETCH, "m"), "force": (codes.TENSION, "N")}
 _OF_SYSTEM = {
-    "kinetic_energy": (codes.KINETIC, "J"), "potential_energy": (codes.POTENTIAL, "J"), "total_energy": (codes.TOTAL, "J"),
+    "kinetic_energy": (codes.KINETIC, "J"), "potential_energy": (codes.POTENTIAL, "J"),
+    "total_energy": (codes.TOTAL, "J"),
 }  # fmt: skip
 _DATA = 11
 _META = 5
@@ -65,11 +66,12 @@ class Observer:
                     own, first = lowered.data[kind][place][:_DATA], 0
                 else:
                     own, first = np.array(lowered.bodies[kind].marker(place).data), 3
-                data[row, first : first + len(own)] = own if np.iscomplexobj(x) else own.real
+                data[row, first : first + len(own)] = own if np.iscomplexobj(x) else np.real(own)
         out = np.empty((len(x), len(self.channels)), dtype=x.dtype)
         _observe(model, self.quantities, self.index, self.meta, data, x, v, a, out)
         for column in np.flatnonzero(self.turning):
-            out[:, column] += np.unwrap(out[:, column].real) - out[:, column].real
+            angles = np.real(out[:, column])
+            out[:, column] += np.unwrap(angles) - angles
         return out
 
 

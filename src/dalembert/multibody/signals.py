@@ -106,7 +106,8 @@ class Table(Signal):
             raise InputError(unknown("kind", self.kind, ("cubic", "linear"), "Table"))
         if len(self.times) != len(self.values) or len(self.times) < 2:
             raise InputError(
-                f"Table: {len(self.times)} times and {len(self.values)} values were given; expected as many, at least two"
+                f"Table: {len(self.times)} times and {len(self.values)} values were given; "
+                "expected as many, at least two"
             )
         if not np.all(np.diff(self.times) > 0):
             raise InputError("Table: times must increase; sort them and remove repeated ones")

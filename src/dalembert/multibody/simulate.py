@@ -1,5 +1,7 @@
 """Motion of a system in time."""
 
+from itertools import pairwise
+
 import numpy as np
 
 from dalembert.errors import InputError, SolveError
@@ -26,8 +28,8 @@ def simulate(
     solver : GeneralizedAlpha, optional
         Steps of ``end`` / 1000 if not given.
     times : array, shape (samples,), optional
-        Output times in s, increasing, within [0, end]. Every step if not given; 1001 equal ones if the step is adaptive.
-        Between steps the motion is interpolated (cubic in coordinates and velocities).
+        Output times in s, increasing, within [0, end]. Every step if not given; 1001 equal ones if the step is
+        adaptive. Between steps the motion is interpolated (cubic in coordinates and velocities).
 
     Returns
     -------
@@ -70,8 +72,8 @@ def output_times(solver: GeneralizedAlpha, end: float, jumps: tuple[float, ...] 
     if solver.adaptive:
         return np.linspace(0.0, end, _ADAPTIVE_OUTPUTS)
     edges = [0.0, *(time for time in jumps if 0 < time < end), end]
-    parts = [np.zeros(1)]
-    for begin, stop in zip(edges[:-1], edges[1:], strict=True):
+    parts: list[np.ndarray] = [np.zeros(1)]
+    for begin, stop in pairwise(edges):
         steps = max(1, int(np.ceil((stop - begin) / solver.step - 1e-6)))
         parts.append(begin + (stop - begin) / steps * np.arange(1, steps + 1))
     return np.concatenate(parts)

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import cast
 
 import numpy as np
 from scipy.linalg import eig, null_space
@@ -97,12 +98,12 @@ def equilibrium(system: System) -> Equilibrium:
     """
     lowered = assembled(system)
     refuse_redundancy(lowered)
-    still = np.zeros_like(lowered.x.real)
+    still = np.zeros_like(np.real(lowered.x))
 
     def forces(x: np.ndarray) -> np.ndarray:
         return residual(lowered, lowered.real, x, still, still)
 
-    x = lowered.x.real.astype(float)
+    x = np.real(lowered.x).astype(float)
     start = forces(x)
     total, reached, fraction = 0, 0.0, 1.0
     while reached < 1.0:
@@ -113,9 +114,9 @@ def equilibrium(system: System) -> Equilibrium:
             fraction /= 2
             if fraction < _SMALLEST_FRACTION:
                 raise SolveError(
-                    f"no equilibrium was found: Newton's method stopped at {100 * reached:.3g} % of the loads. A motion "
-                    "may be free of stiffness (add a joint or a spring), or the first placement is far from the "
-                    "equilibrium"
+                    f"no equilibrium was found: Newton's method stopped at {100 * reached:.3g} % of the loads. A "
+                    "motion may be free of stiffness (add a joint or a spring), or the first placement is far from "
+                    "the equilibrium"
                 )
             continue
         x, reached, fraction = found, aim, 2 * fraction
@@ -144,8 +145,8 @@ def _newton(lowered: Lowered, forces, x: np.ndarray) -> tuple[np.ndarray | None,
 def modes(state: System | Equilibrium, count: int | None = None) -> Modes:
     """Frequencies, damping ratios and shapes of small vibrations that satisfy the joints.
 
-    The equations of motion are linearised about the state, with damping and with the stiffness of the joint forces there,
-    and projected on the motions that the joints leave free. Dense: for models to some thousand coordinates.
+    The equations of motion are linearised about the state, with damping and with the stiffness of the joint forces
+    there, and projected on the motions that the joints leave free. Dense: for models to some thousand coordinates.
 
     Parameters
     ----------
@@ -178,10 +179,11 @@ def modes(state: System | Equilibrium, count: int | None = None) -> Modes:
     k, c, m = (free.T @ matrix @ free for matrix in (stiffness[:n, :n], damping, mass))
     size = len(k)
     state_matrix = np.block([[np.zeros((size, size)), np.eye(size)], [-np.linalg.solve(m, np.hstack([k, c]))]])
-    roots, vectors = eig(state_matrix)
-    kept = np.flatnonzero(roots.imag > 0)
-    kept = kept[np.argsort(roots[kept].imag)][:count]
+    roots, vectors = cast(tuple[np.ndarray, np.ndarray], eig(state_matrix))
+    kept = np.flatnonzero(np.imag(roots) > 0)
+    kept = kept[np.argsort(np.imag(roots[kept]))][:count]
     shapes = np.zeros((len(x), len(kept)), dtype=complex)
     shapes[:n] = free @ vectors[:size, kept]
     shapes /= shapes[np.argmax(np.abs(shapes), axis=0), np.arange(len(kept))]
-    return Modes(roots[kept].imag / (2 * np.pi), -roots[kept].real / np.abs(roots[kept]), shapes)
+    roots = roots[kept]
+    return Modes(np.imag(roots) / (2 * np.pi), -np.real(roots) / np.abs(roots), shapes)

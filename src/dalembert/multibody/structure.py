@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.sparse import coo_matrix, csr_matrix
+from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from dalembert.multibody.kernels.linear import BAND, DENSE, Layout
@@ -85,9 +85,9 @@ class Structure:
         """Slots and layout of a band matrix after reordering (reverse Cuthill-McKee)."""
         rows, columns = self._couplings
         inside = (rows < self.size) & (columns < self.size)
-        pattern: csr_matrix = coo_matrix(
+        pattern = csr_matrix(
             (np.ones(inside.sum(), dtype=np.int8), (rows[inside], columns[inside])), shape=(self.size, self.size)
-        ).tocsr()
+        )
         order = np.empty(self.size + 1, dtype=np.int64)
         order[reverse_cuthill_mckee(pattern, symmetric_mode=True)] = np.arange(self.size)
         order[self.size] = 0

@@ -1,7 +1,7 @@
 """A mechanism: bodies, joints, loads and gravity."""
 
 from collections.abc import Sequence
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from dalembert.errors import InputError, ModelError, unknown
 from dalembert.multibody.bodies import Body
@@ -46,7 +46,7 @@ class System:
 
     def add(self, component: Component) -> Component:
         """Add a body, a joint or a load, and hand it back."""
-        kinds = ((Body, self.bodies), (Joint, self.joints), (Load, self.loads))
+        kinds: list[tuple[type, list[Any]]] = [(Body, self.bodies), (Joint, self.joints), (Load, self.loads)]
         for kind, members in kinds:
             if isinstance(component, kind):
                 if component.name in self._names or component.name in ("ground", "system"):

@@ -177,7 +177,7 @@ class TimeResponse:
         for column, own in enumerate(tilted):
             lifted = [real + 1j * STEP * slope[column] for real, slope in zip(states[:3], slopes[:3], strict=True)]
             response = frame.observer.read(own, own.dual, *lifted)
-            jacobian[:, :, column] = response.imag / (STEP * self.parameters.scale[column])
+            jacobian[:, :, column] = np.imag(response) / (STEP * self.parameters.scale[column])
         return values, jacobian
 
     def first(self, samples: int) -> "TimeResponse":

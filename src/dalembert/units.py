@@ -36,6 +36,9 @@ KNOWN = {
 }
 _QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*((?:[^\W\d_]|[°µμ%]|1/)[^()]{0,60}?)\s*")
 
+_TERM = r"(?:[^\W\d]|[°%])\w*(?:(?:\^|\*\*)[+-]?\d)?"
+_UNIT = re.compile(rf"(?:1\s*/\s*)?{_TERM}(?:(?:\s*[*/·]\s*|\s+){_TERM})*")
+
 
 def si(value: object, unit: str | None, where: str = "") -> float:
     """Number in SI units, from a number that already is or from a string with its own unit.
@@ -165,6 +168,8 @@ def _tidy(number: float) -> float:
 
 
 def _unit(text: str):
+    if text and not _UNIT.fullmatch(text):  # pint would compute a power such as 9**9**9
+        raise ValueError(f"the unit {text!r} is unknown")
     try:
         return _registry().parse_units(text)
     except Exception:  # pint answers malformed text with many types, AssertionError among them

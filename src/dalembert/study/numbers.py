@@ -23,6 +23,8 @@ from dalembert.study.expressions import Expression
 from dalembert.study.table import StudyTable, checked, problem
 from dalembert.units import expected, is_quantity, sentence, si
 
+MOST = 1_000_000  # numbers of a range
+
 
 def read_number(value: object, unit: str | None, names: Iterable[str] | None = ()) -> float | Expression:
     """Number in SI units, or an expression of names; ``names`` None leaves those unchecked.
@@ -83,6 +85,8 @@ class Grid(StudyTable):
             raise problem(f"start is {self.start:g} and end {self.end:g}; expected an end after the start")
         if self.count is not None and self.count < 2:
             raise problem(f"count is {self.count}; expected at least 2")
+        if max(self.count or 0, self._steps if self.every else 0) > MOST:
+            raise problem(f"there would be {self.count or self._steps:.3g} numbers; expected at most {MOST}")
         if self.every is not None and (self.every <= 0 or abs(self._steps - round(self._steps)) > 1e-9 * self._steps):
             raise problem(
                 f"every is {self.every:g}, which does not divide the {self.end - self.start:g} from start to end; "

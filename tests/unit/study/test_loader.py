@@ -245,7 +245,7 @@ horizon = "growin"
         "study.toml: [identify], method: unknown method 'nelder-meat'; did you mean 'Nelder-Mead'?",
         "study.toml: [identify], starts: 0 was given; expected a number of at least 1",
         "study.toml: [identify], polish: 'yes' was given; expected true or false",
-        "study.toml: [identify], horizon: 'growin' was given; expected 'growing'; did you mean 'growing'?",
+        "study.toml: [identify], horizon: 'growin' was given; expected 'growing' or 'whole'; did you mean 'growing'?",
         "study.toml: unknown key 'studdy'; did you mean 'study'?",
     ]
 

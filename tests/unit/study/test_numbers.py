@@ -69,6 +69,8 @@ def test_samples(given, values):
             "every is 0.3, which does not divide the 1 from start to end; "
             "expected a distance that does, or count instead",
         ),
+        ({"end": 1, "count": 10**12}, "there would be 1e+12 numbers; expected at most 1000000"),
+        ({"end": 1, "every": 1e-300}, "there would be 1e+300 numbers; expected at most 1000000"),
         ([0, 1, 1], "1 follows 1; expected numbers that increase"),
         ([], "an empty list was given; expected at least one number"),
         (["1 m"], "'1 m' was given; expected a time such as '20 ms' or 0.02 in s"),

@@ -10,7 +10,7 @@ from pydantic import Discriminator, Field, Tag, model_validator
 
 from dalembert.errors import DalembertError, InputError, unknown
 from dalembert.forward import ForwardModel
-from dalembert.study.numbers import fixed, samples
+from dalembert.study.numbers import MOST, fixed, samples
 from dalembert.study.table import Read, StudyTable, problem
 from dalembert.study.tasks.task import Outcome, Task
 
@@ -24,7 +24,7 @@ _BATCH = 64  # points between two events
 class BoundsTable(StudyTable):
     """Evenly spaced values between the parameter's bounds."""
 
-    count: int = Field(ge=2)
+    count: int = Field(ge=2, le=MOST)
 
 
 Along = Annotated[

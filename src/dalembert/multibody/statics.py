@@ -136,7 +136,7 @@ def _newton(lowered: Lowered, forces, x: np.ndarray) -> tuple[np.ndarray | None,
         size = np.max(np.abs(step[:n]) / scale[:n])
         if not np.isfinite(size) or size > 1e3:
             return None, iteration
-        x[:-1] -= step * min(1.0, 0.5 / size)
+        x[:-1] -= step * (0.5 / max(size, 0.5))  # at most half the scale at a time
         if size < 1e-11:
             return x, iteration
     return None, _MOST_ITERATIONS

@@ -52,7 +52,7 @@ class TimeResponse:
     ...     return system
     >>> model = TimeResponse(pendulum, {"length": (0.5, 2.0)}, ["bob.centre.x"], np.array([0.0, 0.5]))
     >>> model.evaluate(np.array([[1.0], [2.0]])).values.round(3).tolist()
-    [[[1.0], [0.142]], [[2.0], [1.418]]]
+    [[[1.0], [0.391]], [[2.0], [1.644]]]
     >>> model.jacobian(np.array([1.0])).shape
     (2, 1, 1)
     """

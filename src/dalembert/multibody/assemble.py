@@ -111,7 +111,7 @@ def _coordinates(bodies: Sequence[Body], lowered: Lowered, frames: np.ndarray) -
 
 def _modes(bodies: Sequence[Body], lowered: Lowered, frames: np.ndarray) -> np.ndarray:
     """Derivatives of the coordinates by the frames, (n, bodies, 3)."""
-    modes = np.zeros((lowered.structure.n, len(bodies), 3), dtype=frames.dtype)
+    modes = np.zeros((lowered.structure.n, len(bodies), 3), dtype=lowered.x.dtype)
     for number, (body, frame) in enumerate(zip(bodies, frames, strict=True)):
         first = lowered.structure.first[body.name]
         modes[first : first + body.size, number] = body.rigid_modes(body.coordinates(*frame), frame)
@@ -135,7 +135,7 @@ def _close(bodies: Sequence[Body], lowered: Lowered, model: Model, free: np.ndar
             return frames
         if not np.all(np.isfinite(gaps)):
             break
-        jacobian = constraint_jacobian(lowered, np.real(x)) @ _modes(bodies, lowered, np.real(frames))[:, free]
+        jacobian = constraint_jacobian(lowered, np.real(x)) @ np.real(_modes(bodies, lowered, frames))[:, free]
         step = np.linalg.lstsq(jacobian, -gaps, rcond=1e-10)[0]
         longest = np.abs(np.real(step)).max(initial=0.0)
         if not np.isfinite(longest):
@@ -145,7 +145,9 @@ def _close(bodies: Sequence[Body], lowered: Lowered, model: Model, free: np.ndar
         if longest <= 1e-15 and _size(gaps) <= 1e3 * tolerance:
             return frames
     structure = lowered.structure
-    for error in (*lowered.failures.errors, *lowered.failures.inexact):
+    for error in lowered.failures.inexact:
+        raise error
+    for error in lowered.failures.errors:
         raise ModelError(f"the joints cannot be placed at the start: {type(error).__name__}: {error}") from error
     gaps = residual(lowered, model, _coordinates(bodies, lowered, frames), still, still)[structure.n :]
     open_by = np.abs(np.real(gaps))

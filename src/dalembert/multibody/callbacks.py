@@ -3,13 +3,13 @@
 import ctypes
 import warnings
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Any, cast
 
 import numpy as np
-from numba import cfunc, complex128, float64, types
+from numba import cfunc, complex128, float64, njit, types
 from numba.core.errors import NumbaError
 from numba.core.registry import CPUDispatcher
 from numba.np.numpy_support import carray
@@ -51,21 +51,23 @@ def in_complex_numbers(strict: bool) -> Iterator[None]:
 def force_callback(function: Callable[..., Any], owner: str, failures: Failures) -> Callback:
     """Callback of ``function(t, at, against) -> (fx, fy, torque)``."""
 
-    def plain(called: Callable[..., Any]) -> Callback:
-        return _plain(lambda given: called(given[0].real, given[1:7], given[7:13]), GIVEN, ANSWER, owner, failures)
+    def plain(*functions: Callable[..., Any]) -> Callback:
+        called = [lambda given, own=own: own(given[0].real, given[1:7], given[7:13]) for own in functions]
+        return _plain(called[0], called[-1], GIVEN, ANSWER, owner, failures)
 
     if not isinstance(function, CPUDispatcher):
         return plain(function)
     real = _compiled_force(function, float64)
     try:
-        return Callback(real.address, _compiled_force(function, complex128).address, (real,))
+        lifted = _compiled_force(function, complex128)
+        return Callback(real.address, lifted.address, (real, lifted))
     except NumbaError as error:
         reason = error
 
     def refuse(*_: Any) -> Any:
         raise TypeError("Numba cannot compile it for complex numbers") from reason
 
-    inexact = plain(refuse)
+    inexact = plain(refuse, function)
     return Callback(real.address, inexact.complex, (real, inexact))
 
 
@@ -87,19 +89,29 @@ def signal_callback(
             last = second(t) if second is not None else (ahead - 2 * value + behind) / h**2
         return value, first, last
 
-    return _plain(answer, 1, 3, owner, failures)
+    return _plain(answer, answer, 1, 3, owner, failures)
 
 
-def _plain(function: Callable[[np.ndarray], Any], given: int, answer: int, owner: str, failures: Failures) -> Callback:
+def _plain(
+    function: Callable[[np.ndarray], Any],
+    in_real: Callable[[np.ndarray], Any],
+    given: int,
+    answer: int,
+    owner: str,
+    failures: Failures,
+) -> Callback:
     def trampoline(dtype: type) -> Any:
         def call(source: int, target: int) -> None:
-            into = _view(target, answer, dtype)
+            values, into = _view(source, given, dtype), _view(target, answer, dtype)
             try:
-                into[:] = function(_view(source, given, dtype))
+                into[:] = function(values)
             except Exception as error:  # must not cross the compiled code
                 error.args = (f"{error}, in the function of {owner!r}",)
                 (failures.inexact if dtype is complex else failures.errors).append(error)
                 into[:] = np.nan
+                if dtype is complex:  # a motion needs the value only, which makes the tangent less exact
+                    with suppress(Exception):
+                        into[:] = in_real(np.real(values))
 
         return _C_FUNCTION(call)
 
@@ -113,11 +125,15 @@ def _view(address: int, count: int, dtype: type) -> np.ndarray:
     return np.frombuffer(cast(Any, buffer), dtype=dtype)  # NumPy's stubs do not know ctypes' arrays
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=128)
 def _compiled_force(function: CPUDispatcher, kind: Any) -> Any:
+    # A function that closes over a parameter may answer in complex numbers even to real ones.
+    part = njit(lambda x: x.real) if kind is float64 else njit(lambda x: x)
+
     @cfunc(types.void(types.CPointer(kind), types.CPointer(kind)))
     def call(source: Any, target: Any) -> None:
         given, into = carray(source, GIVEN), carray(target, ANSWER)
-        into[0], into[1], into[2] = function(np.real(given[0]), given[1:7], given[7:13])
+        fx, fy, torque = function(given[0].real, given[1:7], given[7:13])
+        into[0], into[1], into[2] = part(fx), part(fy), part(torque)
 
     return call

@@ -29,7 +29,11 @@ def _residual(model, n, x, v, a, t, within, r):
 
 @compiled
 def _tangent(dual, slots, n, x, v, a, t, within, by, rows, matrix):
-    assembly.tangent(dual, slots, n, x, v, a, by, rows, _prepare(dual, t, within), matrix)
+    work = _prepare(dual, t, within)
+    for s in range(len(work.signals)):  # a function of the user's may answer with a direction of its own
+        for k in range(3):
+            work.signals[s, k] = work.signals[s, k].real
+    assembly.tangent(dual, slots, n, x, v, a, by, rows, work, matrix)
 
 
 @compiled
@@ -84,7 +88,7 @@ def tangent(
     structure = lowered.structure
     slots, i, j = structure.coordinate_layout
     values = np.zeros(len(i))
-    _tangent(lowered.dual, Slots(*slots), structure.n, x, v, np.zeros_like(x), t, t, by, rows, values)
+    _tangent(lowered.upright, Slots(*slots), structure.n, x, v, np.zeros_like(x), t, t, by, rows, values)
     inside = (i < structure.size) & (j < structure.size)
     return csr_matrix((values[inside], (i[inside], j[inside])), shape=(structure.size, structure.size))
 

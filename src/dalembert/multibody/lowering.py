@@ -5,7 +5,7 @@ an ensemble; what depends on numbers is in `Lowered`.
 """
 
 from collections.abc import Mapping, Sequence, ValuesView
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -103,6 +103,14 @@ class Lowered:
     def dual(self) -> Model:
         """The model in complex numbers."""
         return self.model(complex)
+
+    @cached_property
+    def upright(self) -> Model:
+        """The model in complex numbers without imaginary parts, for tangents."""
+        if not self.is_complex:
+            return self.dual
+        data = {kind: np.real(array) for kind, array in self.data.items()}
+        return replace(self, data=data, signal_data=np.real(self.signal_data)).dual
 
 
 def _cast(array: np.ndarray, dtype: type) -> np.ndarray:

@@ -104,4 +104,4 @@ class Structure:
     @cached_property
     def fresh(self) -> tuple[Slots, Layout]:
         """Slots and layout for a matrix that is factorised at each step."""
-        return self.band if 4 * self.band[1].lower < self.size else self.dense
+        return self.band if 2 * self.band[1].lower < self.size else self.dense

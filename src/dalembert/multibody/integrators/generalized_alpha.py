@@ -24,6 +24,7 @@ _UNITS = 1 << _HALVINGS
 # Relative corrections that stop to shrink are rounding below the first size, and below the second one if a nearly
 # singular position magnifies it.
 _ROUNDING, _MAGNIFIED = 1e-12, 1e-9
+_NOISE = 1e-13  # below this size the ratio of two corrections says nothing of the factorisation
 
 
 @dataclass(frozen=True)
@@ -218,7 +219,7 @@ def _converge(problem, model, dual, c, tolerance, old, new, newton, log):
             break
         if iteration > 2 and rate > 0.5 and norm <= _ROUNDING:
             break
-        if iteration > 1:
+        if iteration > 1 and norm > _NOISE:
             memory[1] = rate
         if iteration > 1 and rate > _SLOW:
             if fresh and rate > 2.0:

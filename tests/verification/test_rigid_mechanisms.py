@@ -9,7 +9,7 @@ TOPIC = "Rigid mechanisms"
 
 
 def fine(step: float) -> da.GeneralizedAlpha:
-    return da.GeneralizedAlpha(step=step, spectral_radius=0.9, newton_tolerance=1e-15)
+    return da.GeneralizedAlpha(step=step, spectral_radius=0.95)
 
 
 def test_simple_pendulum(reference, record_evidence) -> None:
@@ -54,9 +54,13 @@ def n_four_bar(model: dict, windows: int) -> da.System:
 
 
 @pytest.mark.parametrize(
-    ("case", "step"), [(0, 1e-4), (1, 1e-4), pytest.param(2, 2e-4, marks=pytest.mark.slow)], ids=["N=1", "N=2", "N=40"]
+    ("case", "step"), [(0, 8e-5), (1, 8e-5), pytest.param(2, 1e-4, marks=pytest.mark.slow)], ids=["N=1", "N=2", "N=40"]
 )
 def test_n_four_bar(reference, record_evidence, case: int, step: float) -> None:
+    """The mechanism passes its singular position, flat, where a branch is left only by momentum.
+
+    There rounding is magnified by the inverse square of the step: half of this step would be too fine.
+    """
     data = reference("n_four_bar")
     values = data["values"]
     windows = values["windows"][case]
@@ -64,7 +68,7 @@ def test_n_four_bar(reference, record_evidence, case: int, step: float) -> None:
         n_four_bar(data["model"], windows), values["time"], solver=fine(step), times=np.array([0.0, values["time"]])
     )
     record_evidence(
-        f"four-bar mechanism with {windows} windows (A02), x and y of B0 at 10 s",
+        f"four-bar mechanism with {windows} {'window' if windows == 1 else 'windows'} (A02), x and y of B0 at 10 s",
         values["position"][case],
         trajectory.channels(["U0.end.x", "U0.end.y"])[-1],
         unit="m",

@@ -9,6 +9,7 @@ import numpy as np
 
 from dalembert.data import Measurements
 from dalembert.errors import DataError
+from dalembert.files import replacing
 from dalembert.forward import Coordinate
 from dalembert.inverse.events import StartEnd, Step
 from dalembert.inverse.fit import Fit
@@ -71,8 +72,10 @@ def to_xarray(fit: Fit) -> "Dataset":
 
 
 def save(fit: Fit, path: str | Path) -> None:
-    """Write a fit to a NetCDF-4 file."""
-    to_xarray(fit).to_netcdf(Path(path), engine="h5netcdf")
+    """Write a fit to a NetCDF-4 file, whole or not at all."""
+    dataset = to_xarray(fit)
+    with replacing(path) as temporary:
+        dataset.to_netcdf(temporary, engine="h5netcdf")
 
 
 def load(path: str | Path) -> Fit:

@@ -8,10 +8,12 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
+from dalembert.files import replacing
 from dalembert.multibody.drawing import Drawing, draw
 from dalembert.multibody.evaluate import energies, violations
 from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha
 from dalembert.multibody.integrators.run import Run
+from dalembert.multibody.kernels.motion import Motion
 from dalembert.multibody.lowering import Lowered
 from dalembert.multibody.observe import channel_names, observer
 from dalembert.multibody.system import System
@@ -19,19 +21,36 @@ from dalembert.multibody.system import System
 
 @dataclass(frozen=True, eq=False)
 class Trajectory:
-    """The motion of a system, as :func:`simulate` returns it."""
+    """The motion of a system, as :func:`simulate` returns it.
+
+    Parameters
+    ----------
+    system : System
+    lowered : Lowered
+    solver : GeneralizedAlpha
+    run : Run
+        At the output times and, where there is room, at every step.
+    rows : array of int, shape (samples,)
+        Of the output times among those of the run.
+    """
 
     system: System
     lowered: Lowered
     solver: GeneralizedAlpha
     run: Run
+    rows: np.ndarray
 
     @property
     def times(self) -> np.ndarray:
         """Output times, s, (samples,)."""
-        return self.run.times
+        return self.run.times[self.rows]
 
-    @cached_property
+    @property
+    def states(self) -> Motion:
+        """Unknowns, velocities and accelerations at the output times, (samples, N + 1) each."""
+        return Motion(*(array[self.rows] for array in self.run.states))
+
+    @property
     def channel_names(self) -> tuple[str, ...]:
         """All channels that the system offers."""
         return channel_names(self.system)
@@ -44,7 +63,7 @@ class Trajectory:
         InputError
             For an unknown name, with the nearest ones.
         """
-        states = self.run.states
+        states = self.states
         return observer(self.system, self.lowered, tuple(names)).read(
             self.lowered, self.lowered.real, states.x, states.v, states.a
         )
@@ -53,30 +72,38 @@ class Trajectory:
         """Force (N) along x and y and torque (N m) of a joint on its second side, (samples, 3)."""
         return self.channels([f"{joint}.force_x", f"{joint}.force_y", f"{joint}.torque"])
 
-    @cached_property
+    @property
     def energies(self) -> dict[str, np.ndarray]:
         """Energies in J, each (samples,): kinetic, potential, total, work of loads and losses, and their balance.
 
-        The work is the trapezoidal integral of the power over the output times; balance = total - work - first total,
-        which an exact motion keeps at zero.
+        The work is the trapezoidal integral of the power over the steps; balance = total - work - first total, which an
+        exact motion keeps at zero.
         """
-        states = self.run.states
-        kinetic, potential, power = energies(self.lowered.real, states.x, states.v, self.times, self._within).T
+        return {name: values[self.rows] for name, values in self._energies.items()}
+
+    @cached_property
+    def _energies(self) -> dict[str, np.ndarray]:
+        """Energies at all times of the run."""
+        states, times = self.run.states, self.run.times
+        kinetic, potential, power = energies(self.lowered.real, states.x, states.v, times, _beside(times, -1)).T
         after = power
         if self.lowered.jumps:  # the power at the beginning of an interval may not be that at the end of the one before
-            within = self.times + 1e-9 * self.times[-1]
-            after = energies(self.lowered.real, states.x, states.v, self.times, within)[:, 2]
-        steps = np.diff(self.times) * (power[1:] + after[:-1]) / 2
+            after = energies(self.lowered.real, states.x, states.v, times, _beside(times, 1))[:, 2]
+        steps = np.diff(times) * (power[1:] + after[:-1]) / 2
         work = np.concatenate([[0.0], np.cumsum(steps)])
         total = kinetic + potential
         balance = total - work - total[0]
         return {"kinetic": kinetic, "potential": potential, "total": total, "work": work, "balance": balance}
 
-    @cached_property
+    @property
     def violations(self) -> dict[str, np.ndarray]:
         """Largest constraint violations (m or rad, and per s and s^2), each (samples,)."""
-        states = self.run.states
-        levels = violations(self.lowered, states.x, states.v, states.a, self.times, self._within).T
+        return self._violations
+
+    @cached_property
+    def _violations(self) -> dict[str, np.ndarray]:
+        states, times = self.states, self.times
+        levels = violations(self.lowered, states.x, states.v, states.a, times, _beside(self.run.times, -1)[self.rows]).T
         return dict(zip(("position", "velocity", "acceleration"), levels, strict=True))
 
     @property
@@ -84,14 +111,9 @@ class Trajectory:
         """Newton iterations of each step, (steps,)."""
         return self.run.iterations
 
-    @property
-    def _within(self) -> np.ndarray:
-        """Times on the same side of every jump of a load as the motion just before each output time."""
-        return np.maximum(self.times - 1e-9 * self.times[-1], 0.0)
-
     def drawing(self, points: int = 8) -> Drawing:
         """Lines of the bodies and places of the joints over time; ``points`` a beam element."""
-        return draw(self.system, self.lowered, self.times, self.run.states.x, points)
+        return draw(self.system, self.lowered, self.times, self.states.x, points)
 
     def to_xarray(self, names: Sequence[str] | None = None) -> xr.Dataset:
         """Channels (all if not named), energies and violations, labelled with units."""
@@ -108,8 +130,10 @@ class Trajectory:
         return xr.Dataset(variables, coordinates, {"solver": repr(self.solver), "steps": int(self.run.counts[0])})
 
     def save(self, path: str | Path, names: Sequence[str] | None = None) -> None:
-        """Write :meth:`to_xarray` as NetCDF-4."""
-        self.to_xarray(names).to_netcdf(path, engine="h5netcdf")
+        """Write :meth:`to_xarray` as NetCDF-4, whole or not at all."""
+        dataset = self.to_xarray(names)
+        with replacing(path) as temporary:
+            dataset.to_netcdf(temporary, engine="h5netcdf")
 
     def summary(self) -> str:
         """A few lines: steps, Newton iterations, energy balance and constraint violations."""
@@ -125,3 +149,8 @@ class Trajectory:
                 "constraints: largest violation " + ", ".join(f"{name} {value:.2g}" for name, value in worst.items()),
             ]
         )
+
+
+def _beside(times: np.ndarray, side: int) -> np.ndarray:
+    """Times a little before (-1) or after (1) the given ones: on which side of a jump of a load they stand."""
+    return np.maximum(times + side * 1e-9 * times[-1], 0.0)

@@ -4,7 +4,6 @@ import base64
 import hashlib
 import json
 import os
-import tempfile
 from collections.abc import Sequence
 from importlib.resources import files
 from pathlib import Path
@@ -14,6 +13,7 @@ from markupsafe import Markup
 from plotly.offline import get_plotlyjs
 
 from dalembert import __version__
+from dalembert.files import write_text
 from dalembert.report.contents import Result, contents
 from dalembert.report.look import DARK, FONT, LIGHT, exchanged, template
 from dalembert.report.needs import TrajectoryLike
@@ -36,7 +36,7 @@ def report(
     ----------
     result : Fit, Trajectory or sweep
     path : path
-        The file is written whole or not at all.
+        The file is written whole or not at all; its folder is made.
     title : str, optional
     trajectory : Trajectory, optional
         Motion at the identified values, drawn with the measured points of a fit.
@@ -78,7 +78,10 @@ def report(
         look=_json({"template": template().to_plotly_json(), "dark": exchanged()}),
         version=__version__,
     )
-    return _write(Path(path), page)
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_text(path, page)
+    return path
 
 
 def _environment() -> Environment:
@@ -105,18 +108,3 @@ def _policy(scripts: list[Markup]) -> str:
         f"'sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}'" for script in scripts
     )
     return f"default-src 'none'; script-src {hashes}; style-src 'unsafe-inline'; img-src data: blob:; base-uri 'none'"
-
-
-def _write(path: Path, text: str) -> Path:
-    """Write a file whole or not at all: beside its place first, then moved onto it."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-    try:
-        with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as file:
-            file.write(text)
-        Path(temporary).chmod(0o644)
-        Path(temporary).replace(path)
-    except BaseException:
-        Path(temporary).unlink(missing_ok=True)
-        raise
-    return path

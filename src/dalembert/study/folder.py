@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from dalembert.errors import InputError
-from dalembert.study.files import replacing, write_text
+from dalembert.files import replacing, write_text
 from dalembert.study.loader import load
 from dalembert.study.study import Study
 

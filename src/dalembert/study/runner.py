@@ -7,8 +7,8 @@ from time import perf_counter
 
 from dalembert import __version__
 from dalembert.errors import DalembertError, InputError, SolveError
+from dalembert.files import write_text
 from dalembert.study.events import Event, EventLog
-from dalembert.study.files import replacing, write_text
 from dalembert.study.folder import FAILED, FINISHED, INPUT, INTERRUPTED, RUNNING, RunFolder, new_folder
 from dalembert.study.study import Study
 from dalembert.study.tasks import TASKS, Outcome
@@ -53,7 +53,8 @@ def run_study(
         try:
             log.emit("run-started", **about)
             outcome = TASKS[study.task].run(study, log.emit)
-            _write(folder, outcome)
+            outcome.save(folder.result)
+            outcome.report(folder.report)
         except BaseException as error:
             state, message = _ending(error)
             if state == FAILED and not isinstance(error, DalembertError):
@@ -84,16 +85,8 @@ def report_run(folder: RunFolder) -> Path:
     if not folder.result.is_file():
         raise InputError(f"{folder.path} has no result: the run is {state}; run its study again")
     study = folder.kept()
-    with replacing(folder.report) as temporary:
-        TASKS[study.task].load(study, folder.result).report(temporary)
+    TASKS[study.task].load(study, folder.result).report(folder.report)
     return folder.report
-
-
-def _write(folder: RunFolder, outcome: Outcome) -> None:
-    with replacing(folder.result) as temporary:
-        outcome.save(temporary)
-    with replacing(folder.report) as temporary:
-        outcome.report(temporary)
 
 
 def _ending(error: BaseException) -> tuple[str, str]:

@@ -9,6 +9,7 @@ import numpy as np
 from pydantic import Discriminator, Field, Tag, model_validator
 
 from dalembert.errors import DalembertError, InputError, unknown
+from dalembert.files import replacing
 from dalembert.forward import ForwardModel
 from dalembert.study.numbers import MOST, fixed, samples
 from dalembert.study.table import Read, StudyTable, problem
@@ -110,7 +111,8 @@ class Sweep(Outcome):
 
         tree = xr.DataTree.from_dict({f"/{curve.parameter}": _dataset(curve) for curve in self.curves})
         tree.attrs["at"] = self.at
-        tree.to_netcdf(path, engine="h5netcdf")
+        with replacing(path) as temporary:
+            tree.to_netcdf(temporary, engine="h5netcdf")
 
     def report(self, path: Path) -> None:
         from dalembert.report import report

@@ -33,11 +33,11 @@ class Outcome(Protocol):
         ...
 
     def save(self, path: Path) -> None:
-        """Write the result as NetCDF."""
+        """Write the result as NetCDF, whole or not at all."""
         ...
 
     def report(self, path: Path) -> None:
-        """Write the HTML report."""
+        """Write the HTML report, whole or not at all."""
         ...
 
 

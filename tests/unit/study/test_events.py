@@ -1,4 +1,4 @@
-"""Files that are whole or not there, and the stream of events."""
+"""The stream of events."""
 
 import json
 import math
@@ -7,30 +7,6 @@ import numpy as np
 import pytest
 
 from dalembert.study.events import EventLog, last_progress, read_events
-from dalembert.study.files import replacing, write_text
-
-
-def test_a_failed_write_leaves_the_file_as_it_was(tmp_path):
-    path = tmp_path / "a.txt"
-    write_text(path, "before")
-
-    def write_half() -> None:
-        with replacing(path) as temporary:
-            temporary.write_text("half")
-            raise ZeroDivisionError
-
-    with pytest.raises(ZeroDivisionError):
-        write_half()
-    assert path.read_text() == "before"
-    assert list(tmp_path.iterdir()) == [path]
-
-
-def test_a_write_replaces_the_whole_file(tmp_path):
-    path = tmp_path / "a.txt"
-    write_text(path, "a long text before")
-    write_text(path, "ü\n")
-    assert path.read_bytes() == "ü\n".encode()
-    assert path.stat().st_mode & 0o777 == 0o644
 
 
 def test_events_are_json_lines_in_order(tmp_path):

@@ -13,6 +13,7 @@ from dalembert.multibody.system import System
 from dalembert.multibody.trajectory import Trajectory
 
 _ADAPTIVE_OUTPUTS = 1001
+_ROOM = 20_000_000  # numbers up to which the states of all steps are kept, for the work of loads and losses
 
 
 def simulate(
@@ -60,11 +61,13 @@ def simulate(
     with in_complex_numbers(strict=False):
         lowered = assembled(system)
         refuse_redundancy(lowered)
-        times = output_times(solver, end, lowered.jumps) if times is None else checked(times, end)
-        result = run(lowered, solver, times, end)
+        steps = output_times(solver, end, lowered.jumps)
+        times = steps if times is None else checked(times, end)
+        grid = np.union1d(times, steps) if len(steps) * len(lowered.x) < _ROOM else times
+        result = run(lowered, solver, grid, end)
     if result.reason:
         raise SolveError(result.reason)
-    return Trajectory(system, lowered, solver, result)
+    return Trajectory(system, lowered, solver, result, np.searchsorted(grid, times))
 
 
 def output_times(solver: GeneralizedAlpha, end: float, jumps: tuple[float, ...] = ()) -> np.ndarray:

@@ -6,7 +6,8 @@ from typing import cast
 
 import numpy as np
 from scipy.linalg import eig, null_space
-from scipy.sparse.linalg import splu
+from scipy.sparse import csr_matrix
+from scipy.sparse.linalg import lsqr, splu
 
 from dalembert.errors import SolveError
 from dalembert.multibody.assemble import assembled, refuse_redundancy, scales
@@ -128,10 +129,8 @@ def _newton(lowered: Lowered, forces, x: np.ndarray) -> tuple[np.ndarray | None,
     n, still, scale = lowered.structure.n, np.zeros_like(x), scales(lowered)[:-1]
     x = x.copy()
     for iteration in range(1, _MOST_ITERATIONS + 1):
-        matrix = tangent(lowered, x, still, (1.0, 0.0, 0.0)).tocsc()
-        try:
-            step = splu(matrix).solve(forces(x))
-        except RuntimeError:  # exactly singular
+        step = _solution(tangent(lowered, x, still, (1.0, 0.0, 0.0)), forces(x))
+        if step is None:
             return None, iteration
         size = np.max(np.abs(step[:n]) / scale[:n])
         if not np.isfinite(size) or size > 1e3:
@@ -140,6 +139,16 @@ def _newton(lowered: Lowered, forces, x: np.ndarray) -> tuple[np.ndarray | None,
         if size < 1e-11:
             return x, iteration
     return None, _MOST_ITERATIONS
+
+
+def _solution(matrix: csr_matrix, forces: np.ndarray) -> np.ndarray | None:
+    """Newton step; the smallest one where a motion without stiffness is not loaded; None where it is loaded."""
+    try:
+        return splu(matrix.tocsc()).solve(forces)
+    except RuntimeError:  # exactly singular, as beside a spring at its free length
+        step = lsqr(matrix, forces, atol=1e-14, btol=1e-14)[0]
+        balanced = np.linalg.norm(matrix @ step - forces) <= 1e-9 * np.linalg.norm(forces)
+        return step if balanced else None
 
 
 def modes(state: System | Equilibrium, count: int | None = None) -> Modes:

@@ -99,9 +99,13 @@ class TimeResponse:
         """The times of the samples."""
         return Coordinate("time", "s", self.times)
 
-    @cached_property
+    @property
     def fingerprint(self) -> str:
         """Hash of the mechanism at the parameters' first guesses, the channels, the times and the solver."""
+        return self._fingerprint
+
+    @cached_property
+    def _fingerprint(self) -> str:
         lowered = self._frame.lowered
         digest = hashlib.sha256(repr((self.parameters.names, self.channel_names, self.solver)).encode())
         for array in (self.times, lowered.x, lowered.v, lowered.signal_data, lowered.knots, *lowered.data.values()):

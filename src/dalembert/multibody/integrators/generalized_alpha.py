@@ -1,6 +1,6 @@
 """Generalized-alpha for the index-3 equations, with the derivatives of its discrete solution."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
@@ -36,7 +36,9 @@ class GeneralizedAlpha:
     step : float
         Step in s; the first one when ``adaptive``.
     spectral_radius : float
-        At infinity, in [0, 1]: 1 damps nothing, 0 damps the highest frequencies in one step.
+        At infinity, in [0, 1]: 1 damps nothing, 0 damps the highest frequencies in one step. At 1 the index-3 method
+        would keep an error of the multipliers for ever, with alternating sign; there velocities and accelerations are
+        projected on the constraints after each step, which doubles its price.
     initial_acceleration : {"consistent", "zero"}
         Accelerations and multipliers at the start: those that satisfy the equations of motion, or none (a start of
         first order).
@@ -56,12 +58,12 @@ class GeneralizedAlpha:
     0.8
     """
 
-    step: float
-    spectral_radius: float = 0.8
+    step: float = field(metadata={"unit": "s"})
+    spectral_radius: float = field(default=0.8, metadata={"unit": ""})
     initial_acceleration: str = "consistent"
     adaptive: bool = False
-    tolerance: float = 1e-6
-    newton_tolerance: float = 2e-15
+    tolerance: float = field(default=1e-6, metadata={"unit": ""})
+    newton_tolerance: float = field(default=2e-15, metadata={"unit": ""})
     most_steps: int = 10_000_000
 
     def __post_init__(self) -> None:
@@ -282,23 +284,28 @@ def _initial_matrix(problem, dual, state, dual_work, constraints, exact):
 
 
 @compiled
-def _accelerate(problem, model, dual, directions, t, within, state, dstates, work, dual_work, lifted, exact, buffers):
-    """Accelerations and multipliers that satisfy the equations of motion, and their derivatives."""
+def _accelerate(problem, model, dual, directions, t, within, state, dstates, projected, work, dual_work, lifted, exact):
+    """Accelerations and multipliers that satisfy the equations of motion, and their derivatives.
+
+    Where ``projected``, the velocities are first moved onto the constraints, by the smallest kinetic energy.
+    """
     n, last = problem.n, len(state.x) - 1
-    r, delta, answer = buffers
-    rate, second, constraints = np.zeros(last + 1), np.zeros(last + 1), np.zeros(len(exact.matrix))
-    drate, dsecond = np.zeros(last + 1, r.dtype), np.zeros(last + 1, r.dtype)
+    delta, answer, rate, second = np.zeros(last + 1), np.zeros(last + 1), np.zeros(last + 1), np.zeros(last + 1)
+    constraints = np.zeros(len(exact.matrix))
     _signals(model, t, within, work)
     _signals(dual, t, within, dual_work)
     for iteration in range(4):  # linear but for friction that depends on the multipliers
         if iteration % 2 == 0 and not _initial_matrix(problem, dual, state, dual_work, constraints, exact):
             return False
+        if iteration == 0 and projected:
+            _project(problem, model, directions, t, within, state, dstates, work, dual_work, lifted, exact)
         residual(model, n, state.x, state.v, state.a, work, 1.0, delta)
         constraint_rates(model, n, state.x, state.v, state.a, work, rate, second)
         for i in range(n, last):
             delta[i] = second[i]
         solve(problem.exact_layout, problem.lapack, exact, delta, answer)
         _subtract(n, answer, state)
+    r, drate, dsecond = lifted[3], lifted[4], lifted[5]
     for d in range(len(dstates.x)):
         tilted, dstate = select(directions, d), row(dstates, d)
         _signals(tilted, t, within, dual_work)
@@ -310,6 +317,39 @@ def _accelerate(problem, model, dual, directions, t, within, state, dstates, wor
         solve(problem.exact_layout, problem.lapack, exact, delta, answer)
         _subtract(n, answer, dstate)
     return True
+
+
+@compiled
+def _project(problem, model, directions, t, within, state, dstates, work, dual_work, lifted, exact):
+    """Velocities on the constraints, v - w with M w + J^T m = 0 and J w = rate of the constraints, and derivatives."""
+    n, last = problem.n, len(state.x) - 1
+    w, answer, rate, second = np.zeros(last + 1), np.zeros(last + 1), np.zeros(last + 1), np.zeros(last + 1)
+    constraint_rates(model, n, state.x, state.v, state.a, work, rate, second)
+    solve(problem.exact_layout, problem.lapack, exact, rate, w)
+    for i in range(n):
+        state.v[i] -= w[i]
+    forces, still, drate, dsecond = lifted[3], lifted[4], lifted[5], lifted[6]
+    for d in range(len(dstates.x)):
+        tilted, dstate = select(directions, d), row(dstates, d)
+        _signals(tilted, t, within, dual_work)
+        _lift(n, state, dstate, lifted)
+        constraint_rates(tilted, n, lifted[0], lifted[1], lifted[2], dual_work, drate, dsecond)
+        for i in range(last + 1):
+            lifted[1, i] = 0.0
+            lifted[2, i] = w[i] if i < n else 0.0
+            if i >= n:
+                lifted[0, i] = w[i]
+        residual(tilted, n, lifted[0], lifted[1], lifted[2], dual_work, 1.0, forces)
+        for i in range(last + 1):
+            lifted[2, i] = 0.0
+            if i >= n:
+                lifted[0, i] = 0.0
+        residual(tilted, n, lifted[0], lifted[1], lifted[2], dual_work, 1.0, still)
+        for i in range(last):
+            answer[i] = (forces[i].imag - still[i].imag if i < n else -drate[i].imag) / STEP
+        solve(problem.exact_layout, problem.lapack, exact, answer, rate)
+        for i in range(n):
+            dstate.v[i] += rate[i]
 
 
 @compiled
@@ -356,8 +396,8 @@ def _integrate(problem, edges, settings, model, dual, directions, state, dstates
         storage(problem.layout), work, dual_work, np.zeros(width), np.zeros(width), np.zeros(2), np.zeros(width)
     )
     exact = storage(problem.exact_layout)
-    lifted = np.zeros((3, width), np.complex128)
-    buffers = np.zeros(width, np.complex128), np.zeros(width), np.zeros(width)
+    lifted = np.zeros((7, width), np.complex128)
+    buffers = lifted[3], np.zeros(width), np.zeros(width)
     differentiated = len(dstates.x) > 0
     due = 0
     length = settings.step
@@ -367,7 +407,7 @@ def _integrate(problem, edges, settings, model, dual, directions, state, dstates
         clear(newton.slope)
         if stretch > 0 or settings.consistent:
             if not _accelerate(
-                problem, model, dual, directions, begin, within, new, dstates, work, dual_work, lifted, exact, buffers
+                problem, model, dual, directions, begin, within, new, dstates, False, work, dual_work, lifted, exact
             ):
                 return SINGULAR, begin, 0
         if stretch == 0:
@@ -422,6 +462,11 @@ def _integrate(problem, edges, settings, model, dual, directions, state, dstates
                     problem, dual, directions, c, target, within, old, new, dolds, dstates, exact, dual_work, lifted,
                     buffers,
                 )  # fmt: skip
+            if settings.spectral_radius == 1.0 and width - 1 > n:
+                if not _accelerate(
+                    problem, model, dual, directions, target, within, new, dstates, True, work, dual_work, lifted, exact
+                ):
+                    return SINGULAR, target, 0
             while due < len(problem.times) and problem.times[due] <= target + 1e-9 * length:
                 share = min(1.0, (problem.times[due] - t) / length)
                 _record(n, length, share, old, new, dolds, dstates, out, dout, due)

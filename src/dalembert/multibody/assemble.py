@@ -1,8 +1,8 @@
 """Initial states that satisfy the joints: closed loops, consistent velocities, and refusal of redundant constraints.
 
 Bodies are moved rigidly: an assembled mechanism is not strained. The unknowns are the frames of the bodies, position of
-the placed point and angle; corrections are the smallest ones. Newton's iteration uses the jacobian of the real part, so
-one more iteration makes the derivatives along a complex step exact.
+the placed point and angle; corrections are the smallest ones. In complex numbers each of Newton's steps is exact along
+the complex step, so the derivatives are those of the positions that are found, also where the joints leave a choice.
 """
 
 from collections.abc import Sequence
@@ -123,6 +123,29 @@ def _size(values: np.ndarray) -> float:
     return max(np.abs(np.real(values)).max(initial=0.0), np.abs(np.imag(values)).max(initial=0.0) / STEP)
 
 
+def _smallest(lowered: Lowered, model: Model, x: np.ndarray, modes: np.ndarray, wanted: np.ndarray) -> np.ndarray:
+    """Smallest change of frames (free,), with ``modes`` (n, free), that changes the constraints as ``wanted`` (m,).
+
+    With J the jacobian of the constraints by the frames it is J^T p, J J^T p = wanted. Both products are taken from the
+    kernels, so that in complex numbers the derivative of J counts, too; only the inverse is that of the real part.
+    """
+    n = lowered.structure.n
+    jacobian = constraint_jacobian(lowered, np.real(x)) @ np.real(modes)
+    inverse = np.linalg.pinv(jacobian, rcond=1e-10)
+    if not np.iscomplexobj(x):
+        return inverse @ wanted
+    still, pushed = np.zeros_like(x), x.copy()
+    at_rest, _ = constraint_rates(lowered, model, x, still, still)
+    unloaded = residual(lowered, model, x, still, still)[:n]
+    change = np.zeros(modes.shape[1], dtype=x.dtype)
+    for _ in range(3):  # linear: once for the value, once for its derivative, once for rounding
+        moving = np.concatenate([modes @ change, still[n:]])
+        lacking = wanted - constraint_rates(lowered, model, x, moving, still)[0] + at_rest
+        pushed[n:-1] += inverse.T @ (inverse @ lacking)
+        change = (residual(lowered, model, pushed, still, still)[:n] - unloaded) @ modes
+    return change
+
+
 def _close(bodies: Sequence[Body], lowered: Lowered, model: Model, free: np.ndarray) -> np.ndarray:
     """Frames at which all joints are closed."""
     frames = lowered.frames
@@ -135,8 +158,7 @@ def _close(bodies: Sequence[Body], lowered: Lowered, model: Model, free: np.ndar
             return frames
         if not np.all(np.isfinite(gaps)):
             break
-        jacobian = constraint_jacobian(lowered, np.real(x)) @ np.real(_modes(bodies, lowered, frames))[:, free]
-        step = np.linalg.lstsq(jacobian, -gaps, rcond=1e-10)[0]
+        step = _smallest(lowered, model, x, _modes(bodies, lowered, frames)[:, free], -gaps)
         longest = np.abs(np.real(step)).max(initial=0.0)
         if not np.isfinite(longest):
             break
@@ -164,18 +186,14 @@ def _consistent(bodies: Sequence[Body], lowered: Lowered, model: Model, free: np
     n = lowered.structure.n
     tail = np.zeros(lowered.structure.size + 1 - n)
     modes = _modes(bodies, lowered, lowered.frames)
-    rates = lowered.rates
-    jacobian = None
-    for _ in range(4):  # linear: once for the value, once for its derivative, once for rounding
+    rates = lowered.rates.astype(lowered.x.dtype)
+    for _ in range(3):  # linear: once for the value, twice for rounding
         v = np.concatenate([np.tensordot(modes, rates, 2), tail])
         wrong, _ = constraint_rates(lowered, model, lowered.x, v, np.zeros_like(v))
         speed = max(np.abs(np.real(v)).max(initial=0.0), np.abs(np.real(wrong)).max(initial=0.0), 1.0)
         if _size(wrong) <= 10 * _CLOSED * speed:
             return v
-        if jacobian is None:
-            jacobian = constraint_jacobian(lowered, np.real(lowered.x)) @ np.real(modes[:, free])
-        rates = rates.astype(np.result_type(rates, wrong))
-        rates[free] += np.linalg.lstsq(jacobian, -wrong, rcond=1e-10)[0]
+        rates[free] += _smallest(lowered, model, lowered.x, modes[:, free], -wrong)
     remains = np.abs(np.real(wrong))
     worst = int(np.argmax(remains))
     if remains[worst] <= 1e-9 * speed:

@@ -1,0 +1,329 @@
+"""Exact derivatives by every numeric field of every component, against differences of the simulations.
+
+A field or a component that is new fails here until a scene gives it a value.
+"""
+
+from collections.abc import Callable
+from functools import cache
+
+import numpy as np
+import pytest
+
+import dalembert.multibody as mb
+from dalembert.multibody.bodies import Body
+from dalembert.multibody.fields import arguments
+from dalembert.multibody.joints import Joint
+from dalembert.multibody.loads import Load
+from dalembert.multibody.signals import Signal
+from dalembert.parameters import Parameter
+from mechanisms import SECTION
+
+#: Arguments that are no numbers.
+OTHERS = {
+    "name", "a", "b", "at", "against", "anchor", "law", "elements", "coordinate", "follower", "function", "rate",
+    "second", "kind",
+}  # fmt: skip
+#: Times of jumps and of tables, which are fixed numbers.
+FIXED = {(mb.Step, "start"), (mb.Step, "end"), (mb.Table, "times")}
+TIMES = np.array([0.0, 0.02, 0.05, 0.08])
+SOLVER = mb.GeneralizedAlpha(step=5e-3, newton_tolerance=1e-18)
+
+FLEXIBLE = {
+    "length": 1.0, "elements": 2, "youngs_modulus": 4e5, "density": 900.0, **SECTION, "angle": 0.4, "start": (0.1, 0.2),
+    "velocity": (0.3, -0.2), "angular_velocity": 0.8, "damping": 0.01,
+}  # fmt: skip
+RIGID = {"mass": 2.0, "inertia": 0.3, "angle": 0.4, "velocity": (0.3, -0.2), "angular_velocity": 0.8}
+RUBBING = {"viscous": 0.4, "coulomb": 0.6, "friction_coefficient": 0.3}
+
+
+def arm(system: mb.System, **options) -> mb.RigidBar:
+    """A bar that the other components act on."""
+    return system.add(mb.RigidBar("arm", 1.0, 2.0, angle=0.3, angular_velocity=1.5, **options))
+
+
+def swinging(system: mb.System, body: Body, point: str) -> None:
+    """A spring at a body, so that all of its numbers matter."""
+    system.add(mb.Spring("holder", system.ground.point(-0.5, 1.0), body.point(point), 60.0, free_length=0.8))
+    system.add(mb.TorsionSpring("winder", system.ground.point(0.0, 0.0), body.point(point), 3.0, free_angle=0.1))
+
+
+def alone(kind: type, point: str = "end") -> Callable:
+    """Scene of one body, held by springs."""
+
+    def build(**fields) -> mb.System:
+        system = mb.System(gravity=(0.7, -9.81))
+        swinging(system, system.add(kind("part", **fields)), point)
+        return system
+
+    return build
+
+
+def mass(**fields) -> mb.System:
+    system = mb.System()
+    point = system.add(mb.PointMass("part", **fields)).centre
+    system.add(mb.Spring("holder", system.ground.point(-0.5, 1.0), point, 60.0, free_length=0.8))
+    return system
+
+
+def pinned(**fields) -> mb.System:
+    system = mb.System()
+    first = arm(system)
+    second = system.add(mb.RigidBar("part", 0.8, 1.5, start=first.end, angle=-0.5, angular_velocity=-2.0))
+    system.add(mb.RevoluteJoint("O", system.ground, first.start))
+    system.add(mb.RevoluteJoint("joint", first.end, second.start, **fields))
+    return system
+
+
+def sliding(**fields) -> mb.System:
+    system = mb.System()
+    first = arm(system)
+    second = system.add(mb.RigidBar("part", 0.8, 1.5, start=first.end, angle=-0.5, velocity=(1.0, 0.4)))
+    system.add(mb.RevoluteJoint("O", system.ground, first.start))
+    system.add(mb.PrismaticJoint("joint", first.end, second.centre, **fields))
+    return system
+
+
+def hung(**fields) -> mb.System:
+    system = mb.System()
+    bar = arm(system)
+    system.add(mb.DistanceJoint("joint", system.ground.point(0.2, 1.0), bar.start, **fields))
+    return system
+
+
+def acted(load: type, named: str = "at") -> Callable:
+    """Scene of a load at the end of a pinned bar."""
+
+    def build(**fields) -> mb.System:
+        system = mb.System()
+        bar = arm(system)
+        system.add(mb.RevoluteJoint("O", system.ground, bar.start))
+        sides = {"at": bar.end} if named == "at" else {"a": system.ground.point(0.3, 1.0, 0.1), "b": bar.end}
+        system.add(load("part", **sides, **fields))
+        return system
+
+    return build
+
+
+def on_a_rail(**fields) -> mb.System:
+    """A bar under a force, and a mass whose height is prescribed."""
+    system = acted(mb.Force)(x=5.0)
+    slider = system.add(mb.PointMass("slider", 1.0, (0.5, -0.5)))
+    system.add(mb.PrescribedMotion("rail", system.ground.point(0.4, 0.2), slider.centre, "y", **fields))
+    system.add(mb.Spring("holder", system.bodies[0].point("end"), slider.centre, 9.0, free_length=0.4))
+    return system
+
+
+def driven(signal: type) -> Callable:
+    """Scene of a smooth function of time, which drives a force and a motion."""
+
+    def build(**fields) -> mb.System:
+        system = on_a_rail(motion=signal(**fields))
+        system.add(mb.Force("jet", system.bodies[0].point("end"), y=signal(**fields), follower=True))
+        return system
+
+    return build
+
+
+def in_a_field(**fields) -> mb.System:
+    system = acted(mb.Torque)(torque=1.0)
+    system.gravity = fields["gravity"]
+    return system
+
+
+def grounded(**fields) -> mb.System:
+    """A bar that hangs in a fixed line at a fixed point."""
+    system = mb.System()
+    place = mb.GroundPoint(**fields)
+    bar = system.add(mb.RigidBar("part", 1.0, 2.0, start=place, angle=0.4))
+    system.add(mb.PrismaticJoint("joint", place, bar.start, angle=-0.6))
+    return system
+
+
+#: Component: how to build its scene, and values of its numeric fields.
+SCENES: dict[type, tuple[Callable[..., mb.System], dict]] = {
+    mb.AncfBeam: (alone(mb.AncfBeam), FLEXIBLE | {"poisson_ratio": 0.3}),
+    mb.AncfCable: (alone(mb.AncfCable), FLEXIBLE),
+    mb.RigidBody: (
+        lambda tip, **fields: alone(mb.RigidBody, "tip")(points={"tip": tip}, anchor="tip", **fields),
+        RIGID | {"position": (0.1, 0.2), "tip": (0.6, 0.1)},
+    ),
+    mb.RigidBar: (alone(mb.RigidBar), RIGID | {"length": 1.2, "centre": 0.3, "start": (0.1, 0.2)}),
+    mb.PointMass: (mass, {"mass": 1.5, "position": (0.3, 0.4), "velocity": (0.5, -0.6)}),
+    mb.RevoluteJoint: (pinned, RUBBING | {"pin_radius": 0.2, "slip_rate": 2.0}),
+    mb.PrismaticJoint: (sliding, RUBBING | {"slip_velocity": 1.5, "angle": 0.7}),
+    mb.FixedJoint: (pinned, {}),
+    mb.DistanceJoint: (hung, {"length": 1.1}),
+    mb.PrescribedMotion: (on_a_rail, {"motion": -0.6}),
+    mb.Force: (acted(mb.Force), {"x": 3.0, "y": -8.0}),
+    mb.Torque: (acted(mb.Torque), {"torque": 4.0}),
+    mb.Spring: (acted(mb.Spring, "a"), {"stiffness": 90.0, "damping": 3.0, "free_length": 1.6, "cubic": 40.0}),
+    mb.TorsionSpring: (
+        acted(mb.TorsionSpring, "a"),
+        {"stiffness": 9.0, "damping": 0.5, "free_angle": 0.9, "cubic": 4.0},
+    ),
+    mb.UserForce: (pinned, {}),
+    mb.Constant: (driven(mb.Constant), {"value": 7.0}),
+    mb.Step: (lambda value: acted(mb.Force)(x=mb.Step(value, 0.0131, 0.0567)), {"value": 30.0}),
+    mb.Harmonic: (
+        driven(mb.Harmonic),
+        {"amplitude": 5.0, "angular_frequency": 20.0, "phase": 0.3, "offset": 1.0},
+    ),
+    mb.Polynomial: (
+        lambda **c: driven(mb.Polynomial)(coefficients=list(c.values())),
+        {"c0": 2.0, "c1": 30.0, "c2": -80.0},
+    ),
+    mb.Table: (
+        lambda **v: driven(mb.Table)(times=[0.0, 0.03, 0.05, 0.1], values=list(v.values())),
+        {"v0": 1.0, "v1": 2.0, "v2": -1.0, "v3": 0.5},
+    ),
+    mb.Custom: (pinned, {}),
+    mb.GroundPoint: (grounded, {"x": 0.3, "y": -0.4, "angle": 0.2}),
+    mb.System: (in_a_field, {"gravity": (0.7, -9.81)}),
+}
+#: Fields of a sequence or a mapping, by the values that stand for them in the scene.
+INSIDE = {"points": ["tip"], "coefficients": ["c0", "c1", "c2"], "values": ["v0", "v1", "v2", "v3"]}
+
+
+def numbers_of(fields: dict) -> dict[str, float]:
+    """Numbers by name; those of a pair get names of their own."""
+    numbers = {}
+    for name, value in fields.items():
+        if isinstance(value, tuple):
+            numbers |= {f"{name}_x": value[0], f"{name}_y": value[1]}
+        elif isinstance(value, float):
+            numbers[name] = value
+    return numbers
+
+
+def response(build: Callable[..., mb.System], fields: dict) -> mb.TimeResponse:
+    """A scene as a function of all of its numbers."""
+
+    def builder(**numbers) -> mb.System:
+        own = {
+            name: (numbers[f"{name}_x"], numbers[f"{name}_y"]) if isinstance(value, tuple) else numbers.get(name, value)
+            for name, value in fields.items()
+        }
+        return build(**own)
+
+    parameters = {
+        name: Parameter(name, value - abs(value) / 2, value + abs(value) / 2, scale=abs(value))
+        for name, value in numbers_of(fields).items()
+    }
+    system = build(**fields)
+    names = [f"{body.name}.{body.point_names[-1]}.{entry}" for body in system.bodies for entry in ("x", "vy", "ax")]
+    names += ["system.total_energy", *(f"{joint.name}.force_x" for joint in system.joints)]
+    return mb.TimeResponse(builder, parameters, names, TIMES, SOLVER)
+
+
+def errors(model: mb.TimeResponse) -> tuple[dict[str, float], dict[str, float]]:
+    """Largest error of each parameter's derivative and its largest size, against the responses' sizes.
+
+    The differences are central ones of three steps, extrapolated to the sixth order.
+    """
+    vector = model.parameters.start
+    h = 1e-2 * np.diag(np.abs(vector))
+    moved = model.evaluate(np.concatenate([vector + k * h for k in (1, -1, 2, -2, 4, -4)])).only()
+    moved = moved.reshape(3, 2, len(vector), *moved.shape[1:])
+    one, two, four = ((moved[i, 0] - moved[i, 1]) / (2**i * 2e-2) for i in range(3))
+    slopes = (64 * one - 20 * two + four) / 45
+    values, jacobian = model.linearise(vector)
+    exact = np.moveaxis(jacobian * np.abs(vector), 2, 0)
+    size = np.abs(values).max(axis=0) + 1e-3
+    given = np.abs(exact - slopes).max(axis=1) / (np.abs(slopes).max(axis=1) + 0.1 * size)
+    share = np.abs(slopes).max(axis=1) / size
+    names = model.parameters.names
+    return dict(zip(names, given.max(axis=1), strict=True)), dict(zip(names, share.max(axis=1), strict=True))
+
+
+compared = cache(lambda kind: errors(response(*SCENES[kind])))
+
+
+@pytest.mark.parametrize(("kind", "name"), [(kind, name) for kind in SCENES for name in numbers_of(SCENES[kind][1])])
+def test_its_derivative_is_the_slope_of_the_motion(kind: type, name: str) -> None:
+    error, size = (values[name] for values in compared(kind))
+    assert size > 1e-5, "the scene does not depend on it"
+    assert error < 1e-6
+
+
+KINDS = [
+    entry
+    for entry in vars(mb).values()
+    if isinstance(entry, type) and issubclass(entry, (Body, Joint, Load, Signal, mb.GroundPoint))
+]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_numeric_field_has_a_scene(kind: type) -> None:
+    given = SCENES[kind][1]
+    for entry in arguments(kind):
+        if entry.name not in OTHERS and (kind, entry.name) not in FIXED:
+            assert set(INSIDE.get(entry.name, [entry.name])) <= set(given), f"{kind.__name__}.{entry.name} has no test"
+
+
+def rod(mass: float, length: float) -> mb.System:
+    """A uniform rod, whose inertia follows from mass and length."""
+    return alone(mb.RigidBar)(mass=mass, length=length)
+
+
+def slack(x: float, angle: float) -> mb.System:
+    """Springs and a rod whose free lengths and angles are those of the first placement."""
+    system = mb.System()
+    bar = system.add(mb.AncfCable("arm", 1.0, 2, 4e5, 900.0, **SECTION, start=(x, 0.2), angle=angle))
+    system.add(mb.Spring("coil", system.ground.point(0.0, 0.0), bar.start, 50.0))
+    system.add(mb.TorsionSpring("winder", system.ground, bar.end, 5.0))
+    system.add(mb.DistanceJoint("rod", system.ground.point(1.0, 2.0), bar.node(1)))
+    return system
+
+
+def loop(crank: float, base: float, turn: float, rate: float) -> mb.System:
+    """A four-bar, roughly placed, with a flexible coupler; the crank drives."""
+    system = mb.System(driving=["crank.angle"])
+    first = system.add(mb.RigidBar("crank", crank, 1.0, angle=turn, angular_velocity=rate))
+    second = system.add(mb.AncfCable("coupler", 1.0, 2, 4e6, 900.0, **SECTION, start=first.end, angle=0.3))
+    third = system.add(mb.RigidBar("rocker", 0.8, 1.5, start=(base, 0.0), angle=1.5))
+    system.add(mb.RevoluteJoint("A0", system.ground.point(0.0, 0.0), first.start))
+    system.add(mb.RevoluteJoint("A", first.end, second.start))
+    system.add(mb.RevoluteJoint("B", second.end, third.end))
+    system.add(mb.RevoluteJoint("B0", system.ground.point(base, 0.0), third.start))
+    return system
+
+
+@pytest.mark.parametrize(
+    ("build", "fields"),
+    [
+        (rod, {"mass": 2.0, "length": 1.2}),
+        (slack, {"x": 0.3, "angle": -0.4}),
+        (loop, {"crank": 0.4, "base": 1.1, "turn": 0.7, "rate": 2.0}),
+    ],
+)
+def test_what_follows_from_the_first_placement_is_differentiated(build: Callable, fields: dict) -> None:
+    error, size = errors(response(build, fields))
+    assert min(size.values()) > 1e-5
+    assert max(error.values()) < 1e-6
+
+
+@pytest.mark.parametrize(
+    "solver",
+    [
+        mb.GeneralizedAlpha(2e-3, spectral_radius=1.0),
+        mb.GeneralizedAlpha(2e-3, spectral_radius=0.0),
+        mb.GeneralizedAlpha(2e-3, initial_acceleration="zero"),
+        mb.GeneralizedAlpha(3e-3),  # the outputs lie between the steps
+    ],
+)
+def test_every_setting_of_the_solver_is_differentiated(solver: mb.GeneralizedAlpha) -> None:
+    model = response(*SCENES[mb.AncfCable])
+    error, _ = errors(replace_solver(model, solver))
+    assert max(error.values()) < 1e-6
+
+
+def replace_solver(model: mb.TimeResponse, solver: mb.GeneralizedAlpha) -> mb.TimeResponse:
+    return mb.TimeResponse(model.builder, model.parameters, model.channel_names, model.times, solver)
+
+
+def test_friction_that_is_zero_may_be_a_parameter() -> None:
+    model = response(pinned, {"viscous": 0.4})
+    still, moved = model.evaluate(np.array([[0.0], [0.4]])).only()
+    assert np.abs(still - moved).max() > 1e-3
+    ahead = model.evaluate(np.array([[1e-6]])).only()[0]
+    np.testing.assert_allclose((ahead - still) / 1e-6, model.jacobian(np.array([0.0]))[:, :, 0], rtol=1e-3, atol=1e-2)

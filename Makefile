@@ -30,7 +30,7 @@ help:
 	@echo "make clean       remove the environment and everything built"
 
 demo: .venv/core.stamp
-	$(BIN)/dalembert run $(DEMO_STUDY) --out $(DEMO_RUN)
+	$(BIN)/dalembert run $(DEMO_STUDY) --out $(DEMO_RUN) --force
 	@echo "The report: $(CURDIR)/$(DEMO_RUN)/report.html"
 
 checks: .venv/test.stamp

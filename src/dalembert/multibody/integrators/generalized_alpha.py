@@ -189,7 +189,7 @@ def _correct(n, c, scale, delta, old, new):
     for i in range(n):
         new.a[i] -= delta[i]
         moved = c.dq * abs(delta[i]) / scale[i]
-        if not moved <= norm:
+        if norm == norm and not moved <= norm:  # the first that is not a number stays
             norm, worst = moved, i
     for i in range(n, len(old.x) - 1):
         new.x[i] -= delta[i]
@@ -294,8 +294,9 @@ def _accelerate(problem, model, dual, directions, t, within, state, dstates, pro
     constraints = np.zeros(len(exact.matrix))
     _signals(model, t, within, work)
     _signals(dual, t, within, dual_work)
-    for iteration in range(4):  # linear but for friction that depends on the multipliers
-        if iteration % 2 == 0 and not _initial_matrix(problem, dual, state, dual_work, constraints, exact):
+    for iteration in range(6):  # linear but for friction that depends on the multipliers
+        # The last correction is rounding: the derivatives below are taken with the matrix of the state that it leaves.
+        if iteration < 5 and not _initial_matrix(problem, dual, state, dual_work, constraints, exact):
             return False
         if iteration == 0 and projected:
             _project(problem, model, directions, t, within, state, dstates, work, dual_work, lifted, exact)

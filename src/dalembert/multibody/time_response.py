@@ -13,7 +13,8 @@ from dalembert.errors import DalembertError, InputError, SolveError
 from dalembert.forward import Channel, Coordinate, Responses
 from dalembert.multibody.assemble import assembled, refuse_redundancy
 from dalembert.multibody.callbacks import in_complex_numbers
-from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha, Problem
+from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha
+from dalembert.multibody.integrators.problem import Problem
 from dalembert.multibody.integrators.run import make_problem, run, run_ensemble
 from dalembert.multibody.kernels.dual import STEP
 from dalembert.multibody.lowering import Lowered

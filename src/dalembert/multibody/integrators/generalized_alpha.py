@@ -1,30 +1,23 @@
 """Generalized-alpha for the index-3 equations, with the derivatives of its discrete solution."""
 
 from dataclasses import dataclass, field
-from typing import NamedTuple
 
 import numpy as np
 
 from dalembert.errors import InputError, unknown
-from dalembert.multibody.kernels import signals
-from dalembert.multibody.kernels.assembly import constraint_rates, residual, tangent
-from dalembert.multibody.kernels.compiled import compiled, kernel
-from dalembert.multibody.kernels.dual import STEP
-from dalembert.multibody.kernels.linear import factorise, solve, storage
+from dalembert.multibody.integrators.consistent import accelerate
+from dalembert.multibody.integrators.derivatives import differentiate
+from dalembert.multibody.integrators.lifting import set_signals
+from dalembert.multibody.integrators.newton import Newton, converge, learn
+from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR, TOO_MANY_STEPS
+from dalembert.multibody.kernels.compiled import compiled
+from dalembert.multibody.kernels.linear import storage
 from dalembert.multibody.kernels.model import select, workspace
-from dalembert.multibody.kernels.motion import Motion, advance, clear, coefficients, copy, interpolate, row, still
+from dalembert.multibody.kernels.motion import Motion, clear, coefficients, copy, interpolate, row, still
 
 STARTS = ("consistent", "zero")
-DONE, NEWTON_FAILED, SINGULAR, TOO_MANY_STEPS = range(4)
-_MOST_ITERATIONS = 12
-_SLOW = 0.3  # contraction at which an iteration is not worth going on with the kept factorisation
-_AGED = 0.02  # contraction at which the next step begins with a new one
 _HALVINGS = 8  # of a fixed step that Newton does not converge on
 _UNITS = 1 << _HALVINGS
-# Relative corrections that stop to shrink are rounding below the first size, and below the second one if a nearly
-# singular position magnifies it.
-_ROUNDING, _MAGNIFIED = 1e-12, 1e-9
-_NOISE = 1e-13  # below this size the ratio of two corrections says nothing of the factorisation
 
 
 @dataclass(frozen=True)
@@ -80,279 +73,6 @@ class GeneralizedAlpha:
                 raise InputError(f"GeneralizedAlpha: {name} is {getattr(self, name)}; expected a positive number")
 
 
-class Settings(NamedTuple):
-    """What the compiled loop needs of `GeneralizedAlpha`."""
-
-    step: float
-    spectral_radius: float
-    consistent: bool
-    adaptive: bool
-    tolerance: float
-    newton_tolerance: float
-    most_steps: int
-
-
-class Problem(NamedTuple):
-    """What does not change from sample to sample: sizes, scales, where matrix entries go, LAPACK, times.
-
-    ``n`` coordinates; ``scale`` (N + 1,); ``slots`` and ``layout`` of the Newton matrix; those of the sensitivities,
-    whose matrix is renewed at each step; ``times`` of the output. ``edges`` (samples, -) of the smooth stretches of
-    motion, and how many ``stretches`` each sample has.
-    """
-
-    n: int
-    scale: np.ndarray
-    slots: tuple
-    layout: tuple
-    exact_slots: tuple
-    exact_layout: tuple
-    lapack: np.ndarray
-    times: np.ndarray
-    edges: np.ndarray
-    stretches: np.ndarray
-
-
-class Log(NamedTuple):
-    """Of one run: steps, Newton iterations, factorisations, rejected steps; iterations a step while room lasts."""
-
-    counts: np.ndarray
-    iterations: np.ndarray
-    ends: np.ndarray
-
-
-class _Newton(NamedTuple):
-    """Work of the Newton iteration.
-
-    ``memory``: step for which the kept factorisation was made (0: none), contraction seen last. ``slope``: rate of
-    change of accelerations and multipliers over the last step, for the prediction of the next one.
-    """
-
-    factors: tuple
-    work: tuple
-    dual_work: tuple
-    r: np.ndarray
-    delta: np.ndarray
-    memory: np.ndarray
-    slope: np.ndarray
-
-
-@compiled
-def _signals(model, t, within, work):
-    signals.evaluate(
-        model.signals.index, model.signals.data, model.signals.knots, model.callbacks, t, within, work.signals
-    )
-
-
-@kernel
-def _lift(n, state, direction, target):
-    """Complex state: the real one plus the imaginary step along a direction."""
-    for i in range(len(state.x)):
-        target[0, i] = complex(state.x[i], STEP * direction.x[i])
-    for i in range(n):
-        target[1, i] = complex(state.v[i], STEP * direction.v[i])
-        target[2, i] = complex(state.a[i], STEP * direction.a[i])
-
-
-@kernel
-def _renew(problem, dual, c, new, newton):
-    tangent(
-        dual, problem.slots, problem.n, new.x, new.v, new.a, (c.dq, c.dv, 1.0), (1.0, 1.0 / c.dq), newton.dual_work,
-        newton.factors.matrix,
-    )  # fmt: skip
-    newton.memory[0] = c.step if factorise(problem.layout, problem.lapack, newton.factors) else 0.0
-    return newton.memory[0] != 0.0
-
-
-@kernel
-def _predict(n, c, old, slope, new):
-    """Accelerations and multipliers of the new state, by those of the old one and their last change."""
-    for i in range(n):
-        new.a[i] = old.a[i] + c.step * slope[i]
-    for i in range(n, len(old.x) - 1):
-        new.x[i] = old.x[i] + c.step * slope[i]
-    advance(n, c, old, new)
-
-
-@kernel
-def _learn(n, c, old, new, slope):
-    """Change of accelerations and multipliers over a step."""
-    for i in range(n):
-        slope[i] = (new.a[i] - old.a[i]) / c.step
-    for i in range(n, len(old.x) - 1):
-        slope[i] = (new.x[i] - old.x[i]) / c.step
-
-
-@kernel
-def _correct(n, c, scale, delta, old, new):
-    """Apply a Newton correction: its size against the scales, and the coordinate that moved most."""
-    norm, worst = 0.0, 0
-    for i in range(n):
-        new.a[i] -= delta[i]
-        moved = c.dq * abs(delta[i]) / scale[i]
-        if norm == norm and not moved <= norm:  # the first that is not a number stays
-            norm, worst = moved, i
-    for i in range(n, len(old.x) - 1):
-        new.x[i] -= delta[i]
-    advance(n, c, old, new)
-    return norm, worst
-
-
-@kernel
-def _converge(problem, model, dual, c, tolerance, old, new, newton, log):
-    """Newton iteration on new accelerations and multipliers: status, and iterations or the unknown that moved most."""
-    n, memory = problem.n, newton.memory
-    _predict(n, c, old, newton.slope, new)
-    fresh = not (0.8 * memory[0] < c.step < 1.25 * memory[0]) or memory[1] > _AGED
-    if fresh:
-        log.counts[2] += 1
-        if not _renew(problem, dual, c, new, newton):
-            return SINGULAR, 0
-        memory[1] = _AGED
-    before, norm, worst = 0.0, 1.0, 0
-    for iteration in range(1, _MOST_ITERATIONS + 1):
-        residual(model, n, new.x, new.v, new.a, newton.work, 1.0 / c.dq, newton.r)
-        solve(problem.layout, problem.lapack, newton.factors, newton.r, newton.delta)
-        log.counts[1] += 1
-        norm, worst = _correct(n, c, problem.scale, newton.delta, old, new)
-        if not norm < 1e100 or norm <= tolerance:
-            break
-        rate = memory[1] if iteration == 1 else norm / before
-        if rate < 1.0 and norm * rate / (1.0 - rate) <= tolerance:
-            break
-        if iteration > 2 and rate > 0.5 and norm <= _ROUNDING:
-            break
-        if iteration > 1 and norm > _NOISE:
-            memory[1] = rate
-        if iteration > 1 and rate > _SLOW:
-            if fresh and rate > 2.0:
-                break
-            log.counts[2] += 1
-            if not _renew(problem, dual, c, new, newton):
-                return SINGULAR, worst
-            fresh = True
-        before = norm
-    if norm <= _MAGNIFIED:
-        return DONE, iteration
-    memory[0] = 0.0
-    return NEWTON_FAILED, worst
-
-
-@kernel
-def _subtract(n, correction, state):
-    """Take a correction off the accelerations and multipliers, which are also the algorithmic accelerations."""
-    for i in range(n):
-        state.a[i] -= correction[i]
-        state.w[i] = state.a[i]
-    for i in range(n, len(state.x) - 1):
-        state.x[i] -= correction[i]
-
-
-@compiled
-def _differentiate(problem, dual, directions, c, t, within, old, new, dolds, dnews, exact, dual_work, lifted, buffers):
-    """Derivatives of the converged step: one exact tangent, and one linear solution a direction."""
-    n, size = problem.n, len(old.x) - 1
-    r, delta, answer = buffers
-    tangent(
-        dual, problem.exact_slots, n, new.x, new.v, new.a, (c.dq, c.dv, 1.0), (1.0, 1.0 / c.dq), dual_work, exact.matrix
-    )
-    regular = factorise(problem.exact_layout, problem.lapack, exact)
-    for d in range(len(dolds.x)):
-        model = select(directions, d)
-        dold, dnew = row(dolds, d), row(dnews, d)
-        copy(dnew, dold)
-        advance(n, c, dold, dnew)
-        _lift(n, new, dnew, lifted)
-        _signals(model, t, within, dual_work)
-        residual(model, n, lifted[0], lifted[1], lifted[2], dual_work, 1.0 / c.dq, r)
-        for i in range(size):
-            delta[i] = r[i].imag / STEP
-        solve(problem.exact_layout, problem.lapack, exact, delta, answer)
-        _subtract(n, answer, dnew)
-        advance(n, c, dold, dnew)
-    return regular
-
-
-@kernel
-def _initial_matrix(problem, dual, state, dual_work, constraints, exact):
-    """Factorised matrix of motion beside the constraints at acceleration level; whether it is regular."""
-    arguments = (dual, problem.exact_slots, problem.n, state.x, state.v, state.a)
-    tangent(*arguments, (1.0, 0.0, 0.0), (0.0, 1.0), dual_work, constraints)
-    tangent(*arguments, (0.0, 0.0, 1.0), (1.0, 0.0), dual_work, exact.matrix)
-    for i in range(len(constraints)):
-        exact.matrix[i] += constraints[i]
-    return factorise(problem.exact_layout, problem.lapack, exact)
-
-
-@compiled
-def _accelerate(problem, model, dual, directions, t, within, state, dstates, projected, work, dual_work, lifted, exact):
-    """Accelerations and multipliers that satisfy the equations of motion, and their derivatives.
-
-    Where ``projected``, the velocities are first moved onto the constraints, by the smallest kinetic energy.
-    """
-    n, last = problem.n, len(state.x) - 1
-    delta, answer, rate, second = np.zeros(last + 1), np.zeros(last + 1), np.zeros(last + 1), np.zeros(last + 1)
-    constraints = np.zeros(len(exact.matrix))
-    _signals(model, t, within, work)
-    _signals(dual, t, within, dual_work)
-    for iteration in range(6):  # linear but for friction that depends on the multipliers
-        # The last correction is rounding: the derivatives below are taken with the matrix of the state that it leaves.
-        if iteration < 5 and not _initial_matrix(problem, dual, state, dual_work, constraints, exact):
-            return False
-        if iteration == 0 and projected:
-            _project(problem, model, directions, t, within, state, dstates, work, dual_work, lifted, exact)
-        residual(model, n, state.x, state.v, state.a, work, 1.0, delta)
-        constraint_rates(model, n, state.x, state.v, state.a, work, rate, second)
-        for i in range(n, last):
-            delta[i] = second[i]
-        solve(problem.exact_layout, problem.lapack, exact, delta, answer)
-        _subtract(n, answer, state)
-    r, drate, dsecond = lifted[3], lifted[4], lifted[5]
-    for d in range(len(dstates.x)):
-        tilted, dstate = select(directions, d), row(dstates, d)
-        _signals(tilted, t, within, dual_work)
-        _lift(n, state, dstate, lifted)
-        residual(tilted, n, lifted[0], lifted[1], lifted[2], dual_work, 1.0, r)
-        constraint_rates(tilted, n, lifted[0], lifted[1], lifted[2], dual_work, drate, dsecond)
-        for i in range(last):
-            delta[i] = (r[i].imag if i < n else dsecond[i].imag) / STEP
-        solve(problem.exact_layout, problem.lapack, exact, delta, answer)
-        _subtract(n, answer, dstate)
-    return True
-
-
-@compiled
-def _project(problem, model, directions, t, within, state, dstates, work, dual_work, lifted, exact):
-    """Velocities on the constraints, v - w with M w + J^T m = 0 and J w = rate of the constraints, and derivatives."""
-    n, last = problem.n, len(state.x) - 1
-    w, answer, rate, second = np.zeros(last + 1), np.zeros(last + 1), np.zeros(last + 1), np.zeros(last + 1)
-    constraint_rates(model, n, state.x, state.v, state.a, work, rate, second)
-    solve(problem.exact_layout, problem.lapack, exact, rate, w)
-    for i in range(n):
-        state.v[i] -= w[i]
-    forces, still, drate, dsecond = lifted[3], lifted[4], lifted[5], lifted[6]
-    for d in range(len(dstates.x)):
-        tilted, dstate = select(directions, d), row(dstates, d)
-        _signals(tilted, t, within, dual_work)
-        _lift(n, state, dstate, lifted)
-        constraint_rates(tilted, n, lifted[0], lifted[1], lifted[2], dual_work, drate, dsecond)
-        for i in range(last + 1):
-            lifted[1, i] = 0.0
-            lifted[2, i] = w[i] if i < n else 0.0
-            if i >= n:
-                lifted[0, i] = w[i]
-        residual(tilted, n, lifted[0], lifted[1], lifted[2], dual_work, 1.0, forces)
-        for i in range(last + 1):
-            lifted[2, i] = 0.0
-            if i >= n:
-                lifted[0, i] = 0.0
-        residual(tilted, n, lifted[0], lifted[1], lifted[2], dual_work, 1.0, still)
-        for i in range(last):
-            answer[i] = (forces[i].imag - still[i].imag if i < n else -drate[i].imag) / STEP
-        solve(problem.exact_layout, problem.lapack, exact, answer, rate)
-        for i in range(n):
-            dstate.v[i] += rate[i]
-
-
 @compiled
 def integrate(problem, settings, models, duals, directions, states, dstates, out, dout, log, ends):
     """Run a stack of samples from ``problem.edges[sample, 0]`` to the last edge; fill the states at the output times.
@@ -393,7 +113,7 @@ def _integrate(problem, edges, settings, model, dual, directions, state, dstates
         np.zeros_like(dstates.x), np.zeros_like(dstates.x), np.zeros_like(dstates.x), np.zeros_like(dstates.x)
     )
     work, dual_work = workspace(model), workspace(dual)
-    newton = _Newton(
+    newton = Newton(
         storage(problem.layout), work, dual_work, np.zeros(width), np.zeros(width), np.zeros(2), np.zeros(width)
     )
     exact = storage(problem.exact_layout)
@@ -407,7 +127,7 @@ def _integrate(problem, edges, settings, model, dual, directions, state, dstates
         within = 0.5 * (begin + end)
         clear(newton.slope)
         if stretch > 0 or settings.consistent:
-            if not _accelerate(
+            if not accelerate(
                 problem, model, dual, directions, begin, within, new, dstates, False, work, dual_work, lifted, exact
             ):
                 return SINGULAR, begin, 0
@@ -432,9 +152,9 @@ def _integrate(problem, edges, settings, model, dual, directions, state, dstates
                 target = end if unit + stride == steps * _UNITS else begin + nominal * ((unit + stride) / _UNITS)
             copy(new, old)
             c = coefficients(length, settings.spectral_radius)
-            _signals(model, target, within, work)
-            _signals(dual, target, within, dual_work)
-            status, detail = _converge(problem, model, dual, c, settings.newton_tolerance, old, new, newton, log)
+            set_signals(model, target, within, work)
+            set_signals(dual, target, within, dual_work)
+            status, detail = converge(problem, model, dual, c, settings.newton_tolerance, old, new, newton, log)
             error = 0.0
             if status == DONE and settings.adaptive:
                 for i in range(n):
@@ -457,14 +177,14 @@ def _integrate(problem, edges, settings, model, dual, directions, state, dstates
                 log.iterations[log.counts[0]] = detail
                 log.ends[log.counts[0]] = target
             log.counts[0] += 1
-            _learn(n, c, old, new, newton.slope)
+            learn(n, c, old, new, newton.slope)
             if differentiated:
-                _differentiate(
+                differentiate(
                     problem, dual, directions, c, target, within, old, new, dolds, dstates, exact, dual_work, lifted,
                     buffers,
                 )  # fmt: skip
             if settings.spectral_radius == 1.0 and width - 1 > n:
-                if not _accelerate(
+                if not accelerate(
                     problem, model, dual, directions, target, within, new, dstates, True, work, dual_work, lifted, exact
                 ):
                     return SINGULAR, target, 0

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from dalembert.multibody.assemble import scales
-from dalembert.multibody.integrators import generalized_alpha as alpha
-from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha, Log, Problem, Settings
+from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha, integrate
+from dalembert.multibody.integrators.problem import DONE, SINGULAR, TOO_MANY_STEPS, Log, Problem, Settings
 from dalembert.multibody.kernels.dual import STEP
 from dalembert.multibody.kernels.linear import LAPACK
 from dalembert.multibody.kernels.model import KINDS, Block, Model, Signals
@@ -85,7 +85,7 @@ def _call(
     out, dout = _zeros(len(samples), len(times), width), _zeros(len(tilted), len(times), width)
     log = Log(np.zeros(4, dtype=np.int64), np.zeros(logged, dtype=np.int64), np.zeros(logged))
     ends = np.zeros((len(samples), 3))
-    alpha.integrate(
+    integrate(
         problem, settings(solver), stack([entry.real for entry in samples], first.real),
         stack([entry.dual for entry in samples], first.dual), stack([entry.dual for entry in tilted], first.dual),
         states, dstates, out, dout, log, ends,
@@ -93,7 +93,7 @@ def _call(
     taken = min(int(log.counts[0]), logged)
     runs = []
     for number, (lowered, (status, time, unknown)) in enumerate(zip(samples, ends, strict=True)):
-        reason = None if status == alpha.DONE else explain(lowered, solver, int(status), time, int(unknown))
+        reason = None if status == DONE else explain(lowered, solver, int(status), time, int(unknown))
         own = Motion(out.x[number], out.v[number], out.a[number], out.w[number])
         runs.append(Run(reason, times, own, dout, log.counts, log.iterations[:taken].copy(), log.ends[:taken].copy()))
     return runs
@@ -147,12 +147,12 @@ def explain(lowered: Lowered, solver: GeneralizedAlpha, status: int, time: float
     if lowered.failures.errors:
         error = lowered.failures.errors[0]
         return f"a function of the user's failed near t = {time:.6g} s: {type(error).__name__}: {error}"
-    if status == alpha.SINGULAR:
+    if status == SINGULAR:
         return (
             f"the equations of motion became singular at t = {time:.6g} s, at component {owner!r}: redundant "
             "constraints, a massless part, or a singular position; start from another position or take a constraint out"
         )
-    if status == alpha.TOO_MANY_STEPS:
+    if status == TOO_MANY_STEPS:
         return (
             f"the adaptive step reached most_steps = {solver.most_steps} at t = {time:.6g} s; "
             "raise tolerance or most_steps"

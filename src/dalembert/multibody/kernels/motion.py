@@ -100,3 +100,13 @@ def interpolate(n, h, s, old, new, x, v, a):
         a[i] = (1 - s) * old.a[i] + s * new.a[i]
     for i in range(n, len(x)):
         x[i] = (1 - s) * old.x[i] + s * new.x[i]
+
+
+@kernel
+def subtract(n, correction, state):
+    """Take a correction off the accelerations and multipliers, which are also the algorithmic accelerations."""
+    for i in range(n):
+        state.a[i] -= correction[i]
+        state.w[i] = state.a[i]
+    for i in range(n, len(state.x) - 1):
+        state.x[i] -= correction[i]

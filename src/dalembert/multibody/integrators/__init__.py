@@ -1,0 +1,1 @@
+"""Integrators: one file a method, and what they share."""

@@ -1,0 +1,22 @@
+"""States and loads along a direction of differentiation."""
+
+from dalembert.multibody.kernels import signals
+from dalembert.multibody.kernels.compiled import compiled, kernel
+from dalembert.multibody.kernels.dual import STEP
+
+
+@compiled
+def set_signals(model, t, within, work):
+    signals.evaluate(
+        model.signals.index, model.signals.data, model.signals.knots, model.callbacks, t, within, work.signals
+    )
+
+
+@kernel
+def lift(n, state, direction, target):
+    """Complex state: the real one plus the imaginary step along a direction."""
+    for i in range(len(state.x)):
+        target[0, i] = complex(state.x[i], STEP * direction.x[i])
+    for i in range(n):
+        target[1, i] = complex(state.v[i], STEP * direction.v[i])
+        target[2, i] = complex(state.a[i], STEP * direction.a[i])

@@ -1,0 +1,47 @@
+"""What the compiled integrators are given, and what they answer."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+DONE, NEWTON_FAILED, SINGULAR, TOO_MANY_STEPS = range(4)
+
+
+class Settings(NamedTuple):
+    """What the compiled loop needs of `GeneralizedAlpha`."""
+
+    step: float
+    spectral_radius: float
+    consistent: bool
+    adaptive: bool
+    tolerance: float
+    newton_tolerance: float
+    most_steps: int
+
+
+class Problem(NamedTuple):
+    """What does not change from sample to sample: sizes, scales, where matrix entries go, LAPACK, times.
+
+    ``n`` coordinates; ``scale`` (N + 1,); ``slots`` and ``layout`` of the Newton matrix; those of the sensitivities,
+    whose matrix is renewed at each step; ``times`` of the output. ``edges`` (samples, -) of the smooth stretches of
+    motion, and how many ``stretches`` each sample has.
+    """
+
+    n: int
+    scale: np.ndarray
+    slots: tuple
+    layout: tuple
+    exact_slots: tuple
+    exact_layout: tuple
+    lapack: np.ndarray
+    times: np.ndarray
+    edges: np.ndarray
+    stretches: np.ndarray
+
+
+class Log(NamedTuple):
+    """Of one run: steps, Newton iterations, factorisations, rejected steps; iterations a step while room lasts."""
+
+    counts: np.ndarray
+    iterations: np.ndarray
+    ends: np.ndarray

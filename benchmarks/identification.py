@@ -73,7 +73,8 @@ def _ours(factors, data: np.ndarray, noise: float) -> tuple[np.ndarray, int]:
         solver=ours.solver(PENDULUM.integration),
     )
     deviations = np.full(data.shape[1], noise) if noise else None
-    measured = da.Measurements.of(PENDULUM.integration.times, ours.JOINT_AND_TIP, data, deviations)
+    columns = dict(zip(ours.JOINT_AND_TIP, data.T, strict=True))
+    measured = da.Measurements.of(PENDULUM.integration.times, columns, deviations)
     fit = da.identify(model, measured, seed=0)
     return fit.values / TRUTH, fit.simulations
 

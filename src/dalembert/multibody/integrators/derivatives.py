@@ -2,14 +2,14 @@
 
 from dalembert.multibody.integrators.lifting import lift, set_signals
 from dalembert.multibody.kernels.assembly import residual, tangent
-from dalembert.multibody.kernels.compiled import compiled
+from dalembert.multibody.kernels.compiled import kernel
 from dalembert.multibody.kernels.dual import STEP
 from dalembert.multibody.kernels.linear import factorise, solve
-from dalembert.multibody.kernels.model import select
-from dalembert.multibody.kernels.motion import advance, copy, row, subtract
+from dalembert.multibody.kernels.model import glance as glance_at_model
+from dalembert.multibody.kernels.motion import advance, copy, glance, subtract
 
 
-@compiled
+@kernel
 def differentiate(problem, dual, directions, c, t, within, old, new, dolds, dnews, exact, dual_work, lifted, buffers):
     """Derivatives of the converged step: one exact tangent, and one linear solution a direction."""
     n, size = problem.n, len(old.x) - 1
@@ -19,8 +19,8 @@ def differentiate(problem, dual, directions, c, t, within, old, new, dolds, dnew
     )
     regular = factorise(problem.exact_layout, problem.lapack, exact)
     for d in range(len(dolds.x)):
-        model = select(directions, d)
-        dold, dnew = row(dolds, d), row(dnews, d)
+        model = glance_at_model(directions, d)
+        dold, dnew = glance(dolds, d), glance(dnews, d)
         copy(dnew, dold)
         advance(n, c, dold, dnew)
         lift(n, new, dnew, lifted)

@@ -17,6 +17,7 @@ from dalembert.multibody.kernels.dual import reciprocal, root
 
 WIDTH = 8
 DAMPING = 4  # column of the retardation time
+SLOTS = (0, 2, 6)  # of r1, r1' and r2'
 
 
 def _gauss(points: int) -> tuple[np.ndarray, ...]:
@@ -103,44 +104,55 @@ def tangent(x, data, e, by, matrix):
     h, axial, bending, mass = data[e, 0].real, data[e, 1].real, data[e, 2].real, data[e, 3].real
     across = 1.0 / h
     for g in range(5):
-        s = A1[g] * across, A2[g], -A1[g] * across, A5[g]
-        tx, ty = _line(s[0], s[1], s[3], x)
+        s = A1[g] * across, A2[g], A5[g]
+        tx, ty = _line(s[0], s[1], s[2], x)
         inverse = 1.0 / math.sqrt(tx * tx + ty * ty)
-        cubed, rest = inverse * inverse * inverse, 1.0 - inverse
-        block = rest + tx * tx * cubed, tx * ty * cubed, tx * ty * cubed, rest + ty * ty * cubed
         w = by[0] * AW[g] * h * axial
-        for i in range(4):
-            for j in range(4):
-                hermite.spread(matrix, 2 * i, 2 * j, w * s[i] * s[j], block)
+        cubed, rest = w * inverse * inverse * inverse, w * (1.0 - inverse)
+        block = rest + tx * tx * cubed, tx * ty * cubed, tx * ty * cubed, rest + ty * ty * cubed
+        for i in range(3):
+            for j in range(3):
+                hermite.spread(matrix, SLOTS[i], SLOTS[j], s[i] * s[j], block)
     for g in range(3):
-        s = B1[g] * across, B2[g], -B1[g] * across, B5[g]
-        c = C1[g] * across * across, C2[g] * across, -C1[g] * across * across, C5[g] * across
-        tx, ty = _line(s[0], s[1], s[3], x)
-        cx, cy = _line(c[0], c[1], c[3], x)
+        s = B1[g] * across, B2[g], B5[g]
+        c = C1[g] * across * across, C2[g] * across, C5[g] * across
+        tx, ty = _line(s[0], s[1], s[2], x)
+        cx, cy = _line(c[0], c[1], c[2], x)
         kappa, px, py, square = _curvature(tx, ty, cx, cy)
         qx, qy = -ty * square, tx * square
         two, eight = 2 * kappa * square, 8 * kappa * square * square
+        w = by[0] * BW[g] * h * bending
         tt = (
-            px * px + kappa * (-4 * cy * tx * square * square - two + eight * tx * tx),
-            px * py + kappa * (2 * (cx * tx - cy * ty) * square * square + eight * tx * ty),
-            px * py + kappa * (2 * (cx * tx - cy * ty) * square * square + eight * tx * ty),
-            py * py + kappa * (4 * cx * ty * square * square - two + eight * ty * ty),
+            w * (px * px + kappa * (-4 * cy * tx * square * square - two + eight * tx * tx)),
+            w * (px * py + kappa * (2 * (cx * tx - cy * ty) * square * square + eight * tx * ty)),
+            w * (px * py + kappa * (2 * (cx * tx - cy * ty) * square * square + eight * tx * ty)),
+            w * (py * py + kappa * (4 * cx * ty * square * square - two + eight * ty * ty)),
         )
         tc = (
-            px * qx - two * tx * qx,
-            px * qy + kappa * square - two * tx * qy,
-            py * qx - kappa * square - two * ty * qx,
-            py * qy - two * ty * qy,
+            w * (px * qx - two * tx * qx),
+            w * (px * qy + kappa * square - two * tx * qy),
+            w * (py * qx - kappa * square - two * ty * qx),
+            w * (py * qy - two * ty * qy),
         )
-        ct = tc[0], tc[2], tc[1], tc[3]
-        cc = qx * qx, qx * qy, qx * qy, qy * qy
-        w = by[0] * BW[g] * h * bending
-        for i in range(4):
-            for j in range(4):
-                hermite.spread(matrix, 2 * i, 2 * j, w * s[i] * s[j], tt)
-                hermite.spread(matrix, 2 * i, 2 * j, w * s[i] * c[j], tc)
-                hermite.spread(matrix, 2 * i, 2 * j, w * c[i] * s[j], ct)
-                hermite.spread(matrix, 2 * i, 2 * j, w * c[i] * c[j], cc)
+        cc = w * qx * qx, w * qx * qy, w * qx * qy, w * qy * qy
+        for i in range(3):
+            for j in range(3):
+                a, b, d, f = s[i] * s[j], s[i] * c[j], c[i] * s[j], c[i] * c[j]
+                block = (
+                    a * tt[0] + (b + d) * tc[0] + f * cc[0],
+                    a * tt[1] + b * tc[1] + d * tc[2] + f * cc[1],
+                    a * tt[2] + b * tc[2] + d * tc[1] + f * cc[2],
+                    a * tt[3] + (b + d) * tc[3] + f * cc[3],
+                )
+                hermite.spread(matrix, SLOTS[i], SLOTS[j], 1.0, block)
+    # The forces depend on the difference of r1 and r2 only: rows and columns of r2 are those of r1, their sign turned.
+    for i in range(2):
+        for j in range(WIDTH):
+            if j < 4 or j > 5:
+                matrix[4 + i, j] = -matrix[i, j]
+    for i in range(WIDTH):
+        for j in range(2):
+            matrix[i, 4 + j] = -matrix[i, j]
     hermite.mass_matrix(mass, h, 0, 2, 4, 6, by[2], matrix)
     hermite.mass_matrix(mass, h, 1, 3, 5, 7, by[2], matrix)
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dalembert.multibody.kernels import beam, body, cable, friction, joints, load, spring, user
-from dalembert.multibody.kernels.compiled import compiled
+from dalembert.multibody.kernels.compiled import compiled, inlined
 
 #: The kinds in the order of the fields of `Model`.
 KINDS = {
@@ -81,26 +81,25 @@ class Work(NamedTuple):
     matrix: np.ndarray
 
 
-@compiled
-def _row(block, d):
-    return Block(block.index, block.meta, block.data[d])
-
-
-@compiled
-def select(stack, d):
+def _select(stack, d):
     """Model ``d`` of a stack, whose numbers and callbacks have one more leading axis."""
     return Model(
-        _row(stack.beams, d),
-        _row(stack.cables, d),
-        _row(stack.bodies, d),
-        _row(stack.joints, d),
-        _row(stack.frictions, d),
-        _row(stack.springs, d),
-        _row(stack.loads, d),
-        _row(stack.users, d),
+        Block(stack.beams.index, stack.beams.meta, stack.beams.data[d]),
+        Block(stack.cables.index, stack.cables.meta, stack.cables.data[d]),
+        Block(stack.bodies.index, stack.bodies.meta, stack.bodies.data[d]),
+        Block(stack.joints.index, stack.joints.meta, stack.joints.data[d]),
+        Block(stack.frictions.index, stack.frictions.meta, stack.frictions.data[d]),
+        Block(stack.springs.index, stack.springs.meta, stack.springs.data[d]),
+        Block(stack.loads.index, stack.loads.meta, stack.loads.data[d]),
+        Block(stack.users.index, stack.users.meta, stack.users.data[d]),
         Signals(stack.signals.index, stack.signals.knots, stack.signals.data[d]),
         stack.callbacks[d],
     )
+
+
+select = compiled(_select)
+#: The same inside functions that do not count references.
+glance = inlined(_select)
 
 
 @compiled

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dalembert.multibody.kernels.compiled import compiled, kernel
+from dalembert.multibody.kernels.compiled import compiled, inlined, kernel
 
 
 class Motion(NamedTuple):
@@ -51,10 +51,14 @@ def copy(source, target):
         target.x[i], target.v[i], target.a[i], target.w[i] = source.x[i], source.v[i], source.a[i], source.w[i]
 
 
-@compiled
-def row(stack, d):
+def _row(stack, d):
     """State ``d`` of a stack of states."""
     return Motion(stack.x[d], stack.v[d], stack.a[d], stack.w[d])
+
+
+row = compiled(_row)
+#: The same inside functions that do not count references.
+glance = inlined(_row)
 
 
 @kernel

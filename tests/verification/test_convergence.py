@@ -27,9 +27,12 @@ def flexible() -> tuple[da.System, list[str]]:
     return system, ["upper", "lower"]
 
 
-@pytest.mark.parametrize("radius", [1.0, 0.8, 0.0])
-@pytest.mark.parametrize(("mechanism", "coarsest"), [(rigid, 2e-3), (flexible, 2e-4)], ids=["rigid", "flexible"])
-def test_second_order_in_position_and_velocity(record_evidence, mechanism, coarsest: float, radius: float) -> None:
+@pytest.mark.parametrize(
+    ("mechanism", "radius", "coarsest"),
+    [(rigid, 1.0, 8e-3), (rigid, 0.8, 8e-3), (rigid, 0.0, 2e-3)] + [(flexible, r, 2e-4) for r in (1.0, 0.8, 0.0)],
+)
+def test_second_order_in_position_and_velocity(record_evidence, mechanism, radius: float, coarsest: float) -> None:
+    """Steps fine enough for the order and coarse enough for rounding not to show in it."""
     system, bodies = mechanism()
     names = [f"{body}.end.{entry}" for body in bodies for entry in ("x", "y", "vx", "vy")]
 

@@ -57,9 +57,9 @@ def n_four_bar(model: dict, windows: int) -> da.System:
     ("case", "step"), [(0, 8e-5), (1, 8e-5), pytest.param(2, 1e-4, marks=pytest.mark.slow)], ids=["N=1", "N=2", "N=40"]
 )
 def test_n_four_bar(reference, record_evidence, case: int, step: float) -> None:
-    """The mechanism passes its singular position, flat, where a branch is left only by momentum.
+    """The mechanism passes its singular position, flat, again and again, and only momentum keeps it on its branch.
 
-    There rounding is magnified by the inverse square of the step: half of this step would be too fine.
+    Rounding is magnified there: at spectral radii of 0.8 and less it leaves 1e-7 to 1e-5, however fine the step.
     """
     data = reference("n_four_bar")
     values = data["values"]
@@ -93,7 +93,7 @@ def test_two_link_arm(reference, record_evidence) -> None:
     data = reference("two_link_arm")
     values = data["values"]
     trajectory = da.simulate(
-        two_link_arm(data["model"]), 5.0, solver=fine(2e-5), times=np.array([0.0, *values["times"]])
+        two_link_arm(data["model"]), 5.0, solver=fine(4.5e-5), times=np.array([0.0, *values["times"]])
     )
     angles = trajectory.channels(["upper.centre.angle", "lower.centre.angle"])
     common = {"topic": TOPIC, "source": data["source"], "relative": True}

@@ -1,5 +1,6 @@
 """Flexible bars of ANCF elements, straight and undeformed at first."""
 
+from abc import abstractmethod
 from dataclasses import InitVar, dataclass, field
 from typing import TYPE_CHECKING, Any, cast
 
@@ -29,9 +30,9 @@ class _Ancf(Body):
     youngs_modulus: Number = number("Pa")
 
     @property
+    @abstractmethod
     def vectors(self) -> int:
         """Vectors of two components a node."""
-        raise NotImplementedError
 
     @property
     def place(self) -> Place:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import cast
 
 import numpy as np
-from scipy.linalg import eig, null_space
+from scipy.linalg import eig, eigh, null_space
 from scipy.sparse import csr_matrix
 from scipy.sparse.linalg import lsqr, splu
 
@@ -186,13 +186,27 @@ def modes(state: System | Equilibrium, count: int | None = None) -> Modes:
     mass = tangent(lowered, x, still, (0.0, 0.0, 1.0)).toarray()[:n, :n]
     free = null_space(stiffness[n:, :n] / scales(lowered)[n:-1, None]) if lowered.structure.size > n else np.eye(n)
     k, c, m = (free.T @ matrix @ free for matrix in (stiffness[:n, :n], damping, mass))
-    size = len(k)
-    state_matrix = np.block([[np.zeros((size, size)), np.eye(size)], [-np.linalg.solve(m, np.hstack([k, c]))]])
-    roots, vectors = cast(tuple[np.ndarray, np.ndarray], eig(state_matrix))
+    roots, vectors = (
+        _undamped(k, m) if not c.any() and np.allclose(k, k.T, 0, 1e-9 * abs(k).max()) else _damped(k, c, m)
+    )
     kept = np.flatnonzero(np.imag(roots) > 0)
     kept = kept[np.argsort(np.imag(roots[kept]))][:count]
     shapes = np.zeros((len(x), len(kept)), dtype=complex)
-    shapes[:n] = free @ vectors[:size, kept]
+    shapes[:n] = free @ vectors[:, kept]
     shapes /= shapes[np.argmax(np.abs(shapes), axis=0), np.arange(len(kept))]
     roots = roots[kept]
     return Modes(np.imag(roots) / (2 * np.pi), -np.real(roots) / np.abs(roots), shapes)
+
+
+def _undamped(k: np.ndarray, m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Roots and shapes of M x'' + K x = 0 with symmetric matrices, many times faster than the general problem."""
+    squares, vectors = eigh((k + k.T) / 2, (m + m.T) / 2)
+    return np.emath.sqrt(-squares), vectors
+
+
+def _damped(k: np.ndarray, c: np.ndarray, m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Roots and shapes of M x'' + C x' + K x = 0."""
+    size = len(k)
+    state_matrix = np.block([[np.zeros((size, size)), np.eye(size)], [-np.linalg.solve(m, np.hstack([k, c]))]])
+    roots, vectors = cast(tuple[np.ndarray, np.ndarray], eig(state_matrix))
+    return roots, vectors[:size]

@@ -17,7 +17,8 @@ def differentiate(problem, dual, directions, c, t, within, old, new, dolds, dnew
     tangent(
         dual, problem.exact_slots, n, new.x, new.v, new.a, (c.dq, c.dv, 1.0), (1.0, 1.0 / c.dq), dual_work, exact.matrix
     )
-    regular = factorise(problem.exact_layout, problem.lapack, exact)
+    if not factorise(problem.exact_layout, problem.lapack, exact):
+        return False
     for d in range(len(dolds.x)):
         model = glance_at_model(directions, d)
         dold, dnew = glance(dolds, d), glance(dnews, d)
@@ -31,4 +32,4 @@ def differentiate(problem, dual, directions, c, t, within, old, new, dolds, dnew
         solve(problem.exact_layout, problem.lapack, exact, delta, answer)
         subtract(n, answer, dnew)
         advance(n, c, dold, dnew)
-    return regular
+    return True

@@ -178,11 +178,23 @@ def _integrate(problem, edges, settings, model, dual, directions, state, dstates
                 log.ends[log.counts[0]] = target
             log.counts[0] += 1
             learn(n, c, old, new, newton.slope)
-            if differentiated:
-                differentiate(
-                    problem, dual, directions, c, target, within, old, new, dolds, dstates, exact, dual_work, lifted,
-                    buffers,
-                )  # fmt: skip
+            if differentiated and not differentiate(
+                problem,
+                dual,
+                directions,
+                c,
+                target,
+                within,
+                old,
+                new,
+                dolds,
+                dstates,
+                exact,
+                dual_work,
+                lifted,
+                buffers,
+            ):
+                return SINGULAR, target, 0
             if settings.spectral_radius == 1.0 and width - 1 > n:
                 if not accelerate(
                     problem, model, dual, directions, target, within, new, dstates, True, work, dual_work, lifted, exact

@@ -4,8 +4,6 @@ Each signal has a row of `index`: kind, first entry and number of entries in `da
 Signal 0 is the time itself.
 """
 
-import math
-
 import numpy as np
 
 from dalembert.multibody.kernels.callback import call
@@ -79,12 +77,3 @@ def evaluate(index, data, knots, callbacks, t, within, out):
             given[0] = t
             call(callbacks[first], given, answer)
             out[n, 0], out[n, 1], out[n, 2] = answer[0], answer[1], answer[2]
-
-
-@kernel
-def finite(values):
-    """Whether every real part is finite."""
-    for value in values.flat:
-        if not math.isfinite(value.real):
-            return False
-    return True

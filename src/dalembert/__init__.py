@@ -15,7 +15,7 @@ _NAMES = {
     "parameters": "Parameter Parameters",
     "forward": "Channel Coordinate ForwardModel PythonModel Responses",
     "optimize": "ImprovedParticleSwarm LeastSquares Minimiser ParticleSwarm",
-    "data": "Measurements read_csv",
+    "data": "Bands Measurements read_bands read_csv",
     "inverse": "Fit identify",
     "multibody": """
         System AncfBeam AncfCable RigidBody RigidBar PointMass Point

@@ -7,7 +7,9 @@ from dalembert import optimize as optimize
 from dalembert import parameters as parameters
 from dalembert import report as report
 from dalembert import study as study
+from dalembert.data import Bands as Bands
 from dalembert.data import Measurements as Measurements
+from dalembert.data import read_bands as read_bands
 from dalembert.data import read_csv as read_csv
 from dalembert.errors import DalembertError as DalembertError
 from dalembert.errors import DataError as DataError

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dalembert.data import Measurements, read_csv
+from dalembert.data import Bands, Measurements, read_bands, read_csv
 from dalembert.errors import DataError
 from dalembert.forward import PythonModel
 from dalembert.inverse import identify
@@ -97,6 +97,55 @@ def test_a_file_that_is_not_text_is_told(tmp_path):
     with pytest.raises(DataError) as error:
         read_csv(path)
     assert str(error.value).startswith(f"{path}: cannot be read as text with columns (")
+
+
+BAND_FILES = {
+    "columns that are exchanged": (
+        "t,x_lower,x_upper\n0,1,2\n0.1,2,1\n",
+        {},
+        "{path}: channel 'x', sample 1 (time 0.1 s): the lower bound 2 is larger than the upper bound 1; "
+        "expected the lower one first; look whether the columns are exchanged",
+    ),
+    "a column that is missing": (
+        "t,x_lower,x_upper\n0,1,2\n",
+        {"columns": {"AB.end.x": ("x_lower", "x_uper")}},
+        "{path}: unknown column 'x_uper'; did you mean 'x_upper' or 'x_lower'?",
+    ),
+    "a channel with one column": (
+        "t,x_lower,x_upper\n0,1,2\n",
+        {"columns": {"AB.end.x": "x_lower"}},
+        "columns, channel 'AB.end.x': 'x_lower' was given; expected two names, (lower, upper)",
+    ),
+    "columns that are no bounds": (
+        "t,x,y_lower\n0,1,2\n",
+        {},
+        "{path}: no two columns are named NAME_lower and NAME_upper; "
+        "give columns = {{channel: (lower column, upper column)}}",
+    ),
+    "an empty cell": (
+        "t,x_lower,x_upper\n0,1,\n",
+        {},
+        "{path}, line 2, column 'x_upper': the cell is empty; expected a number; fill it or remove the line",
+    ),
+}
+
+
+@pytest.mark.parametrize("defect", BAND_FILES)
+def test_a_defect_of_a_file_of_bands_is_told(defect, tmp_path):
+    text, options, sentence = BAND_FILES[defect]
+    path = tmp_path / "bounds.csv"
+    path.write_text(text)
+    with pytest.raises(DataError) as error:
+        read_bands(path, **options)
+    assert str(error.value) == sentence.format(path=path)
+
+
+def test_a_bound_that_is_not_finite_is_told_with_its_place():
+    with pytest.raises(DataError) as error:
+        Bands.of([0.0, 0.5], {"tip.x": ([0.0, 0.0], [1.0, 1.0]), "tip.y": ([0.0, 0.0], [1.0, np.nan])})
+    assert str(error.value) == (
+        "channel 'tip.y', sample 1 (time 0.5 s): the upper bound is nan; expected a finite number"
+    )
 
 
 TIMES = np.array([0.0, 0.5, 1.0])

@@ -1,15 +1,15 @@
-"""Measurements from a text file with named columns."""
+"""Measurements and bands from text files with named columns."""
 
-import csv
-import math
-from collections.abc import Mapping
+from collections.abc import Collection, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 
-import numpy as np
 from numpy.typing import ArrayLike
 
+from dalembert.data.bands import Bands
+from dalembert.data.csv_columns import read_columns
 from dalembert.data.measurements import Measurements
-from dalembert.errors import DataError, unknown
+from dalembert.errors import DataError
 
 
 def read_csv(
@@ -49,56 +49,69 @@ def read_csv(
     [[1.0], [0.9]]
     """
     path = Path(path)
-    header, rows = _read(path, separator)
-    chosen = {name: name for name in header if name != time} if columns is None else dict(columns)
-    for column in (time, *chosen.values()):
-        if column not in header:
-            raise DataError(unknown("column", column, header, str(path)))
-    places = [header.index(column) for column in (time, *chosen.values())]
-    table = np.array([[_number(path, line, header[place], cells[place]) for place in places] for line, cells in rows])
-    for (line, _), before, now in zip(rows[1:], table[:-1, 0], table[1:, 0], strict=True):
-        if now <= before:
-            raise DataError(
-                f"{path}, line {line}, column {time!r}: {now:.10g} comes after {before:.10g}; expected growing times; "
-                "sort the lines or remove the repeated one"
-            )
+    times, table = read_columns(path, time, None if columns is None else columns.values(), separator)
+    chosen = {name: name for name in table} if columns is None else columns
+    with _told_of(path):
+        return Measurements.of(times, {name: table[column] for name, column in chosen.items()}, deviations)
+
+
+def read_bands(
+    path: str | Path, time: str = "t", columns: Mapping[str, tuple[str, str]] | None = None, *, separator: str = ","
+) -> Bands:
+    """Bands from a CSV file with a header line.
+
+    Parameters
+    ----------
+    path : path
+    time : str
+        Column of the times, in seconds.
+    columns : mapping of str to (str, str), optional
+        Columns of each channel's lower and upper bounds, for example ``{"AB.end.x": ("x_lower", "x_upper")}``. If not
+        given, every pair of columns ``name_lower`` and ``name_upper`` is the channel ``name``.
+    separator : str
+
+    Raises
+    ------
+    DataError
+        As :func:`read_csv`; where a lower bound is larger than its upper bound; where a channel has not two columns.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     file = Path(folder) / "bounds.csv"
+    ...     _ = file.write_text("t,x_lower,x_upper\\n0.0,0.9,1.1\\n0.1,0.8,1.2\\n")
+    ...     read_bands(file, columns={"AB.end.x": ("x_lower", "x_upper")}).upper.tolist()
+    [[1.1], [1.2]]
+    """
+    path = Path(path)
+    if columns is not None:
+        for name, pair in columns.items():
+            if isinstance(pair, str) or len(pair) != 2:
+                raise DataError(f"columns, channel {name!r}: {pair!r} was given; expected two names, (lower, upper)")
+    names = None if columns is None else [column for pair in columns.values() for column in pair]
+    times, table = read_columns(path, time, names, separator)
+    pairs = _pairs(path, table) if columns is None else columns
+    with _told_of(path):
+        return Bands.of(times, {name: (table[lower], table[upper]) for name, (lower, upper) in pairs.items()})
+
+
+def _pairs(path: Path, names: Collection[str]) -> dict[str, tuple[str, str]]:
+    """Columns that are bounds of one channel, by its name."""
+    stems = [name.removesuffix("_lower") for name in names if name.endswith("_lower")]
+    pairs = {stem: (f"{stem}_lower", f"{stem}_upper") for stem in stems if f"{stem}_upper" in names}
+    if not pairs:
+        raise DataError(
+            f"{path}: no two columns are named NAME_lower and NAME_upper; "
+            "give columns = {channel: (lower column, upper column)}"
+        )
+    return pairs
+
+
+@contextmanager
+def _told_of(path: Path) -> Iterator[None]:
+    """Defects of data, told with the file that they come from."""
     try:
-        return Measurements.of(table[:, 0], dict(zip(chosen, table[:, 1:].T, strict=True)), deviations)
+        yield
     except DataError as error:
         raise DataError(f"{path}: {error}") from error
-
-
-def _read(path: Path, separator: str) -> tuple[list[str], list[tuple[int, list[str]]]]:
-    """Header, and the other lines with their numbers in the file; blank lines are passed over."""
-    try:
-        with path.open(newline="", encoding="utf-8-sig") as file:
-            reader = csv.reader(file, delimiter=separator)
-            lines = [
-                (reader.line_num, [cell.strip() for cell in cells]) for cells in reader if any(map(str.strip, cells))
-            ]
-    except FileNotFoundError:
-        near = [entry.name for entry in path.parent.glob("*")] if path.parent.is_dir() else []
-        raise DataError(unknown("file", path.name, near, f"folder {path.parent}")) from None
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise DataError(f"{path}: cannot be read as text with columns ({error})") from error
-    if len(lines) < 2:
-        what = "only a header line" if lines else "nothing"
-        raise DataError(f"{path}: the file holds {what}; expected a line of column names and then lines of numbers")
-    header = lines[0][1]
-    for line, cells in lines[1:]:
-        if len(cells) != len(header):
-            raise DataError(f"{path}, line {line}: {len(cells)} cells; expected {len(header)}, as the header has")
-    return header, lines[1:]
-
-
-def _number(path: Path, line: int, column: str, cell: str) -> float:
-    where = f"{path}, line {line}, column {column!r}"
-    if not cell:
-        raise DataError(f"{where}: the cell is empty; expected a number; fill it or remove the line")
-    try:
-        value = float(cell)
-    except ValueError:
-        raise DataError(f"{where}: {cell!r} is not a number") from None
-    if not math.isfinite(value):
-        raise DataError(f"{where}: {cell}; expected a finite number; remove the line or the column")
-    return value

@@ -1,12 +1,12 @@
 """Measured motion: channels along a coordinate, and how exact they are."""
 
-import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from dalembert.data.labels import check_labels, coordinate_of, cut, digest, table_of
 from dalembert.errors import DataError, unknown
 from dalembert.forward import Coordinate
 
@@ -38,30 +38,7 @@ class Measurements:
     deviations: np.ndarray | None = None
 
     def __post_init__(self) -> None:
-        samples = self.coordinate.values
-        expected = (len(samples), len(self.channels))
-        if len(samples) == 0 or len(self.channels) == 0:
-            raise DataError(
-                f"the data hold {expected[0]} samples of {expected[1]} channels; expected at least one of each"
-            )
-        if self.values.shape != expected:
-            raise DataError(
-                f"the values have shape {self.values.shape}; expected (samples, channels) = {expected} "
-                f"for {', '.join(self.channels)}"
-            )
-        repeated = sorted({name for name in self.channels if self.channels.count(name) > 1})
-        if repeated:
-            raise DataError(f"channel names must differ; repeated: {', '.join(repeated)}")
-        if not np.all(np.isfinite(samples)):
-            row = int(np.argmin(np.isfinite(samples)))
-            raise DataError(f"sample {row}: {self.coordinate.name} is {samples[row]}; expected a finite number")
-        back = np.flatnonzero(np.diff(samples) <= 0)
-        if len(back):
-            row = int(back[0]) + 1
-            raise DataError(
-                f"sample {row}: {self.coordinate.name} {samples[row]:.10g} comes after {samples[row - 1]:.10g}; "
-                "expected values that grow; sort the samples or remove the repeated one"
-            )
+        check_labels(self.coordinate, self.channels, values=self.values)
         if self.deviations is not None:
             self._check_deviations(self.deviations)
 
@@ -98,31 +75,19 @@ class Measurements:
         >>> data.values.shape, data.deviations
         ((2, 2), array([0.001, 0.001]))
         """
-        if not isinstance(coordinate, Coordinate):
-            coordinate = Coordinate("time", "s", np.array(coordinate, dtype=float))
-        columns = [np.array(column, dtype=float) for column in channels.values()]
-        for name, column in zip(channels, columns, strict=True):
-            if column.shape != coordinate.values.shape:
-                raise DataError(
-                    f"channel {name!r} has shape {column.shape}; expected {coordinate.values.shape}, "
-                    f"one value a {coordinate.name}"
-                )
-        values = np.stack(columns, axis=1) if columns else np.empty((len(coordinate.values), 0))
-        return cls(coordinate, tuple(channels), values, _deviations(deviations, tuple(channels)))
+        along = coordinate_of(coordinate)
+        names = tuple(channels)
+        return cls(along, names, table_of(along, channels), _deviations(deviations, names))
 
     def first(self, samples: int) -> "Measurements":
         """The first ``samples`` samples."""
-        start = Coordinate(self.coordinate.name, self.coordinate.unit, self.coordinate.values[:samples])
-        return Measurements(start, self.channels, self.values[:samples], self.deviations)
+        return Measurements(cut(self.coordinate, samples), self.channels, self.values[:samples], self.deviations)
 
     @property
     def fingerprint(self) -> str:
         """Hash of all that the measurements say."""
-        parts = [self.coordinate.values, self.values, *([] if self.deviations is None else [self.deviations])]
-        names = "\n".join([self.coordinate.name, self.coordinate.unit, *self.channels])
-        return hashlib.sha256(
-            names.encode() + b"".join(np.ascontiguousarray(part).tobytes() for part in parts)
-        ).hexdigest()
+        arrays = [self.values] if self.deviations is None else [self.values, self.deviations]
+        return digest(self.coordinate, self.channels, *arrays)
 
 
 def _deviations(given: Mapping[str, float] | ArrayLike | None, channels: tuple[str, ...]) -> np.ndarray | None:

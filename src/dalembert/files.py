@@ -5,8 +5,12 @@ import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from dalembert.errors import InputError
+from dalembert.errors import DataError, InputError
+
+if TYPE_CHECKING:
+    from xarray import Dataset
 
 
 @contextmanager
@@ -50,6 +54,37 @@ def write_text(path: str | os.PathLike[str], text: str) -> None:
     """Write a text file atomically."""
     with replacing(path) as temporary:
         temporary.write_text(text, encoding="utf-8", newline="\n")
+
+
+def write_dataset(path: str | os.PathLike[str], dataset: "Dataset") -> None:
+    """Write a dataset to a NetCDF-4 file atomically."""
+    with replacing(path) as temporary:
+        dataset.to_netcdf(temporary, engine="h5netcdf")
+
+
+def read_dataset(path: str | os.PathLike[str], *, form: str, expected: str) -> "Dataset":
+    """Dataset of a NetCDF-4 file whose attribute ``format`` is ``form``, for example ``"dalembert fit 1"``.
+
+    ``expected`` says in an error what should have been there, for example ``"a fit written by Fit.save"``.
+
+    Raises
+    ------
+    DataError
+        For a file that is not there, is not NetCDF, or holds something else.
+    """
+    from xarray import load_dataset
+
+    path = Path(path)
+    if not path.is_file():
+        raise DataError(f"{path}: there is no such file; expected {expected}")
+    try:
+        dataset = load_dataset(path, engine="h5netcdf")
+    except Exception as error:  # each layer below has errors of its own for a file that is not NetCDF
+        raise DataError(f"{path}: cannot be read as NetCDF ({error}); expected {expected}") from error
+    if dataset.attrs.get("format") != form:
+        found = dataset.attrs.get("format", f"no {form.split()[1]}")
+        raise DataError(f"{path}: holds {found!r}; expected {form!r}, {expected}")
+    return dataset
 
 
 def _sync(path: Path) -> None:

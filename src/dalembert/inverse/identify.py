@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 from dalembert.data import Measurements
 from dalembert.errors import DalembertError, InputError, SolveError, unknown
 from dalembert.forward import ForwardModel
+from dalembert.forward.provenance import provenance
 from dalembert.inverse.estimate import Estimate, estimate
 from dalembert.inverse.events import Finished, OnEvent
 from dalembert.inverse.fit import Fit
@@ -15,7 +16,6 @@ from dalembert.inverse.journal import Journal
 from dalembert.inverse.multistart import HORIZONS, multistart
 from dalembert.inverse.noise import noise_floor
 from dalembert.inverse.problem import Linearisation, Problem, pose
-from dalembert.inverse.provenance import provenance
 from dalembert.inverse.runs import Method, polished, runs
 from dalembert.inverse.status import status
 from dalembert.optimize import LeastSquares, Minimiser
@@ -143,8 +143,8 @@ def identify(
         simulations=journal.simulations,
         provenance=provenance(
             model,
-            data,
             method,
+            data=data.fingerprint,
             seed=seed,
             starts=starts,
             start=None if start is None else model.parameters.vector(start).tolist(),

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dalembert.data import Measurements
-from dalembert.errors import DataError
-from dalembert.files import replacing
+from dalembert.files import read_dataset, write_dataset
 from dalembert.forward import Coordinate
 from dalembert.inverse.events import StartEnd, Step
 from dalembert.inverse.fit import Fit
@@ -73,26 +72,12 @@ def to_xarray(fit: Fit) -> "Dataset":
 
 def save(fit: Fit, path: str | Path) -> None:
     """Write a fit to a NetCDF-4 file, whole or not at all."""
-    dataset = to_xarray(fit)
-    with replacing(path) as temporary:
-        dataset.to_netcdf(temporary, engine="h5netcdf")
+    write_dataset(path, to_xarray(fit))
 
 
 def load(path: str | Path) -> Fit:
     """Read a fit from a NetCDF-4 file."""
-    from xarray import load_dataset
-
-    if not Path(path).is_file():
-        raise DataError(f"{path}: there is no such file; expected a fit written by Fit.save")
-    try:
-        dataset = load_dataset(Path(path), engine="h5netcdf")
-    except Exception as error:  # each layer below has errors of its own for a file that is not NetCDF
-        raise DataError(f"{path}: cannot be read as NetCDF ({error}); expected a fit written by Fit.save") from error
-    if dataset.attrs.get("format") != FORMAT:
-        raise DataError(
-            f"{path}: holds {dataset.attrs.get('format', 'no fit')!r}; expected {FORMAT!r}, a fit written by Fit.save"
-        )
-    return from_xarray(dataset)
+    return from_xarray(read_dataset(path, form=FORMAT, expected="a fit written by Fit.save"))
 
 
 def from_xarray(dataset: "Dataset") -> Fit:

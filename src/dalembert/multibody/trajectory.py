@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from dalembert.files import replacing
+from dalembert.files import write_dataset
 from dalembert.multibody.drawing import Drawing, draw
 from dalembert.multibody.evaluate import energies, violations
 from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha
@@ -131,9 +131,7 @@ class Trajectory:
 
     def save(self, path: str | Path, names: Sequence[str] | None = None) -> None:
         """Write :meth:`to_xarray` as NetCDF-4, whole or not at all."""
-        dataset = self.to_xarray(names)
-        with replacing(path) as temporary:
-            dataset.to_netcdf(temporary, engine="h5netcdf")
+        write_dataset(path, self.to_xarray(names))
 
     def summary(self) -> str:
         """A few lines: steps, Newton iterations, energy balance and constraint violations."""

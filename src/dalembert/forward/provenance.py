@@ -1,20 +1,19 @@
 """What a result came from."""
 
 import json
-from dataclasses import asdict, is_dataclass
+from dataclasses import fields, is_dataclass
 from typing import Any
 
 import numpy as np
 import scipy
 
 import dalembert
-from dalembert.data import Measurements
-from dalembert.forward import ForwardModel
+from dalembert.forward.model import ForwardModel
 
 
-def provenance(model: ForwardModel, data: Measurements, method: object, **settings: Any) -> dict[str, Any]:
+def provenance(model: ForwardModel, method: object, **settings: Any) -> dict[str, Any]:
     """Versions, hashes of model and data, method and settings, in what JSON can hold; no times and no paths."""
-    own = asdict(method) if is_dataclass(method) and not isinstance(method, type) else {}
+    own = {field.name: getattr(method, field.name) for field in fields(method)} if is_dataclass(method) else {}
     return json.loads(
         json.dumps(
             {
@@ -22,7 +21,6 @@ def provenance(model: ForwardModel, data: Measurements, method: object, **settin
                 "numpy": np.__version__,
                 "scipy": scipy.__version__,
                 "model": model.fingerprint,
-                "data": data.fingerprint,
                 "method": {"name": type(method).__name__, "settings": own},
                 **settings,
             },

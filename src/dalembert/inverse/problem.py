@@ -6,10 +6,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from dalembert.data import Measurements
-from dalembert.errors import DataError, InputError, SolveError, unknown
+from dalembert.errors import InputError, SolveError
 from dalembert.forward import ForwardModel
 from dalembert.inverse.journal import Journal
+from dalembert.inverse.matching import check_finite, check_samples, columns_of, weights_of
 from dalembert.inverse.search import Search
+from dalembert.inverse.simulated import named, simulated
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,16 +65,7 @@ class Problem:
 
     def responses(self, vectors: np.ndarray) -> np.ndarray:
         """Responses (batch, samples, channels) at parameter vectors (batch, parameters); NaN where a sample failed."""
-        responses = self.model.evaluate(vectors)
-        self.journal.simulations += len(vectors)
-        self.journal.failures.extend(
-            f"{reason} (at {self._named(vector)})"
-            for vector, reason in zip(vectors, responses.failures, strict=True)
-            if reason is not None
-        )
-        values = responses.values[:, :, self.columns].astype(float)
-        values[~responses.ok] = np.nan
-        return values
+        return simulated(self.model, self.columns, self.journal, vectors)
 
     def fitness(self, points: np.ndarray) -> np.ndarray:
         """Fitness (batch,) at search points (batch, parameters); NaN where a sample failed."""
@@ -95,7 +88,7 @@ class Problem:
         except InputError:  # a model that cannot be differentiated at all: no other vector will do better
             raise
         except Exception as error:  # whatever a user's function raises is this vector's failure
-            self.journal.failures.append(f"{error} (at {self._named(vector)})")
+            self.journal.failures.append(f"{error} (at {named(self.model, vector)})")
             raise SolveError(str(error)) from error
         return Linearisation(vector, response[:, self.columns], jacobian[:, self.columns])
 
@@ -120,9 +113,6 @@ class Problem:
             return np.zeros_like(point)
         return 2 * self.slopes(at).T @ self.residual(at.response)
 
-    def _named(self, vector: np.ndarray) -> str:
-        return ", ".join(f"{name} = {value:.6g}" for name, value in self.model.parameters.mapping(vector).items())
-
 
 def pose(model: ForwardModel, data: Measurements, weights: ArrayLike | None, journal: Journal) -> Problem:
     """The problem of explaining data by a model, after checking that they fit together.
@@ -134,54 +124,14 @@ def pose(model: ForwardModel, data: Measurements, weights: ArrayLike | None, jou
     InputError
         For weights of another shape, or negative.
     """
-    names = tuple(channel.name for channel in model.channels)
-    for channel in data.channels:
-        if channel not in names:
-            raise DataError(unknown("channel", channel, names, "the data name a channel that the model does not give"))
-    _check_finite(data)
-    _check_samples(model, data)
-    columns = np.array([names.index(channel) for channel in data.channels])
+    columns = columns_of(model, data)
+    check_finite(data)
+    check_samples(model, data)
     return Problem(model, data, columns, _weights(data, weights), Search(model.parameters), journal)
-
-
-def _check_finite(data: Measurements) -> None:
-    missing = np.argwhere(~np.isfinite(data.values))
-    if len(missing):
-        sample, column = missing[0]
-        raise DataError(
-            f"channel {data.channels[column]!r}, sample {sample} ({data.coordinate.name} "
-            f"{data.coordinate.values[sample]:.10g} {data.coordinate.unit}): {data.values[sample, column]}; "
-            f"expected a finite number ({len(missing)} are not); leave out these samples or the channel"
-        )
-
-
-def _check_samples(model: ForwardModel, data: Measurements) -> None:
-    ours, theirs = model.coordinate, data.coordinate
-    advice = "build the model with the samples of the data"
-    if len(ours.values) != len(theirs.values):
-        raise DataError(
-            f"the data have {len(theirs.values)} samples and the model {len(ours.values)}; expected the same; {advice}"
-        )
-    apart = np.abs(ours.values - theirs.values)
-    if np.max(apart) > 1e-9 * max(1.0, float(np.max(np.abs(ours.values)))):
-        sample = int(np.argmax(apart))
-        raise DataError(
-            f"sample {sample}: the data lie at {theirs.name} {theirs.values[sample]:.10g} {theirs.unit}, "
-            f"the model's response at {ours.values[sample]:.10g} {ours.unit}; expected the same; {advice}"
-        )
 
 
 def _weights(data: Measurements, given: ArrayLike | None) -> np.ndarray:
     """W of shape (samples, channels)."""
-    shape = data.values.shape
-    if given is None:
-        return np.broadcast_to(1.0 if data.deviations is None else data.deviations**-2.0, shape)
-    weights = np.asarray(given, dtype=float)
-    if weights.shape not in (shape, shape[1:]):
-        raise InputError(
-            f"weights of shape {weights.shape} were given; expected (channels,) = {shape[1:]} or "
-            f"(samples, channels) = {shape}"
-        )
-    if not (np.all(np.isfinite(weights)) and np.all(weights >= 0) and np.any(weights > 0)):
-        raise InputError("weights must be finite and not negative, and at least one of them positive")
-    return np.broadcast_to(weights, shape)
+    if given is None and data.deviations is not None:
+        return np.broadcast_to(data.deviations**-2.0, data.values.shape)
+    return weights_of(given, data.values.shape)

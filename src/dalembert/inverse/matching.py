@@ -1,0 +1,95 @@
+"""Whether data along a coordinate, measurements or bands, fit to a model."""
+
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from dalembert.data import Measurements
+from dalembert.errors import DataError, InputError, unknown
+from dalembert.forward import Coordinate, ForwardModel
+
+
+class Labelled(Protocol):
+    """What measurements and bands have in common."""
+
+    @property
+    def coordinate(self) -> Coordinate: ...
+
+    @property
+    def channels(self) -> tuple[str, ...]: ...
+
+
+def columns_of(model: ForwardModel, data: Labelled) -> np.ndarray:
+    """Where the data's channels stand among the model's, shape (channels,).
+
+    Raises
+    ------
+    DataError
+        For a channel that the model lacks.
+    """
+    names = tuple(channel.name for channel in model.channels)
+    for channel in data.channels:
+        if channel not in names:
+            raise DataError(unknown("channel", channel, names, "the data name a channel that the model does not give"))
+    return np.array([names.index(channel) for channel in data.channels])
+
+
+def check_samples(model: ForwardModel, data: Labelled) -> None:
+    """Refuse data whose samples lie elsewhere than the model's.
+
+    Raises
+    ------
+    DataError
+    """
+    ours, theirs = model.coordinate, data.coordinate
+    advice = "build the model with the samples of the data"
+    if len(ours.values) != len(theirs.values):
+        raise DataError(
+            f"the data have {len(theirs.values)} samples and the model {len(ours.values)}; expected the same; {advice}"
+        )
+    apart = np.abs(ours.values - theirs.values)
+    if np.max(apart) > 1e-9 * max(1.0, float(np.max(np.abs(ours.values)))):
+        sample = int(np.argmax(apart))
+        raise DataError(
+            f"sample {sample}: the data lie at {theirs.name} {theirs.values[sample]:.10g} {theirs.unit}, "
+            f"the model's response at {ours.values[sample]:.10g} {ours.unit}; expected the same; {advice}"
+        )
+
+
+def check_finite(data: Measurements) -> None:
+    """Refuse measurements with a value that is not a number.
+
+    Raises
+    ------
+    DataError
+    """
+    missing = np.argwhere(~np.isfinite(data.values))
+    if len(missing):
+        sample, column = missing[0]
+        raise DataError(
+            f"channel {data.channels[column]!r}, sample {sample} ({data.coordinate.name} "
+            f"{data.coordinate.values[sample]:.10g} {data.coordinate.unit}): {data.values[sample, column]}; "
+            f"expected a finite number ({len(missing)} are not); leave out these samples or the channel"
+        )
+
+
+def weights_of(given: ArrayLike | None, shape: tuple[int, ...]) -> np.ndarray:
+    """Weights of shape (samples, channels), 1 where none are given.
+
+    Raises
+    ------
+    InputError
+        For weights of another shape, negative, or all zero.
+    """
+    if given is None:
+        return np.broadcast_to(1.0, shape)
+    weights = np.asarray(given, dtype=float)
+    if weights.shape not in (shape, shape[1:]):
+        raise InputError(
+            f"weights of shape {weights.shape} were given; expected (channels,) = {shape[1:]} or "
+            f"(samples, channels) = {shape}"
+        )
+    if not (np.all(np.isfinite(weights)) and np.all(weights >= 0) and np.any(weights > 0)):
+        raise InputError("weights must be finite and not negative, and at least one of them positive")
+    return np.broadcast_to(weights, shape)

@@ -8,13 +8,27 @@ from importlib import import_module
 
 __version__ = "0.1.0"
 
-_MODULES = ("errors", "parameters", "forward", "optimize", "data", "inverse", "multibody", "report", "study")
+_MODULES = (
+    "errors",
+    "parameters",
+    "intervals",
+    "forward",
+    "optimize",
+    "surrogate",
+    "data",
+    "inverse",
+    "multibody",
+    "report",
+    "study",
+)
 
 _NAMES = {
     "errors": "DalembertError InputError ModelError SolveError DataError",
     "parameters": "Parameter Parameters",
+    "intervals": "Box Interval",
     "forward": "Channel Coordinate ForwardModel PythonModel Responses",
     "optimize": "ImprovedParticleSwarm LeastSquares Minimiser ParticleSwarm",
+    "surrogate": "ChebyshevPolynomial Surrogate Tensor TotalDegree",
     "data": "Bands Measurements read_bands read_csv",
     "inverse": "Fit identify",
     "multibody": """

@@ -1,12 +1,14 @@
 from dalembert import data as data
 from dalembert import errors as errors
 from dalembert import forward as forward
+from dalembert import intervals as intervals
 from dalembert import inverse as inverse
 from dalembert import multibody as multibody
 from dalembert import optimize as optimize
 from dalembert import parameters as parameters
 from dalembert import report as report
 from dalembert import study as study
+from dalembert import surrogate as surrogate
 from dalembert.data import Bands as Bands
 from dalembert.data import Measurements as Measurements
 from dalembert.data import read_bands as read_bands
@@ -23,6 +25,8 @@ from dalembert.forward import PythonModel as PythonModel
 from dalembert.forward import Responses as Responses
 from dalembert.inverse import Fit as Fit
 from dalembert.inverse import identify as identify
+from dalembert.intervals import Box as Box
+from dalembert.intervals import Interval as Interval
 from dalembert.multibody import AncfBeam as AncfBeam
 from dalembert.multibody import AncfCable as AncfCable
 from dalembert.multibody import Custom as Custom
@@ -57,5 +61,9 @@ from dalembert.optimize import Minimiser as Minimiser
 from dalembert.optimize import ParticleSwarm as ParticleSwarm
 from dalembert.parameters import Parameter as Parameter
 from dalembert.parameters import Parameters as Parameters
+from dalembert.surrogate import ChebyshevPolynomial as ChebyshevPolynomial
+from dalembert.surrogate import Surrogate as Surrogate
+from dalembert.surrogate import Tensor as Tensor
+from dalembert.surrogate import TotalDegree as TotalDegree
 
 __version__: str

@@ -1,0 +1,89 @@
+"""What the decay of the coefficients says about the part of a function that its surrogate leaves out."""
+
+import numpy as np
+
+SLOWEST = 0.9
+"""Ratio above which coefficients do not decay: what is left out is then taken as ten times the last of them."""
+
+
+def by_total_degree(exponents: np.ndarray, coefficients: np.ndarray) -> list[np.ndarray]:
+    """Sums of |coefficients| over the terms of each total degree: one array of shape (order + 1, outputs)."""
+    return [_sums(exponents.sum(axis=1), coefficients)]
+
+
+def by_direction(exponents: np.ndarray, coefficients: np.ndarray) -> list[np.ndarray]:
+    """Sums of |coefficients| over the terms of each degree in one direction, an array for each direction."""
+    return [_sums(exponents[:, k], coefficients) for k in range(exponents.shape[1])]
+
+
+def _sums(degrees: np.ndarray, coefficients: np.ndarray) -> np.ndarray:
+    shells = np.zeros((degrees.max(initial=0) + 1, coefficients.shape[1]))
+    np.add.at(shells, degrees, np.abs(coefficients))
+    return shells
+
+
+def tail(shells: np.ndarray) -> np.ndarray:
+    """Estimate of what the degrees above the last one would add, shape (outputs,), from shells (order + 1, outputs).
+
+    With a the sum of the last two shells (one of them may vanish by symmetry) and r their decay a degree,
+    a r²/(1 − r²): what is left of a geometric series.
+
+    Examples
+    --------
+    >>> tail(10.0 ** -np.arange(6)[:, None]).round(9).tolist()
+    [1.111e-06]
+    """
+    decay = _ratio(shells, len(shells) - 1)
+    return _pair(shells, len(shells) - 1) * decay**2 / (1 - decay**2)
+
+
+def needed_order(shells: np.ndarray, tolerance: np.ndarray) -> int:
+    """Lowest order that leaves less than ``tolerance`` (outputs,) out, if the coefficients go on as they decay.
+
+    From degree p on, degree q is taken to decay by r (p/q)^α: α = 0 for a geometric series, as of a function with a
+    pole, α = 1 for that of an entire function such as a sine; the last shells tell which. Where no decay is seen
+    yet, nothing tells how far it is; twice the order is named, as the next one to try.
+
+    Examples
+    --------
+    >>> needed_order(10.0 ** -np.arange(6)[:, None], np.array([1e-9]))
+    9
+    """
+    order = len(shells) - 1
+    left, ratio = tail(shells), _ratio(shells, order)
+    if np.any(ratio[left > tolerance] >= SLOWEST):
+        return 2 * max(order, 1)
+    power, reached = _power(shells, order), order
+    while np.any(left > tolerance):
+        reached += 1
+        left = left * ratio * (order / reached) ** power
+    return reached
+
+
+def _pair(shells: np.ndarray, degree: int) -> np.ndarray:
+    """Sum of the shells of a degree and the one below it, the constant term left out."""
+    return shells[max(degree - 1, 1) : degree + 1].sum(axis=0)
+
+
+def _ratio(shells: np.ndarray, degree: int) -> np.ndarray:
+    """Decay r a degree around ``degree``, shape (outputs,), at most ``SLOWEST``.
+
+    An output whose shells happen to grow is told to decay as the largest shells of all outputs do.
+    """
+    if degree < 2:
+        return np.full(shells.shape[1], SLOWEST)
+    # Pairs two degrees apart share no shell; of the lowest degrees there are no two such pairs.
+    reach = 2 if degree >= 4 else 1
+    late, early = (_pair(shells, degree), _pair(shells, degree - reach)) if degree > 2 else (shells[2], shells[1])
+    own = np.divide(late, early, out=np.where(late > 0, 1.0, 0.0), where=early > 0)
+    pooled = late.max(initial=0) / early.max(initial=0) if early.any() else 1.0
+    return np.minimum(np.minimum(own, pooled) ** (1 / reach), SLOWEST)
+
+
+def _power(shells: np.ndarray, order: int) -> float:
+    """α from 0 to 1: how fast the decay of the largest shells itself gets faster."""
+    if order < 6:
+        return 0.0
+    largest = shells.max(axis=1, keepdims=True)
+    late, early = (_ratio(largest, degree)[0] for degree in (order, order - 2))
+    return float(np.clip(np.log(early / late) / np.log((order - 1) / (order - 3)), 0, 1)) if late > 0 else 0.0

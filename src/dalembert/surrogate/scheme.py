@@ -1,0 +1,56 @@
+"""What every scheme returns to the fit: a polynomial on the reference box, and what its coefficients tell."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from dalembert.surrogate.runs import Runs
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """A polynomial in η in [−1, 1]^f.
+
+    Parameters
+    ----------
+    exponents : array of int, shape (terms, f)
+    coefficients : array, shape (terms, outputs)
+    tail : array, shape (outputs,)
+        Estimate of what the terms left out would add.
+    """
+
+    exponents: np.ndarray
+    coefficients: np.ndarray
+    tail: np.ndarray
+
+
+Doubt = Callable[[np.ndarray, np.ndarray], np.ndarray]
+"""Largest difference to the held-out runs (outputs,) of a polynomial of these exponents and coefficients."""
+
+
+class Scheme(Protocol):
+    """Settings of a way to choose terms and runs."""
+
+    def fitted(self, runs: Runs, seed: int, held_out: Doubt, scale: Callable[[], np.ndarray]) -> Fitted:
+        """The polynomial, from runs that it asks for.
+
+        Parameters
+        ----------
+        runs : Runs
+        seed : int
+        held_out : callable
+            Largest difference to the held-out runs, for a scheme that goes on until it is small enough.
+        scale : callable
+            The sizes (outputs,) to which a tolerance is relative, from all runs so far.
+        """
+        ...
+
+    def shells(self, exponents: np.ndarray, coefficients: np.ndarray) -> list[np.ndarray]:
+        """Sums of |coefficients| by degree, from which the decay is read; see :mod:`dalembert.surrogate.decay`."""
+        ...
+
+    def more(self, order: int) -> str:
+        """Which settings would make the error smaller, given the order that would do."""
+        ...

@@ -1,0 +1,85 @@
+"""The full tensor of Chebyshev polynomials, from runs at all points of a root grid."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from dalembert.errors import InputError, SolveError
+from dalembert.surrogate.basis import chebyshev, full_tensor, products, roots
+from dalembert.surrogate.decay import by_direction, tail
+from dalembert.surrogate.runs import Runs, failed
+from dalembert.surrogate.scheme import Doubt, Fitted
+
+
+@dataclass(frozen=True)
+class Tensor:
+    """All products of Chebyshev polynomials up to an order in each direction, through all points of the root grid.
+
+    Parameters
+    ----------
+    order : int or tuple of int
+        Highest degree, one for all directions or one for each; it takes Π (order_k + 1) runs.
+
+    Raises
+    ------
+    InputError
+        For an order below 1, or as many orders as there are no directions.
+
+    Notes
+    -----
+    The coefficients follow without solving anything, since Chebyshev polynomials are orthogonal on their roots:
+    c_e = Π_k (2 − δ_{0 e_k})/(order_k + 1) Σ_points f Π_k T_{e_k}. The interpolation is within a factor of about
+    (2/π ln(order + 1) + 1)^d of the best polynomial of its order (Trefethen, Approximation Theory, chapter 15).
+
+    Examples
+    --------
+    >>> Tensor((8, 6)).runs(2)
+    63
+    """
+
+    order: int | tuple[int, ...] = 8
+
+    def __post_init__(self) -> None:
+        if min(self._given, default=0) < 1:
+            raise InputError(f"Tensor: order is {self.order}; expected at least 1 in each direction")
+
+    @property
+    def _given(self) -> tuple[int, ...]:
+        return (self.order,) if isinstance(self.order, int) else tuple(self.order)
+
+    def orders(self, directions: int) -> tuple[int, ...]:
+        """The order of each direction."""
+        given = self._given if not isinstance(self.order, int) else self._given * directions
+        if len(given) != directions:
+            raise InputError(
+                f"Tensor: {len(given)} orders {given} were given for {directions} directions with a width; "
+                "expected one for each, or one number for all"
+            )
+        return given
+
+    def runs(self, directions: int) -> int:
+        """Number of runs that it takes."""
+        return int(np.prod([order + 1 for order in self.orders(directions)]))
+
+    def fitted(self, runs: Runs, seed: int, held_out: Doubt, scale: Callable[[], np.ndarray]) -> Fitted:
+        orders = self.orders(runs.directions)
+        exponents = full_tensor(orders)
+        eta = np.array([roots(order + 1)[exponents[:, k]] for k, order in enumerate(orders)]).T.reshape(exponents.shape)
+        values = runs(eta)
+        if failed(values).any():
+            raise SolveError(
+                f"{failed(values).sum()} of the {len(eta)} runs of a surrogate failed, the first at the point "
+                f"{runs.place(eta[failed(values)])[0].tolist()}; a tensor surrogate needs all of them; "
+                "keep the box away from where the model fails, or use TotalDegree, which can do without some"
+            )
+        weights = np.prod((2.0 - (exponents == 0)) / (np.array(orders) + 1.0), axis=1)
+        coefficients = weights[:, None] * (products(chebyshev(eta, np.array(orders, int)), exponents).T @ values)
+        left_out = [tail(shells) for shells in self.shells(exponents, coefficients)]
+        return Fitted(exponents, coefficients, np.sum(left_out, axis=0) * np.ones(values.shape[1]))
+
+    def shells(self, exponents: np.ndarray, coefficients: np.ndarray) -> list[np.ndarray]:
+        return by_direction(exponents, coefficients)
+
+    def more(self, order: int) -> str:
+        return f"take Tensor({order})"

@@ -138,3 +138,105 @@ def sweep() -> SimpleNamespace:
     return SimpleNamespace(
         at="time 0.5 s", success=True, status="42 points along theta1, theta2.", curves=(first, second)
     )
+
+
+def box(**ends: tuple[float, float]) -> SimpleNamespace:
+    lower, upper = np.array(list(ends.values()), dtype=float).T
+    return SimpleNamespace(names=tuple(ends), lower=lower, upper=upper)
+
+
+def propagation(method: str = "optimise", kind: str = "estimate", shrink: float = 0.0, runs: int = 81):
+    """Bounds of the pendulum's tip, each drawn in by ``shrink``; the first half of them taken at a corner."""
+    times = np.linspace(0, 2, 41)
+    tip, half = swing(times)[1], 0.02 + 0.1 * times[:, None] * [1.0, 0.6]
+    angles = box(theta1=(0.746, 0.825), theta2=(0.497, 0.55))
+    corner = np.broadcast_to(angles.upper, (41, 2, 2)).copy()
+    corner[20:, :, 1] = 0.52
+    return SimpleNamespace(
+        coordinate=Coordinate("time", "s", times),
+        channels=("AB.end.x", "AB.end.y"),
+        lower=tip - half + shrink,
+        upper=tip + half - shrink,
+        box=angles,
+        method=method,
+        kind=kind,
+        runs=runs,
+        error=np.full((41, 2), 2.5e-6) if kind == "estimate" else None,
+        at_lower=corner,
+        at_upper=corner,
+        failures=(),
+        success=True,
+        status="All bounds were found; the surrogate is wrong by 2.5e-06 at most.",
+        seconds=2.25,
+        provenance={"version": "0.1.0", "seed": 0},
+    )
+
+
+def comparison() -> SimpleNamespace:
+    results = (
+        propagation(),
+        propagation("vertex", "inner bound", 3e-3, 4),
+        propagation("scan", "inner bound", 4e-4, 441),
+        propagation("bernstein", "enclosure", -2e-5, 81),
+    )
+    return SimpleNamespace(results=results, reference="optimise")
+
+
+def band_fit(names: tuple[str, str] = ("theta1", "theta2")) -> SimpleNamespace:
+    """Intervals identified from the bands above; the second parameter's radius is none."""
+    like, given = fit(names), propagation()
+    noise = 1e-3 * np.sin(40 * given.coordinate.values)[:, None] * [1.0, 0.5]
+    unknowns = tuple(f"{name} {part}" for part in ("middle", "radius") for name in names)
+    correlation = np.eye(4)
+    correlation[0, 2] = correlation[2, 0] = -0.5
+    for start in like.starts:
+        start.end = np.array([*start.end, 0.04, 0.0])
+    return SimpleNamespace(
+        parameters=like.parameters,
+        box=box(**{names[0]: (0.7461, 0.8247), names[1]: (0.52, 0.52)}),
+        unknowns=unknowns,
+        middle=np.array([0.7854, 0.52]),
+        radius=np.array([0.0393, 0.0]),
+        middle_deviations=np.array([3e-4, 2e-4]),
+        radius_deviations=np.array([4e-4, 1e-4]),
+        correlation=correlation,
+        fitness=3.3e-5,
+        bands=given,
+        lower=given.lower + 2 * noise,
+        upper=given.upper - noise,
+        checked_lower=given.lower + noise,
+        checked_upper=given.upper - noise,
+        checked_fitness=3.4e-5,
+        history=like.history,
+        starts=like.starts,
+        success=True,
+        status="The fitness no longer falls; the surrogate agrees with 12 true runs to 1e-06.",
+        method="global surrogate",
+        simulations=93,
+        seconds=4.5,
+        provenance=like.provenance,
+    )
+
+
+def parameter_set(names: tuple[str, ...] = ("theta1", "theta2"), cells: int = 12) -> SimpleNamespace:
+    """A ball in the box of the parameters, paved by equal cubes."""
+    items = tuple(Parameter(name, 0.5, 1.0, unit="rad") for name in names)
+    grid = np.stack(np.meshgrid(*[np.arange(cells)] * len(names), indexing="ij"), axis=-1).reshape(-1, len(names))
+    low, high = 2 * grid / cells - 1, 2 * (grid + 1) / cells - 1
+    nearest = np.linalg.norm(np.clip(0, low, high), axis=1)
+    farthest = np.linalg.norm(np.maximum(np.abs(low), np.abs(high)), axis=1)
+    boxes = 0.75 + 0.25 * np.stack([low, high], axis=1)
+    inside, touched = farthest <= 0.6, nearest <= 0.6
+    size = (0.5 / cells) ** len(names)
+    return SimpleNamespace(
+        parameters=Parameters(items),
+        inside=boxes[inside],
+        boundary=boxes[touched & ~inside],
+        outer=box(**dict.fromkeys(names, (0.6, 0.9))),
+        inner=box(**dict.fromkeys(names, (0.66, 0.84))),
+        volume=(inside.sum() * size, touched.sum() * size),
+        runs=81,
+        success=True,
+        status="The set is paved to 1/12 of what was searched.",
+        provenance={"version": "0.1.0", "seed": 0},
+    )

@@ -1,27 +1,43 @@
 """Which sections a result calls for."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from dalembert.errors import InputError
 from dalembert.report import charts
-from dalembert.report.needs import FitLike, SweepLike, TrajectoryLike
+from dalembert.report.charts.correlation import unknowns
+from dalembert.report.charts.methods import reference
+from dalembert.report.needs import (
+    BandFitLike,
+    ComparisonLike,
+    FitLike,
+    ParameterSetLike,
+    PropagationLike,
+    SweepLike,
+    TrajectoryLike,
+)
 from dalembert.report.plot import Plot
 from dalembert.report.sections import (
+    Bounds,
     Comparison,
+    Consistent,
     Diagnostics,
     Estimates,
+    GivenBands,
+    Intervals,
+    Methods,
     Motion,
     Provenance,
     Search,
     Section,
     Sweeps,
     Telling,
+    bound_headlines,
     headline,
     motion,
 )
 
-Result = FitLike | TrajectoryLike | SweepLike
+Result = FitLike | TrajectoryLike | SweepLike | PropagationLike | ComparisonLike | BandFitLike | ParameterSetLike
 
 
 def contents(
@@ -32,29 +48,41 @@ def contents(
     notes: Sequence[str] = (),
     study: str | None = None,
     points: tuple[str, ...] = (),
+    truth: Mapping[str, Any] | None = None,
 ) -> list[Section]:
     """Sections of a report in reading order; the first is the headline.
 
     Raises
     ------
     InputError
-        For a result that is none of a fit, a trajectory and a sweep.
+        For a result that no report is known for.
     """
-    if isinstance(result, FitLike):
-        own = [headline.of_fit(result, title, notes), Estimates(result), Comparison(result)]
-        moving = [] if trajectory is None else _motion(trajectory, points, result)
-        searched = [Search(result)] if result.history else []
-        checks = [] if trajectory is None else [Diagnostics(trajectory)]
-        sections = [*own, *moving, *searched, *_telling(result), *checks]
-    elif isinstance(result, TrajectoryLike):
-        sections = [headline.of_trajectory(result, title, notes), *_motion(result, points), Diagnostics(result)]
-    elif isinstance(result, SweepLike):
-        sections = [headline.of_sweep(result, title, notes), Sweeps(result)]
-    else:
-        raise InputError(
-            f"report: a {type(result).__name__} was given; expected a Fit, a Trajectory or a sweep, "
-            "such as identify() or simulate() return"
-        )
+    known = truth or {}
+    match result:
+        case FitLike():
+            own = [headline.of_fit(result, title, notes), Estimates(result), Comparison(result)]
+            moving = [] if trajectory is None else _motion(trajectory, points, result)
+            checks = [] if trajectory is None else [Diagnostics(trajectory)]
+            sections = [*own, *moving, *_search(result), *_telling(result), *checks]
+        case BandFitLike():
+            own = [bound_headlines.of_band_fit(result, title, notes), Intervals(result, known), GivenBands(result)]
+            sections = [*own, *_search(result), *_telling(result)]
+        case PropagationLike():
+            sections = [bound_headlines.of_propagation(result, title, notes), Bounds(result)]
+        case ComparisonLike():
+            own = [bound_headlines.of_comparison(result, title, notes), Methods(result)]
+            sections = [*own, Bounds(reference(result))]
+        case ParameterSetLike():
+            sections = [bound_headlines.of_set(result, title, notes), Consistent(result, known)]
+        case TrajectoryLike():
+            sections = [headline.of_trajectory(result, title, notes), *_motion(result, points), Diagnostics(result)]
+        case SweepLike():
+            sections = [headline.of_sweep(result, title, notes), Sweeps(result)]
+        case _:
+            raise InputError(
+                f"report: a {type(result).__name__} was given; expected a result, such as identify(), simulate() or "
+                "propagate() return"
+            )
     facts = getattr(result, "provenance", {})
     return [*sections, Provenance(facts, study)] if facts or study else sections
 
@@ -67,13 +95,17 @@ def _motion(trajectory: TrajectoryLike, points: tuple[str, ...], fit: FitLike | 
     return [Motion(drawing, motion.paths(trajectory, drawing, followed), measured)]
 
 
-def _telling(fit: FitLike) -> list[Section]:
-    """The section on identifiability, where there is more than one parameter or something to say."""
+def _search(fit: FitLike | BandFitLike) -> list[Section]:
+    return [Search(fit)] if fit.history else []
+
+
+def _telling(fit: FitLike | BandFitLike) -> list[Section]:
+    """The section on identifiability, where there is more than one unknown or something to say."""
     ask: Any = getattr(fit, "identifiability", None)
     told = ask() if ask is not None else None
     sentences = tuple(str(told).splitlines()) if told is not None else ()
-    spectrum = None
+    names, spectrum = unknowns(fit), None
     if told is not None and hasattr(told, "singular_values"):
-        figure = charts.singular_values(told.singular_values, told.directions, fit.parameters.names)
+        figure = charts.singular_values(told.singular_values, told.directions, names)
         spectrum = Plot("singular-values", figure, "A small value is a combination that the data hardly tell.")
-    return [Telling(fit, sentences, spectrum)] if len(fit.parameters) > 1 or sentences else []
+    return [Telling(fit, sentences, spectrum)] if len(names) > 1 or sentences else []

@@ -58,6 +58,17 @@ def with_deviation(value: float, deviation: float) -> str:
     return f"({mantissa} ± {spread}) × {power}" if power else f"{mantissa} ± {spread}"
 
 
+def interval(lower: float, upper: float) -> str:
+    """Text of an interval; one number where its ends are the same.
+
+    Examples
+    --------
+    >>> interval(0.74613, 0.8247), interval(0.5, 0.5)
+    ('[0.74613, 0.8247]', '0.5')
+    """
+    return shown(float(lower)) if lower == upper else f"[{shown(float(lower))}, {shown(float(upper))}]"
+
+
 def counted(number: int) -> str:
     """Text of a whole number, in groups of three digits.
 

@@ -12,15 +12,17 @@ def figures(result: Result, **options: Any) -> dict[str, go.Figure]:
 
     Parameters
     ----------
-    result : Fit, Trajectory or sweep
+    result : Fit, Trajectory, Propagation, Comparison, BandFit, ParameterSet or sweep
     **options
-        ``trajectory`` and ``points``, as in :func:`dalembert.report.report`.
+        ``trajectory``, ``points`` and ``truth``, as in :func:`dalembert.report.report`.
 
     Returns
     -------
     dict of str to plotly.graph_objects.Figure
         For a fit ``"parameters"``, ``"responses-1"``, ``"convergence"``, ``"correlation"`` …, for a trajectory
-        ``"mechanism"``, ``"energies"``, ``"violations"``, ``"newton"``, for a sweep ``"sweep-1"`` ….
+        ``"mechanism"``, ``"energies"``, ``"violations"``, ``"newton"``, for bounds ``"bands-1"`` …, for methods
+        compared ``"methods"`` and ``"differences"`` too, for intervals from bands ``"intervals"``,
+        ``"residual-bands-1"`` …, for a set ``"paving-1"`` …, for a sweep ``"sweep-1"`` ….
 
     Raises
     ------

@@ -67,6 +67,17 @@ def themed(figure: go.Figure, title: str = "", height: int = 420) -> go.Figure:
     return figure.update_layout(template=template(), title_text=title, height=height)
 
 
+def faint(colour: str, opacity: float = 0.22) -> str:
+    """A colour of the palette for the inside of a band: what lies under it shines through, in the dark too.
+
+    Examples
+    --------
+    >>> faint(LIGHT.series[0])
+    '#0069ab38'
+    """
+    return f"{colour}{round(255 * opacity):02x}"
+
+
 def plain(text: object) -> str:
     """A user's text for a label: shown as it stands, where Plotly would read tags in it.
 

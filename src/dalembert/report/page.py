@@ -4,9 +4,10 @@ import base64
 import hashlib
 import json
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from importlib.resources import files
 from pathlib import Path
+from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
@@ -29,12 +30,13 @@ def report(
     notes: str | Sequence[str] = (),
     study: str | None = None,
     points: Sequence[str] = (),
+    truth: Mapping[str, Any] | None = None,
 ) -> Path:
     """Write an HTML report that opens offline in any browser, in its light or dark, and asks nothing of the network.
 
     Parameters
     ----------
-    result : Fit, Trajectory or sweep
+    result : Fit, Trajectory, Propagation, Comparison, BandFit, ParameterSet or sweep
     path : path
         The file is written whole or not at all; its folder is made.
     title : str, optional
@@ -46,6 +48,9 @@ def report(
         Text of the study file, for the provenance.
     points : sequence of str
         Points whose paths are drawn, for example ``"AB.end"``; the measured points or the free ends if not given.
+    truth : mapping of str, optional
+        What is known of the parameters, to be drawn beside what was found: (lower, upper) for intervals identified from
+        bands, a number for a set of parameters.
 
     Returns
     -------
@@ -55,7 +60,7 @@ def report(
     Raises
     ------
     InputError
-        For a result that is none of a fit, a trajectory and a sweep.
+        For a result that is none of these.
     """
     paragraphs = notes.strip().split("\n\n") if isinstance(notes, str) else notes
     sections = contents(
@@ -65,6 +70,7 @@ def report(
         notes=[text for text in paragraphs if text],
         study=study,
         points=tuple(points),
+        truth=truth,
     )
     environment = _environment()
     scripts = [Markup(get_plotlyjs()), Markup(_packaged("page.js"))]

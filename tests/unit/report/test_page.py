@@ -1,10 +1,7 @@
 import base64
-import csv
 import hashlib
-import io
 import json
 import re
-from html.parser import HTMLParser
 from types import SimpleNamespace
 
 import numpy as np
@@ -14,42 +11,11 @@ from plotly.offline import get_plotlyjs
 from dalembert.errors import InputError
 from dalembert.report import figures, report
 from dalembert.report.table import Table, cell
+from pages import Page, read_page
 from stand_ins import fit, motion, sweep
 from support import says
 
 NASTY = "<script>alert(1)</script>"
-
-
-class Page(HTMLParser):
-    """Tags, links and scripts of a page, as a browser would find them."""
-
-    def __init__(self, text: str) -> None:
-        super().__init__()
-        self.tags, self.addresses, self.scripts, self.words = [], [], [], []
-        self.feed(text)
-
-    def handle_starttag(self, tag, attrs):
-        self.tags.append((tag, dict(attrs)))
-        self.addresses += [value for name, value in attrs if name in ("src", "href", "srcset", "action", "data")]
-
-    def handle_data(self, data):
-        if self.tags and self.tags[-1][0] == "script" and self.cdata_elem == "script":
-            self.scripts.append((self.tags[-1][1], data))
-        else:
-            self.words.append(data)
-
-    @property
-    def text(self) -> str:
-        return " ".join(" ".join(self.words).split())
-
-    def table(self, name: str) -> list[list[str]]:
-        """Content of the CSV that is offered under this name."""
-        link = next(attrs["href"] for tag, attrs in self.tags if tag == "a" and attrs.get("download") == f"{name}.csv")
-        return list(csv.reader(io.StringIO(base64.b64decode(link.partition(",")[2]).decode())))
-
-
-def _page(path) -> Page:
-    return Page(path.read_text(encoding="utf-8"))
 
 
 @pytest.fixture(scope="module")
@@ -63,7 +29,7 @@ def whole(tmp_path_factory):
 
 
 def test_sections_stand_in_reading_order(whole):
-    page = _page(whole)
+    page = read_page(whole)
     anchors = [attrs["id"] for tag, attrs in page.tags if tag in ("section", "header")]
     assert anchors == [
         "result",
@@ -80,7 +46,7 @@ def test_sections_stand_in_reading_order(whole):
 
 
 def test_the_page_says_the_numbers_and_the_advice(whole):
-    text = _page(whole).text
+    text = read_page(whole).text
     for words in (
         "Pendulum",
         "identified",
@@ -97,7 +63,7 @@ def test_the_page_says_the_numbers_and_the_advice(whole):
 
 
 def test_tables_download_with_all_their_digits(whole):
-    page = _page(whole)
+    page = read_page(whole)
     rows = page.table("parameters")
     assert rows[1] == ["theta1", "0.785312", "0.00021", "rad", "0.6", "1.0", ""]
     assert rows[2][-1] == "on its bound"
@@ -112,7 +78,7 @@ def test_tables_download_with_all_their_digits(whole):
 
 
 def test_the_page_loads_nothing_from_elsewhere(whole):
-    page = _page(whole)
+    page = read_page(whole)
     assert page.addresses
     assert all(address.startswith(("#", "data:text/csv")) for address in page.addresses)
     assert not {tag for tag, _ in page.tags} & {"link", "iframe", "img", "object", "embed", "base", "form"}
@@ -133,7 +99,7 @@ def test_the_library_is_inlined_once_and_every_script_is_allowed_by_its_hash(who
 
 
 def test_every_figure_is_in_the_page_with_its_numbers(whole):
-    page = _page(whole)
+    page = read_page(whole)
     drawn = {attrs["data-name"]: json.loads(data) for attrs, data in page.scripts if "data-name" in attrs}
     assert list(drawn) == [
         "parameters",
@@ -187,7 +153,7 @@ def test_a_spreadsheet_does_not_run_a_name_as_a_formula():
 
 def test_a_trajectory_alone_has_its_report(tmp_path):
     path = report(motion(), tmp_path / "motion.html")
-    text = _page(path).text
+    text = read_page(path).text
     assert "Simulated motion" in text
     assert "The energy balance is kept to" in text
     names = list(figures(motion()))
@@ -207,13 +173,13 @@ def test_a_fit_without_motion_and_history(tmp_path):
 def test_a_fit_that_failed_says_so(tmp_path):
     result = fit()
     result.success, result.status = False, "No start converged; give more iterations."
-    page = _page(report(result, tmp_path / "a.html"))
+    page = read_page(report(result, tmp_path / "a.html"))
     assert "! not identified" in page.text
     assert any(attrs.get("class") == "verdict bad" for _, attrs in page.tags)
 
 
 def test_a_sweep_has_its_report(tmp_path):
-    page = _page(report(sweep(), tmp_path / "sweep.html", title="Sensitivity"))
+    page = read_page(report(sweep(), tmp_path / "sweep.html", title="Sensitivity"))
     assert page.table("sweep-1")[0] == [
         "theta1 (rad)",
         "AB.end.x",
@@ -229,7 +195,7 @@ def test_a_sweep_with_gaps_says_so(tmp_path):
     gaps = sweep()
     gaps.success, gaps.status = False, "42 points; 1 of them failed."
     gaps.curves[0].responses[3] = np.nan
-    text = _page(report(gaps, tmp_path / "sweep.html")).text
+    text = read_page(report(gaps, tmp_path / "sweep.html")).text
     assert "! incomplete" in text
     assert "1 of them failed." in text
 
@@ -238,7 +204,7 @@ def test_a_start_that_failed_and_a_swarm_that_scattered_itself_have_their_rows(t
     result = fit()
     result.starts[2].fitness, result.starts[2].success = float("inf"), False
     result.starts[2].start = np.full(2, np.nan)
-    rows = _page(report(result, tmp_path / "a.html")).table("starts")
+    rows = read_page(report(result, tmp_path / "a.html")).table("starts")
     assert rows[-1][:4] == ["3", "inf", "9", "not converged"]
 
 
@@ -251,9 +217,7 @@ def test_notes_in_one_text_are_parted_by_empty_lines(tmp_path):
 def test_something_else_is_refused(tmp_path):
     with pytest.raises(
         InputError,
-        match=says(
-            "report: a dict was given; expected a Fit, a Trajectory or a sweep, such as identify() or simulate() return"
-        ),
+        match=says("report: a dict was given; expected a result, such as identify(), simulate() or propagate() return"),
     ):
         report({}, tmp_path / "a.html")
 

@@ -1,11 +1,16 @@
 """One function a figure, each in a file of its own."""
 
+from dalembert.report.charts.bands import bands
 from dalembert.report.charts.convergence import convergence
 from dalembert.report.charts.correlation import correlation
 from dalembert.report.charts.energies import energies
+from dalembert.report.charts.intervals import intervals
 from dalembert.report.charts.mechanism import mechanism
+from dalembert.report.charts.methods import differences, methods
 from dalembert.report.charts.newton import newton
 from dalembert.report.charts.parameters import parameters
+from dalembert.report.charts.paving import paving
+from dalembert.report.charts.residual_bands import residual_bands
 from dalembert.report.charts.responses import responses
 from dalembert.report.charts.singular_values import singular_values
 from dalembert.report.charts.starts import starts
@@ -13,12 +18,18 @@ from dalembert.report.charts.sweep import sweep
 from dalembert.report.charts.violations import violations
 
 __all__ = [
+    "bands",
     "convergence",
     "correlation",
+    "differences",
     "energies",
+    "intervals",
     "mechanism",
+    "methods",
     "newton",
     "parameters",
+    "paving",
+    "residual_bands",
     "responses",
     "singular_values",
     "starts",

@@ -4,17 +4,18 @@ import numpy as np
 import plotly.graph_objects as go
 
 from dalembert.report.look import LIGHT, plain, themed
-from dalembert.report.needs import FitLike
+from dalembert.report.needs import BandFitLike, FitLike
 
 MOST_TEXTS = 12
 
 
-def correlation(fit: FitLike, *, title: str = "Correlation of the estimates") -> go.Figure:
+def correlation(fit: FitLike | BandFitLike, *, title: str = "Correlation of the estimates") -> go.Figure:
     """Heat map of the correlation matrix (parameters, parameters), from −1 to 1.
 
     Parameters
     ----------
-    fit : FitLike
+    fit : FitLike or BandFitLike
+        Intervals identified from bands have two unknowns a parameter, a middle and a radius.
     title : str
 
     Returns
@@ -22,7 +23,7 @@ def correlation(fit: FitLike, *, title: str = "Correlation of the estimates") ->
     plotly.graph_objects.Figure
     """
     matrix = np.asarray(fit.correlation, dtype=float)
-    names = [plain(name) for name in fit.parameters.names]
+    names = [plain(name) for name in unknowns(fit)]
     figure = go.Figure(
         go.Heatmap(
             z=matrix,
@@ -45,6 +46,11 @@ def correlation(fit: FitLike, *, title: str = "Correlation of the estimates") ->
     figure.update_xaxes(showgrid=False, showline=False, ticks="", constrain="domain")
     figure.update_yaxes(showgrid=False, showline=False, ticks="", autorange="reversed", scaleanchor="x")
     return figure.update_layout(margin_t=56)
+
+
+def unknowns(fit: FitLike | BandFitLike) -> tuple[str, ...]:
+    """Names of what was identified: parameters, or the middles and radii of their intervals."""
+    return fit.unknowns if isinstance(fit, BandFitLike) else fit.parameters.names
 
 
 def _number(row: int, column: int, entry: float) -> go.layout.Annotation:

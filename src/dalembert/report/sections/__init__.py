@@ -1,9 +1,14 @@
 """The sections of a report: one class each, with its template in ``templates/``."""
 
+from dalembert.report.sections.bounds import Bounds
 from dalembert.report.sections.comparison import Comparison
+from dalembert.report.sections.consistent import Consistent
 from dalembert.report.sections.diagnostics import Diagnostics
 from dalembert.report.sections.estimates import Estimates
+from dalembert.report.sections.given_bands import GivenBands
 from dalembert.report.sections.headline import Headline
+from dalembert.report.sections.intervals import Intervals
+from dalembert.report.sections.methods import Methods
 from dalembert.report.sections.motion import Motion
 from dalembert.report.sections.provenance import Provenance
 from dalembert.report.sections.search import Search
@@ -12,10 +17,15 @@ from dalembert.report.sections.sweeps import Sweeps
 from dalembert.report.sections.telling import Telling
 
 __all__ = [
+    "Bounds",
     "Comparison",
+    "Consistent",
     "Diagnostics",
     "Estimates",
+    "GivenBands",
     "Headline",
+    "Intervals",
+    "Methods",
     "Motion",
     "Provenance",
     "Search",

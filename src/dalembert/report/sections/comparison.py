@@ -10,10 +10,9 @@ from dalembert.report.look import plain
 from dalembert.report.needs import FitLike
 from dalembert.report.plot import Plot
 from dalembert.report.quantities import by_quantity, labelled
+from dalembert.report.sections.samples import samples
 from dalembert.report.sections.section import Section
 from dalembert.report.table import Table, cell
-
-MOST_ROWS = 5000
 
 
 @dataclass(frozen=True)
@@ -59,14 +58,6 @@ class Comparison(Section):
     @property
     def samples(self) -> Table | None:
         """All samples, for download, unless they are too many for a page."""
-        data, response = self.fit.data, self.fit.response
-        if data.values.size > MOST_ROWS:
-            return None
-        columns = [labelled(data.coordinate.name, data.coordinate.unit)]
-        columns += [f"{channel} {word}" for channel in data.channels for word in ("measured", "computed")]
-        pairs = np.stack([data.values, response], axis=2).reshape(len(response), -1)
-        rows = [
-            [cell(float(number)) for number in (at, *row)]
-            for at, row in zip(data.coordinate.values, pairs, strict=True)
-        ]
-        return Table("responses", "Measured and computed samples", columns, rows)
+        data = self.fit.data
+        series = {"measured": data.values, "computed": self.fit.response}
+        return samples("responses", "Measured and computed samples", data.coordinate, data.channels, series)

@@ -4,8 +4,9 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from dalembert.report import charts
+from dalembert.report.charts.correlation import unknowns
 from dalembert.report.charts.starts import ranked
-from dalembert.report.needs import FitLike
+from dalembert.report.needs import BandFitLike, FitLike
 from dalembert.report.plot import Plot
 from dalembert.report.sections.section import Section
 from dalembert.report.table import Table, cell
@@ -17,7 +18,7 @@ class Search(Section):
 
     name: ClassVar[str] = "search"
     heading: ClassVar[str] = "Search"
-    fit: FitLike
+    fit: FitLike | BandFitLike
 
     @property
     def plots(self) -> tuple[Plot, ...]:
@@ -36,7 +37,7 @@ class Search(Section):
             "simulations",
             "ended",
             "message",
-            *(f"{name} at end" for name in fit.parameters.names),
+            *(f"{name} at end" for name in unknowns(fit)),
         )
         rows = [
             (

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from dalembert.report import charts
-from dalembert.report.needs import FitLike
+from dalembert.report.needs import BandFitLike, FitLike
 from dalembert.report.plot import Plot
 from dalembert.report.sections.section import Section
 
@@ -16,7 +16,7 @@ class Telling(Section):
 
     name: ClassVar[str] = "telling"
     heading: ClassVar[str] = "What the data tell"
-    fit: FitLike
+    fit: FitLike | BandFitLike
     sentences: Sequence[str] = ()
     spectrum: Plot | None = None
 

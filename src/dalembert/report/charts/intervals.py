@@ -1,0 +1,111 @@
+"""Identified intervals of parameters within their bounds, beside those that are known."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import plotly.graph_objects as go
+
+from dalembert.report.digits import interval, shown
+from dalembert.report.look import LIGHT, plain, themed
+from dalembert.report.needs import BandFitLike
+
+
+def intervals(
+    fit: BandFitLike,
+    truth: Mapping[str, tuple[float, float]] | None = None,
+    *,
+    title: str = "Intervals within the search bounds",
+) -> go.Figure:
+    """Each identified interval as a bar between the parameter's search bounds, its middle marked.
+
+    Whiskers are two standard deviations of the two ends, diamonds the ends of the true intervals where these are
+    known.
+
+    Parameters
+    ----------
+    fit : BandFitLike
+    truth : mapping of str to (lower, upper), optional
+        Intervals to compare with.
+    title : str
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    box, low, high = fit.parameters, *(np.asarray(end, dtype=float) for end in (fit.box.lower, fit.box.upper))
+    names = [plain(name) for name in box.names]
+    figure = go.Figure()
+    for name in names:
+        line = {"color": LIGHT.grid, "width": 8}
+        figure.add_scatter(x=[0, 1], y=[name, name], mode="lines", line=line, hoverinfo="skip", showlegend=False)
+    ends = np.stack([_placed(fit, low), _placed(fit, high)], axis=1)
+    for place, (name, item) in enumerate(zip(names, box, strict=True)):
+        text = f"{interval(low[place], high[place])} {plain(item.unit)}".strip()
+        _bar(figure, name, ends[place], text, legend=place == 0)
+    spread = 2 * end_deviations(fit) / (box.upper - box.lower)[:, None]
+    figure.add_scatter(
+        x=ends.ravel(),
+        y=np.repeat(names, 2),
+        mode="markers",
+        marker={"color": LIGHT.series[0], "size": 9, "symbol": "line-ns-open", "line": {"width": 2}},
+        error_x={"array": np.where(np.isfinite(spread), spread, 0.0).ravel(), "color": LIGHT.ink, "width": 5},
+        hoverinfo="skip",
+        showlegend=False,
+    )
+    _diamonds(figure, fit, truth or {})
+    themed(figure, title, height=130 + 62 * len(box))
+    figure.update_xaxes(
+        range=[-0.05, 1.05], showgrid=False, tickvals=[0, 0.5, 1], ticktext=["lower", "middle", "upper"]
+    )
+    return figure.update_yaxes(range=[len(box) - 0.5, -0.7], showgrid=False).update_layout(margin_t=64)
+
+
+def end_deviations(fit: BandFitLike) -> np.ndarray:
+    """Standard deviations of the two ends, middle − radius and middle + radius, shape (parameters, 2)."""
+    middle, radius = np.asarray(fit.middle_deviations, dtype=float), np.asarray(fit.radius_deviations, dtype=float)
+    shared = 2 * middle * radius * np.array([_correlation(fit, name) for name in fit.parameters.names])
+    variance = (middle**2 + radius**2)[:, None] + shared[:, None] * [-1, 1]
+    return np.sqrt(np.maximum(variance, 0.0))
+
+
+def _correlation(fit: BandFitLike, name: str) -> float:
+    """Correlation of a parameter's middle and radius; 0 where the radius was not searched."""
+    pair = [fit.unknowns.index(word) for word in (f"{name} middle", f"{name} radius") if word in fit.unknowns]
+    return float(fit.correlation[pair[0], pair[1]]) if len(pair) == 2 else 0.0
+
+
+def _bar(figure: go.Figure, name: str, ends: np.ndarray, text: str, *, legend: bool) -> None:
+    figure.add_scatter(
+        x=[ends[0], ends.mean(), ends[1]],
+        y=[name] * 3,
+        name="identified",
+        legendgroup="identified",
+        showlegend=legend,
+        mode="lines+markers+text",
+        line={"color": LIGHT.series[0], "width": 8},
+        marker={"size": [0, 7, 0], "color": LIGHT.surface},
+        text=["", text, ""],
+        textposition=f"top {'right' if ends.mean() < 0.25 else 'left' if ends.mean() > 0.75 else 'center'}",
+        cliponaxis=False,
+        hoverinfo="text",
+    )
+
+
+def _diamonds(figure: go.Figure, fit: BandFitLike, truth: Mapping[str, tuple[float, float]]) -> None:
+    known = [(place, item) for place, item in enumerate(fit.parameters) if item.name in truth]
+    at = [(np.array(truth[item.name]) - item.lower) / (item.upper - item.lower) for _, item in known]
+    figure.add_scatter(
+        x=np.ravel(at),
+        y=[plain(item.name) for _, item in known for _ in range(2)],
+        name="true",
+        mode="markers",
+        marker={"symbol": "diamond-open", "size": 11, "color": LIGHT.series[1], "line": {"width": 2}},
+        text=[shown(float(end)) for _, item in known for end in truth[item.name]],
+        hoverinfo="text",
+        showlegend=bool(known),
+    )
+
+
+def _placed(fit: BandFitLike, values: np.ndarray) -> np.ndarray:
+    """How far on the way from its lower to its upper search bound each value lies, (parameters,)."""
+    return (values - fit.parameters.lower) / (fit.parameters.upper - fit.parameters.lower)

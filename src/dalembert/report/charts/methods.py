@@ -1,0 +1,93 @@
+"""Methods that bound a response, compared: how far each lies from the reference, and what it cost."""
+
+import numpy as np
+import plotly.graph_objects as go
+
+from dalembert.report.charts.logarithm import logarithmic, positive
+from dalembert.report.look import LIGHT, plain, themed
+from dalembert.report.needs import ComparisonLike, PropagationLike
+from dalembert.report.quantities import labelled
+from dalembert.report.thin import thin
+
+KINDS = {
+    "inner bound": (LIGHT.series[0], "circle"),
+    "estimate": (LIGHT.series[1], "square"),
+    "enclosure": (LIGHT.series[2], "diamond"),
+}
+
+
+def methods(comparison: ComparisonLike, *, title: str = "Error against runs") -> go.Figure:
+    """Largest distance of each method's bounds from the reference, over the runs of the model that it took.
+
+    A method that gives the same bounds as the reference has no place on a logarithmic axis and is left out.
+
+    Parameters
+    ----------
+    comparison : ComparisonLike
+    title : str
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    figure = go.Figure()
+    for kind, (colour, symbol) in KINDS.items():
+        own = [one for one in others(comparison) if one.kind == kind]
+        errors = [float(np.nanmax(distance(one, reference(comparison)), initial=0.0)) for one in own]
+        figure.add_scatter(
+            x=[one.runs for one in own],
+            y=positive(np.array(errors)),
+            name=kind,
+            mode="markers+text",
+            text=[plain(one.method) for one in own],
+            textposition="top center",
+            cliponaxis=False,
+            marker={"size": 11, "color": colour, "symbol": symbol},
+            showlegend=bool(own),
+        )
+    themed(figure, title, height=400)
+    figure.update_xaxes(title="runs of the model", **logarithmic(figure, "x"))
+    return figure.update_yaxes(title="largest error", **logarithmic(figure))
+
+
+def differences(comparison: ComparisonLike, *, title: str = "Distance from the reference") -> go.Figure:
+    """Largest distance of any bound from the reference at each sample, one line a method, on a logarithmic scale.
+
+    Parameters
+    ----------
+    comparison : ComparisonLike
+    title : str
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    figure, along = go.Figure(), reference(comparison).coordinate
+    for place, one in enumerate(others(comparison)):
+        apart = positive(distance(one, reference(comparison)).max(axis=1))
+        kept = thin(apart)
+        figure.add_scatter(
+            x=along.values[kept],
+            y=apart[kept],
+            name=plain(one.method),
+            mode="lines",
+            line={"width": 1.5, "color": LIGHT.series[place % len(LIGHT.series)]},
+        )
+    themed(figure, title, height=400)
+    figure.update_xaxes(title=labelled(along.name, along.unit))
+    return figure.update_yaxes(title="distance", **logarithmic(figure)).update_layout(showlegend=True)
+
+
+def reference(comparison: ComparisonLike) -> PropagationLike:
+    """The result that the others are measured by."""
+    return next(one for one in comparison.results if one.method == comparison.reference)
+
+
+def others(comparison: ComparisonLike) -> list[PropagationLike]:
+    """All results but the reference."""
+    return [one for one in comparison.results if one.method != comparison.reference]
+
+
+def distance(one: PropagationLike, other: PropagationLike) -> np.ndarray:
+    """Larger of the distances between lower and between upper bounds, (samples, channels)."""
+    return np.maximum(np.abs(one.lower - other.lower), np.abs(one.upper - other.upper))

@@ -1,0 +1,87 @@
+"""The first lines of a report on intervals: bounds of a response, methods compared, and what bands or errors tell."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from dalembert.report.charts.methods import reference
+from dalembert.report.digits import counted, interval, shown
+from dalembert.report.needs import BandFitLike, ComparisonLike, ParameterSetLike, PropagationLike
+from dalembert.report.quantities import labelled
+from dalembert.report.sections.headline import MOST_VALUES, Fact, Headline
+
+
+def of_propagation(result: PropagationLike, title: str | None, notes: Sequence[str]) -> Headline:
+    """Headline of bounds of a response."""
+    facts = [
+        Fact("method", result.method),
+        Fact("the bounds are", result.kind),
+        *(
+            []
+            if result.error is None
+            else [Fact("largest estimated error", shown(float(result.error.max()), digits=2))]
+        ),
+        Fact("runs of the model", counted(result.runs)),
+        Fact("time", f"{shown(result.seconds, digits=3)} s"),
+    ]
+    verdict = "bounded" if result.success else "not bounded"
+    return Headline(title or "Bounds of the response", verdict, result.success, result.status, facts, notes)
+
+
+def of_comparison(comparison: ComparisonLike, title: str | None, notes: Sequence[str]) -> Headline:
+    """Headline of methods compared on one box."""
+    known = reference(comparison)
+    failed = [one.method for one in comparison.results if not one.success]
+    facts = [
+        Fact("methods", counted(len(comparison.results))),
+        Fact("reference", known.method),
+        Fact("its runs", counted(known.runs)),
+        Fact("runs altogether", counted(sum(one.runs for one in comparison.results))),
+    ]
+    status = (
+        f"{', '.join(failed)} did not succeed; the table says why."
+        if failed
+        else f"Bounds of the same response over the same box, each measured by the distance from {known.method}."
+    )
+    verdict = "incomplete" if failed else "compared"
+    return Headline(title or "Methods compared", verdict, not failed, status, facts, notes)
+
+
+def of_band_fit(fit: BandFitLike, title: str | None, notes: Sequence[str]) -> Headline:
+    """Headline of intervals identified from bands."""
+    values = [
+        Fact(labelled(item.name, item.unit), interval(low, high))
+        for item, low, high in zip(fit.parameters, fit.box.lower, fit.box.upper, strict=True)
+    ]
+    checked = fit.checked_fitness
+    facts = [
+        *(values if len(values) <= MOST_VALUES else []),
+        Fact("fitness", shown(fit.fitness, digits=3)),
+        *([] if checked is None else [Fact("fitness by true runs", shown(checked, digits=3))]),
+        Fact("simulations", counted(fit.simulations)),
+    ]
+    verdict = "identified" if fit.success else "not identified"
+    return Headline(title or "Identified intervals", verdict, fit.success, fit.status, facts, notes)
+
+
+def of_set(found: ParameterSetLike, title: str | None, notes: Sequence[str]) -> Headline:
+    """Headline of a consistent set."""
+    box = found.outer
+    values = (
+        []
+        if box is None or len(box.names) > MOST_VALUES
+        else [
+            Fact(labelled(item.name, item.unit), f"in {interval(low, high)}")
+            for item, low, high in zip(found.parameters, box.lower, box.upper, strict=True)
+        ]
+    )
+    whole = float(np.prod(found.parameters.upper - found.parameters.lower))
+    least, most = (shown(100 * volume / whole, digits=3) for volume in found.volume)
+    facts = [
+        *values,
+        Fact("part of what was searched", f"{least} to {most} %"),
+        Fact("boxes", counted(len(found.inside) + len(found.boundary))),
+        Fact("runs of the model", counted(found.runs)),
+    ]
+    verdict = "empty" if box is None else "found" if found.success else "not settled"
+    return Headline(title or "Consistent parameters", verdict, found.success, found.status, facts, notes)

@@ -1,0 +1,94 @@
+"""Bounds of the response over a box of parameters."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from dalembert.report import charts
+from dalembert.report.look import plain
+from dalembert.report.needs import BoxLike, PropagationLike
+from dalembert.report.plot import Plot
+from dalembert.report.quantities import by_quantity, labelled
+from dalembert.report.sections.samples import samples
+from dalembert.report.sections.section import Section
+from dalembert.report.table import Cell, Table, cell
+
+
+@dataclass(frozen=True)
+class Bounds(Section):
+    """The box, a figure of the bounds for each quantity, and how wide they are."""
+
+    name: ClassVar[str] = "bounds"
+    heading: ClassVar[str] = "Bounds"
+    result: PropagationLike
+
+    @property
+    def plots(self) -> tuple[Plot, ...]:
+        channels = self.result.channels
+        chosen = [[channels[number] for number in group] for group in by_quantity(channels)]
+        return tuple(
+            Plot(
+                f"bands-{place}",
+                charts.bands(self.result, group, title=", ".join(plain(name) for name in group)),
+                "The response lies in the band whatever the parameters are within their intervals; "
+                "below, how wide it is.",
+            )
+            for place, group in enumerate(chosen, start=1)
+        )
+
+    @property
+    def box(self) -> Table:
+        return box_table(self.result.box, "Intervals of the parameters")
+
+    @property
+    def table(self) -> Table:
+        result, along = self.result, self.result.coordinate
+        width = result.upper - result.lower
+        corners = at_corners(result)
+        rows = [
+            (
+                cell(channel),
+                cell(float(width[:, column].max())),
+                cell(float(along.values[width[:, column].argmax()])),
+                cell(float(width[:, column].mean())),
+                *([] if result.error is None else [cell(float(result.error[:, column].max()), digits=2)]),
+                *([] if corners is None else [_percent(corners[column])]),
+            )
+            for column, channel in enumerate(result.channels)
+        ]
+        columns = ["channel", "largest width", labelled(f"at {along.name}", along.unit), "mean width"]
+        columns += [] if result.error is None else ["estimated error"]
+        columns += [] if corners is None else ["taken at corners of the box"]
+        return Table("widths", "Widths, in the units of their channels", columns, rows)
+
+    @property
+    def samples(self) -> Table | None:
+        """All bounds, for download, unless they are too many for a page."""
+        result = self.result
+        series = {"lower": result.lower, "upper": result.upper}
+        return samples("bounds", "Lower and upper bounds", result.coordinate, result.channels, series)
+
+
+def _percent(part: float) -> Cell:
+    return Cell(float(part), f"{100 * part:.0f} %")
+
+
+def box_table(box: BoxLike, caption: str, name: str = "box") -> Table:
+    """Ends, middle and radius of each interval of a box."""
+    middle, radius = (box.lower + box.upper) / 2, (box.upper - box.lower) / 2
+    rows = [
+        tuple(cell(entry) for entry in (parameter, *map(float, numbers)))
+        for parameter, *numbers in zip(box.names, box.lower, box.upper, middle, radius, strict=True)
+    ]
+    return Table(name, caption, ("parameter", "lower", "upper", "middle", "radius"), rows)
+
+
+def at_corners(result: PropagationLike) -> np.ndarray | None:
+    """Part of each channel's bounds that are taken at a corner of the box, (channels,); None where it is not known."""
+    if result.at_lower is None or result.at_upper is None:
+        return None
+    at = np.stack([result.at_lower, result.at_upper])
+    near = 1e-6 * (result.box.upper - result.box.lower)
+    on_end = (at <= result.box.lower + near) | (at >= result.box.upper - near)
+    return on_end.all(axis=-1).mean(axis=(0, 1))

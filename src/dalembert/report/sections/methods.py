@@ -1,0 +1,53 @@
+"""Methods compared on the same box."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from dalembert.report import charts
+from dalembert.report.charts.methods import distance, reference
+from dalembert.report.needs import ComparisonLike
+from dalembert.report.plot import Plot
+from dalembert.report.sections.section import Section
+from dalembert.report.table import Table, cell
+
+
+@dataclass(frozen=True)
+class Methods(Section):
+    """What each method found, how far from the reference, and what it cost."""
+
+    name: ClassVar[str] = "methods"
+    heading: ClassVar[str] = "Methods"
+    comparison: ComparisonLike
+
+    @property
+    def plots(self) -> tuple[Plot, ...]:
+        against = "Further down is closer to the reference, further left is cheaper."
+        where = f"Largest distance of any bound from that of {self.comparison.reference}, sample by sample."
+        return (
+            Plot("methods", charts.methods(self.comparison), against),
+            Plot("differences", charts.differences(self.comparison), where),
+        )
+
+    @property
+    def table(self) -> Table:
+        known = reference(self.comparison)
+        rows = []
+        for one in self.comparison.results:
+            apart = distance(one, known)
+            errors = (np.nan, np.nan) if one is known else (apart.max(), np.sqrt(np.mean(apart**2)))
+            note = "the reference" if one is known else "" if one.success else one.status
+            rows.append(
+                (
+                    cell(one.method),
+                    cell(one.kind),
+                    cell(float((one.upper - one.lower).mean())),
+                    *(cell(float(error), digits=3) for error in errors),
+                    cell(int(one.runs)),
+                    cell(float(one.seconds), digits=3),
+                    cell(note, mark=not one.success),
+                )
+            )
+        columns = ("method", "kind", "mean width", "largest error", "rms error", "runs", "time (s)", "note")
+        return Table("methods", "Methods on the same box; errors are distances from the reference", columns, rows)

@@ -9,6 +9,7 @@ from dalembert import parameters as parameters
 from dalembert import report as report
 from dalembert import study as study
 from dalembert import surrogate as surrogate
+from dalembert import uncertainty as uncertainty
 from dalembert.data import Bands as Bands
 from dalembert.data import Measurements as Measurements
 from dalembert.data import read_bands as read_bands
@@ -65,5 +66,14 @@ from dalembert.surrogate import ChebyshevPolynomial as ChebyshevPolynomial
 from dalembert.surrogate import Surrogate as Surrogate
 from dalembert.surrogate import Tensor as Tensor
 from dalembert.surrogate import TotalDegree as TotalDegree
+from dalembert.uncertainty import Comparison as Comparison
+from dalembert.uncertainty import LatinHypercube as LatinHypercube
+from dalembert.uncertainty import MonteCarlo as MonteCarlo
+from dalembert.uncertainty import Propagation as Propagation
+from dalembert.uncertainty import Scan as Scan
+from dalembert.uncertainty import Taylor as Taylor
+from dalembert.uncertainty import Vertex as Vertex
+from dalembert.uncertainty import compare as compare
+from dalembert.uncertainty import propagate as propagate
 
 __version__: str

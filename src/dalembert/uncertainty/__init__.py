@@ -1,0 +1,28 @@
+"""Bounds of a response while parameters are anywhere in their intervals."""
+
+from dalembert.uncertainty.comparison import Comparison, Row, compare
+from dalembert.uncertainty.events import Began, Ended, Event, Ran, as_record
+from dalembert.uncertainty.methods import METHODS
+from dalembert.uncertainty.propagate import propagate
+from dalembert.uncertainty.propagation import Propagation
+from dalembert.uncertainty.samplings import LatinHypercube, MonteCarlo, Scan, Vertex
+from dalembert.uncertainty.taylor import Taylor
+
+__all__ = [
+    "METHODS",
+    "Began",
+    "Comparison",
+    "Ended",
+    "Event",
+    "LatinHypercube",
+    "MonteCarlo",
+    "Propagation",
+    "Ran",
+    "Row",
+    "Scan",
+    "Taylor",
+    "Vertex",
+    "as_record",
+    "compare",
+    "propagate",
+]

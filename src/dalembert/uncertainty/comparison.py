@@ -1,0 +1,173 @@
+"""Bounds over the same box by several methods."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from dalembert.errors import DalembertError, InputError
+from dalembert.forward import ForwardModel
+from dalembert.hooks import hook
+from dalembert.uncertainty.events import OnEvent
+from dalembert.uncertainty.found import Method
+from dalembert.uncertainty.methods import label, method_of
+from dalembert.uncertainty.propagate import Intervals, box_of, propagate
+from dalembert.uncertainty.propagation import Propagation
+
+USUAL = ("vertex", "taylor", "latin-hypercube", "monte-carlo", "chebyshev", "optimise")
+
+
+@dataclass(frozen=True)
+class Row:
+    """One method in a comparison: mean width of its bands, and distance from the reference over all bounds.
+
+    Width and distances are in the channels' units; ``largest`` and ``rms`` are zero for the reference itself.
+    """
+
+    method: str
+    kind: str
+    width: float
+    largest: float
+    rms: float
+    runs: int
+    seconds: float
+    success: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """Bounds by several methods over the same box.
+
+    Parameters
+    ----------
+    results : tuple of Propagation
+    reference : str
+        ``method`` of the result that the others are measured by.
+    refused : tuple of (str, str)
+        The methods that gave no bounds, and why not.
+    """
+
+    results: tuple[Propagation, ...]
+    reference: str
+    refused: tuple[tuple[str, str], ...] = ()
+
+    @property
+    def rows(self) -> tuple[Row, ...]:
+        """A row a method, in the order of ``results``."""
+        known = next(result for result in self.results if result.method == self.reference)
+        rows = []
+        for own in self.results:
+            apart = np.abs([own.lower - known.lower, own.upper - known.upper])
+            rms = float(np.sqrt(np.mean(apart**2)))
+            width = float(own.width.mean())
+            rows.append(Row(own.method, own.kind, width, float(apart.max()), rms, own.runs, own.seconds, own.success))
+        return tuple(rows)
+
+    def summary(self) -> str:
+        """The methods as a text table."""
+        from dalembert.uncertainty.summary import table
+
+        head = ("method", "kind", "mean width", "largest error", "rms error", "runs", "seconds")
+        rows = [
+            (
+                row.method,
+                row.kind,
+                f"{row.width:.6g}",
+                "reference" if row.method == self.reference else f"{row.largest:.2e}",
+                "" if row.method == self.reference else f"{row.rms:.2e}",
+                str(row.runs),
+                f"{row.seconds:.2f}",
+            )
+            for row in self.rows
+        ]
+        notes = [f"{own.method}: {own.status}" for own in self.results]
+        notes += [f"{method} gave no bounds: {reason}" for method, reason in self.refused]
+        return "\n".join([*table([head, *rows]), "", *notes])
+
+    def save(self, path: str | Path) -> None:
+        """Write all results to one NetCDF-4 file; :meth:`load` gives back the same bits."""
+        from dalembert.uncertainty.storage import save_comparison
+
+        save_comparison(self, path)
+
+    @staticmethod
+    def load(path: str | Path) -> "Comparison":
+        """A comparison that was saved.
+
+        Raises
+        ------
+        DataError
+            For a file that is not there, or holds no comparison.
+        """
+        from dalembert.uncertainty.storage import load_comparison
+
+        return load_comparison(path)
+
+    def figures(self) -> dict[str, Any]:
+        """Plotly figures by name."""
+        return hook("figures")(self)
+
+    def report(self, path: str | Path) -> Any:
+        """Write an HTML report that opens offline."""
+        return hook("report")(self, path)
+
+
+def compare(
+    model: ForwardModel,
+    intervals: Intervals,
+    methods: Sequence[Method | str] = USUAL,
+    *,
+    reference: Method | str = "optimise",
+    seed: int = 0,
+    on_event: OnEvent | None = None,
+) -> Comparison:
+    """Bounds by several methods over the same box, and how far each lies from a reference.
+
+    Parameters
+    ----------
+    model, intervals, seed, on_event
+        As for :func:`propagate`.
+    methods : sequence of str or settings
+        The reference is added if it is not among them.
+    reference : str or settings
+
+    Returns
+    -------
+    Comparison
+
+    Raises
+    ------
+    InputError
+        As :func:`propagate`; for a method that is given twice with the same settings.
+    SolveError
+        If the reference gives no bounds. Another method that gives none stands in ``refused`` with its reason.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from dalembert.forward import PythonModel
+    >>> bump = PythonModel(lambda x: np.array([1 - x**2]), {"x": (-2.0, 2.0)}, ["y"], np.zeros(1))
+    >>> for row in compare(bump, {"x": (-1.0, 1.0)}, ["vertex", "taylor"], reference="scan").rows:
+    ...     print(row.method, row.width, row.largest)
+    vertex 0.0 1.0
+    taylor 0.0 1.0
+    scan 1.0 0.0
+    """
+    chosen, known = [method_of(method) for method in methods], method_of(reference)
+    chosen += [known] if known not in chosen else []
+    labels = [label(method) for method in chosen]
+    for name in labels:
+        if labels.count(name) > 1:
+            raise InputError(f"compare: method {name!r} is given {labels.count(name)} times; give each once")
+    box = box_of(model, intervals)
+    results, refused = [], []
+    for method in chosen:
+        try:
+            results.append(propagate(model, box, method, seed=seed, on_event=on_event))
+        except DalembertError as error:
+            if method == known:
+                raise
+            refused.append((label(method), str(error)))
+    return Comparison(tuple(results), label(known), tuple(refused))

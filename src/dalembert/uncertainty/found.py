@@ -1,0 +1,77 @@
+"""What a method found: bounds, where they are taken, and how far they can be trusted."""
+
+from dataclasses import dataclass
+from typing import ClassVar, Protocol, Self
+
+import numpy as np
+
+from dalembert.uncertainty.runs import Runs
+
+KINDS = ("inner bound", "estimate", "enclosure")
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """Bounds (samples, channels), where they are taken (samples, channels, parameters), and their estimated error.
+
+    ``kind`` is one of ``KINDS``; ``advice`` says in a sentence what the bounds are worth and what would be better.
+    """
+
+    kind: str
+    lower: np.ndarray
+    upper: np.ndarray
+    at_lower: np.ndarray | None
+    at_upper: np.ndarray | None
+    error: np.ndarray | None
+    advice: str
+    success: bool = True
+
+
+class Method(Protocol):
+    """A way to bound a model over a box; its settings are its fields."""
+
+    name: ClassVar[str]
+
+    def most(self, runs: Runs) -> int | None:
+        """Runs that it will make, None where it finds out by itself."""
+        ...
+
+    def bound(self, runs: Runs, seed: int) -> Found: ...
+
+
+@dataclass(frozen=True, eq=False)
+class Extremes:
+    """Smallest and largest values seen so far, (samples, channels), and the points where they were seen."""
+
+    lower: np.ndarray
+    upper: np.ndarray
+    at_lower: np.ndarray
+    at_upper: np.ndarray
+
+    @classmethod
+    def none(cls, runs: Runs) -> Self:
+        """Before the first run."""
+        nowhere = np.full((*runs.shape, len(runs.box)), np.nan)
+        return cls(np.full(runs.shape, np.inf), np.full(runs.shape, -np.inf), nowhere, nowhere)
+
+    def __bool__(self) -> bool:
+        return bool(np.all(self.lower <= self.upper))
+
+    def with_runs(self, points: np.ndarray, values: np.ndarray) -> "Extremes":
+        """The same with more runs: points (n, parameters), values (n, samples, channels)."""
+        if not len(points):
+            return self
+        low, high = np.argmin(values, axis=0), np.argmax(values, axis=0)
+        lower = np.take_along_axis(values, low[None], axis=0)[0]
+        upper = np.take_along_axis(values, high[None], axis=0)[0]
+        below, above = lower < self.lower, upper > self.upper
+        return Extremes(
+            np.where(below, lower, self.lower),
+            np.where(above, upper, self.upper),
+            np.where(below[..., None], points[low], self.at_lower),
+            np.where(above[..., None], points[high], self.at_upper),
+        )
+
+    def beyond(self, other: "Extremes") -> np.ndarray:
+        """By how much these bounds are wider than others on their wider side, (samples, channels)."""
+        return np.maximum(other.lower - self.lower, self.upper - other.upper)

@@ -1,0 +1,53 @@
+"""The methods by name."""
+
+from dataclasses import fields
+
+from dalembert.errors import InputError, unknown
+from dalembert.uncertainty.found import Method
+from dalembert.uncertainty.samplings import LatinHypercube, MonteCarlo, Scan, Vertex
+from dalembert.uncertainty.taylor import Taylor
+
+METHODS: dict[str, type[Method]] = {kind.name: kind for kind in (Vertex, Scan, MonteCarlo, LatinHypercube, Taylor)}
+
+
+def method_of(given: Method | str) -> Method:
+    """A method itself, or the one of that name with its usual settings.
+
+    Raises
+    ------
+    InputError
+        For an unknown name, with the nearest ones, and for what is no method.
+
+    Examples
+    --------
+    >>> method_of("scan")
+    Scan(points_each=21, most_runs=1000000)
+    >>> method_of("vertices")
+    Traceback (most recent call last):
+    dalembert.errors.InputError: unknown method 'vertices'; did you mean 'vertex'?
+    """
+    if isinstance(given, str):
+        if given not in METHODS:
+            raise InputError(unknown("method", given, METHODS))
+        return METHODS[given]()
+    if not isinstance(given, tuple(METHODS.values())):
+        raise InputError(
+            f"method: {given!r} was given; expected one of {', '.join(METHODS)}, "
+            "or settings such as MonteCarlo(runs=500)"
+        )
+    return given
+
+
+def label(method: Method) -> str:
+    """A method's name, and its settings that are not the usual ones.
+
+    >>> label(Scan()), label(Scan(points_each=5))
+    ('scan', 'scan (points_each=5)')
+    """
+    usual = type(method)()
+    changed = [
+        f"{field.name}={getattr(method, field.name)!r}"
+        for field in fields(method)  # pyright: ignore[reportArgumentType]
+        if getattr(method, field.name) != getattr(usual, field.name)
+    ]
+    return f"{method.name} ({', '.join(changed)})" if changed else method.name

@@ -1,0 +1,101 @@
+"""The result of a propagation."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from dalembert.data import Bands
+from dalembert.hooks import hook
+from dalembert.intervals import Box
+
+
+@dataclass(frozen=True, eq=False)
+class Propagation(Bands):
+    """Bounds of a response over a box of parameters, how they were found, and how far they can be trusted.
+
+    Parameters
+    ----------
+    coordinate, channels, lower, upper
+        As of :class:`~dalembert.data.Bands`.
+    units : tuple of str
+        Of the channels.
+    box : Box
+        An interval for each parameter, in the model's order.
+    method : str
+        Its name, and the settings that are not the usual ones.
+    kind : {"inner bound", "estimate", "enclosure"}
+        An inner bound is taken by runs of the model, and the true bounds can only be wider; an estimate may lie on
+        either side; an enclosure holds the true bounds if its estimated error holds.
+    runs : int
+        Runs of the model; a response with its sensitivities counts as 1 + parameters.
+    error : array, shape (samples, channels), or None
+        Estimated error of the worse of both bounds, not guaranteed; None where the method has no estimate.
+    at_lower, at_upper : array, shape (samples, channels, parameters), or None
+        Where in the box the bounds are taken; None where the method does not know.
+    failures : tuple of str
+        The reason of each run that failed.
+    success : bool
+        Whether every run succeeded and the method came to its end.
+    status : str
+        What the bounds are worth and what to do, in full sentences.
+    seconds : float
+        Time taken.
+    provenance : mapping
+        Versions, seed, hash of the model, method and settings.
+    """
+
+    units: tuple[str, ...]
+    box: Box
+    method: str
+    kind: str
+    runs: int
+    error: np.ndarray | None
+    at_lower: np.ndarray | None
+    at_upper: np.ndarray | None
+    failures: tuple[str, ...]
+    success: bool
+    status: str
+    seconds: float
+    provenance: Mapping[str, Any]
+
+    def summary(self) -> str:
+        """The result as a text table with its status."""
+        from dalembert.uncertainty.summary import summary
+
+        return summary(self)
+
+    def save(self, path: str | Path) -> None:
+        """Write everything to a NetCDF-4 file; :meth:`load` gives back the same bits."""
+        from dalembert.uncertainty.storage import save
+
+        save(self, path)
+
+    @staticmethod
+    def load(path: str | Path) -> "Propagation":
+        """A propagation that was saved.
+
+        Raises
+        ------
+        DataError
+            For a file that is not there, or holds no propagation.
+        """
+        from dalembert.uncertainty.storage import load
+
+        return load(path)
+
+    def to_xarray(self) -> Any:
+        """Everything as an :class:`xarray.Dataset`, with units as attributes."""
+        from dalembert.uncertainty.storage import to_xarray
+
+        return to_xarray(self)
+
+    def figures(self) -> dict[str, Any]:
+        """Plotly figures by name."""
+        return hook("figures")(self)
+
+    def report(self, path: str | Path) -> Any:
+        """Write an HTML report that opens offline."""
+        return hook("report")(self, path)

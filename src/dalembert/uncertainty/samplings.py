@@ -1,0 +1,190 @@
+"""Methods that run the model at points chosen beforehand and keep the extremes: inner bounds."""
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from itertools import product
+from typing import ClassVar
+
+import numpy as np
+from scipy.stats import qmc
+
+from dalembert.errors import InputError
+from dalembert.intervals import Box
+from dalembert.uncertainty.found import Extremes, Found
+from dalembert.uncertainty.runs import Runs
+
+
+class Sampling(ABC):
+    """Extremes over chosen points; what the later part of the points still widened is the estimated error."""
+
+    name: ClassVar[str]
+    advice: ClassVar[str]
+
+    @abstractmethod
+    def size(self, box: Box) -> int:
+        """Number of points."""
+
+    @abstractmethod
+    def points(self, box: Box, seed: int) -> tuple[np.ndarray, np.ndarray]:
+        """Points (n, parameters) in two parts; the first may be empty, and the error is then not estimated."""
+
+    def most(self, runs: Runs) -> int:
+        return self.size(runs.box)
+
+    def bound(self, runs: Runs, seed: int) -> Found:
+        first, rest = self.points(runs.box, seed)
+        halfway = _extremes(runs, first, Extremes.none(runs))
+        extremes = _extremes(runs, rest, halfway)
+        if not extremes:
+            raise runs.none_succeeded()
+        error = extremes.beyond(halfway) if halfway else None
+        return Found(
+            "inner bound",
+            extremes.lower,
+            extremes.upper,
+            extremes.at_lower,
+            extremes.at_upper,
+            error,
+            self.advice,
+            not runs.failures,
+        )
+
+
+def _extremes(runs: Runs, points: np.ndarray, extremes: Extremes) -> Extremes:
+    for batch, values in runs.batches(points):
+        extremes = extremes.with_runs(batch, values)
+    return extremes
+
+
+@dataclass(frozen=True)
+class Vertex(Sampling):
+    """Runs at the 2^d corners of the box, exact where the response is monotone in each parameter.
+
+    Parameters
+    ----------
+    most_runs : int
+        More corners are refused.
+    """
+
+    name: ClassVar[str] = "vertex"
+    advice: ClassVar[str] = (
+        "The extremes over the corners of the box: exact where the response is monotone in each parameter, "
+        "else too narrow; 'optimise' finds extremes inside."
+    )
+    most_runs: int = 65536
+
+    def size(self, box: Box) -> int:
+        return _grid_size(self.name, 2, box, self.most_runs, "Taylor() or Optimise()")
+
+    def points(self, box: Box, seed: int) -> tuple[np.ndarray, np.ndarray]:
+        self.size(box)
+        corners = box.corners()
+        return corners[:0], corners
+
+
+@dataclass(frozen=True)
+class Scan(Sampling):
+    """Runs on a grid of evenly spaced points, the corners of the box among them.
+
+    Parameters
+    ----------
+    points_each : int
+        Points a parameter, at least 2. For an odd number the estimated error is the difference from the grid of every
+        other point.
+    most_runs : int
+        More grid points are refused.
+    """
+
+    name: ClassVar[str] = "scan"
+    advice: ClassVar[str] = (
+        "The extremes over the points of a grid: too narrow where the response peaks between them; "
+        "'optimise' finds the peaks."
+    )
+    points_each: int = 21
+    most_runs: int = 1_000_000
+
+    def __post_init__(self) -> None:
+        if self.points_each < 2:
+            raise InputError(f"Scan: points_each is {self.points_each}; expected at least 2, the ends of each interval")
+
+    def size(self, box: Box) -> int:
+        return _grid_size(self.name, self.points_each, box, self.most_runs, "fewer points a parameter, or Optimise()")
+
+    def points(self, box: Box, seed: int) -> tuple[np.ndarray, np.ndarray]:
+        self.size(box)
+        steps = [range(self.points_each) if wide else (0,) for wide in box.lower < box.upper]
+        places = np.array(list(product(*steps)), dtype=float).reshape(-1, len(box))
+        grid = box.points(2 * places / (self.points_each - 1) - 1)
+        coarse = np.all(places % 2 == 0, axis=1) & (self.points_each % 2 == 1)
+        return grid[coarse], grid[~coarse]
+
+
+@dataclass(frozen=True)
+class MonteCarlo(Sampling):
+    """Runs at points drawn evenly from the box.
+
+    Parameters
+    ----------
+    runs : int
+        At least 2; by how much their second half still widened the bounds is the estimated error.
+    """
+
+    name: ClassVar[str] = "monte-carlo"
+    advice: ClassVar[str] = (
+        "The extremes over random points: too narrow, since corners of the box are hardly hit; "
+        "'optimise' or 'chebyshev' needs fewer runs."
+    )
+    runs: int = 1000
+
+    def __post_init__(self) -> None:
+        _check_runs(self)
+
+    def size(self, box: Box) -> int:
+        return self.runs
+
+    def points(self, box: Box, seed: int) -> tuple[np.ndarray, np.ndarray]:
+        eta = np.random.default_rng(seed).uniform(-1, 1, (self.runs, len(box)))
+        return np.split(box.points(eta), [self.runs // 2])  # pyright: ignore[reportReturnType]
+
+
+@dataclass(frozen=True)
+class LatinHypercube(Sampling):
+    """Runs at the points of a Latin hypercube: one in each of as many slices along every parameter.
+
+    Parameters
+    ----------
+    runs : int
+        At least 2; by how much their second half still widened the bounds is the estimated error.
+    """
+
+    name: ClassVar[str] = "latin-hypercube"
+    advice: ClassVar[str] = (
+        "The extremes over a Latin hypercube: too narrow, since corners of the box are hardly hit; "
+        "'optimise' or 'chebyshev' needs fewer runs."
+    )
+    runs: int = 200
+
+    def __post_init__(self) -> None:
+        _check_runs(self)
+
+    def size(self, box: Box) -> int:
+        return self.runs
+
+    def points(self, box: Box, seed: int) -> tuple[np.ndarray, np.ndarray]:
+        eta = 2 * qmc.LatinHypercube(len(box), rng=seed).random(self.runs) - 1
+        return np.split(box.points(eta), [self.runs // 2])  # pyright: ignore[reportReturnType]
+
+
+def _check_runs(method: MonteCarlo | LatinHypercube) -> None:
+    if method.runs < 2:
+        raise InputError(f"{type(method).__name__}: runs is {method.runs}; expected at least 2")
+
+
+def _grid_size(name: str, each: int, box: Box, most: int, instead: str) -> int:
+    wide = int(np.sum(box.lower < box.upper))
+    if each**wide > most:
+        raise InputError(
+            f"method {name!r}: {each} points for each of {wide} intervals are {each**wide} runs, more than "
+            f"most_runs = {most}; raise it, or use {instead}"
+        )
+    return each**wide

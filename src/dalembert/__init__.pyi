@@ -24,10 +24,10 @@ from dalembert.forward import Coordinate as Coordinate
 from dalembert.forward import ForwardModel as ForwardModel
 from dalembert.forward import PythonModel as PythonModel
 from dalembert.forward import Responses as Responses
-from dalembert.inverse import Fit as Fit
-from dalembert.inverse import identify as identify
 from dalembert.intervals import Box as Box
 from dalembert.intervals import Interval as Interval
+from dalembert.inverse import Fit as Fit
+from dalembert.inverse import identify as identify
 from dalembert.multibody import AncfBeam as AncfBeam
 from dalembert.multibody import AncfCable as AncfCable
 from dalembert.multibody import Custom as Custom

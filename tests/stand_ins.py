@@ -155,6 +155,7 @@ def propagation(method: str = "optimise", kind: str = "estimate", shrink: float 
     return SimpleNamespace(
         coordinate=Coordinate("time", "s", times),
         channels=("AB.end.x", "AB.end.y"),
+        units=("m", "m"),
         lower=tip - half + shrink,
         upper=tip + half - shrink,
         box=angles,
@@ -179,7 +180,19 @@ def comparison() -> SimpleNamespace:
         propagation("scan", "inner bound", 4e-4, 441),
         propagation("bernstein", "enclosure", -2e-5, 81),
     )
-    return SimpleNamespace(results=results, reference="optimise")
+    rows = tuple(
+        SimpleNamespace(
+            method=one.method,
+            kind=one.kind,
+            width=float((one.upper - one.lower).mean()),
+            largest=float(np.abs(one.lower - results[0].lower).max()),
+            rms=float(np.sqrt(np.mean((one.lower - results[0].lower) ** 2))),
+            runs=one.runs,
+            seconds=one.seconds,
+        )
+        for one in results
+    )
+    return SimpleNamespace(results=results, reference="optimise", rows=rows, refused=())
 
 
 def band_fit(names: tuple[str, str] = ("theta1", "theta2")) -> SimpleNamespace:

@@ -185,10 +185,12 @@ class BandsLike(Protocol):
 class PropagationLike(BandsLike, Protocol):
     """Bounds of a response over a box of parameters: how they were found, and how far they can be trusted.
 
-    ``error`` (samples, channels) is estimated, ``at_lower`` and ``at_upper`` (samples, channels, parameters) are where
-    the bounds are taken; each None where the method does not know.
+    ``units`` are those of the channels. ``error`` (samples, channels) is estimated, ``at_lower`` and ``at_upper``
+    (samples, channels, parameters) are where the bounds are taken; each None where the method does not know.
     """
 
+    @property
+    def units(self) -> tuple[str, ...]: ...
     @property
     def box(self) -> BoxLike: ...
     @property
@@ -215,14 +217,40 @@ class PropagationLike(BandsLike, Protocol):
     def provenance(self) -> Mapping[str, Any]: ...
 
 
+class RowLike(Protocol):
+    """One method of a comparison: its mean width, and its distance from the reference over all bounds."""
+
+    @property
+    def method(self) -> str: ...
+    @property
+    def kind(self) -> str: ...
+    @property
+    def width(self) -> float: ...
+    @property
+    def largest(self) -> float: ...
+    @property
+    def rms(self) -> float: ...
+    @property
+    def runs(self) -> int: ...
+    @property
+    def seconds(self) -> float: ...
+
+
 @runtime_checkable
 class ComparisonLike(Protocol):
-    """Bounds over the same box by several methods; ``reference`` names the one that the others are measured by."""
+    """Bounds over the same box by several methods; ``reference`` names the one that the others are measured by.
+
+    ``refused`` are pairs of a method that gave no bounds and the reason.
+    """
 
     @property
     def results(self) -> Sequence[PropagationLike]: ...
     @property
     def reference(self) -> str: ...
+    @property
+    def rows(self) -> Sequence[RowLike]: ...
+    @property
+    def refused(self) -> Sequence[tuple[str, str]]: ...
 
 
 @runtime_checkable

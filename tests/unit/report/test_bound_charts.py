@@ -1,5 +1,3 @@
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
@@ -101,9 +99,20 @@ def test_methods_stand_at_their_error_and_their_runs():
 
 
 def test_bounds_like_the_reference_have_no_place_on_a_logarithmic_axis():
-    like = SimpleNamespace(results=(propagation(), propagation("taylor")), reference="optimise")
-    assert np.isnan(_named(charts.methods(like))["estimate"].y).all()
-    assert np.isnan(charts.differences(like).data[0].y).all()
+    like = comparison()
+    like.rows[1].largest, like.results[1].lower, like.results[1].upper = (
+        0.0,
+        like.results[0].lower,
+        like.results[0].upper,
+    )
+    assert np.isnan(_named(charts.methods(like))["inner bound"].y[0])
+    assert np.isnan(_named(charts.differences(like))["vertex"].y).all()
+
+
+def test_a_channel_whose_name_tells_no_unit_has_that_of_the_model():
+    given = propagation()
+    given.channels, given.units = ("gauge 1", "gauge 2"), ("V", "V")
+    assert charts.bands(given).layout.yaxis.title.text == "response (V)"
 
 
 def test_differences_are_the_largest_of_all_channels_at_each_sample():

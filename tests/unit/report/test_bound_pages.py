@@ -71,6 +71,14 @@ def test_a_method_that_failed_is_marked(tmp_path):
     assert page.table("methods")[2][-1] == "One corner failed."
 
 
+def test_a_method_that_gave_no_bounds_says_why(tmp_path):
+    compared = comparison()
+    compared.refused = (("taylor", "The model gives no sensitivities."),)
+    page = read_page(report(compared, tmp_path / "a.html"))
+    assert page.table("methods")[-1] == ["taylor", "none", *["nan"] * 5, "The model gives no sensitivities."]
+    assert "taylor did not succeed" in page.text
+
+
 @pytest.fixture(scope="module")
 def intervals(tmp_path_factory):
     result = band_fit()

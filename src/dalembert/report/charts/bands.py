@@ -123,7 +123,8 @@ def outline(at: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> tuple[np.nd
 def dressed(figure: go.Figure, given: BandsLike, chosen: Sequence[str], title: str, *, below: str) -> go.Figure:
     """The figure with its look and the labels of its two rows."""
     themed(figure, title, height=480)
-    labels = {quantity(name) for name in chosen}
+    units = dict(zip(given.channels, getattr(given, "units", ()), strict=False))
+    labels = {quantity(name, plain(units.get(name, ""))) for name in chosen}
     label = labels.pop() if len(labels) == 1 else "response"
     figure.update_yaxes(title_text=label, row=1)
     figure.update_yaxes(title_text=label.replace(label.partition(" (")[0], below), row=2)

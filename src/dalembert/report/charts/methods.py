@@ -32,14 +32,13 @@ def methods(comparison: ComparisonLike, *, title: str = "Error against runs") ->
     """
     figure = go.Figure()
     for kind, (colour, symbol) in KINDS.items():
-        own = [one for one in others(comparison) if one.kind == kind]
-        errors = [float(np.nanmax(distance(one, reference(comparison)), initial=0.0)) for one in own]
+        own = [row for row in comparison.rows if row.kind == kind and row.method != comparison.reference]
         figure.add_scatter(
-            x=[one.runs for one in own],
-            y=positive(np.array(errors)),
+            x=[row.runs for row in own],
+            y=positive(np.array([row.largest for row in own])),
             name=kind,
             mode="markers+text",
-            text=[plain(one.method) for one in own],
+            text=[plain(row.method) for row in own],
             textposition="top center",
             cliponaxis=False,
             marker={"size": 11, "color": colour, "symbol": symbol},
@@ -62,9 +61,10 @@ def differences(comparison: ComparisonLike, *, title: str = "Distance from the r
     -------
     plotly.graph_objects.Figure
     """
-    figure, along = go.Figure(), reference(comparison).coordinate
-    for place, one in enumerate(others(comparison)):
-        apart = positive(distance(one, reference(comparison)).max(axis=1))
+    figure, known = go.Figure(), reference(comparison)
+    along = known.coordinate
+    for place, one in enumerate(one for one in comparison.results if one is not known):
+        apart = positive(np.maximum(np.abs(one.lower - known.lower), np.abs(one.upper - known.upper)).max(axis=1))
         kept = thin(apart)
         figure.add_scatter(
             x=along.values[kept],
@@ -81,13 +81,3 @@ def differences(comparison: ComparisonLike, *, title: str = "Distance from the r
 def reference(comparison: ComparisonLike) -> PropagationLike:
     """The result that the others are measured by."""
     return next(one for one in comparison.results if one.method == comparison.reference)
-
-
-def others(comparison: ComparisonLike) -> list[PropagationLike]:
-    """All results but the reference."""
-    return [one for one in comparison.results if one.method != comparison.reference]
-
-
-def distance(one: PropagationLike, other: PropagationLike) -> np.ndarray:
-    """Larger of the distances between lower and between upper bounds, (samples, channels)."""
-    return np.maximum(np.abs(one.lower - other.lower), np.abs(one.upper - other.upper))

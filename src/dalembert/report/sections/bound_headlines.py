@@ -32,8 +32,9 @@ def of_comparison(comparison: ComparisonLike, title: str | None, notes: Sequence
     """Headline of methods compared on one box."""
     known = reference(comparison)
     failed = [one.method for one in comparison.results if not one.success]
+    failed += [method for method, _ in comparison.refused]
     facts = [
-        Fact("methods", counted(len(comparison.results))),
+        Fact("methods", counted(len(comparison.results) + len(comparison.refused))),
         Fact("reference", known.method),
         Fact("its runs", counted(known.runs)),
         Fact("runs altogether", counted(sum(one.runs for one in comparison.results))),

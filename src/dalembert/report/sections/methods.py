@@ -6,7 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from dalembert.report import charts
-from dalembert.report.charts.methods import distance, reference
+from dalembert.report.charts.methods import reference
 from dalembert.report.needs import ComparisonLike
 from dalembert.report.plot import Plot
 from dalembert.report.sections.section import Section
@@ -32,22 +32,22 @@ class Methods(Section):
 
     @property
     def table(self) -> Table:
-        known = reference(self.comparison)
-        rows = []
-        for one in self.comparison.results:
-            apart = distance(one, known)
-            errors = (np.nan, np.nan) if one is known else (apart.max(), np.sqrt(np.mean(apart**2)))
-            note = "the reference" if one is known else "" if one.success else one.status
-            rows.append(
-                (
-                    cell(one.method),
-                    cell(one.kind),
-                    cell(float((one.upper - one.lower).mean())),
-                    *(cell(float(error), digits=3) for error in errors),
-                    cell(int(one.runs)),
-                    cell(float(one.seconds), digits=3),
-                    cell(note, mark=not one.success),
-                )
+        known, results = reference(self.comparison), self.comparison.results
+        rows = [
+            (
+                cell(row.method),
+                cell(row.kind),
+                cell(row.width),
+                *(cell(np.nan if one is known else error, digits=3) for error in (row.largest, row.rms)),
+                cell(row.runs),
+                cell(row.seconds, digits=3),
+                cell("the reference" if one is known else "" if one.success else one.status, mark=not one.success),
             )
+            for row, one in zip(self.comparison.rows, results, strict=True)
+        ]
+        none = [cell(np.nan)] * 5
+        rows += [
+            (cell(method), cell("none"), *none, cell(reason, mark=True)) for method, reason in self.comparison.refused
+        ]
         columns = ("method", "kind", "mean width", "largest error", "rms error", "runs", "time (s)", "note")
         return Table("methods", "Methods on the same box; errors are distances from the reference", columns, rows)

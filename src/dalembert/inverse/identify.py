@@ -79,7 +79,9 @@ def identify(
 
     The first least squares start is ``start`` or ``Parameters.start``. If it does not settle the matter, 8 points a
     parameter and start of a Latin hypercube are simulated in one batch, and further starts are those of the least
-    misfit over half, a quarter, an eighth of the samples in turn. The best end is polished at last.
+    misfit over half, a quarter, an eighth of the samples in turn. From the best end the fitness is scanned along the
+    combinations of parameters that the singular values belong to, and up to two dips beside it are descended into, as
+    long as that finds a better end. The best end is polished at last.
 
     The matter is settled when a misfit is within the 99.9 % quantile of noise known to be below 0.1 % of the signal
     (from given deviations or from rounding of the data; with neither, a millionth of the signal), or, from the third

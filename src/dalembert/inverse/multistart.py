@@ -8,6 +8,7 @@ import numpy as np
 from scipy.stats import qmc
 
 from dalembert.inverse.descent import End, descend
+from dalembert.inverse.neighbours import neighbours
 from dalembert.inverse.noise import NoiseFloor, random_residuals
 from dalembert.inverse.problem import Problem
 from dalembert.optimize import LeastSquares
@@ -16,6 +17,9 @@ HORIZONS = ("growing", None)
 
 SCREENED = 8
 """Points simulated to choose starts from, a parameter and start."""
+
+BESIDE = 2
+"""Descents from beside the best end, the most promising ones."""
 
 APART = 0.05
 """Chosen points keep this part of the box's width from each other."""
@@ -39,18 +43,37 @@ def multistart(
     """
     ladder = [problem.first(samples) for samples in horizons(problem, horizon)]
     hasty = method if starts == 1 else replace(method, gain=max(1e-3, method.gain))
-    journal, search = problem.journal, problem.search
     ends: list[End] = []
     for point, rung in _attempts(ladder, starts, seed, start):
-        values = search.vectors(point)
-        journal.began(values)
-        end = descend(ladder[rung:], hasty, point)
-        journal.ended(values, search.vectors(end.point), end.fitness, end.success, end.message)
-        ends.append(end)
-        settled = floor.conclusive and end.fitness <= floor.fitness
-        if settled or len(ends) == starts or (len(ends) >= 3 and _reproduced(problem, ends)):
+        ends.append(_descent(ladder[rung:], hasty, point))
+        if floor.conclusive and ends[-1].fitness <= floor.fitness:
+            return ends
+        if len(ends) == starts or (len(ends) >= 3 and _reproduced(problem, ends)):
             break
-    return ends
+    return ends if starts == 1 else ends + _beside(problem, hasty, min(ends, key=lambda end: end.fitness), starts)
+
+
+def _descent(ladder: list[Problem], method: LeastSquares, point: np.ndarray) -> End:
+    """End of a descent, told to the journal."""
+    journal, search = ladder[-1].journal, ladder[-1].search
+    values = search.vectors(point)
+    journal.began(values)
+    end = descend(ladder, method, point)
+    journal.ended(values, search.vectors(end.point), end.fitness, end.success, end.message)
+    return end
+
+
+def _beside(problem: Problem, method: LeastSquares, best: End, most: int) -> list[End]:
+    """Ends of up to ``most`` descents from beside the best end, and from beside a better one that they lead to."""
+    ends: list[End] = []
+    while True:
+        for point in neighbours(problem, best)[: min(BESIDE, most - len(ends))]:
+            ends.append(_descent([problem], method, point))
+            if ends[-1].fitness < (1 - method.gain) * best.fitness:
+                best = ends[-1]
+                break
+        else:
+            return ends
 
 
 def horizons(problem: Problem, horizon: str | None) -> list[int]:

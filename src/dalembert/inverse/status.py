@@ -5,6 +5,8 @@ import numpy as np
 from dalembert.inverse.descent import End
 from dalembert.inverse.noise import NoiseFloor, autocorrelation, random_residuals
 from dalembert.inverse.problem import Problem
+from dalembert.inverse.rivals import rivals
+from dalembert.inverse.simulated import named
 
 
 def status(problem: Problem, best: End, response: np.ndarray, floor: NoiseFloor) -> str:
@@ -14,6 +16,13 @@ def status(problem: Problem, best: End, response: np.ndarray, floor: NoiseFloor)
     if len(ended) > 1:
         there = sum(fitness <= best.fitness * (1 + 1e-3) + floor.fitness * 1e-3 for fitness in ended)
         parts.append(f"{there} of {len(ended)} starts ended with the best fitness.")
+    alike = rivals(problem, best)
+    if alike:
+        worse = (alike[0].fitness - best.fitness) / best.fitness
+        parts.append(
+            f"Another minimum, at {named(problem.model, alike[0].end)}, explains the data as well (its misfit is larger by "
+            f"{100 * worse:.2g} %, less than the noise can tell); measure another channel, or narrow the bounds."
+        )
     failed = len(problem.journal.failures)
     if failed:
         parts.append(f"{failed} simulations failed and were passed over, the first: {problem.journal.failures[0]}.")

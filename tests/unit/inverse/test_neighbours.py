@@ -1,0 +1,55 @@
+"""Minima beside a minimum, and minima that the data cannot tell apart."""
+
+import re
+
+import numpy as np
+
+from dalembert.data import Measurements
+from dalembert.forward import PythonModel
+from dalembert.inverse import identify
+from dalembert.inverse.descent import descend
+from dalembert.inverse.journal import Journal
+from dalembert.inverse.neighbours import neighbours
+from dalembert.inverse.problem import pose
+from dalembert.optimize import LeastSquares
+
+TIMES = np.linspace(0, 10, 41)
+SWING = PythonModel(lambda rate: np.cos(rate * TIMES), {"rate": (0.5, 8.0)}, ["x"], TIMES)
+
+
+def noisy(model, values, noise, seed=0):
+    exact = model.evaluate(np.array([values])).only()[0]
+    columns = exact + noise * np.random.default_rng(seed).standard_normal(exact.shape)
+    return Measurements.of(TIMES, dict(zip(("x", "y"), columns.T, strict=False)))
+
+
+def posed(model, data):
+    return pose(model, data, None, Journal(len(TIMES)))
+
+
+def test_the_minimum_a_period_away_is_seen_from_a_false_one():
+    problem = posed(SWING, noisy(SWING, [4.0], 0.1))
+    false = descend([problem], LeastSquares(), problem.search.points(np.array([4.75])))
+    assert abs(problem.search.vectors(false.point)[0] - 4.0) > 0.4
+    found = problem.search.vectors(neighbours(problem, false))
+    assert abs(found[0, 0] - 4.0) < 0.15
+
+
+def test_from_the_only_minimum_none_is_seen():
+    line = PythonModel(lambda slope: slope * TIMES, {"slope": (-5.0, 5.0)}, ["x"], TIMES)
+    problem = posed(line, noisy(line, [1.0], 0.1))
+    assert neighbours(problem, descend([problem], LeastSquares(), np.array([0.1]))).shape == (0, 1)
+
+
+def test_one_channel_that_two_values_explain_is_said_to_be_so():
+    both = PythonModel(lambda a: a**2 * TIMES, {"a": (-3.0, 2.0)}, ["x"], TIMES)
+    fit = identify(both, noisy(both, [1.5], 0.1))
+    assert abs(abs(fit.values[0]) - 1.5) < 0.01
+    told = re.search(r"Another minimum, at a = (\S+), explains the data as well", fit.status)
+    np.testing.assert_allclose(float(told[1]), -fit.values[0], rtol=1e-3)
+
+
+def test_one_minimum_has_no_rival():
+    fit = identify(SWING, noisy(SWING, [4.0], 0.1))
+    np.testing.assert_allclose(fit.values, [4.0], atol=0.02)
+    assert "Another minimum" not in fit.status

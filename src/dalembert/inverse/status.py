@@ -20,8 +20,8 @@ def status(problem: Problem, best: End, response: np.ndarray, floor: NoiseFloor)
     if alike:
         worse = (alike[0].fitness - best.fitness) / best.fitness
         parts.append(
-            f"Another minimum, at {named(problem.model, alike[0].end)}, explains the data as well (its misfit is larger by "
-            f"{100 * worse:.2g} %, less than the noise can tell); measure another channel, or narrow the bounds."
+            f"Another minimum, at {named(problem.model, alike[0].end)}, explains the data as well (its misfit is "
+            f"{100 * worse:.2g} % larger, less than the noise can tell); measure another channel, or narrow the bounds."
         )
     failed = len(problem.journal.failures)
     if failed:

@@ -31,7 +31,7 @@ _NAMES = {
     "optimize": "ImprovedParticleSwarm LeastSquares Minimiser ParticleSwarm",
     "surrogate": "ChebyshevPolynomial Surrogate Tensor TotalDegree",
     "data": "Bands Measurements read_bands read_csv",
-    "inverse": "Fit identify",
+    "inverse": "BandFit Fit ParameterSet identify",
     "multibody": """
         System AncfBeam AncfCable RigidBody RigidBar PointMass Point
         RevoluteJoint PrismaticJoint FixedJoint DistanceJoint PrescribedMotion

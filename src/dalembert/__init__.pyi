@@ -26,7 +26,9 @@ from dalembert.forward import PythonModel as PythonModel
 from dalembert.forward import Responses as Responses
 from dalembert.intervals import Box as Box
 from dalembert.intervals import Interval as Interval
+from dalembert.inverse import BandFit as BandFit
 from dalembert.inverse import Fit as Fit
+from dalembert.inverse import ParameterSet as ParameterSet
 from dalembert.inverse import identify as identify
 from dalembert.multibody import AncfBeam as AncfBeam
 from dalembert.multibody import AncfCable as AncfCable

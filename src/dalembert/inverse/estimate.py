@@ -1,5 +1,6 @@
 """What the data tell about the parameters: standard deviations, correlation, and combinations."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -78,10 +79,7 @@ class Identifiability:
 
 def sentences(parameters: Parameters, values: np.ndarray, told: Estimate) -> tuple[str, ...]:
     """Plain sentences on parameters at a bound, unseen by the response, known badly, or hard to tell apart."""
-    if not np.all(np.isfinite(told.singular_values)):
-        return ("What the data tell could not be computed: the model gave no sensitivities at the identified values.",)
     width = parameters.upper - parameters.lower
-    guess = width / np.sqrt(12)
     found = []
     for k, item in enumerate(parameters):
         side = "lower" if values[k] - item.lower < 1e-6 * width[k] else "upper"
@@ -90,20 +88,32 @@ def sentences(parameters: Parameters, values: np.ndarray, told: Estimate) -> tup
             found.append(
                 f"{item.name!r} sits on its {side} bound {bound:.6g}; widen the bound if the true value may lie beyond."
             )
-        if np.isinf(told.deviations[k]):
+    return untold(parameters.names, width, told, found)
+
+
+def untold(names: tuple[str, ...], widths: np.ndarray, told: Estimate, known: Sequence[str] = ()) -> tuple[str, ...]:
+    """Sentences on unknowns between bounds of these widths that are unseen, known badly, or hard to tell apart.
+
+    They come after those that are ``known`` already; without sensitivities there is but one sentence.
+    """
+    if not np.all(np.isfinite(told.singular_values)):
+        return ("What the data tell could not be computed: the model gave no sensitivities at the identified values.",)
+    found = list(known)
+    for name, guess, deviation in zip(names, widths / np.sqrt(12), told.deviations, strict=True):
+        if np.isinf(deviation):
             found.append(
-                f"{item.name!r} is not told by the data: it, or a combination that it is part of, leaves the response "
+                f"{name!r} is not told by the data: it, or a combination that it is part of, leaves the response "
                 "as it is; fix it, or measure another channel."
             )
-        elif told.deviations[k] > guess[k]:
+        elif deviation > guess:
             found.append(
-                f"{item.name!r} is hardly told by the data: its deviation {told.deviations[k]:.3g} exceeds the "
-                f"{guess[k]:.3g} of a mere guess between its bounds; fix it, or measure more."
+                f"{name!r} is hardly told by the data: its deviation {deviation:.3g} exceeds the "
+                f"{guess:.3g} of a mere guess between its bounds; fix it, or measure more."
             )
-    for i, j in zip(*np.triu_indices(len(parameters), 1), strict=True):
+    for i, j in zip(*np.triu_indices(len(names), 1), strict=True):
         if abs(told.correlation[i, j]) > INDISTINGUISHABLE:
             found.append(
-                f"{parameters.names[i]!r} and {parameters.names[j]!r} can hardly be told apart (correlation "
+                f"{names[i]!r} and {names[j]!r} can hardly be told apart (correlation "
                 f"{told.correlation[i, j]:.4f}); fix one of them, or measure what tells them apart."
             )
     return tuple(found)

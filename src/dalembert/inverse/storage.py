@@ -5,13 +5,11 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from dalembert.data import Measurements
 from dalembert.files import read_dataset, write_dataset
 from dalembert.forward import Coordinate
-from dalembert.inverse.events import StartEnd, Step
 from dalembert.inverse.fit import Fit
+from dalembert.inverse.stored_search import search_of, stored_ends, stored_search
 from dalembert.parameters import Parameter, Parameters
 
 if TYPE_CHECKING:
@@ -24,8 +22,7 @@ def to_xarray(fit: Fit) -> "Dataset":
     """Dataset over parameter, sample coordinate, channel, step and start; what is not an array stands in attributes."""
     from xarray import Dataset
 
-    along, data, history, starts = fit.data.coordinate, fit.data, fit.history, fit.starts
-    p = len(fit.parameters)
+    along, data = fit.data.coordinate, fit.data
     variables: dict[str, Any] = {
         "values": ("parameter", fit.values),
         "deviations": ("parameter", fit.deviations),
@@ -36,15 +33,7 @@ def to_xarray(fit: Fit) -> "Dataset":
         "data": (("sample", "channel"), data.values),
         "residuals": (("sample", "channel"), fit.residuals),
         "weights": (("sample", "channel"), fit.weights),
-        "step_start": ("step", np.array([step.start for step in history], dtype=np.int64)),
-        "step_iteration": ("step", np.array([step.iteration for step in history], dtype=np.int64)),
-        "step_simulations": ("step", np.array([step.simulations for step in history], dtype=np.int64)),
-        "step_best": ("step", np.array([step.best for step in history], dtype=float)),
-        "step_values": (("step", "parameter"), np.array([step.values for step in history]).reshape(-1, p)),
-        "start_values": (("start", "parameter"), np.array([start.start for start in starts]).reshape(-1, p)),
-        "end_values": (("start", "parameter"), np.array([start.end for start in starts]).reshape(-1, p)),
-        "end_fitness": ("start", np.array([start.fitness for start in starts], dtype=float)),
-        "start_simulations": ("start", np.array([start.simulations for start in starts], dtype=np.int64)),
+        **stored_search(fit.history, fit.starts, "parameter", len(fit.parameters)),
     }
     if data.deviations is not None:
         variables["data_deviations"] = ("channel", data.deviations)
@@ -55,7 +44,7 @@ def to_xarray(fit: Fit) -> "Dataset":
     }
     told = {
         "parameters": [asdict(item) for item in fit.parameters],
-        "ends": [{"success": start.success, "message": start.message} for start in starts],
+        "ends": stored_ends(fit.starts),
         "provenance": fit.provenance,
     }
     attributes = {
@@ -85,13 +74,7 @@ def from_xarray(dataset: "Dataset") -> Fit:
     told = json.loads(dataset.attrs["settings"])
     a = {str(name): variable.values for name, variable in dataset.variables.items()}
     along = dataset["coordinate"]
-    history = zip(
-        a["step_start"], a["step_iteration"], a["step_simulations"], a["step_best"], a["step_values"], strict=True
-    )
-    starts = zip(
-        a["start_values"], a["end_values"], a["end_fitness"], told["ends"], a["start_simulations"], strict=True
-    )
-    samples = along.size
+    history, starts = search_of(a, told["ends"], along.size)
     return Fit(
         parameters=Parameters(tuple(Parameter(**item) for item in told["parameters"])),
         values=a["values"],
@@ -108,14 +91,8 @@ def from_xarray(dataset: "Dataset") -> Fit:
             a.get("data_deviations"),
         ),
         weights=a["weights"],
-        history=tuple(
-            Step(int(start), int(iteration), int(simulations), float(best), values, samples)
-            for start, iteration, simulations, best, values in history
-        ),
-        starts=tuple(
-            StartEnd(start, end, float(fitness), bool(how["success"]), str(how["message"]), int(simulations))
-            for start, end, fitness, how, simulations in starts
-        ),
+        history=history,
+        starts=starts,
         success=bool(dataset.attrs["success"]),
         status=str(dataset.attrs["status"]),
         method=str(dataset.attrs["method"]),

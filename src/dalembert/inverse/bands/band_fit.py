@@ -1,0 +1,163 @@
+"""The result of an identification from bands."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from dalembert.data import Bands
+from dalembert.hooks import hook
+from dalembert.intervals import Box
+from dalembert.inverse.estimate import Estimate, Identifiability
+from dalembert.inverse.events import StartEnd, Step
+from dalembert.parameters import Parameters
+
+
+@dataclass(frozen=True, eq=False)
+class BandFit:
+    """Intervals of parameters whose response fills given bands, how well they are known, and how they were found.
+
+    The unknowns are the middles of all parameters, then the radii of those that are intervals.
+
+    Parameters
+    ----------
+    parameters : Parameters
+    intervals : tuple of str
+        Parameters with an unknown radius; the others are numbers, their radius is zero.
+    box : Box
+        The identified intervals.
+    unknowns : tuple of str
+        For example ``("theta1 middle", "theta2 middle", "theta1 radius")``.
+    middle_deviations, radius_deviations : array, shape (parameters,)
+        Standard deviations from the variance of the residuals; zero for a radius that is not unknown, NaN where they
+        could not be computed.
+    correlation : array, shape (unknowns, unknowns)
+    singular_values : array, shape (unknowns,)
+        Of W^½ ∂(lower, upper)/∂unknown · scale, largest first.
+    directions : array, shape (unknowns, unknowns)
+        A row a singular value: the combination of unknown/scale that it belongs to.
+    fitness : float
+        Σ W ((lower − given lower)² + (upper − given upper)²) over samples and channels.
+    bands : Bands
+        The given ones.
+    weights : array, shape (samples, channels)
+        W.
+    lower, upper : array, shape (samples, channels)
+        Bounds of the surrogate over ``box``.
+    error : array, shape (samples, channels)
+        Estimate of the surrogate's largest error.
+    checked_lower, checked_upper : array, shape (samples, channels)
+        Least and largest response of true runs at the points where the surrogate has its bounds; None if no run was
+        made there, or every one failed.
+    checked_fitness : float
+        The fitness of these; None without them.
+    history : tuple of Step
+        Best fitness along each start; its values are the unknowns.
+    starts : tuple of StartEnd
+    success : bool
+    status : str
+        How it went and what to do, in full sentences.
+    method : str
+    simulations : int
+    seconds : float
+        Spent on the whole identification.
+    provenance : mapping
+        Versions, seed, hashes of model and data, method and settings.
+    """
+
+    parameters: Parameters
+    intervals: tuple[str, ...]
+    box: Box
+    unknowns: tuple[str, ...]
+    middle_deviations: np.ndarray
+    radius_deviations: np.ndarray
+    correlation: np.ndarray
+    singular_values: np.ndarray
+    directions: np.ndarray
+    fitness: float
+    bands: Bands
+    weights: np.ndarray
+    lower: np.ndarray
+    upper: np.ndarray
+    error: np.ndarray
+    checked_lower: np.ndarray | None
+    checked_upper: np.ndarray | None
+    checked_fitness: float | None
+    history: tuple[Step, ...]
+    starts: tuple[StartEnd, ...]
+    success: bool
+    status: str
+    method: str
+    simulations: int
+    seconds: float
+    provenance: Mapping[str, Any]
+
+    @property
+    def middle(self) -> np.ndarray:
+        """Middles of the intervals, shape (parameters,)."""
+        return self.box.middle
+
+    @property
+    def radius(self) -> np.ndarray:
+        """Radii of the intervals, shape (parameters,)."""
+        return self.box.radius
+
+    @property
+    def estimates(self) -> dict[str, float]:
+        """Ends of the intervals by name, for example ``{"theta1 lower": 0.7, "theta1 upper": 0.8}``."""
+        sides = {"lower": self.box.lower, "upper": self.box.upper}
+        return {f"{name} {side}": float(sides[side][k]) for k, name in enumerate(self.box) for side in sides}
+
+    @property
+    def told(self) -> Estimate:
+        """What the bands tell about the unknowns."""
+        is_interval = [name in self.intervals for name in self.parameters.names]
+        deviations = np.concatenate([self.middle_deviations, self.radius_deviations[is_interval]])
+        return Estimate(deviations, self.correlation, self.singular_values, self.directions)
+
+    def identifiability(self) -> Identifiability:
+        """What the bands can tell: singular values, combinations, and sentences on what they cannot."""
+        from dalembert.inverse.bands.telling import sentences
+
+        return Identifiability(self.singular_values, self.directions, sentences(self))
+
+    def summary(self) -> str:
+        """The result as a text table with its status."""
+        from dalembert.inverse.bands.summary import summary
+
+        return summary(self)
+
+    def save(self, path: str | Path) -> None:
+        """Write everything to a NetCDF-4 file; :meth:`load` gives back the same bits."""
+        from dalembert.inverse.bands.storage import save
+
+        save(self, path)
+
+    @staticmethod
+    def load(path: str | Path) -> "BandFit":
+        """A result that was saved.
+
+        Raises
+        ------
+        DataError
+            For a file that is not there, or holds something else.
+        """
+        from dalembert.inverse.bands.storage import load
+
+        return load(path)
+
+    def to_xarray(self) -> Any:
+        """Everything as an :class:`xarray.Dataset`, with units as attributes."""
+        from dalembert.inverse.bands.storage import to_xarray
+
+        return to_xarray(self)
+
+    def figures(self) -> dict[str, Any]:
+        """Plotly figures by name."""
+        return hook("figures")(self)
+
+    def report(self, path: str | Path) -> Any:
+        """Write an HTML report that opens offline."""
+        return hook("report")(self, path)

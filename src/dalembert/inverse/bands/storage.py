@@ -1,0 +1,117 @@
+"""An identification from bands as a labelled dataset, and in a NetCDF file."""
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from dalembert.data import Bands
+from dalembert.files import read_dataset, write_dataset
+from dalembert.forward import Coordinate
+from dalembert.intervals import Box
+from dalembert.inverse.bands.band_fit import BandFit
+from dalembert.inverse.stored_search import search_of, stored_ends, stored_search
+from dalembert.parameters import Parameter, Parameters
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+FORMAT = "dalembert bandfit 1"
+
+TABLES = ("weights", "lower", "upper", "error")
+"""Fields of shape (samples, channels)."""
+
+ARRAYS = ("middle_deviations", "radius_deviations", "correlation", "singular_values", "directions", *TABLES)
+
+
+def to_xarray(fit: BandFit) -> "Dataset":
+    """Dataset over parameter, unknown, sample, channel, step and start; what is no array stands in attributes."""
+    from xarray import Dataset
+
+    along = fit.bands.coordinate
+    variables: dict[str, Any] = {
+        "box_lower": ("parameter", fit.box.lower),
+        "box_upper": ("parameter", fit.box.upper),
+        "middle_deviations": ("parameter", fit.middle_deviations),
+        "radius_deviations": ("parameter", fit.radius_deviations),
+        "correlation": (("unknown", "unknown_"), fit.correlation),
+        "singular_values": ("combination", fit.singular_values),
+        "directions": (("combination", "unknown"), fit.directions),
+        "given_lower": (("sample", "channel"), fit.bands.lower),
+        "given_upper": (("sample", "channel"), fit.bands.upper),
+        **{name: (("sample", "channel"), np.array(getattr(fit, name))) for name in TABLES},
+        **stored_search(fit.history, fit.starts, "unknown", len(fit.unknowns)),
+    }
+    if fit.checked_lower is not None and fit.checked_upper is not None:
+        variables["checked_lower"] = (("sample", "channel"), fit.checked_lower)
+        variables["checked_upper"] = (("sample", "channel"), fit.checked_upper)
+    coordinates = {
+        "parameter": ("parameter", list(fit.parameters.names)),
+        "unknown": ("unknown", list(fit.unknowns)),
+        "channel": ("channel", list(fit.bands.channels)),
+        "coordinate": ("sample", along.values, {"long_name": along.name, "units": along.unit}),
+    }
+    told = {
+        "parameters": [asdict(item) for item in fit.parameters],
+        "intervals": fit.intervals,
+        "checked_fitness": fit.checked_fitness,
+        "ends": stored_ends(fit.starts),
+        "provenance": fit.provenance,
+    }
+    attributes = {
+        "format": FORMAT,
+        "method": fit.method,
+        "status": fit.status,
+        "success": int(fit.success),
+        "fitness": fit.fitness,
+        "simulations": fit.simulations,
+        "seconds": fit.seconds,
+        "settings": json.dumps(told, sort_keys=True),
+    }
+    return Dataset(variables, coordinates, attributes)
+
+
+def save(fit: BandFit, path: str | Path) -> None:
+    """Write a result to a NetCDF-4 file, whole or not at all."""
+    write_dataset(path, to_xarray(fit))
+
+
+def load(path: str | Path) -> BandFit:
+    """Read a result from a NetCDF-4 file."""
+    return from_xarray(read_dataset(path, form=FORMAT, expected="a result written by BandFit.save"))
+
+
+def from_xarray(dataset: "Dataset") -> BandFit:
+    """The result that :func:`to_xarray` turned into a dataset."""
+    told = json.loads(dataset.attrs["settings"])
+    a = {str(name): variable.values for name, variable in dataset.variables.items()}
+    along = dataset["coordinate"]
+    history, starts = search_of(a, told["ends"], along.size)
+    parameters = Parameters(tuple(Parameter(**item) for item in told["parameters"]))
+    return BandFit(
+        parameters=parameters,
+        intervals=tuple(told["intervals"]),
+        box=Box(parameters.names, a["box_lower"], a["box_upper"]),
+        unknowns=tuple(map(str, a["unknown"])),
+        **{name: a[name] for name in ARRAYS},
+        fitness=float(dataset.attrs["fitness"]),
+        bands=Bands(
+            Coordinate(along.attrs["long_name"], along.attrs["units"], a["coordinate"]),
+            tuple(map(str, a["channel"])),
+            a["given_lower"],
+            a["given_upper"],
+        ),
+        checked_lower=a.get("checked_lower"),
+        checked_upper=a.get("checked_upper"),
+        checked_fitness=told["checked_fitness"],
+        history=history,
+        starts=starts,
+        success=bool(dataset.attrs["success"]),
+        status=str(dataset.attrs["status"]),
+        method=str(dataset.attrs["method"]),
+        simulations=int(dataset.attrs["simulations"]),
+        seconds=float(dataset.attrs["seconds"]),
+        provenance=told["provenance"],
+    )

@@ -1,0 +1,5 @@
+"""All parameters that are consistent with measurements of bounded error."""
+
+from dalembert.inverse.sets.parameter_set import ParameterSet
+
+__all__ = ["ParameterSet"]

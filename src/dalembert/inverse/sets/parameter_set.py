@@ -1,0 +1,125 @@
+"""The result of a set inversion: all parameters that are consistent with measurements of bounded error."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from dalembert.data import Measurements
+from dalembert.hooks import hook
+from dalembert.intervals import Box
+from dalembert.parameters import Parameters
+
+
+@dataclass(frozen=True, eq=False)
+class ParameterSet:
+    """The set {p : |R(p) − data| ≤ error everywhere} within the parameters' bounds, paved with boxes.
+
+    Parameters
+    ----------
+    parameters : Parameters
+    data : Measurements
+    error : array, shape (samples, channels)
+        Largest error that the measurements may have.
+    inside, boundary : array, shape (boxes, 2, parameters)
+        Boxes, lower and upper corner, that lie wholly in the set, and those of which it is not known. No box is in
+        both, and they meet only in their faces.
+    outer : Box
+        The smallest box around all of them: it holds the set. None for an empty set.
+    inner : Box
+        The largest box found in the set; None if there is none.
+    surrogate_error : array, shape (samples, channels)
+        Estimate of the surrogate's largest error, by which the conditions are widened.
+    resolution : float
+        Boxes are divided down to this part of the bounds' width.
+    runs : int
+        Simulations.
+    seconds : float
+        Spent on the whole inversion.
+    success : bool
+        Whether the paving was finished; it is right, but coarser, where not.
+    status : str
+        How it went and what to do, in full sentences.
+    provenance : mapping
+        Versions, seed, hashes of model and data, scheme and settings.
+    """
+
+    parameters: Parameters
+    data: Measurements
+    error: np.ndarray
+    inside: np.ndarray
+    boundary: np.ndarray
+    outer: Box | None
+    inner: Box | None
+    surrogate_error: np.ndarray
+    resolution: float
+    runs: int
+    seconds: float
+    success: bool
+    status: str
+    provenance: Mapping[str, Any]
+
+    @property
+    def empty(self) -> bool:
+        """Whether no parameters within the bounds are consistent with the data."""
+        return self.outer is None
+
+    @property
+    def volume(self) -> tuple[float, float]:
+        """Bounds of the set's volume, in the product of the parameters' units."""
+        inside, boundary = (float(np.sum(np.prod(boxes[:, 1] - boxes[:, 0], axis=1))) for boxes in self._paved)
+        return inside, inside + boundary
+
+    @property
+    def _paved(self) -> tuple[np.ndarray, np.ndarray]:
+        return self.inside, self.boundary
+
+    def contains(self, points: np.ndarray) -> np.ndarray:
+        """For points (n, parameters): 1.0 where one lies in the set, 0.0 where not, NaN where it is not known."""
+        inside, boundary = (np.array([_in_any(boxes, point) for point in points], dtype=bool) for boxes in self._paved)
+        return np.where(inside, 1.0, np.where(boundary, np.nan, 0.0))
+
+    def summary(self) -> str:
+        """The result as a text table with its status."""
+        from dalembert.inverse.sets.summary import summary
+
+        return summary(self)
+
+    def save(self, path: str | Path) -> None:
+        """Write everything to a NetCDF-4 file; :meth:`load` gives back the same bits."""
+        from dalembert.inverse.sets.storage import save
+
+        save(self, path)
+
+    @staticmethod
+    def load(path: str | Path) -> "ParameterSet":
+        """A result that was saved.
+
+        Raises
+        ------
+        DataError
+            For a file that is not there, or holds something else.
+        """
+        from dalembert.inverse.sets.storage import load
+
+        return load(path)
+
+    def to_xarray(self) -> Any:
+        """Everything as an :class:`xarray.Dataset`, with units as attributes."""
+        from dalembert.inverse.sets.storage import to_xarray
+
+        return to_xarray(self)
+
+    def figures(self) -> dict[str, Any]:
+        """Plotly figures by name."""
+        return hook("figures")(self)
+
+    def report(self, path: str | Path) -> Any:
+        """Write an HTML report that opens offline."""
+        return hook("report")(self, path)
+
+
+def _in_any(boxes: np.ndarray, point: np.ndarray) -> bool:
+    return bool(np.any(np.all((boxes[:, 0] <= point) & (point <= boxes[:, 1]), axis=1)))

@@ -1,0 +1,97 @@
+"""A set of consistent parameters as a labelled dataset, and in a NetCDF file."""
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from dalembert.data import Measurements
+from dalembert.files import read_dataset, write_dataset
+from dalembert.forward import Coordinate
+from dalembert.intervals import Box
+from dalembert.inverse.sets.parameter_set import ParameterSet
+from dalembert.parameters import Parameter, Parameters
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+FORMAT = "dalembert parameterset 1"
+
+
+def to_xarray(found: ParameterSet) -> "Dataset":
+    """Dataset over parameter, side, box, sample and channel; what is no array stands in attributes."""
+    from xarray import Dataset
+
+    along, data = found.data.coordinate, found.data
+    variables: dict[str, Any] = {
+        "data": (("sample", "channel"), data.values),
+        "error": (("sample", "channel"), np.array(found.error)),
+        "surrogate_error": (("sample", "channel"), np.array(found.surrogate_error)),
+        "boxes": (("box", "side", "parameter"), np.concatenate([found.inside, found.boundary])),
+        "is_inside": ("box", np.arange(len(found.inside) + len(found.boundary)) < len(found.inside)),
+    }
+    if data.deviations is not None:
+        variables["data_deviations"] = ("channel", data.deviations)
+    for name, box in (("outer", found.outer), ("inner", found.inner)):
+        if box is not None:
+            variables[name] = (("side", "parameter"), np.stack([box.lower, box.upper]))
+    coordinates = {
+        "parameter": ("parameter", list(found.parameters.names)),
+        "side": ("side", ["lower", "upper"]),
+        "channel": ("channel", list(data.channels)),
+        "coordinate": ("sample", along.values, {"long_name": along.name, "units": along.unit}),
+    }
+    told = {"parameters": [asdict(item) for item in found.parameters], "provenance": found.provenance}
+    attributes = {
+        "format": FORMAT,
+        "status": found.status,
+        "success": int(found.success),
+        "resolution": found.resolution,
+        "runs": found.runs,
+        "seconds": found.seconds,
+        "settings": json.dumps(told, sort_keys=True),
+    }
+    return Dataset(variables, coordinates, attributes)
+
+
+def save(found: ParameterSet, path: str | Path) -> None:
+    """Write a result to a NetCDF-4 file, whole or not at all."""
+    write_dataset(path, to_xarray(found))
+
+
+def load(path: str | Path) -> ParameterSet:
+    """Read a result from a NetCDF-4 file."""
+    return from_xarray(read_dataset(path, form=FORMAT, expected="a result written by ParameterSet.save"))
+
+
+def from_xarray(dataset: "Dataset") -> ParameterSet:
+    """The result that :func:`to_xarray` turned into a dataset."""
+    told = json.loads(dataset.attrs["settings"])
+    a = {str(name): variable.values for name, variable in dataset.variables.items()}
+    along = dataset["coordinate"]
+    parameters = Parameters(tuple(Parameter(**item) for item in told["parameters"]))
+    is_inside = a["is_inside"].astype(bool)
+    boxes = {name: Box(parameters.names, *a[name]) if name in a else None for name in ("outer", "inner")}
+    return ParameterSet(
+        parameters=parameters,
+        data=Measurements(
+            Coordinate(along.attrs["long_name"], along.attrs["units"], a["coordinate"]),
+            tuple(map(str, a["channel"])),
+            a["data"],
+            a.get("data_deviations"),
+        ),
+        error=a["error"],
+        inside=a["boxes"][is_inside],
+        boundary=a["boxes"][~is_inside],
+        outer=boxes["outer"],
+        inner=boxes["inner"],
+        surrogate_error=a["surrogate_error"],
+        resolution=float(dataset.attrs["resolution"]),
+        runs=int(dataset.attrs["runs"]),
+        seconds=float(dataset.attrs["seconds"]),
+        success=bool(dataset.attrs["success"]),
+        status=str(dataset.attrs["status"]),
+        provenance=told["provenance"],
+    )

@@ -1,0 +1,49 @@
+"""The steps and starts of a search as variables of a dataset, and back."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from dalembert.inverse.events import StartEnd, Step
+
+
+def stored_search(history: Sequence[Step], starts: Sequence[StartEnd], over: str, size: int) -> dict[str, Any]:
+    """Variables over ``step`` and ``start``; the dimension of their values is named ``over``, of the given size."""
+    return {
+        "step_start": ("step", np.array([step.start for step in history], dtype=np.int64)),
+        "step_iteration": ("step", np.array([step.iteration for step in history], dtype=np.int64)),
+        "step_simulations": ("step", np.array([step.simulations for step in history], dtype=np.int64)),
+        "step_best": ("step", np.array([step.best for step in history], dtype=float)),
+        "step_values": (("step", over), np.array([step.values for step in history]).reshape(-1, size)),
+        "start_values": (("start", over), np.array([start.start for start in starts]).reshape(-1, size)),
+        "end_values": (("start", over), np.array([start.end for start in starts]).reshape(-1, size)),
+        "end_fitness": ("start", np.array([start.fitness for start in starts], dtype=float)),
+        "start_simulations": ("start", np.array([start.simulations for start in starts], dtype=np.int64)),
+    }
+
+
+def stored_ends(starts: Sequence[StartEnd]) -> list[dict[str, Any]]:
+    """What of the starts is no array, for JSON."""
+    return [{"success": start.success, "message": start.message} for start in starts]
+
+
+def search_of(
+    arrays: Mapping[str, np.ndarray], ends: Sequence[Mapping[str, Any]], samples: int
+) -> tuple[tuple[Step, ...], tuple[StartEnd, ...]]:
+    """History and starts of a search over ``samples`` samples."""
+    a = arrays
+    history = zip(
+        a["step_start"], a["step_iteration"], a["step_simulations"], a["step_best"], a["step_values"], strict=True
+    )
+    starts = zip(a["start_values"], a["end_values"], a["end_fitness"], ends, a["start_simulations"], strict=True)
+    return (
+        tuple(
+            Step(int(start), int(iteration), int(simulations), float(best), values, samples)
+            for start, iteration, simulations, best, values in history
+        ),
+        tuple(
+            StartEnd(start, end, float(fitness), bool(how["success"]), str(how["message"]), int(simulations))
+            for start, end, fitness, how, simulations in starts
+        ),
+    )

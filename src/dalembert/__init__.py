@@ -39,7 +39,7 @@ _NAMES = {
         Step Harmonic Polynomial Table Custom
         GeneralizedAlpha TimeResponse Trajectory simulate equilibrium modes
     """,
-    "uncertainty": "Comparison LatinHypercube MonteCarlo Propagation Scan Taylor Vertex compare propagate",
+    "uncertainty": "Comparison LatinHypercube MonteCarlo Optimise Propagation Scan Taylor Vertex compare propagate",
 }
 _HOME = {name: module for module, names in _NAMES.items() for name in names.split()}
 

@@ -71,6 +71,7 @@ from dalembert.surrogate import TotalDegree as TotalDegree
 from dalembert.uncertainty import Comparison as Comparison
 from dalembert.uncertainty import LatinHypercube as LatinHypercube
 from dalembert.uncertainty import MonteCarlo as MonteCarlo
+from dalembert.uncertainty import Optimise as Optimise
 from dalembert.uncertainty import Propagation as Propagation
 from dalembert.uncertainty import Scan as Scan
 from dalembert.uncertainty import Taylor as Taylor

@@ -3,6 +3,7 @@
 from dalembert.uncertainty.comparison import Comparison, Row, compare
 from dalembert.uncertainty.events import Began, Ended, Event, Ran, as_record
 from dalembert.uncertainty.methods import METHODS
+from dalembert.uncertainty.optimise import Optimise
 from dalembert.uncertainty.propagate import propagate
 from dalembert.uncertainty.propagation import Propagation
 from dalembert.uncertainty.samplings import LatinHypercube, MonteCarlo, Scan, Vertex
@@ -16,6 +17,7 @@ __all__ = [
     "Event",
     "LatinHypercube",
     "MonteCarlo",
+    "Optimise",
     "Propagation",
     "Ran",
     "Row",

@@ -4,10 +4,13 @@ from dataclasses import fields
 
 from dalembert.errors import InputError, unknown
 from dalembert.uncertainty.found import Method
+from dalembert.uncertainty.optimise import Optimise
 from dalembert.uncertainty.samplings import LatinHypercube, MonteCarlo, Scan, Vertex
 from dalembert.uncertainty.taylor import Taylor
 
-METHODS: dict[str, type[Method]] = {kind.name: kind for kind in (Vertex, Scan, MonteCarlo, LatinHypercube, Taylor)}
+METHODS: dict[str, type[Method]] = {
+    kind.name: kind for kind in (Vertex, Scan, MonteCarlo, LatinHypercube, Taylor, Optimise)
+}
 
 
 def method_of(given: Method | str) -> Method:

@@ -1,0 +1,85 @@
+"""Direct optimisation of the model itself: every bound is taken by a run, and all outputs share all runs."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from scipy.stats import qmc
+
+from dalembert.errors import InputError
+from dalembert.uncertainty.found import Found
+from dalembert.uncertainty.runs import Runs
+from dalembert.uncertainty.search import Search
+
+
+@dataclass(frozen=True)
+class Optimise:
+    """Extremes by second-order steps from every run, with exact gradients of the model.
+
+    Parameters
+    ----------
+    tolerance : float
+        Stops when no run lets expect a gain above this part of the widest band of its channel.
+    start : int, optional
+        Points of a Latin hypercube to begin with, beside the middle of the box and, for up to four intervals, its
+        corners; 8 an interval if not given. More points see more of a response that swings within the box.
+    most_runs : int
+        Stops there with what was found; a response with its sensitivities counts as 1 + parameters.
+
+    Notes
+    -----
+    Gradients of neighbouring runs give the curvature of every output at every run. Each run's expansion proposes where,
+    within the distance of the first points, each output is smallest and largest; the expansion of the run that is
+    nearest to that place has the last word on what is to be gained. A proposal that serves several outputs is run once.
+    """
+
+    name: ClassVar[str] = "optimise"
+    tolerance: float = 1e-6
+    start: int | None = None
+    most_runs: int = 3000
+
+    def __post_init__(self) -> None:
+        if not 0 < self.tolerance < 1:
+            raise InputError(f"Optimise: tolerance is {self.tolerance}; expected a number between 0 and 1")
+        if self.start is not None and self.start < 0:
+            raise InputError(f"Optimise: start is {self.start}; expected zero points or more")
+
+    def most(self, runs: Runs) -> int | None:
+        return None
+
+    def bound(self, runs: Runs, seed: int) -> Found:
+        design = self._design(runs, seed)
+        search = Search(runs, self.tolerance, radius=2 * len(design) ** (-1 / max(1, len(runs.free))))
+        search.run(design)
+        if not search.extremes:
+            raise runs.none_succeeded()
+        gains, points = search.proposals()
+        while len(points) and (affordable := (self.most_runs - runs.count) // (1 + len(runs.box))) > 0:
+            search.run(points[:affordable])
+            gains, points = search.proposals()
+        found, done = search.extremes, not len(points)
+        ended = (
+            "no run lets expect more"
+            if done
+            else f"the search ended at most_runs = {self.most_runs} before it had found all; raise it"
+        )
+        return Found(
+            "inner bound",
+            found.lower,
+            found.upper,
+            found.at_lower,
+            found.at_upper,
+            gains,
+            f"Every bound is taken by a run of the model, and {ended}.",
+            done and not runs.failures,
+        )
+
+    def _design(self, runs: Runs, seed: int) -> np.ndarray:
+        """First points η, shape (points, free intervals)."""
+        f = len(runs.free)
+        if f == 0:
+            return np.zeros((1, 0))
+        corners = np.stack(np.meshgrid(*[[-1.0, 1.0]] * f, indexing="ij"), -1).reshape(-1, f) if f <= 4 else None
+        number = 8 * f if self.start is None else self.start
+        inside = 2 * qmc.LatinHypercube(f, optimization="random-cd", rng=seed).random(number) - 1 if number else None
+        return np.concatenate([part for part in (np.zeros((1, f)), corners, inside) if part is not None])

@@ -1,0 +1,151 @@
+"""The search for extremes of all outputs at once: where the runs so far let expect more."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.spatial import KDTree
+
+from dalembert.uncertainty.expansions import Expansions, expand, maxima
+from dalembert.uncertainty.found import Extremes
+from dalembert.uncertainty.runs import Runs
+
+COVERED = 0.8
+"""Part of an output's expected gain that a point proposed for another output must bring to serve it too."""
+
+SAME = 1e-7
+"""Coordinates closer than this are the same point."""
+
+MOST = 256
+"""Proposals weighed against each other in one round, those with the largest gains."""
+
+
+@dataclass(frozen=True, eq=False)
+class Wanted:
+    """Places η (n, f) where one side (−1 lower, 1 upper) of one output each is expected to gain."""
+
+    points: np.ndarray
+    outputs: np.ndarray
+    sides: np.ndarray
+    gains: np.ndarray
+
+    def __getitem__(self, rows: np.ndarray) -> "Wanted":
+        return Wanted(self.points[rows], self.outputs[rows], self.sides[rows], self.gains[rows])
+
+
+@dataclass
+class Search:
+    """All runs so far, in the coordinates η of the intervals that have a width.
+
+    Parameters
+    ----------
+    runs : Runs
+    tolerance : float
+        Gains smaller than this part of the widest band of a channel are not looked for.
+    radius : float
+        How far an expansion is followed along each coordinate.
+    """
+
+    runs: Runs
+    tolerance: float
+    radius: float
+    tried: list[np.ndarray] = field(default_factory=list)
+    failed: list[bool] = field(default_factory=list)
+    values: list[np.ndarray] = field(default_factory=list)
+    slopes: list[np.ndarray] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.extremes = Extremes.none(self.runs)
+
+    def run(self, etas: np.ndarray) -> None:
+        """Run the model with its gradients at coordinates (n, f)."""
+        box, free = self.runs.box, self.runs.free
+        for eta in etas:
+            whole = np.zeros(len(box))
+            whole[free] = eta
+            point = box.points(whole)
+            at = self.runs.linearised(point)
+            self.tried.append(eta)
+            self.failed.append(at is None)
+            if at is not None:
+                self.values.append(at[0].ravel())
+                self.slopes.append((at[1] * box.radius)[..., free].reshape(at[0].size, len(free)))
+                self.extremes = self.extremes.with_runs(point[None], at[0][None])
+
+    def proposals(self) -> tuple[np.ndarray, np.ndarray]:
+        """Largest gain expected at each output, (samples, channels), and points (n, f) to run next."""
+        gains = np.zeros(self.runs.shape)
+        if not len(self.runs.free):
+            return gains, np.empty((0, 0))
+        tried, failed = np.array(self.tried), np.array(self.failed)
+        known = Expansions(tried[~failed], np.array(self.values), np.array(self.slopes))
+        tree, places = KDTree(tried), np.where(failed, -1, np.cumsum(~failed) - 1)
+        wanted = self._wanted(known, tree, places)
+        np.maximum.at(gains.reshape(-1), wanted.outputs, wanted.gains)
+        if len(wanted.gains) == 0:
+            return gains, wanted.points
+        order = np.argsort(-wanted.gains / self._least[wanted.outputs], kind="stable")
+        return gains, self._covering(known, places[tree.query(wanted.points)[1]][order], wanted[order])
+
+    @property
+    def _least(self) -> np.ndarray:
+        """Smallest gain that is looked for, (outputs,)."""
+        width = np.max(self.extremes.upper - self.extremes.lower, axis=0)
+        return np.broadcast_to(self.tolerance * width, self.runs.shape).ravel()
+
+    def _wanted(self, known: Expansions, tree: KDTree, places: np.ndarray) -> Wanted:
+        """The best place of each output and side, where more than the least is expected there.
+
+        ``places`` are the numbers of the tried points among the known ones, −1 for those that failed.
+        """
+        parts = []
+        lower, upper = np.maximum(-1 - known.points, -self.radius), np.minimum(1 - known.points, self.radius)
+        for outputs in known.chunks():
+            curvatures = known.curvatures(outputs)
+            for side, best in ((-1, self.extremes.lower), (1, self.extremes.upper)):
+                values, slopes = side * known.values[:, outputs], side * known.slopes[:, outputs]
+                hessians, least = side * curvatures, side * best.ravel()[outputs] + self._least[outputs]
+                run, output = np.nonzero(values + _reach(slopes, hessians, lower, upper) > least)
+                steps = maxima(slopes[run, output], hessians[run, output], lower[run], upper[run])
+                points = np.clip(known.points[run] + steps, -1, 1)
+                apart, nearest = tree.query(points)
+                near = places[nearest]
+                steps = points - known.points[near]
+                expected = values[near, output] + expand(slopes[near, output], hessians[near, output], steps)
+                expected[(near < 0) | (apart < SAME)] = -np.inf
+                first = _first(output, expected)
+                first = first[expected[first] > least[output[first]]]
+                gain = expected[first] - (least - self._least[outputs])[output[first]]
+                parts.append(Wanted(points[first], outputs[output[first]], np.full(len(first), side), gain))
+        return Wanted(*(np.concatenate([getattr(part, name) for part in parts]) for name in Wanted.__annotations__))
+
+    def _covering(self, known: Expansions, near: np.ndarray, wanted: Wanted) -> np.ndarray:
+        """Few of the wanted points that serve all outputs; ``near`` (n,) are the runs that know about each point."""
+        near, wanted = near[:MOST], wanted[np.arange(min(MOST, len(near)))]
+        outputs, column = np.unique(wanted.outputs, return_inverse=True)
+        curvatures = known.curvatures(outputs)[near][:, column]
+        steps = (wanted.points - known.points[near])[:, None]
+        at = np.ix_(near, wanted.outputs)
+        expected = known.values[at] + expand(known.slopes[at], curvatures, steps)
+        best = np.where(
+            wanted.sides < 0, self.extremes.lower.ravel()[wanted.outputs], self.extremes.upper.ravel()[wanted.outputs]
+        )
+        serves = wanted.sides * (expected - best) >= COVERED * wanted.gains
+        np.fill_diagonal(serves, True)
+        chosen, open_ = [], np.ones(len(near), dtype=bool)
+        while open_.any():
+            chosen.append(int(np.argmax(np.sum(serves & open_, axis=1))))
+            open_ &= ~serves[chosen[-1]]
+        return wanted.points[chosen]
+
+
+def _reach(slopes: np.ndarray, hessians: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
+    """What expansions (runs, outputs) cannot exceed within their boxes (runs, f)."""
+    far = np.maximum(-lower, upper)
+    rise = np.einsum("nmf,nf->nm", np.abs(slopes), far)
+    return rise + np.einsum("nmfg,nf,ng->nm", np.abs(hessians), far, far) / 2
+
+
+def _first(groups: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Place of the largest value of each group."""
+    order = np.lexsort((-values, groups))
+    return order[np.unique(groups[order], return_index=True)[1]]

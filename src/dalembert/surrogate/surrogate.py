@@ -1,5 +1,6 @@
 """A polynomial in place of a costly function, with the runs that it comes from and an estimate of its error."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -78,8 +79,10 @@ class Surrogate:
         share = wanted * np.maximum(trust, 1e-3) / max(len(self._shells), 1)
         return max(self.order + 1, *(needed_order(shells, share) for shells in self._shells))
 
-    def demand(self, tolerance: ArrayLike) -> None:
+    def demand(self, tolerance: ArrayLike, name: Callable[[int], str] = "output {}".format) -> None:
         """Refuses a surrogate whose error is above the tolerance, a number or (outputs,).
+
+        ``name`` is how the error calls an output, given its number.
 
         Raises
         ------
@@ -92,7 +95,7 @@ class Surrogate:
         worst = int(np.argmax(self.error / np.maximum(wanted, np.finfo(float).tiny)))
         order = self.needed_order(wanted)
         raise SolveError(
-            f"the surrogate of order {self.order} is wrong by about {self.error[worst]:.2g} at output {worst}, "
+            f"the surrogate of order {self.order} is wrong by about {self.error[worst]:.2g} at {name(worst)}, "
             f"more than the tolerance of {wanted[worst]:.2g}; about order {order} would do: "
             f"{self.scheme.more(order)}, raise the tolerance, or make the box smaller"
         )

@@ -261,6 +261,11 @@ INPUTS = {
         lambda: mb.RevoluteJoint("pin", mb.Ground(), bar().start, slip_rate=0.0),
         "revolute joint 'pin': slip_rate is 0; expected a positive number",
     ),
+    "a friction coefficient without a lever": (
+        lambda: mb.RevoluteJoint("pin", mb.Ground(), bar().start, friction_coefficient=0.3),
+        "revolute joint 'pin': a friction_coefficient was given without a pin_radius, so it would have no lever; give "
+        "the pin's radius in m",
+    ),
     "a slip velocity of zero": (
         lambda: mb.PrismaticJoint("slide", mb.Ground(), bar().start, slip_velocity=0.0),
         "prismatic joint 'slide': slip_velocity is 0; expected a positive number",

@@ -62,6 +62,23 @@ def scales(lowered: Lowered) -> np.ndarray:
     return scale
 
 
+def refuse_kinks(lowered: Lowered, end: float) -> None:
+    """Raise where the velocity of a prescribed motion jumps within the motion.
+
+    Raises
+    ------
+    ModelError
+        With the joint and the time.
+    """
+    for time, joint in lowered.kinks:
+        if 0 < time < end * (1 - 1e-9):
+            raise ModelError(
+                f"prescribed motion {joint!r}: its Table begins or ends at {time:g} s with a slope, within the motion "
+                f"of {end:g} s, so its velocity would jump, which no mechanism can follow; give values for all of the "
+                "motion, or let them come to rest"
+            )
+
+
 def refuse_redundancy(lowered: Lowered) -> None:
     """Raise where a constraint follows from the others.
 

@@ -10,7 +10,7 @@ from dalembert.errors import InputError, ModelError, unknown
 from dalembert.multibody.fields import Number, number, require, require_not_negative
 from dalembert.multibody.kernels import joints as kernel
 from dalembert.multibody.points import Side, require_direction
-from dalembert.multibody.signals import Course, Step, Table
+from dalembert.multibody.signals import Course, Step, Table, as_signal
 
 if TYPE_CHECKING:
     from dalembert.multibody.lowering import Lowering
@@ -62,13 +62,18 @@ class RevoluteJoint(Joint):
     viscous: Number | None = number("N*m*s", None)
     coulomb: Number | None = number("N*m", None)
     friction_coefficient: Number | None = number("", None)
-    pin_radius: Number = number("m", 0.0)
+    pin_radius: Number | None = number("m", None)
     slip_rate: Number = number("rad/s", 1e-3)
 
     def __post_init__(self) -> None:
         owner = f"revolute joint {self.name!r}"
-        require_not_negative(owner, pin_radius=self.pin_radius, **_given(self))
+        require_not_negative(owner, pin_radius=self.pin_radius or 0.0, **_given(self))
         require(owner, slip_rate=self.slip_rate)
+        if self.friction_coefficient is not None and self.pin_radius is None:
+            raise InputError(
+                f"{owner}: a friction_coefficient was given without a pin_radius, so it would have no lever; "
+                "give the pin's radius in m"
+            )
 
     def lower(self, lowering: "Lowering") -> None:
         pair = lowering.pair(self.a, self.b, self.name)
@@ -76,9 +81,14 @@ class RevoluteJoint(Joint):
         lowering.add("joints", index, [kernel.REVOLUTE, *pair.kinds, 0, pair.wraps], [*pair.data, 0.0, 0.0])
         if _given(self):
             self._oriented("a rigid body where a joint has friction")
-            law = self.viscous or 0.0, self.coulomb or 0.0, (self.friction_coefficient or 0.0) * self.pin_radius
+            lever = (self.friction_coefficient or 0.0) * (self.pin_radius or 0.0)
             meta = [kernel.REVOLUTE, *pair.kinds, 0, pair.wraps]
-            lowering.add("frictions", index, meta, [*pair.data, 0.0, 0.0, *law, self.slip_rate])
+            lowering.add(
+                "frictions",
+                index,
+                meta,
+                [*pair.data, 0.0, 0.0, self.viscous or 0.0, self.coulomb or 0.0, lever, self.slip_rate],
+            )
 
 
 @dataclass(frozen=True)
@@ -197,5 +207,6 @@ class PrescribedMotion(Joint):
         if self.coordinate == "angle":
             self._oriented()
         index = pair.slots + lowering.multipliers(self.name, 1)
+        lowering.kinks += [(time, self.name) for time in as_signal(self.motion).kinks]
         meta = [self._KINDS[self.coordinate], *pair.kinds, lowering.signal(self.motion), pair.wraps]
         lowering.add("joints", index, meta, [*pair.data, 0.0, 0.0])

@@ -58,6 +58,8 @@ class Lowered:
         First unknowns and velocities, as placed: joints may not be closed yet.
     jumps : tuple of float
         Times, s, at which loads jump.
+    kinks : tuple of (time, joint)
+        Times, s, at which the velocity of a prescribed motion would jump.
     failures : Failures
         What functions of the user's raised.
     """
@@ -73,6 +75,7 @@ class Lowered:
     x: np.ndarray
     v: np.ndarray
     jumps: tuple[float, ...]
+    kinks: tuple[tuple[float, str], ...]
     failures: Failures = field(compare=False, repr=False)
 
     @property
@@ -122,6 +125,7 @@ class Lowering:
 
     def __init__(self, system: System) -> None:
         self.gravity = system.gravity
+        self.kinks: list[tuple[float, str]] = []
         self._system = system
         self._index: dict[str, list] = {kind: [] for kind in KINDS}
         self._meta: dict[str, list] = {kind: [] for kind in KINDS}
@@ -300,6 +304,7 @@ class Lowering:
             x=x,
             v=np.concatenate([*velocities, tail]),
             jumps=tuple(sorted(time for time in self._jumps if np.isfinite(time))),
+            kinks=tuple(self.kinks),
             failures=self._failures,
         )
         if not all(np.all(np.isfinite(array)) for array in (x, lowered.v, lowered.signal_data, *lowered.data.values())):

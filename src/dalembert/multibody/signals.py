@@ -29,6 +29,11 @@ class Signal:
         """Times at which the value jumps; integration starts anew there."""
         return ()
 
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """Times at which the rate of a smooth function jumps; no prescribed motion may reach beyond."""
+        return ()
+
 
 @dataclass(frozen=True)
 class Constant(Signal):
@@ -112,10 +117,22 @@ class Table(Signal):
         if not np.all(np.diff(self.times) > 0):
             raise InputError("Table: times must increase; sort them and remove repeated ones")
 
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """The ends at which the spline comes or goes with a slope."""
+        times, values = np.asarray(self.times, dtype=float), np.real(self.values)
+        ends = times[[0, -1]]
+        slopes = np.abs(self._spline(times, values)(ends, 1)) * (ends[1] - ends[0])
+        return tuple(float(end) for end, slope in zip(ends, slopes, strict=True) if slope > 1e-6 * np.ptp(values))
+
+    @staticmethod
+    def _spline(times: np.ndarray, values: np.ndarray) -> CubicSpline:
+        return CubicSpline(times, values, bc_type="natural")
+
     def lower(self, lowering: "Lowering") -> tuple[int, Sequence[Number], Sequence[float]]:
         times, values = np.asarray(self.times, dtype=float), np.asarray(self.values)
         if self.kind == "cubic":
-            pieces = CubicSpline(times, values, bc_type="natural").c[::-1].T
+            pieces = self._spline(times, values).c[::-1].T
         else:
             pieces = np.zeros((len(times) - 1, 4), dtype=values.dtype if values.dtype == complex else float)
             pieces[:, 0], pieces[:, 1] = values[:-1], np.diff(values) / np.diff(times)

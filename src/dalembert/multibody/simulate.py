@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 
 from dalembert.errors import InputError, SolveError
-from dalembert.multibody.assemble import assembled, refuse_redundancy
+from dalembert.multibody.assemble import assembled, refuse_kinks, refuse_redundancy
 from dalembert.multibody.callbacks import in_complex_numbers
 from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha
 from dalembert.multibody.integrators.run import run
@@ -61,6 +61,7 @@ def simulate(
     with in_complex_numbers(strict=False):
         lowered = assembled(system)
         refuse_redundancy(lowered)
+        refuse_kinks(lowered, end)
         steps = output_times(solver, end, lowered.jumps)
         times = steps if times is None else checked(times, end)
         grid = np.union1d(times, steps) if len(steps) * len(lowered.x) < _ROOM else times

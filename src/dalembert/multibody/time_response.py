@@ -11,7 +11,7 @@ import numpy as np
 
 from dalembert.errors import DalembertError, InputError, SolveError
 from dalembert.forward import Channel, Coordinate, Responses
-from dalembert.multibody.assemble import assembled, refuse_redundancy
+from dalembert.multibody.assemble import assembled, refuse_kinks, refuse_redundancy
 from dalembert.multibody.callbacks import in_complex_numbers
 from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha
 from dalembert.multibody.integrators.problem import Problem
@@ -200,6 +200,7 @@ class TimeResponse:
         system = self.builder(**self.parameters.mapping(self.parameters.start))
         lowered = assembled(system)
         refuse_redundancy(lowered)
+        refuse_kinks(lowered, float(self.times[-1]))
         problem = make_problem(lowered, self.times)
         return _Frame(lowered, problem, observer(system, lowered, self.channel_names))
 

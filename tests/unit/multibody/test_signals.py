@@ -5,7 +5,7 @@ import pytest
 from scipy.interpolate import CubicSpline
 
 import dalembert.multibody as mb
-from dalembert.errors import InputError
+from dalembert.errors import InputError, ModelError
 from dalembert.multibody.evaluate import constraint_rates, residual
 from dalembert.multibody.lowering import lower
 from support import says
@@ -152,3 +152,30 @@ def test_a_motion_whose_velocity_jumps_is_refused(motion: mb.signals.Signal) -> 
     system = mb.System()
     with pytest.raises(InputError, match=says(sentence)):
         mb.PrescribedMotion("drive", system.ground, mb.RigidBar("bar", 1.0, 1.0).start, "angle", motion)
+
+
+def driven(course: mb.Table) -> mb.System:
+    system = mb.System()
+    crank = system.add(mb.RigidBar("crank", 1.0, 1.0))
+    system.add(mb.RevoluteJoint("pin", system.ground, crank.start))
+    system.add(mb.PrescribedMotion("drive", system.ground.point(0.0, 0.0), crank.start, "angle", course))
+    return system
+
+
+def test_a_table_that_ends_in_full_motion_is_refused() -> None:
+    course = mb.Table([0.0, 0.1, 0.2, 0.3], [0.0, 0.1, 0.2, 0.3])
+    sentence = (
+        "prescribed motion 'drive': its Table begins or ends at 0.3 s with a slope, within the motion of 0.5 s, so "
+        "its velocity would jump, which no mechanism can follow; give values for all of the motion, or let them come to "
+        "rest"
+    )
+    with pytest.raises(ModelError, match=says(sentence)):
+        mb.simulate(driven(course), 0.5)
+    with pytest.raises(ModelError, match=says(sentence)):
+        mb.TimeResponse(lambda: driven(course), {}, ["crank.end.x"], [0.5]).evaluate(np.empty((1, 0)))
+    assert mb.simulate(driven(course), 0.3).times[-1] == 0.3
+
+
+def test_a_table_that_comes_to_rest_may_end_before_the_motion() -> None:
+    course = mb.Table([0.0, 1.0, 2.0, 3.0], [1.0, 1.0, 1.0, 1.0])
+    assert mb.simulate(driven(course), 4.0).times[-1] == 4.0

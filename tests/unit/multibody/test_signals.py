@@ -166,8 +166,8 @@ def test_a_table_that_ends_in_full_motion_is_refused() -> None:
     course = mb.Table([0.0, 0.1, 0.2, 0.3], [0.0, 0.1, 0.2, 0.3])
     sentence = (
         "prescribed motion 'drive': its Table begins or ends at 0.3 s with a slope, within the motion of 0.5 s, so "
-        "its velocity would jump, which no mechanism can follow; give values for all of the motion, or let them come to "
-        "rest"
+        "its velocity would jump, which no mechanism can follow; give values for all of the motion, or let them come "
+        "to rest"
     )
     with pytest.raises(ModelError, match=says(sentence)):
         mb.simulate(driven(course), 0.5)

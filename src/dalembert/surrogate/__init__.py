@@ -1,9 +1,10 @@
 """Chebyshev surrogates of costly functions over a box, and bounds of a polynomial on a box. They know no models."""
 
+from dalembert.surrogate.bounds import PolynomialBounds, bounds
 from dalembert.surrogate.fit import fit
 from dalembert.surrogate.polynomial import ChebyshevPolynomial
 from dalembert.surrogate.surrogate import Surrogate
 from dalembert.surrogate.tensor import Tensor
 from dalembert.surrogate.total_degree import TotalDegree
 
-__all__ = ["ChebyshevPolynomial", "Surrogate", "Tensor", "TotalDegree", "fit"]
+__all__ = ["ChebyshevPolynomial", "PolynomialBounds", "Surrogate", "Tensor", "TotalDegree", "bounds", "fit"]

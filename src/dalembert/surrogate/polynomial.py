@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from dalembert.errors import InputError
+from dalembert.intervals import placed
 from dalembert.surrogate.basis import chebyshev, products
 
 
@@ -87,6 +88,10 @@ class ChebyshevPolynomial:
             0.0,
             np.where(points > middle, 1 - (self.upper - points) * self.slope, (points - self.lower) * self.slope - 1),
         )
+
+    def points(self, eta: np.ndarray) -> np.ndarray:
+        """Points x of coordinates η in [−1, 1], shape (..., d)."""
+        return placed(self.lower, self.upper, eta)
 
     def __call__(self, points: ArrayLike) -> np.ndarray:
         """Values at points (n, d), shape (n, outputs)."""

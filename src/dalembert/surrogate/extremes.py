@@ -1,0 +1,241 @@
+"""Compiled: smallest and largest values of each output of a polynomial on boxes, by Newton's method from a scan."""
+
+import numpy as np
+from numba import njit
+
+ITERATIONS, DAMPINGS = 60, 40
+CONVERGED = 1e-15
+"""A step that promises less than this part of the sum of |coefficients| is not taken."""
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _ladders(eta, degrees, tables):
+    """Fills tables[derivative, k, m] with T_m(η_k) and its first two derivatives."""
+    for k in range(len(eta)):
+        x = eta[k]
+        tables[:, k, :2] = 0.0
+        tables[0, k, 0] = 1.0
+        if degrees[k] > 0:
+            tables[0, k, 1], tables[1, k, 1] = x, 1.0
+        for m in range(1, degrees[k]):
+            tables[0, k, m + 1] = 2 * x * tables[0, k, m] - tables[0, k, m - 1]
+            tables[1, k, m + 1] = 2 * tables[0, k, m] + 2 * x * tables[1, k, m] - tables[1, k, m - 1]
+            tables[2, k, m + 1] = 4 * tables[1, k, m] + 2 * x * tables[2, k, m] - tables[2, k, m - 1]
+
+
+@njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract"})
+def _along(row, table, length):
+    """Σ_m row[m] table[m]."""
+    total = 0.0
+    for m in range(length):
+        total += row[m] * table[m]
+    return total
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _value_and_gradient(tables, inner, exponents, active, counts, lengths, coefficients, gradient):
+    """Value, and the gradient with respect to η in place; a row multiplies only the directions that it depends on."""
+    gradient[:] = 0.0
+    value = 0.0
+    for r in range(len(coefficients)):
+        along = _along(coefficients[r], tables[0, inner], lengths[r])
+        slope = _along(coefficients[r], tables[1, inner], lengths[r])
+        for i in range(counts[r]):
+            factor = tables[0, active[r, i], exponents[r, i]]
+            product = along * tables[1, active[r, i], exponents[r, i]]
+            for j in range(counts[r]):
+                if j != i:
+                    product *= tables[0, active[r, j], exponents[r, j]]
+            gradient[active[r, i]] += product
+            slope *= factor
+        for i in range(counts[r]):
+            along *= tables[0, active[r, i], exponents[r, i]]
+        value += along
+        gradient[inner] += slope
+    return value
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _hessian(tables, inner, exponents, active, counts, lengths, coefficients, hessian):
+    """Second derivatives with respect to η, in place."""
+    hessian[:] = 0.0
+    for r in range(len(coefficients)):
+        along = _along(coefficients[r], tables[0, inner], lengths[r])
+        slope = _along(coefficients[r], tables[1, inner], lengths[r])
+        curvature = _along(coefficients[r], tables[2, inner], lengths[r])
+        for i in range(counts[r]):
+            mixed = slope
+            for m in range(counts[r]):
+                mixed *= tables[int(m == i), active[r, m], exponents[r, m]]
+            hessian[active[r, i], inner] += mixed
+            for j in range(i + 1):
+                product = along
+                for m in range(counts[r]):
+                    product *= tables[(m == i) + (m == j), active[r, m], exponents[r, m]]
+                hessian[active[r, i], active[r, j]] += product
+            curvature *= tables[0, active[r, i], exponents[r, i]]
+        hessian[inner, inner] += curvature
+    for i in range(len(hessian)):
+        for j in range(i):
+            if i == inner or j == inner:
+                other = j if i == inner else i
+                hessian[i, j] = hessian[other, inner]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _step(hessian, gradient, free, damping, factor, step):
+    """Solves (H + damping) step = −gradient in the free directions by Cholesky; whether H + damping is definite."""
+    size = len(gradient)
+    step[:] = 0.0
+    for i in range(size):
+        if not free[i]:
+            continue
+        for j in range(i + 1):
+            if not free[j]:
+                continue
+            rest = hessian[i, j] + (damping if i == j else 0.0)
+            for m in range(j):
+                if free[m]:
+                    rest -= factor[i, m] * factor[j, m]
+            if i != j:
+                factor[i, j] = rest / factor[j, j]
+            elif rest <= 1e-14 * (abs(hessian[i, i]) + damping):
+                return False
+            else:
+                factor[i, i] = np.sqrt(rest)
+        rest = -gradient[i]
+        for m in range(i):
+            if free[m]:
+                rest -= factor[i, m] * step[m]
+        step[i] = rest / factor[i, i]
+    for i in range(size - 1, -1, -1):
+        if free[i]:
+            for m in range(i + 1, size):
+                if free[m]:
+                    step[i] -= factor[m, i] * step[m]
+            step[i] /= factor[i, i]
+    return True
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _minimum(eta, low, high, degrees, inner, exponents, active, counts, lengths, coefficients, work, tables):
+    """Local minimum in a box by Newton's method projected onto it; η in place, the value returned."""
+    size = len(eta)
+    gradient, step, trial, trial_gradient = work[0], work[1], work[2], work[3]
+    hessian, factor = work[4 : 4 + size], work[4 + size : 4 + 2 * size]
+    free = np.empty(size, dtype=np.bool_)
+    small = CONVERGED * np.sum(np.abs(coefficients))
+    _ladders(eta, degrees, tables)
+    value = _value_and_gradient(tables, inner, exponents, active, counts, lengths, coefficients, gradient)
+    for _ in range(ITERATIONS):
+        reach = 0.0
+        for k in range(size):
+            inward = (high[k] - eta[k]) if gradient[k] < 0 else (eta[k] - low[k])
+            free[k] = inward > 0
+            reach += abs(gradient[k]) * inward
+        if reach <= small:
+            break
+        _hessian(tables, inner, exponents, active, counts, lengths, coefficients, hessian)
+        size_of_hessian = 0.0
+        for k in range(size):
+            size_of_hessian = max(size_of_hessian, abs(hessian[k, k]))
+        damping, lower = 0.0, value
+        for _ in range(DAMPINGS):
+            promised = 0.0
+            clipped = False
+            if _step(hessian, gradient, free, damping, factor, step):
+                for k in range(size):
+                    trial[k] = min(max(eta[k] + step[k], low[k]), high[k])
+                    promised -= gradient[k] * (trial[k] - eta[k])
+                    clipped |= trial[k] != eta[k] + step[k]
+                if promised > small:
+                    _ladders(trial, degrees, tables)
+                    lower = _value_and_gradient(
+                        tables, inner, exponents, active, counts, lengths, coefficients, trial_gradient
+                    )
+                if lower < value - 1e-4 * promised or (promised <= small and not clipped):
+                    break
+            damping = max(4 * damping, 0.1 * size_of_hessian, reach)
+        if not lower < value:
+            break
+        value = lower
+        eta[:] = trial
+        gradient[:] = trial_gradient
+    return value
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _lowest_valleys(values, sides, sign, best, places):
+    """Places of the lowest points of a scan that no neighbour along an axis is below; how many."""
+    found = 0
+    for g in range(len(values)):
+        value = sign * values[g]
+        if found == len(best) and value >= best[found - 1]:
+            continue
+        stride = 1
+        valley = True
+        for k in range(len(sides) - 1, -1, -1):
+            here = (g // stride) % sides[k]
+            if (here > 0 and sign * values[g - stride] < value) or (
+                here < sides[k] - 1 and sign * values[g + stride] <= value
+            ):
+                valley = False
+                break
+            stride *= sides[k]
+        if valley:
+            place = min(found, len(best) - 1)
+            while place > 0 and best[place - 1] > value:
+                best[place], places[place] = best[place - 1], places[place - 1]
+                place -= 1
+            best[place], places[place] = value, g
+            found = min(found + 1, len(best))
+    return found
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def extremes(
+    values, grid, sides, low, high, degrees, inner, exponents, active, counts, lengths, coefficients, starts, bounds, at
+):
+    """Refines the extremes of a scan; all in coordinates η of the polynomial.
+
+    Parameters
+    ----------
+    values : array, shape (boxes, outputs, points)
+        Of the polynomial at the scan's points.
+    grid : array, shape (points, d)
+        The scan's points relative to each box, in [0, 1].
+    sides : array of int, shape (d,) or (0,)
+        Points of the scan in each direction, the last one fastest; none if they form no grid.
+    low, high : array, shape (boxes, d)
+    degrees : array of int, shape (d,)
+    inner, exponents, active, counts, lengths, coefficients
+        As in :class:`dalembert.surrogate.rows.Rows`.
+    starts : int
+        Most points of the scan to refine from.
+    bounds : array, shape (2, boxes, outputs)
+        Filled with the smallest and the largest values.
+    at : array, shape (2, boxes, outputs, d)
+        Filled with where they are.
+    """
+    size = low.shape[1]
+    work = np.empty((4 + 2 * size, size))
+    tables = np.zeros((3, size, max(2, degrees.max() + 1)))
+    best, places = np.empty(starts), np.empty(starts, dtype=np.int64)
+    eta, signed = np.empty(size), np.empty(coefficients.shape[1:])
+    for b in range(len(low)):
+        for o in range(len(coefficients)):
+            for side in range(2):
+                sign = 1.0 - 2.0 * side
+                signed[:] = sign * coefficients[o]
+                lowest = np.inf
+                for start in range(_lowest_valleys(values[b, o], sides, sign, best, places)):
+                    for k in range(size):
+                        part = grid[places[start], k]
+                        eta[k] = high[b, k] if part == 1 else low[b, k] + part * (high[b, k] - low[b, k])
+                    value = _minimum(
+                        eta, low[b], high[b], degrees, inner, exponents, active, counts, lengths, signed, work, tables
+                    )
+                    if value < lowest:
+                        lowest = value
+                        at[side, b, o] = eta
+                bounds[side, b, o] = sign * lowest

@@ -1,0 +1,93 @@
+"""Values of a polynomial at a grid in each of many boxes."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import qmc
+
+from dalembert.surrogate.basis import chebyshev, products
+from dalembert.surrogate.polynomial import ChebyshevPolynomial
+
+MOST_POINTS = 20_000
+"""Points of the largest grid: more directions are scanned at as many points spread over box and sides."""
+DENSE = 1_000_000
+"""Largest table of coefficients, absent terms as zeros, for which grids are evaluated direction by direction."""
+
+
+@dataclass(frozen=True)
+class Scan:
+    """Points of a scan relative to a box.
+
+    Parameters
+    ----------
+    grid : array, shape (points, d)
+        In [0, 1].
+    sides : array of int, shape (d,) or (0,)
+        Points in each direction, the last one fastest; none if they form no grid.
+    """
+
+    grid: np.ndarray
+    sides: np.ndarray
+
+
+def spread(polynomial: ChebyshevPolynomial, points: int | None) -> Scan:
+    """Points at which to scan: in each direction as many as asked for, or two more than the degree.
+
+    Chebyshev points of the second kind, cos πj/(n − 1), both ends included; equidistant ones where a number is asked
+    for. In so many directions that a grid would be too large: a Sobol sequence, half of its coordinates at the ends.
+    """
+    degrees = polynomial.degrees
+    sides = np.where(degrees > 0, degrees + 2 if points is None else points, 1)
+    if np.prod(sides.astype(float)) > MOST_POINTS:
+        sobol = qmc.Sobol(2 * len(degrees), scramble=False).random_base2(12)
+        place, end = sobol[:, : len(degrees)], sobol[:, len(degrees) :]
+        return Scan(np.where(end < 0.25, 0.0, np.where(end < 0.5, 1.0, place)), np.empty(0, dtype=int))
+    lines = [
+        np.array([1.0])
+        if n == 1
+        else np.linspace(0, 1, n)
+        if points is not None
+        else np.sin(np.pi * np.arange(n) / (2 * (n - 1))) ** 2
+        for n in sides
+    ]
+    return Scan(np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, len(lines)), sides)
+
+
+def values(polynomial: ChebyshevPolynomial, scan: Scan, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """Values (boxes, outputs, points) at the points of a scan, of boxes (boxes, d) given in coordinates η."""
+    degrees, outputs = polynomial.degrees, polynomial.coefficients.shape[1]
+    if not len(scan.sides) or outputs * np.prod(degrees + 1.0) > DENSE:
+        return np.stack([_at(polynomial, a + scan.grid * (b - a)) for a, b in zip(low, high, strict=True)])
+    grid = scan.grid.reshape(*scan.sides, -1)
+    bases = []
+    for k, number in enumerate(scan.sides):
+        line = np.moveaxis(grid[..., k], k, 0).reshape(number, -1)[:, 0]
+        eta = low[:, k, None] + line * (high - low)[:, k, None]
+        bases.append(chebyshev(eta.reshape(-1, 1), degrees[[k]])[0].reshape(len(low), number, -1))
+    return transformed(polynomial, bases)
+
+
+def transformed(polynomial: ChebyshevPolynomial, bases: list[np.ndarray]) -> np.ndarray:
+    """Coefficients taken to another basis, direction by direction: shape (boxes, outputs, Π n_k), the last one fastest.
+
+    Parameters
+    ----------
+    polynomial : ChebyshevPolynomial
+    bases : list of d arrays, shape (boxes, n_k, degrees_k + 1)
+        What each Chebyshev polynomial of a direction is in the new basis.
+    """
+    size, outputs = polynomial.degrees + 1, polynomial.coefficients.shape[1]
+    boxes = len(bases[0])
+    table = np.zeros((size[0], outputs, *size[1:]))
+    table[polynomial.exponents[:, 0], :, *polynomial.exponents.T[1:]] = polynomial.coefficients
+    # The first direction as one product for all boxes, the others box by box from the last one on.
+    found = bases[0].reshape(-1, size[0]) @ table.reshape(size[0], -1)
+    done = 1
+    for k in range(len(size) - 1, 0, -1):
+        found = bases[k][:, None] @ found.reshape(boxes, -1, size[k], done)
+        done *= bases[k].shape[1]
+    return found.reshape(boxes, -1, outputs, done).swapaxes(1, 2).reshape(boxes, outputs, -1)
+
+
+def _at(polynomial: ChebyshevPolynomial, eta: np.ndarray) -> np.ndarray:
+    return (products(chebyshev(eta, polynomial.degrees), polynomial.exponents) @ polynomial.coefficients).T

@@ -3,7 +3,7 @@
 import sys
 from importlib import import_module
 
-NAMES = ("steps", "chains", "sensitivities", "batches", "identification", "startup")
+NAMES = ("steps", "chains", "sensitivities", "batches", "identification", "swarms", "startup")
 
 
 def main(chosen: list[str]) -> int:

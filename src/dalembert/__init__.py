@@ -39,7 +39,10 @@ _NAMES = {
         Step Harmonic Polynomial Table Custom
         GeneralizedAlpha TimeResponse Trajectory simulate equilibrium modes
     """,
-    "uncertainty": "Comparison LatinHypercube MonteCarlo Optimise Propagation Scan Taylor Vertex compare propagate",
+    "uncertainty": """
+        Comparison Propagation compare propagate
+        Chebyshev LatinHypercube MonteCarlo Optimise Scan Taylor Vertex
+    """,
 }
 _HOME = {name: module for module, names in _NAMES.items() for name in names.split()}
 

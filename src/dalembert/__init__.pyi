@@ -68,6 +68,7 @@ from dalembert.surrogate import ChebyshevPolynomial as ChebyshevPolynomial
 from dalembert.surrogate import Surrogate as Surrogate
 from dalembert.surrogate import Tensor as Tensor
 from dalembert.surrogate import TotalDegree as TotalDegree
+from dalembert.uncertainty import Chebyshev as Chebyshev
 from dalembert.uncertainty import Comparison as Comparison
 from dalembert.uncertainty import LatinHypercube as LatinHypercube
 from dalembert.uncertainty import MonteCarlo as MonteCarlo

@@ -1,5 +1,6 @@
 """Bounds of a response while parameters are anywhere in their intervals."""
 
+from dalembert.uncertainty.chebyshev import Chebyshev
 from dalembert.uncertainty.comparison import Comparison, Row, compare
 from dalembert.uncertainty.events import Began, Ended, Event, Ran, as_record
 from dalembert.uncertainty.methods import METHODS
@@ -12,6 +13,7 @@ from dalembert.uncertainty.taylor import Taylor
 __all__ = [
     "METHODS",
     "Began",
+    "Chebyshev",
     "Comparison",
     "Ended",
     "Event",

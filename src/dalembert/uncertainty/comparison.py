@@ -65,6 +65,20 @@ class Comparison:
             rows.append(Row(own.method, own.kind, width, float(apart.max()), rms, own.runs, own.seconds, own.success))
         return tuple(rows)
 
+    @property
+    def success(self) -> bool:
+        """Whether every method gave its bounds and came to its end."""
+        return not self.refused and all(result.success for result in self.results)
+
+    @property
+    def status(self) -> str:
+        """What is compared, or which methods did not succeed, in a sentence."""
+        failed = [result.method for result in self.results if not result.success]
+        failed += [method for method, _ in self.refused]
+        if failed:
+            return f"{', '.join(failed)} did not succeed; the table of methods says why."
+        return f"Bounds of the same response over the same box, each measured by its distance from {self.reference}."
+
     def summary(self) -> str:
         """The methods as a text table."""
         from dalembert.uncertainty.summary import table

@@ -3,13 +3,14 @@
 from dataclasses import fields
 
 from dalembert.errors import InputError, unknown
+from dalembert.uncertainty.chebyshev import Chebyshev
 from dalembert.uncertainty.found import Method
 from dalembert.uncertainty.optimise import Optimise
 from dalembert.uncertainty.samplings import LatinHypercube, MonteCarlo, Scan, Vertex
 from dalembert.uncertainty.taylor import Taylor
 
 METHODS: dict[str, type[Method]] = {
-    kind.name: kind for kind in (Vertex, Scan, MonteCarlo, LatinHypercube, Taylor, Optimise)
+    kind.name: kind for kind in (Vertex, Scan, MonteCarlo, LatinHypercube, Taylor, Optimise, Chebyshev)
 }
 
 

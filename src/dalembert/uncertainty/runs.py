@@ -90,6 +90,13 @@ class Runs:
             self._ran(1 + len(point))
         return response, jacobian
 
+    def place(self, output: int) -> str:
+        """Channel and sample of an output, counted through the channels of the first sample, then of the second …"""
+        sample, column = divmod(output, self.shape[1])
+        along = self.model.coordinate
+        at = f"{along.name} {along.values[sample]:.6g} {along.unit}".rstrip()
+        return f"channel {self.model.channels[column].name!r}, {at}"
+
     def tell(self, event: Event) -> None:
         if self.on_event is not None:
             self.on_event(event)

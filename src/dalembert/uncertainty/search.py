@@ -15,6 +15,9 @@ COVERED = 0.8
 SAME = 1e-7
 """Coordinates closer than this are the same point."""
 
+HALVINGS = 20
+"""Of a step that ends nearest to a run that failed, before it is given up."""
+
 MOST = 256
 """Proposals weighed against each other in one round, those with the largest gains."""
 
@@ -30,6 +33,30 @@ class Wanted:
 
     def __getitem__(self, rows: np.ndarray) -> "Wanted":
         return Wanted(self.points[rows], self.outputs[rows], self.sides[rows], self.gains[rows])
+
+
+class Tried:
+    """All points η (n, f) where the model was run, and which of these runs failed."""
+
+    def __init__(self, points: np.ndarray, failed: np.ndarray) -> None:
+        self.points, self.failed = points, failed
+        self._tree = KDTree(points)
+        self._number = np.where(failed, -1, np.cumsum(~failed) - 1)
+
+    def nearest(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Number of the nearest run among those that succeeded, −1 if it failed, and its distance; both (n,)."""
+        apart, nearest = map(np.asarray, self._tree.query(points))
+        return self._number[nearest], apart
+
+    def short_of_failures(self, points: np.ndarray, steps: np.ndarray) -> np.ndarray:
+        """Where steps (n, f) from points lead, halved until they end nearer to a run that succeeded."""
+        steps = steps.copy()
+        for _ in range(HALVINGS):
+            blocked = np.flatnonzero(self.nearest(points + steps)[0] < 0)
+            if len(blocked) == 0:
+                break
+            steps[blocked] /= 2
+        return points + steps
 
 
 @dataclass
@@ -76,15 +103,14 @@ class Search:
         gains = np.zeros(self.runs.shape)
         if not len(self.runs.free):
             return gains, np.empty((0, 0))
-        tried, failed = np.array(self.tried), np.array(self.failed)
-        known = Expansions(tried[~failed], np.array(self.values), np.array(self.slopes))
-        tree, places = KDTree(tried), np.where(failed, -1, np.cumsum(~failed) - 1)
-        wanted = self._wanted(known, tree, places)
+        tried = Tried(np.array(self.tried), np.array(self.failed))
+        known = Expansions(tried.points[~tried.failed], np.array(self.values), np.array(self.slopes))
+        wanted = self._wanted(known, tried)
         np.maximum.at(gains.reshape(-1), wanted.outputs, wanted.gains)
         if len(wanted.gains) == 0:
             return gains, wanted.points
         order = np.argsort(-wanted.gains / self._least[wanted.outputs], kind="stable")
-        return gains, self._covering(known, places[tree.query(wanted.points)[1]][order], wanted[order])
+        return gains, self._covering(known, tried.nearest(wanted.points)[0][order], wanted[order])
 
     @property
     def _least(self) -> np.ndarray:
@@ -92,11 +118,8 @@ class Search:
         width = np.max(self.extremes.upper - self.extremes.lower, axis=0)
         return np.broadcast_to(self.tolerance * width, self.runs.shape).ravel()
 
-    def _wanted(self, known: Expansions, tree: KDTree, places: np.ndarray) -> Wanted:
-        """The best place of each output and side, where more than the least is expected there.
-
-        ``places`` are the numbers of the tried points among the known ones, −1 for those that failed.
-        """
+    def _wanted(self, known: Expansions, tried: "Tried") -> Wanted:
+        """The best place of each output and side, where more than the least is expected there."""
         parts = []
         lower, upper = np.maximum(-1 - known.points, -self.radius), np.minimum(1 - known.points, self.radius)
         for outputs in known.chunks():
@@ -106,9 +129,8 @@ class Search:
                 hessians, least = side * curvatures, side * best.ravel()[outputs] + self._least[outputs]
                 run, output = np.nonzero(values + _reach(slopes, hessians, lower, upper) > least)
                 steps = maxima(slopes[run, output], hessians[run, output], lower[run], upper[run])
-                points = np.clip(known.points[run] + steps, -1, 1)
-                apart, nearest = tree.query(points)
-                near = places[nearest]
+                points = np.clip(tried.short_of_failures(known.points[run], steps), -1, 1)
+                near, apart = tried.nearest(points)
                 steps = points - known.points[near]
                 expected = values[near, output] + expand(slopes[near, output], hessians[near, output], steps)
                 expected[(near < 0) | (apart < SAME)] = -np.inf

@@ -1,0 +1,98 @@
+"""Bounds of a Chebyshev surrogate."""
+
+from dataclasses import dataclass
+from typing import ClassVar, Literal
+
+import numpy as np
+
+from dalembert.errors import InputError, unknown
+from dalembert.surrogate import Tensor, bounds, fit
+from dalembert.surrogate.bounds import METHODS
+from dalembert.surrogate.scheme import Scheme
+from dalembert.uncertainty.found import Found
+from dalembert.uncertainty.runs import Runs
+
+
+@dataclass(frozen=True)
+class Chebyshev:
+    """Bounds of a polynomial that stands for the model, all samples and channels at once.
+
+    Parameters
+    ----------
+    scheme : TotalDegree, Tensor or Adaptive
+        Which terms the polynomial has, and at which points the model is run.
+    tolerance : float
+        Largest estimated error of the polynomial, as a part of the largest variation of a sample of the channel over
+        the box. A worse polynomial is refused, with the order that would do.
+    bounds : {"optimise", "scan", "bernstein"}
+        How the polynomial is bounded: by optimisation, by a scan (too narrow by its spacing), or by a guaranteed
+        enclosure in Bernstein form, to which the estimated error of the polynomial is added.
+    held_out : int
+        Runs that only test the polynomial.
+
+    Notes
+    -----
+    The estimated error is the larger one of what the decay of the coefficients says and of the largest difference to
+    the held-out runs. In time a polynomial needs an order of about Δω·T + 8, Δω half the range of a frequency over the
+    box in rad/s, T the length of the motion.
+
+    References
+    ----------
+    Wu, Luo, Zhang & Zhang, "Uncertain dynamic analysis for rigid-flexible mechanisms with random geometry and material
+    properties" (2013); Wang, Tian & Hu, "Dynamic simulation of flexible multibody systems with spatial rigid bodies
+    and interval parameters" (2016).
+    """
+
+    name: ClassVar[str] = "chebyshev"
+    scheme: Scheme = Tensor(8)
+    tolerance: float = 1e-4
+    bounds: Literal["optimise", "scan", "bernstein"] = "optimise"
+    held_out: int = 8
+
+    def __post_init__(self) -> None:
+        if self.bounds not in METHODS:
+            raise InputError(unknown("way to bound a polynomial", self.bounds, METHODS, "Chebyshev, bounds"))
+        if not self.tolerance > 0:
+            raise InputError(f"Chebyshev: tolerance is {self.tolerance}; expected a positive number")
+        if self.held_out < 0:
+            raise InputError(f"Chebyshev: held_out is {self.held_out}; expected zero or more")
+
+    def most(self, runs: Runs) -> int | None:
+        return None
+
+    def bound(self, runs: Runs, seed: int) -> Found:
+        box, shape = runs.box, runs.shape
+        samples, channels = shape
+        surrogate = fit(
+            lambda points: runs.values(points).reshape(len(points), -1),
+            box.lower,
+            box.upper,
+            self.scheme,
+            seed=seed,
+            held_out=self.held_out,
+            groups=np.tile(np.arange(channels), samples),
+        )
+        surrogate.demand(self.tolerance * surrogate.scale, runs.place)
+        found = bounds(surrogate.polynomial, box.lower, box.upper, self.bounds)
+        margin = surrogate.error if self.bounds == "bernstein" else 0.0
+        at_lower, at_upper = (
+            None if part is None else part.reshape(*shape, len(box)) for part in (found.at_lower, found.at_upper)
+        )
+        return Found(
+            "enclosure" if self.bounds == "bernstein" else "estimate",
+            (found.lower - margin).reshape(shape),
+            (found.upper + margin).reshape(shape),
+            at_lower,
+            at_upper,
+            surrogate.error.reshape(shape),
+            f"The bounds of a polynomial of order {surrogate.order} in place of the model, {_worth(self.bounds)}.",
+            not runs.failures,
+        )
+
+
+def _worth(way: str) -> str:
+    return {
+        "optimise": "right within its estimated error",
+        "scan": "right within its estimated error but for peaks between the points of the scan",
+        "bernstein": "enclosed, and widened by its estimated error",
+    }[way]

@@ -3,6 +3,8 @@
 import sys
 from importlib import import_module
 
+from benchmarks import page
+
 NAMES = ("steps", "chains", "sensitivities", "batches", "identification", "swarms", "startup")
 
 
@@ -13,6 +15,7 @@ def main(chosen: list[str]) -> int:
         return 2
     for name in chosen or NAMES:
         import_module(f"benchmarks.{name}").main()
+    page.main()
     return 0
 
 

@@ -56,8 +56,7 @@ def main() -> list[dict[str, object]]:
             "against two processes": rates["batch"] / rates["two"],
         },
     ]
-    timing.table(f"Batch of {SAMPLES} pendulums of fully parametrised beams", rows)
-    timing.keep("batches", rows)
+    timing.report("batches", f"Batch of {SAMPLES} pendulums of fully parametrised beams", rows)
     return rows
 
 

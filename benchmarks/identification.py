@@ -30,8 +30,9 @@ def main() -> list[dict[str, object]]:
     tasks += [(f"{name}, 10 mm noise", factors, noisy, NOISE) for name, factors in STARTS.items()]
     _ours((2.0, 0.5), exact, 0.0)  # compiles, or loads what was compiled
     rows = [row for task in tasks for row in _beside(peer, *task)]
-    timing.table("Identify E_OA and E_AB; a false minimum is a fit worse than that of the truth", rows)
-    timing.keep("identification", rows)
+    timing.report(
+        "identification", "Identify E_OA and E_AB; a false minimum is a fit worse than that of the truth", rows
+    )
     return rows
 
 

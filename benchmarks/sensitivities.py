@@ -24,8 +24,7 @@ def main() -> list[dict[str, object]]:
     numba.set_num_threads(1)  # so that a run and its sensitivities have the same means
     rows = [_row("2 + 4 beams", ours.beam_pendulum, BEAM, count) for count in (1, 2, 4, 8)]
     rows += [_row("2 + 4 cables", ours.cable_pendulum, CABLE, count) for count in (1, 2, 4)]
-    timing.table("Response and p exact sensitivities, in forward runs (one core)", rows)
-    timing.keep("sensitivities", rows)
+    timing.report("sensitivities", "Response and p exact sensitivities, in forward runs (one core)", rows)
     return rows
 
 

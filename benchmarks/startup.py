@@ -29,8 +29,7 @@ def main() -> list[dict[str, object]]:
         ]
     help_text = [str(Path(sys.executable).with_name("dalembert")), "--help"]
     rows.append({"what": "dalembert --help", "seconds": min(_timed(help_text, dict(environ)) for _ in range(5))})
-    timing.table("Waiting times, whole processes", rows)
-    timing.keep("startup", rows)
+    timing.report("startup", "Waiting times, whole processes", rows)
     return rows
 
 

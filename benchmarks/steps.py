@@ -18,8 +18,7 @@ def main() -> list[dict[str, object]]:
         _arm("rigid two-link arm, h = 0.001 s", fine),
         _beams(PENDULUM),
     ]
-    timing.table("Time a step (microseconds); ratio = Exudyn tuned / dalembert", rows)
-    timing.keep("steps", rows)
+    timing.report("steps", "Time a step (microseconds); ratio = Exudyn tuned / dalembert", rows)
     return rows
 
 

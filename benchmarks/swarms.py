@@ -62,8 +62,7 @@ def main() -> list[dict[str, object]]:
         cases.append(_interval(name, _model("interval-pendulum", study), _given(table), published))
     rows = [_row(case, method, SEEDS) for case in cases for method in METHODS]
     rows += [_row(case, "IPSO as published", SEEDS_SIMULATED) for case in truths]
-    timing.table("Fitness after 4,000 evaluations", rows)
-    timing.keep("swarms", rows)
+    timing.report("swarms", "Fitness after 4,000 evaluations", rows)
     return rows
 
 

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-FOLDER = Path("build") / "benchmarks"
+RESULTS = Path(__file__).with_name("results")
 
 
 def seconds(function: Callable[[], object]) -> float:
@@ -33,29 +33,27 @@ def interleaved(candidates: Mapping[str, Callable[[], object]], repeats: int = 7
     return {name: statistics.median(values) for name, values in times.items()}
 
 
-def table(title: str, rows: list[dict[str, object]]) -> None:
-    """Print the rows below each other, columns aligned."""
+def report(name: str, title: str, rows: list[dict[str, object]]) -> None:
+    """Print the rows below each other, and keep them in results/<name>.json with what they were measured on."""
     print(f"\n{title}")
     names = list(rows[0])
-    cells = [names, *([_text(row.get(name, "")) for name in names] for row in rows)]
+    cells = [names, *([text(row.get(name, "")) for name in names] for row in rows)]
     widths = [max(len(line[column]) for line in cells) for column in range(len(names))]
     for line in cells:
         print("  " + "  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip())
+    RESULTS.mkdir(exist_ok=True)
+    kept = {"title": title, "machine": _machine(), "rows": rows}
+    (RESULTS / f"{name}.json").write_text(json.dumps(kept, indent=1) + "\n")
 
 
-def keep(name: str, rows: list[dict[str, object]]) -> None:
-    """Write the rows and what they were measured on to build/benchmarks/<name>.json."""
-    FOLDER.mkdir(parents=True, exist_ok=True)
-    (FOLDER / f"{name}.json").write_text(json.dumps({"machine": _machine(), "rows": rows}, indent=1) + "\n")
-
-
-def _text(value: object) -> str:
+def text(value: object) -> str:
+    """A cell of a table."""
     return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
 def _machine() -> dict[str, object]:
     packages = {}
-    for package in ("dalembert", "exudyn", "numba", "numpy", "scipy"):
+    for package in ("dalembert", "exudyn", "pymoo", "cma", "numba", "numpy", "scipy"):
         try:
             packages[package] = version(package)
         except PackageNotFoundError:

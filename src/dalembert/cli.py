@@ -64,13 +64,14 @@ def run(
 
         from dalembert.study import load, run_study
         from dalembert.study.progress import Watch
+        from dalembert.study.runner import unknowns
 
         _stop_on_terminate()
         read = load(study)
         if seed is not None:
             read = read.with_seed(seed)
         console = Console(stderr=True, soft_wrap=True)
-        watch = Watch(console, read.parameters.names)
+        watch = Watch(console, unknowns(read))
         with watch:
             folder, outcome = run_study(read, out, force=force, listener=watch)
         typer.echo(outcome.summary)

@@ -3,6 +3,9 @@
 import dataclasses
 import inspect
 from functools import cache
+from typing import Any
+
+from dalembert.study.components import settings_of
 
 ROLES = {"Body": "body", "Joint": "joint", "Load": "load", "Signal": "signal"}
 
@@ -29,13 +32,49 @@ def catalogue() -> dict[str, tuple[type, ...]]:
 
 
 @cache
+def propagation_methods() -> dict[str, type]:
+    """Methods that bound a response, by the names that a study file gives them."""
+    from dalembert import uncertainty
+
+    return dict(uncertainty.METHODS)
+
+
+@cache
+def schemes() -> dict[str, type]:
+    """Schemes of surrogates, by the names that a study file gives them."""
+    from dalembert import surrogate
+
+    names = {"total-degree": "TotalDegree", "tensor": "Tensor", "adaptive": "Adaptive"}
+    return {name: getattr(surrogate, kind) for name, kind in names.items() if hasattr(surrogate, kind)}
+
+
+@cache
+def swarms() -> dict[str, type]:
+    """Particle swarms, by the names that a study file gives them."""
+    from dalembert import optimize
+
+    return {"standard-swarm": optimize.ParticleSwarm, "improved-swarm": optimize.ImprovedParticleSwarm}
+
+
+@cache
+def band_methods() -> dict[str, type]:
+    """Methods that identify intervals from bands, by the names that a study file gives them."""
+    from dalembert import inverse
+
+    return {"global": inverse.GlobalSurrogate, "nested": inverse.Nested}
+
+
+@cache
+def parts() -> dict[str, Any]:
+    """Keys for settings that are chosen among several kinds themselves, by the names of their types."""
+    scheme, swarm = settings_of(schemes()), settings_of(swarms())
+    only = settings_of({"total-degree": schemes()["total-degree"]})
+    return {"Scheme": scheme, "TotalDegree": only, "ParticleSwarm": swarm}
+
+
+@cache
 def methods() -> dict[str, type]:
     """Methods of identification by the names that a study file gives them."""
     from dalembert import optimize
 
-    return {
-        "least-squares": optimize.LeastSquares,
-        "standard-swarm": optimize.ParticleSwarm,
-        "improved-swarm": optimize.ImprovedParticleSwarm,
-        "scipy": optimize.Minimiser,
-    }
+    return {"least-squares": optimize.LeastSquares, **swarms(), "scipy": optimize.Minimiser}

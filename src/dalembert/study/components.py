@@ -13,7 +13,7 @@ from functools import reduce
 from operator import or_
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import Discriminator, Field, Tag, create_model
+from pydantic import AfterValidator, Discriminator, Field, Tag, create_model
 
 from dalembert.study.functions import FunctionName
 from dalembert.study.numbers import fixed, number
@@ -37,11 +37,17 @@ class KindTable(StudyTable):
 
     def settings(self) -> Any:
         """The dataclass itself, where no number depends on parameters."""
-        return checked(lambda: self.target(**{name: _tuples(value) for name, value in self.given().items()}))
+        return checked(lambda: self.target(**{name: _settled(value) for name, value in self.given().items()}))
 
 
 def table_of(
-    target: type, kind: str = "", *, signal: Any = None, default: bool = False, varying: bool = True
+    target: type,
+    kind: str = "",
+    *,
+    signal: Any = None,
+    default: bool = False,
+    varying: bool = True,
+    parts: Mapping[str, Any] | None = None,
 ) -> type[KindTable]:
     """Table with the constructor's arguments of a dataclass as keys, and ``kind`` to tell it from others.
 
@@ -56,6 +62,8 @@ def table_of(
         Whether this kind is meant when none is given.
     varying : bool
         Whether a number may be an expression of parameters.
+    parts : mapping of str to type, optional
+        Types of the keys for arguments that are dataclasses themselves, by the name of an argument's type.
     """
     kind = kind or target.__name__
     hints = typing.get_type_hints(target.__init__)
@@ -63,7 +71,7 @@ def table_of(
     keys: dict[str, Any] = {"kind": (Literal[kind], kind if default else ...)}  # pyright: ignore[reportInvalidTypeForm]
     for name, argument in inspect.signature(target).parameters.items():
         numeric = (number if varying else fixed)(fields[name].metadata.get("unit"))
-        key = _key(name, _bare(hints[name]), numeric, signal)
+        key = _key(name, _bare(hints[name]), numeric, signal, parts or {})
         keys[FORM if name == "kind" else name] = (key, _default(argument))
     table = create_model(kind, __base__=KindTable, __doc__=(target.__doc__ or kind).strip().split("\n")[0], **keys)
     table.target = target
@@ -80,11 +88,37 @@ def one_of(tables: Iterable[type[StudyTable]], default: str = "") -> Any:
     return Annotated[reduce(or_, tagged), Discriminator(lambda value: _kind(value, default))]
 
 
+def settings_of(kinds: Mapping[str, type], parts: Mapping[str, Any] | None = None) -> Any:
+    """Type of a key that takes the settings of one of several kinds: a name, or a table with ``kind`` and settings.
+
+    Parameters
+    ----------
+    kinds : mapping of str to dataclass
+        By the names that a study file gives them.
+    parts : mapping of str to type, optional
+        As in :func:`table_of`.
+    """
+    tables = {name: table_of(target, name, varying=False, parts=parts) for name, target in kinds.items()}
+    usual = AfterValidator(lambda name: tables[name].model_validate({"kind": name}))
+    return Annotated[
+        Annotated[Literal[tuple(kinds)], usual, Tag("name")]  # pyright: ignore[reportInvalidTypeForm]
+        | Annotated[one_of(tables.values()), Tag("table")],
+        Discriminator(lambda value: "name" if isinstance(value, str) else "table"),
+        AfterValidator(buildable),
+    ]
+
+
+def buildable(table: KindTable) -> KindTable:
+    """The table itself, once its dataclass has been built from it."""
+    table.settings()
+    return table
+
+
 def _kind(value: Any, default: str) -> str:
     return value.get("kind", default) if isinstance(value, dict) else getattr(value, "kind", default)
 
 
-def _key(name: str, hint: Any, numeric: Any, signal: Any) -> Any:
+def _key(name: str, hint: Any, numeric: Any, signal: Any, parts: Mapping[str, Any]) -> Any:
     """Type of the key for an argument."""
     leaves = _leaves(hint)
     if name == "name":
@@ -93,6 +127,8 @@ def _key(name: str, hint: Any, numeric: Any, signal: Any) -> Any:
     if names & _PLACES:
         point = place(bare="Ground" in names)
         return point | None if _NONE in leaves else point
+    for part in names & parts.keys():
+        return parts[part]
     if signal is not None and "Signal" in names:
         return _told_apart(dict, "signal", signal, "number", numeric)
     if Callable in leaves:
@@ -131,9 +167,11 @@ def _told_apart(kind: type, tag: str, given: Any, other_tag: str, other: Any) ->
     ]
 
 
-def _tuples(value: Any) -> Any:
-    """Lists as the tuples that dataclasses hold."""
-    return tuple(map(_tuples, value)) if isinstance(value, list) else value
+def _settled(value: Any) -> Any:
+    """Lists as the tuples that dataclasses hold, and tables as the dataclasses that they are for."""
+    if isinstance(value, KindTable):
+        return value.settings()
+    return tuple(map(_settled, value)) if isinstance(value, list) else value
 
 
 def _bare(hint: Any) -> Any:

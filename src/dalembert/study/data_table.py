@@ -1,4 +1,4 @@
-"""The table of a study file that names measured data."""
+"""The tables of a study file that name data: measurements, and bounds of them."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -10,7 +10,7 @@ from dalembert.study.numbers import fixed
 from dalembert.study.table import Read, StudyTable, problem
 
 if TYPE_CHECKING:
-    from dalembert.data import Measurements
+    from dalembert.data import Bands, Measurements
 
 
 def _read_file(value: Any, info: ValidationInfo) -> Path:
@@ -26,19 +26,39 @@ def _read_file(value: Any, info: ValidationInfo) -> Path:
 DataFile = Annotated[Path, PlainValidator(_read_file), WithJsonSchema({"type": "string"})]
 
 
-class DataTable(StudyTable):
-    """Measured data: a CSV file, its column of times, and the column of each channel."""
+class CsvTable(StudyTable):
+    """A CSV file and its column of times."""
 
     file: DataFile = Field(description="relative to the study file")
     time: str = Field("t", description="name of the column of times, in s")
+    separator: str = Field(",", min_length=1, max_length=1)
+
+
+class DataTable(CsvTable):
+    """Measured data: a CSV file, its column of times, and the column of each channel."""
+
     columns: dict[str, str] = Field(min_length=1, description="column of each channel: 'AB.end.x' = 'case1_x'")
     deviations: dict[str, Annotated[float, Read(fixed(None))]] | None = Field(
         None, description="standard deviation of each channel's noise"
     )
-    separator: str = Field(",", min_length=1, max_length=1)
 
     def read(self) -> "Measurements":
         """The data."""
         from dalembert.data import read_csv
 
         return read_csv(self.file, self.time, self.columns, self.deviations, separator=self.separator)
+
+
+class BandsTable(CsvTable):
+    """Bounds of channels: a CSV file, its column of times, and two columns of each channel."""
+
+    columns: dict[str, Annotated[list[str], Field(min_length=2, max_length=2)]] = Field(
+        min_length=1, description="columns of each channel, the lower bounds first: 'AB.end.x' = ['x_lower', 'x_upper']"
+    )
+
+    def read(self) -> "Bands":
+        """The bands."""
+        from dalembert.data import read_bands
+
+        columns = {name: (lower, upper) for name, (lower, upper) in self.columns.items()}
+        return read_bands(self.file, self.time, columns, separator=self.separator)

@@ -53,6 +53,16 @@ class EventLog:
             listener(event)
 
 
+def teller(emit: Emit, as_record: Callable[[Any], dict[str, Any]]) -> Callable[[Any], None]:
+    """Listener that writes the events of a method; ``as_record`` makes mappings of them, their kind by ``"event"``."""
+
+    def tell(event: Any) -> None:
+        record = as_record(event)
+        emit(record.pop("event"), **record)
+
+    return tell
+
+
 def read_events(path: Path) -> Iterator[Event]:
     """Events of a run, one that may still be going on included: a last line that is not whole is left out."""
     if not path.exists():

@@ -96,7 +96,8 @@ def _with_model_file(document: dict[str, Any], context: Context, path: Path) -> 
         raise InputError(f"{given}: expected a [model] table with the model itself")
     document["model"] = shared["model"]
     own = _table(document, "constants")  # first, so that the model's constants may use the study's
-    constants = own | {name: value for name, value in _table(shared, "constants").items() if name not in own}
+    taken = {*own, *_table(document, "parameters")}
+    constants = own | {name: value for name, value in _table(shared, "constants").items() if name not in taken}
     if constants:
         document["constants"] = constants
     return given

@@ -21,7 +21,7 @@ class Watch:
     ----------
     console : Console
     names : tuple of str
-        Names of the parameters, for the best values.
+        Names of the unknowns, for the best values.
     """
 
     console: Console
@@ -64,6 +64,14 @@ class Watch:
                 return f"start {start + 1} · {simulations} simulations · {self._found}", 0, None
             case {"event": "swept", "parameter": name, "value": value, "done": done, "total": total}:
                 return f"{name} = {value:.6g} · {done} of {total}", done, total
+            case {"event": "ran", "method": method, "runs": runs, "failed": failed, "most": most}:
+                return f"{method} · {runs} simulations" + (f", {failed} failed" if failed else ""), runs, most
+            case {"event": "sampled", "runs": runs}:
+                return f"surrogate · {runs} simulations", 0, None
+            case {"event": "checked", "runs": runs, "error": error}:
+                return f"check by {runs} simulations" + ("" if error is None else f" · wrong by {error:.2g}"), 0, None
+            case {"event": "paved", "inside": inside, "boundary": boundary, "waiting": waiting}:
+                return f"{inside} boxes inside, {boundary} on the boundary, {waiting} to look at", 0, None
             case {"event": "simulating", "end": end}:
                 return f"simulating to {end:g} s", 0, None
         return "", 0, None

@@ -73,6 +73,11 @@ def plan(study: Study) -> str:
     return TASKS[study.task].plan(study)
 
 
+def unknowns(study: Study) -> tuple[str, ...]:
+    """Names of the values that the events of a run tell."""
+    return TASKS[study.task].unknowns(study)
+
+
 def report_run(folder: RunFolder) -> Path:
     """Write a run's report anew, from its result.
 

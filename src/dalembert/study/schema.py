@@ -15,8 +15,8 @@ from pydantic import (
 )
 
 from dalembert.study.catalogue import catalogue
-from dalembert.study.components import one_of, table_of
-from dalembert.study.data_table import DataTable
+from dalembert.study.components import buildable, one_of, table_of
+from dalembert.study.data_table import BandsTable, DataTable
 from dalembert.study.model_table import ModelTable, model_table
 from dalembert.study.parameters import ParameterTable, check_names, read_constants
 from dalembert.study.table import Name, StudyTable, problem
@@ -47,6 +47,7 @@ class StudyFile(StudyTable):
     model: ModelTable
     solver: Any = None
     data: DataTable | None = None
+    bands: BandsTable | None = None
 
     @model_validator(mode="after")
     def _check(self) -> "StudyFile":
@@ -76,14 +77,9 @@ def study_file() -> type[StudyFile]:
         [table_of(target, default=target.__name__ == SOLVER, varying=False) for target in catalogue()["solver"]], SOLVER
     )
     fields: dict[str, Any] = {name: (task.table() | None, None) for name, task in TASKS.items()}
-    checked_solver: Any = Annotated[solver, AfterValidator(_buildable)]
+    checked_solver: Any = Annotated[solver, AfterValidator(buildable)]
     fields |= {"model": (model_table(), ...), "solver": (checked_solver | None, None)}
     return create_model("Study", __base__=StudyFile, __doc__=StudyFile.__doc__, **fields)
-
-
-def _buildable(table: Any) -> Any:
-    table.settings()
-    return table
 
 
 def json_schema() -> dict[str, Any]:

@@ -16,7 +16,7 @@ from dalembert.study.schema import StudyFile
 from dalembert.study.table import StudyTable
 
 if TYPE_CHECKING:
-    from dalembert.data import Measurements
+    from dalembert.data import Bands, Measurements
     from dalembert.multibody import System, Trajectory
 
 Builder = SystemBuilder | FunctionBuilder
@@ -64,7 +64,7 @@ class Study:
 
     @property
     def task(self) -> str:
-        """Name of the task: simulate, identify or sweep."""
+        """Name of the task, for example identify."""
         return next(iter(self.file.tasks))
 
     @property
@@ -133,6 +133,12 @@ class Study:
         if self.file.data is None:
             raise InputError(f"{self.path}: there is no [data] table")
         return self.file.data.read()
+
+    def bands(self) -> "Bands":
+        """The bands."""
+        if self.file.bands is None:
+            raise InputError(f"{self.path}: there is no [bands] table")
+        return self.file.bands.read()
 
     def with_seed(self, seed: int) -> "Study":
         """The same study with another seed."""

@@ -58,16 +58,17 @@ def test_methods_compared_have_their_report(tmp_path):
     assert rows[1][3:] == ["nan", "nan", "81", "2.25", "the reference"]
     np.testing.assert_allclose([float(entry) for entry in rows[3][3:5]], [4e-4, 4e-4])
     assert rows[3][1] == "inner bound"
-    assert "Bounds of the same response over the same box, each measured by the distance from optimise." in page.text
+    assert "Each is measured by its distance from optimise." in page.text
     assert list(figures(comparison())) == ["methods", "differences", "bands-1"]
 
 
 def test_a_method_that_failed_is_marked(tmp_path):
     compared = comparison()
+    compared.success, compared.status = False, "vertex did not succeed."
     compared.results[1].success, compared.results[1].status = False, "One corner failed."
     page = read_page(report(compared, tmp_path / "a.html"))
     assert "! incomplete" in page.text
-    assert "vertex did not succeed; the table says why." in page.text
+    assert "vertex did not succeed." in page.text
     assert page.table("methods")[2][-1] == "One corner failed."
 
 
@@ -76,7 +77,6 @@ def test_a_method_that_gave_no_bounds_says_why(tmp_path):
     compared.refused = (("taylor", "The model gives no sensitivities."),)
     page = read_page(report(compared, tmp_path / "a.html"))
     assert page.table("methods")[-1] == ["taylor", "none", *["nan"] * 5, "The model gives no sensitivities."]
-    assert "taylor did not succeed" in page.text
 
 
 @pytest.fixture(scope="module")
@@ -160,7 +160,7 @@ def test_the_part_that_the_set_is_of_what_was_searched(tmp_path):
 def test_an_empty_set_says_so(tmp_path):
     found = parameter_set()
     found.inside, found.boundary, found.outer, found.inner = found.inside[:0], found.boundary[:0], None, None
-    found.volume, found.success, found.status = (0.0, 0.0), False, "No parameters explain all data."
+    found.volume, found.status = (0.0, 0.0), "No parameters explain all data."
     page = read_page(report(found, tmp_path / "a.html"))
     assert "! empty" in page.text
     assert "No parameters explain all data." in page.text

@@ -4,6 +4,7 @@ import numpy as np
 import plotly.graph_objects as go
 
 from dalembert.report.charts.logarithm import logarithmic, positive
+from dalembert.report.charts.responses import FEW
 from dalembert.report.look import LIGHT, plain, themed
 from dalembert.report.needs import ComparisonLike, PropagationLike
 from dalembert.report.quantities import labelled
@@ -52,6 +53,8 @@ def methods(comparison: ComparisonLike, *, title: str = "Error against runs") ->
 def differences(comparison: ComparisonLike, *, title: str = "Distance from the reference") -> go.Figure:
     """Largest distance of any bound from the reference at each sample, one line a method, on a logarithmic scale.
 
+    Where a bound is that of the reference there is a gap.
+
     Parameters
     ----------
     comparison : ComparisonLike
@@ -70,7 +73,8 @@ def differences(comparison: ComparisonLike, *, title: str = "Distance from the r
             x=along.values[kept],
             y=apart[kept],
             name=plain(one.method),
-            mode="lines",
+            mode="lines+markers" if len(kept) <= FEW else "lines",
+            marker={"size": 4},
             line={"width": 1.5, "color": LIGHT.series[place % len(LIGHT.series)]},
         )
     themed(figure, title, height=400)

@@ -31,21 +31,15 @@ def of_propagation(result: PropagationLike, title: str | None, notes: Sequence[s
 def of_comparison(comparison: ComparisonLike, title: str | None, notes: Sequence[str]) -> Headline:
     """Headline of methods compared on one box."""
     known = reference(comparison)
-    failed = [one.method for one in comparison.results if not one.success]
-    failed += [method for method, _ in comparison.refused]
     facts = [
         Fact("methods", counted(len(comparison.results) + len(comparison.refused))),
         Fact("reference", known.method),
         Fact("its runs", counted(known.runs)),
         Fact("runs altogether", counted(sum(one.runs for one in comparison.results))),
     ]
-    status = (
-        f"{', '.join(failed)} did not succeed; the table says why."
-        if failed
-        else f"Bounds of the same response over the same box, each measured by the distance from {known.method}."
-    )
-    verdict = "incomplete" if failed else "compared"
-    return Headline(title or "Methods compared", verdict, not failed, status, facts, notes)
+    success = comparison.success
+    verdict = "compared" if success else "incomplete"
+    return Headline(title or "Methods compared", verdict, success, comparison.status, facts, notes)
 
 
 def of_band_fit(fit: BandFitLike, title: str | None, notes: Sequence[str]) -> Headline:
@@ -85,4 +79,5 @@ def of_set(found: ParameterSetLike, title: str | None, notes: Sequence[str]) -> 
         Fact("runs of the model", counted(found.runs)),
     ]
     verdict = "empty" if box is None else "found" if found.success else "not settled"
-    return Headline(title or "Consistent parameters", verdict, found.success, found.status, facts, notes)
+    settled = found.success and box is not None
+    return Headline(title or "Consistent parameters", verdict, settled, found.status, facts, notes)

@@ -14,6 +14,12 @@ from dalembert.report.sections.samples import samples
 from dalembert.report.sections.section import Section
 from dalembert.report.table import Cell, Table, cell
 
+MEANING = {
+    "inner bound": "Runs of the model within the box reach both sides of the band; the true one may be wider",
+    "estimate": "Whatever the parameters are within their intervals, the response lies about in the band",
+    "enclosure": "Whatever the parameters are within their intervals, the response lies in the band",
+}
+
 
 @dataclass(frozen=True)
 class Bounds(Section):
@@ -31,8 +37,7 @@ class Bounds(Section):
             Plot(
                 f"bands-{place}",
                 charts.bands(self.result, group, title=", ".join(plain(name) for name in group)),
-                "The response lies in the band whatever the parameters are within their intervals; "
-                "below, how wide it is.",
+                f"{MEANING[self.result.kind]}; below, how wide the band is.",
             )
             for place, group in enumerate(chosen, start=1)
         )

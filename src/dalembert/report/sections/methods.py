@@ -24,7 +24,9 @@ class Methods(Section):
     @property
     def plots(self) -> tuple[Plot, ...]:
         against = "Further down is closer to the reference, further left is cheaper."
-        where = f"Largest distance of any bound from that of {self.comparison.reference}, sample by sample."
+        where = (
+            f"Largest distance of any bound from that of {self.comparison.reference}, sample by sample; none in a gap."
+        )
         return (
             Plot("methods", charts.methods(self.comparison), against),
             Plot("differences", charts.differences(self.comparison), where),

@@ -1,10 +1,16 @@
 """The tasks that a study file can ask for, by the names of their tables."""
 
 from dalembert.study.tasks.identify import Identify
+from dalembert.study.tasks.propagate import Propagate
 from dalembert.study.tasks.simulate import Simulate
 from dalembert.study.tasks.sweep import SweepTask
 from dalembert.study.tasks.task import Outcome, Task
 
-TASKS: dict[str, Task] = {"simulate": Simulate(), "identify": Identify(), "sweep": SweepTask()}
+TASKS: dict[str, Task] = {
+    "simulate": Simulate(),
+    "identify": Identify(),
+    "sweep": SweepTask(),
+    "propagate": Propagate(),
+}
 
 __all__ = ["TASKS", "Outcome", "Task"]

@@ -12,9 +12,11 @@ from dalembert.optimize import LeastSquares, Minimiser, Swarm
 from dalembert.optimize.minimiser import NAMES as MINIMISERS
 from dalembert.study.catalogue import methods
 from dalembert.study.components import one_of, table_of
+from dalembert.study.events import teller
 from dalembert.study.numbers import fixed
 from dalembert.study.table import Read, StudyTable, checked
 from dalembert.study.tasks.task import Outcome, Task
+from dalembert.study.tasks.wrong import needs_solver, unmatched
 
 if TYPE_CHECKING:
     from dalembert.inverse import Fit
@@ -139,14 +141,9 @@ class Identify(Task):
             wrong.append("[identify] needs at least one [parameters.NAME] table")
         if file.data is None:
             wrong.append("[identify] needs a [data] table")
-        if file.model.forward is None and file.solver is None:
-            wrong.append("the table [solver] is missing; expected at least its step")
-        if file.data is not None and file.identify.weights is not None:
-            channels, weights = file.data.columns, file.identify.weights
-            where = "[identify], weights"
-            wrong += [f"{where}: no weight is given for channel {name!r}" for name in channels if name not in weights]
-            wrong += [unknown("channel", name, channels, where) for name in weights if name not in channels]
-        return wrong
+        if file.data is not None:
+            wrong += unmatched(file.identify.weights, file.data.columns, "weight", "[identify], weights")
+        return [*wrong, *needs_solver(file)]
 
     def plan(self, study: "Study") -> str:
         data, table = study.data(), study.table
@@ -162,10 +159,6 @@ class Identify(Task):
 
         data, table = study.data(), study.table
 
-        def tell(event: Any) -> None:
-            record = as_record(event)
-            emit(record.pop("event"), **record)
-
         fit = identify(
             study.forward(data.channels, data.coordinate.values),
             data,
@@ -175,7 +168,7 @@ class Identify(Task):
             weights=None if table.weights is None else [table.weights[channel] for channel in data.channels],
             polish=table.polish,
             horizon=None if table.horizon == "whole" else table.horizon,
-            on_event=tell,
+            on_event=teller(emit, as_record),
         )
         return Identification(study, fit)
 

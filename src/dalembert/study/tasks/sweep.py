@@ -14,6 +14,7 @@ from dalembert.forward import ForwardModel
 from dalembert.study.numbers import MOST, fixed, samples
 from dalembert.study.table import Read, StudyTable, problem
 from dalembert.study.tasks.task import Outcome, Task
+from dalembert.study.tasks.wrong import needs_solver, unnamed
 
 if TYPE_CHECKING:
     from dalembert.study.events import Emit
@@ -128,13 +129,7 @@ class SweepTask(Task):
         return SweepTable
 
     def wrong(self, file: Any) -> list[str]:
-        wrong = [
-            unknown("parameter", name, file.parameters, "[sweep.over]") for name in file.sweep.over
-            if name not in file.parameters
-        ]  # fmt: skip
-        if file.model.forward is None and file.solver is None:
-            wrong.append("the table [solver] is missing; expected at least its step")
-        return wrong
+        return [*unnamed(file.sweep.over, file.parameters, "[sweep.over]"), *needs_solver(file)]
 
     def plan(self, study: "Study") -> str:
         model = _model(study)

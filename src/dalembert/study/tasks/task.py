@@ -56,6 +56,10 @@ class Task(ABC):
     def plan(self, study: "Study") -> str:
         """What would run, and about how many simulations, in a sentence; raises what running would raise at once."""
 
+    def unknowns(self, study: "Study") -> tuple[str, ...]:
+        """Names of the values that the events of a run tell."""
+        return study.parameters.names
+
     @abstractmethod
     def run(self, study: "Study", emit: "Emit") -> Outcome:
         """Do it."""

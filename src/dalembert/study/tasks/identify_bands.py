@@ -1,0 +1,121 @@
+"""Identify intervals of parameters from bands of the response."""
+
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from pydantic import Field, create_model
+
+from dalembert.study.catalogue import band_methods, parts
+from dalembert.study.components import settings_of
+from dalembert.study.events import teller
+from dalembert.study.intervals import IntervalKey, Number
+from dalembert.study.table import StudyTable
+from dalembert.study.tasks.result import ResultOutcome
+from dalembert.study.tasks.task import Outcome, Task
+from dalembert.study.tasks.wrong import needs_solver, unmatched, unnamed
+
+if TYPE_CHECKING:
+    from dalembert.study.events import Emit
+    from dalembert.study.study import Study
+
+DEFAULT = "global"
+
+
+class IdentifyBandsTable(StudyTable):
+    """Identify intervals of the parameters from the bands."""
+
+    method: Any = None
+    intervals: list[str] | None = Field(
+        None, description="parameters that are intervals; all if not given, the others are identified as numbers"
+    )
+    weights: dict[str, Number] | None = Field(None, description="weight of each channel; 1 if not given")
+    seed: int = Field(0, ge=0, description="of all random numbers")
+    truth: dict[str, IntervalKey] = Field({}, description="intervals that are known, to be drawn beside those found")
+
+
+@cache
+def identify_bands_table() -> type[IdentifyBandsTable]:
+    """The task's table with all the methods that there are."""
+    names = ", ".join(f"'{name}'" for name in band_methods())
+    method = (settings_of(band_methods(), parts()) | None, Field(None, description=f"{names}, or a table of settings"))
+    fields: dict[str, Any] = {"method": method}
+    return create_model("IdentifyBands", __base__=IdentifyBandsTable, **fields)
+
+
+class IdentifyBands(Task):
+    """The task ``[identify_bands]``."""
+
+    def table(self) -> type[StudyTable]:
+        return identify_bands_table()
+
+    def wrong(self, file: Any) -> list[str]:
+        table = file.identify_bands
+        wrong = [] if file.parameters else ["[identify_bands] needs at least one [parameters.NAME] table"]
+        wrong += [] if file.bands else ["[identify_bands] needs a [bands] table"]
+        wrong += unnamed(table.intervals or (), file.parameters, "[identify_bands], intervals")
+        wrong += unnamed(table.truth, file.parameters, "[identify_bands.truth]")
+        if file.bands is not None:
+            wrong += unmatched(table.weights, file.bands.columns, "weight", "[identify_bands], weights")
+        return [*wrong, *needs_solver(file)]
+
+    def plan(self, study: "Study") -> str:
+        bands, table, names = study.bands(), study.table, study.parameters.names
+        study.forward(bands.channels, bands.coordinate.values).evaluate(study.parameters.start[None]).only()
+        wide = names if table.intervals is None else table.intervals
+        fixed = [name for name in names if name not in wide]
+        numbers = f" and the numbers {', '.join(fixed)}" if fixed else ""
+        return (
+            f"identifies intervals of {', '.join(wide)}{numbers} from the bands of {', '.join(bands.channels)} at "
+            f"{len(bands.coordinate.values)} samples by {_cost(_method(study), len(names))}"
+        )
+
+    def unknowns(self, study: "Study") -> tuple[str, ...]:
+        """Middles of all parameters, then radii of those that are intervals."""
+        names, wide = study.parameters.names, study.table.intervals
+        radii = [name for name in names if wide is None or name in wide]
+        return (*(f"{name} middle" for name in names), *(f"{name} radius" for name in radii))
+
+    def run(self, study: "Study", emit: "Emit") -> Outcome:
+        from dalembert.inverse import as_record, identify_bands
+
+        bands, table = study.bands(), study.table
+
+        fit = identify_bands(
+            study.forward(bands.channels, bands.coordinate.values),
+            bands,
+            intervals=table.intervals,
+            method=_method(study),
+            weights=None if table.weights is None else [table.weights[channel] for channel in bands.channels],
+            seed=table.seed,
+            on_event=teller(emit, as_record),
+        )
+        return _outcome(study, fit)
+
+    def load(self, study: "Study", path: Path) -> Outcome:
+        from dalembert.inverse import BandFit
+
+        return _outcome(study, BandFit.load(path))
+
+
+def _method(study: "Study") -> Any:
+    given = study.table.method
+    return band_methods()[DEFAULT]() if given is None else given.settings()
+
+
+def _cost(method: Any, parameters: int) -> str:
+    """A method's name, and about how many simulations it takes."""
+    from dalembert.inverse import Nested
+
+    if not isinstance(method, Nested):
+        return f"{type(method).__name__}: as many simulations as its surrogate needs"
+    swarm, each = method.swarm, method.scheme.runs(parameters)
+    sizes = f"{swarm.particles} particles x {swarm.iterations} iterations x {each} runs"
+    return f"{type(method).__name__}: {sizes} = {swarm.particles * swarm.iterations * each} simulations"
+
+
+def _outcome(study: "Study", fit: Any) -> Outcome:
+    """Outcome of identified intervals, with their ends; the known ones are drawn beside them."""
+    known = {name: table.interval() for name, table in study.table.truth.items()}
+    truth = {name: (interval.lower, interval.upper) for name, interval in known.items()}
+    return ResultOutcome(study, fit, {"fitness": fit.fitness, "values": fit.estimates}, {"truth": truth})

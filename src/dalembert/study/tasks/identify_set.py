@@ -1,0 +1,94 @@
+"""Identify all parameters that are consistent with measurements of bounded error."""
+
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+from pydantic import Discriminator, Field, Tag, create_model
+
+from dalembert.study.catalogue import schemes
+from dalembert.study.components import settings_of
+from dalembert.study.events import teller
+from dalembert.study.intervals import Number
+from dalembert.study.table import StudyTable
+from dalembert.study.tasks.result import ResultOutcome
+from dalembert.study.tasks.task import Outcome, Task
+from dalembert.study.tasks.wrong import needs_solver, unmatched, unnamed
+
+if TYPE_CHECKING:
+    from dalembert.study.events import Emit
+    from dalembert.study.study import Study
+
+Errors = Annotated[
+    Annotated[dict[str, Number], Tag("channels")] | Annotated[Number, Tag("number")],
+    Discriminator(lambda value: "channels" if isinstance(value, dict) else "number"),
+]
+
+
+class IdentifySetTable(StudyTable):
+    """Pave the set of all parameters that explain the data within their errors."""
+
+    error: Errors = Field(description="largest error of the data: a number, or one for each channel")
+    scheme: Any = None
+    resolution: float | None = Field(None, gt=0, lt=1, description="smallest box, as a part of the bounds' width")
+    most_boxes: int | None = Field(None, ge=1, description="boxes looked at before it ends with a coarser paving")
+    seed: int = Field(0, ge=0, description="of all random numbers")
+    truth: dict[str, Number] = Field({}, description="parameters that are known, to be marked in the figures")
+
+
+@cache
+def identify_set_table() -> type[IdentifySetTable]:
+    """The task's table with all the schemes that there are."""
+    names = ", ".join(f"'{name}'" for name in schemes())
+    scheme = (settings_of(schemes()) | None, Field(None, description=f"{names}, or a table of settings"))
+    fields: dict[str, Any] = {"scheme": scheme}
+    return create_model("IdentifySet", __base__=IdentifySetTable, **fields)
+
+
+class IdentifySet(Task):
+    """The task ``[identify_set]``."""
+
+    def table(self) -> type[StudyTable]:
+        return identify_set_table()
+
+    def wrong(self, file: Any) -> list[str]:
+        table = file.identify_set
+        wrong = [] if file.parameters else ["[identify_set] needs at least one [parameters.NAME] table"]
+        wrong += [] if file.data else ["[identify_set] needs a [data] table"]
+        wrong += unnamed(table.truth, file.parameters, "[identify_set.truth]")
+        if file.data is not None and isinstance(table.error, dict):
+            wrong += unmatched(table.error, file.data.columns, "error", "[identify_set], error")
+        return [*wrong, *needs_solver(file)]
+
+    def plan(self, study: "Study") -> str:
+        data = study.data()
+        study.forward(data.channels, data.coordinate.values).evaluate(study.parameters.start[None]).only()
+        return (
+            f"paves the set of {', '.join(study.parameters.names)} that explain {len(data.coordinate.values)} samples "
+            f"of {', '.join(data.channels)} within their errors, on a surrogate of as many simulations as it needs"
+        )
+
+    def run(self, study: "Study", emit: "Emit") -> Outcome:
+        from dalembert.inverse import as_record, identify_set
+
+        data, table = study.data(), study.table
+
+        given = {key: getattr(table, key) for key in ("resolution", "most_boxes") if getattr(table, key) is not None}
+        if table.scheme is not None:
+            given["scheme"] = table.scheme.settings()
+        model = study.forward(data.channels, data.coordinate.values)
+        found = identify_set(model, data, error=table.error, seed=table.seed, on_event=teller(emit, as_record), **given)
+        return _outcome(study, found)
+
+    def load(self, study: "Study", path: Path) -> Outcome:
+        from dalembert.inverse import ParameterSet
+
+        return _outcome(study, ParameterSet.load(path))
+
+
+def _outcome(study: "Study", found: Any) -> Outcome:
+    """Outcome of a set, with the ends of its outer box."""
+    box = found.outer
+    ends = () if box is None else ((name, interval) for name, interval in box.items())
+    values = {f"{name} {side}": getattr(interval, side) for name, interval in ends for side in ("lower", "upper")}
+    return ResultOutcome(study, found, {"values": values}, {"truth": study.table.truth})

@@ -1,0 +1,142 @@
+"""Propagate: bounds of the response while parameters are anywhere in their intervals."""
+
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from pydantic import Field, create_model
+
+from dalembert.forward import ForwardModel
+from dalembert.intervals import Box
+from dalembert.study.catalogue import parts, propagation_methods
+from dalembert.study.components import settings_of
+from dalembert.study.events import teller
+from dalembert.study.intervals import IntervalKey
+from dalembert.study.numbers import samples
+from dalembert.study.table import StudyTable
+from dalembert.study.tasks.result import ResultOutcome
+from dalembert.study.tasks.task import Outcome, Task
+from dalembert.study.tasks.wrong import needs_solver, unnamed
+
+if TYPE_CHECKING:
+    from dalembert.study.events import Emit
+    from dalembert.study.study import Study
+
+DEFAULT, REFERENCE = "chebyshev", "optimise"
+
+
+class PropagateTable(StudyTable):
+    """Bound the response over intervals of the parameters."""
+
+    times: samples("s") | None = Field(None, description="output times of a mechanism: a list, or a range")  # pyright: ignore[reportInvalidTypeForm]
+    channels: list[str] | None = Field(None, min_length=1, description="outputs of a mechanism")
+    intervals: dict[str, IntervalKey] = Field(
+        {}, description="interval of each parameter; that between its bounds if not given"
+    )
+    method: Any = None
+    compare: list[Any] = []
+    reference: Any = None
+    seed: int = Field(0, ge=0, description="of all random numbers")
+
+
+@cache
+def propagate_table() -> type[PropagateTable]:
+    """The task's table with all the methods that there are."""
+    method = settings_of(propagation_methods(), parts())
+    names = ", ".join(f"'{name}'" for name in propagation_methods())
+    fields: dict[str, Any] = {
+        "method": (method | None, Field(None, description=f"{names}, or a table with kind and settings")),
+        "compare": (list[method], Field([], description="more methods, to be compared on the same box")),
+        "reference": (method | None, Field(None, description="method that the compared ones are measured by")),
+    }
+    return create_model("Propagate", __base__=PropagateTable, **fields)
+
+
+class Propagate(Task):
+    """The task ``[propagate]``."""
+
+    def table(self) -> type[StudyTable]:
+        return propagate_table()
+
+    def wrong(self, file: Any) -> list[str]:
+        table = file.propagate
+        wrong = [] if file.parameters else ["[propagate] needs at least one [parameters.NAME] table"]
+        wrong += unnamed(table.intervals, file.parameters, "[propagate.intervals]")
+        for key in ("times", "channels"):
+            given = getattr(table, key) is not None
+            if file.model.forward is None and not given:
+                wrong.append(f"[propagate]: the key {key!r} is missing; a mechanism needs it")
+            if file.model.forward is not None and given:
+                wrong.append(f"[propagate], {key}: a forward model has its own; leave the key out")
+        if table.reference is not None and not table.compare:
+            wrong.append("[propagate], reference: nothing is compared; name methods in compare, or leave the key out")
+        return [*wrong, *needs_solver(file)]
+
+    def plan(self, study: "Study") -> str:
+        from dalembert.uncertainty.methods import label
+        from dalembert.uncertainty.runs import Runs
+
+        model, box = _model(study), _box(study)
+        model.evaluate(box.middle[None]).only()
+        costs = []
+        for method in _methods(study):
+            most = method.most(Runs(model, box, label(method)))
+            costs.append(
+                f"{label(method)} ({'as many simulations as it asks for' if most is None else f'{most} simulations'})"
+            )
+        wide = [f"{name} {interval}" for name, interval in box.items()]
+        channels = ", ".join(channel.name for channel in model.channels)
+        return (
+            f"bounds {channels} at {len(model.coordinate.values)} samples over {', '.join(wide)} by {', '.join(costs)}"
+        )
+
+    def run(self, study: "Study", emit: "Emit") -> Outcome:
+        from dalembert.uncertainty import as_record, compare, propagate
+
+        model, box, table = _model(study), _box(study), study.table
+        *methods, last = _methods(study)
+        options: Any = {"seed": table.seed, "on_event": teller(emit, as_record)}
+        if table.compare:
+            return _outcome(study, compare(model, box, methods, reference=last, **options))
+        return _outcome(study, propagate(model, box, last, **options))
+
+    def load(self, study: "Study", path: Path) -> Outcome:
+        from dalembert.uncertainty import Comparison, Propagation
+
+        return _outcome(study, (Comparison if study.table.compare else Propagation).load(path))
+
+
+def _model(study: "Study") -> ForwardModel:
+    table = study.table
+    return study.forward(table.channels or (), np.array(table.times or ()))
+
+
+def _box(study: "Study") -> Box:
+    """The box in the order of the parameters."""
+    given = study.table.intervals
+    return Box.of(
+        {
+            item.name: given[item.name].interval() if item.name in given else (item.lower, item.upper)
+            for item in study.parameters
+        }
+    )
+
+
+def _methods(study: "Study") -> list[Any]:
+    """The method, then those to compare it with, and the reference last where any are compared."""
+    kinds, table = propagation_methods(), study.table
+    first = kinds[DEFAULT]() if table.method is None else table.method.settings()
+    if not table.compare:
+        return [first]
+    reference = kinds[REFERENCE]() if table.reference is None else table.reference.settings()
+    others = [method.settings() for method in table.compare]
+    return [*(method for method in (first, *others) if method != reference), reference]
+
+
+def _outcome(study: "Study", result: Any) -> Outcome:
+    """Outcome of bounds, or of methods compared, with the largest width of each channel."""
+    bands = getattr(result, "results", (result,))[-1]
+    widths = zip(bands.channels, (bands.upper - bands.lower).max(axis=0), strict=True)
+    values = {f"width of {channel}": float(width) for channel, width in widths}
+    return ResultOutcome(study, result, {"values": values})

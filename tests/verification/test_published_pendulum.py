@@ -1,27 +1,15 @@
 """The flexible double pendulum of the published tables."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 import dalembert as da
+from flexible_pendulum import STUDIES, pendulum
 
 SOURCE = (
     'Guo & Jin, "Inverse dynamical problem of flexible multibody systems with interval uncertainty" (2025), table A1'
 )
-TABLE = Path(__file__).parents[2] / "studies" / "flexible-pendulum" / "table-a1.csv"
-
-
-def pendulum(theta1: float, theta2: float, youngs_ab: float = 2e7) -> da.System:
-    """Sections 0.4 m high, as the tables need it (0.04 m is printed)."""
-    section = {"poisson_ratio": 0.3, "density": 5540.0, "height": 0.4, "width": 0.2}
-    system = da.System(gravity=(0.0, -9.81))
-    oa = system.add(da.AncfBeam("OA", 1.0, 2, 2e8, angle=-theta1, **section))
-    ab = system.add(da.AncfBeam("AB", 2.0, 4, youngs_ab, angle=-theta2, start=oa.end, **section))
-    system.add(da.RevoluteJoint("O", system.ground, oa.start))
-    system.add(da.RevoluteJoint("A", oa.end, ab.start))
-    return system
+TABLE = STUDIES / "flexible-pendulum" / "table-a1.csv"
 
 
 @pytest.fixture(scope="module")

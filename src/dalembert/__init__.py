@@ -29,7 +29,7 @@ _NAMES = {
     "intervals": "Box Interval",
     "forward": "Channel Coordinate ForwardModel PythonModel Responses",
     "optimize": "ImprovedParticleSwarm LeastSquares Minimiser ParticleSwarm",
-    "surrogate": "ChebyshevPolynomial Surrogate Tensor TotalDegree",
+    "surrogate": "Adaptive ChebyshevPolynomial Surrogate Tensor TotalDegree",
     "data": "Bands Measurements read_bands read_csv",
     "inverse": "BandFit Fit ParameterSet identify",
     "multibody": """

@@ -64,6 +64,7 @@ from dalembert.optimize import Minimiser as Minimiser
 from dalembert.optimize import ParticleSwarm as ParticleSwarm
 from dalembert.parameters import Parameter as Parameter
 from dalembert.parameters import Parameters as Parameters
+from dalembert.surrogate import Adaptive as Adaptive
 from dalembert.surrogate import ChebyshevPolynomial as ChebyshevPolynomial
 from dalembert.surrogate import Surrogate as Surrogate
 from dalembert.surrogate import Tensor as Tensor

@@ -1,5 +1,6 @@
 """Chebyshev surrogates of costly functions over a box, and bounds of a polynomial on a box. They know no models."""
 
+from dalembert.surrogate.adaptive import Adaptive
 from dalembert.surrogate.bounds import PolynomialBounds, bounds
 from dalembert.surrogate.fit import fit
 from dalembert.surrogate.polynomial import ChebyshevPolynomial
@@ -7,4 +8,4 @@ from dalembert.surrogate.surrogate import Surrogate
 from dalembert.surrogate.tensor import Tensor
 from dalembert.surrogate.total_degree import TotalDegree
 
-__all__ = ["ChebyshevPolynomial", "PolynomialBounds", "Surrogate", "Tensor", "TotalDegree", "bounds", "fit"]
+__all__ = ["Adaptive", "ChebyshevPolynomial", "PolynomialBounds", "Surrogate", "Tensor", "TotalDegree", "bounds", "fit"]

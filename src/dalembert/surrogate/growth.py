@@ -1,0 +1,155 @@
+"""A growing set of terms, each with its run, closed downwards: with a term, all of lower degrees are there."""
+
+import numpy as np
+
+from dalembert.errors import SolveError
+from dalembert.surrogate.leja import hierarchical, leja
+from dalembert.surrogate.runs import Runs, failed
+
+Term = tuple[int, ...]
+
+SKIPPED = 0.3
+"""Part of a surplus that is expected two degrees on, where the one between them is smaller: symmetry makes zeros."""
+TOGETHER = 0.2
+"""Terms whose expected size is at least this part of the largest one are run in one batch."""
+
+
+class Growth:
+    """Terms, their surpluses, and the candidates to be next.
+
+    Parameters
+    ----------
+    directions : int
+    basis : str
+        As in :class:`dalembert.surrogate.Adaptive`.
+    """
+
+    def __init__(self, directions: int, basis: str) -> None:
+        self.directions, self.basis = directions, basis
+        self.terms: list[Term] = []
+        self._surplus: dict[Term, np.ndarray] = {}
+        self._candidates: dict[Term, np.ndarray | None] = {(0,) * directions: None}
+        self._orders = np.zeros(directions, dtype=int)
+        self._ratio = 1.0
+
+    def batch(self, scale: np.ndarray | None, most: int, stalled: bool) -> list[Term]:
+        """The next terms, at most ``most``, the ones expected to be largest relative to ``scale`` (outputs,) first.
+
+        ``stalled`` says that the held-out runs show an error where nothing large is expected any more: a symmetry
+        hides it, as that of e^{xy} does, which has no terms but (k, k). Then any large surplus nearby counts.
+        """
+        if scale is None:
+            return self._start()[:most]
+        candidates = sorted(self._candidates)
+        sizes = map(self._nearby if stalled else self._expected, candidates)
+        expected = np.array([np.max(size / np.where(scale > 0, scale, 1)) for size in sizes])
+        chosen = self._chosen(candidates, expected)
+        order = np.argsort(-expected[chosen], kind="stable")
+        return [candidates[i] for i in np.flatnonzero(chosen)[order]][:most]
+
+    def _start(self) -> list[Term]:
+        """Degrees zero, one and two of each direction."""
+        unit = np.eye(self.directions, dtype=int)
+        return [tuple(row) for row in np.concatenate([0 * unit[:1], unit, 2 * unit]).tolist()]
+
+    def _chosen(self, candidates: list[Term], expected: np.ndarray) -> np.ndarray:
+        terms = np.array(candidates)
+        promising = expected >= TOGETHER * expected.max()
+        if self.basis == "sparse":
+            return promising
+        if self.basis == "total-degree":
+            return terms.sum(axis=1) == terms.sum(axis=1).min()
+        inside = np.all(terms <= self._orders, axis=1)
+        if not inside.any():
+            self._orders = np.maximum(self._orders, terms[promising].max(axis=0))
+            inside = np.all(terms <= self._orders, axis=1)
+        return inside
+
+    def points(self, batch: list[Term]) -> np.ndarray:
+        """Coordinates η of terms, shape (terms, directions)."""
+        places = np.array(batch)
+        return leja(int(places.max()) + 1)[places]
+
+    def add(self, batch: list[Term], values: np.ndarray, runs: Runs) -> None:
+        """Terms with the outputs (terms, outputs) of their runs.
+
+        Raises
+        ------
+        SolveError
+            For a run that failed.
+        """
+        if failed(values).any():
+            place = int(np.argmax(failed(values)))
+            raise SolveError(
+                f"{failed(values).sum()} of {len(values)} runs of an adaptive surrogate failed, the first at the point "
+                f"{runs.place(self.points(batch[place : place + 1]))[0].tolist()}; it needs all of them; "
+                "keep the box away from where the model fails, or use TotalDegree, which can do without some"
+            )
+        sizes: list[tuple[float, float]] = []
+        # A term is foretold by terms below it alone, so the order within a batch is that of degrees.
+        for term, value in sorted(zip(batch, values, strict=True), key=lambda pair: sum(pair[0])):
+            expected = self._candidates.pop(term, None)
+            self._surplus[term] = surplus = value - self._foretold(term, len(value))
+            self.terms.append(term)
+            if expected is not None and expected.any():
+                sizes.append((float(np.sum(np.abs(surplus))), float(np.sum(expected))))
+            self._admit(term)
+        if sizes:
+            found, foreseen = np.sum(sizes, axis=0)
+            self._ratio = min(found / foreseen, 1.0)
+
+    def _foretold(self, term: Term, outputs: int) -> np.ndarray:
+        """Value at the point of a term of the polynomial so far, shape (outputs,)."""
+        if not self.terms:
+            return np.zeros(outputs)
+        exponents = np.array(self.terms)
+        table = hierarchical(int(max(exponents.max(), *term)) + 1)[0]
+        weights = np.prod(table[exponents, np.array(term)], axis=1)
+        below = np.flatnonzero(weights)
+        return weights[below] @ np.array([self._surplus[self.terms[i]] for i in below])
+
+    def _admit(self, term: Term) -> None:
+        """Makes candidates of the terms above one, where nothing is missing below them."""
+        for above in (_raised(term, k, 1) for k in range(self.directions)):
+            below = [_raised(above, k, -1) for k in range(self.directions) if above[k]]
+            if above not in self._surplus and all(entry in self._surplus for entry in below):
+                self._candidates[above] = None
+
+    def _expected(self, term: Term) -> np.ndarray:
+        """Expected magnitude of the surplus of a candidate, shape (outputs,)."""
+        known = self._candidates[term]
+        if known is None:
+            sizes = []
+            for k in range(self.directions):
+                if term[k]:
+                    size = np.abs(self._surplus[_raised(term, k, -1)])
+                    if term[k] > 2 or (term[k] > 1 and sum(term) > term[k]):
+                        size = np.maximum(size, SKIPPED * np.abs(self._surplus[_raised(term, k, -2)]))
+                    sizes.append(size)
+            known = self._candidates[term] = np.prod(sizes, axis=0) ** (1 / len(sizes))
+        return known
+
+    def _nearby(self, term: Term) -> np.ndarray:
+        """Largest surplus (outputs,) one degree or, in part, two degrees below a candidate, in whichever directions."""
+        below = [_raised(term, k, -1) for k in range(self.directions) if term[k]]
+        further = [_raised(entry, k, -1) for entry in below for k in range(self.directions) if entry[k]]
+        sizes = [np.abs(self._surplus[entry]) for entry in below]
+        return np.max([*sizes, *(SKIPPED * np.abs(self._surplus[entry]) for entry in further)], axis=0)
+
+    def tail(self) -> np.ndarray:
+        """Estimate of what the terms left out would add, shape (outputs,)."""
+        expected = np.array([self._expected(term) for term in self._candidates])
+        return self._ratio * np.sum(expected, axis=0)
+
+    def polynomial(self) -> tuple[np.ndarray, np.ndarray]:
+        """Exponents (terms, directions) and Chebyshev coefficients (terms, outputs)."""
+        exponents = np.array(sorted(self.terms))
+        series = hierarchical(int(exponents.max()) + 1)[1]
+        matrix = np.ones((len(exponents), len(exponents)))
+        for k in range(self.directions):
+            matrix *= series[exponents[:, None, k], exponents[None, :, k]]
+        return exponents, matrix.T @ np.array([self._surplus[term] for term in map(tuple, exponents.tolist())])
+
+
+def _raised(term: Term, direction: int, by: int) -> Term:
+    return (*term[:direction], term[direction] + by, *term[direction + 1 :])

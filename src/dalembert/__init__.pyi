@@ -28,8 +28,11 @@ from dalembert.intervals import Box as Box
 from dalembert.intervals import Interval as Interval
 from dalembert.inverse import BandFit as BandFit
 from dalembert.inverse import Fit as Fit
+from dalembert.inverse import GlobalSurrogate as GlobalSurrogate
+from dalembert.inverse import Nested as Nested
 from dalembert.inverse import ParameterSet as ParameterSet
 from dalembert.inverse import identify as identify
+from dalembert.inverse import identify_bands as identify_bands
 from dalembert.multibody import AncfBeam as AncfBeam
 from dalembert.multibody import AncfCable as AncfCable
 from dalembert.multibody import Custom as Custom

@@ -1,23 +1,40 @@
 """Parameters from measurements."""
 
-from dalembert.inverse.bands import BandFit
+from dalembert.inverse.bands import BandFit, GlobalSurrogate, Nested, identify_bands
 from dalembert.inverse.estimate import Identifiability
-from dalembert.inverse.events import Event, Finished, Screened, StartBegan, StartEnd, Step, as_record
+from dalembert.inverse.events import (
+    Checked,
+    Event,
+    Finished,
+    Paved,
+    Sampled,
+    Screened,
+    StartBegan,
+    StartEnd,
+    Step,
+    as_record,
+)
 from dalembert.inverse.fit import Fit
 from dalembert.inverse.identify import identify
 from dalembert.inverse.sets import ParameterSet
 
 __all__ = [
     "BandFit",
+    "Checked",
     "Event",
     "Finished",
     "Fit",
+    "GlobalSurrogate",
     "Identifiability",
+    "Nested",
     "ParameterSet",
+    "Paved",
+    "Sampled",
     "Screened",
     "StartBegan",
     "StartEnd",
     "Step",
     "as_record",
     "identify",
+    "identify_bands",
 ]

@@ -29,6 +29,36 @@ class Screened:
 
 
 @dataclass(frozen=True, eq=False)
+class Sampled:
+    """A surrogate has ``runs`` simulations behind it, and asks for more until it is good enough."""
+
+    kind: ClassVar[str] = "sampled"
+    runs: int
+    simulations: int
+
+
+@dataclass(frozen=True, eq=False)
+class Checked:
+    """True runs where a surrogate has its bounds: their fitness, and the surrogate's largest error there."""
+
+    kind: ClassVar[str] = "checked"
+    runs: int
+    simulations: int
+    fitness: float
+    error: float
+
+
+@dataclass(frozen=True, eq=False)
+class Paved:
+    """Boxes of a paving so far: in the set, on its boundary, and still to be looked at."""
+
+    kind: ClassVar[str] = "paved"
+    inside: int
+    boundary: int
+    waiting: int
+
+
+@dataclass(frozen=True, eq=False)
 class Step:
     """One iteration of one start.
 
@@ -91,7 +121,7 @@ class Finished:
     simulations: int
 
 
-Event = StartBegan | Screened | Step | StartEnd | Finished
+Event = StartBegan | Screened | Sampled | Checked | Paved | Step | StartEnd | Finished
 OnEvent = Callable[[Event], None]
 
 

@@ -1,0 +1,172 @@
+"""One surrogate over the whole search box, on which all candidate boxes are bounded."""
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from dalembert.errors import InputError, SolveError
+from dalembert.inverse.bands.band_problem import BandProblem
+from dalembert.inverse.bands.candidate import Candidate, candidate
+from dalembert.inverse.bands.check import Check, check, scale
+from dalembert.inverse.bands.correction import corrected
+from dalembert.inverse.bands.descent import descend, screened
+from dalembert.inverse.bands.found import Found
+from dalembert.inverse.events import Checked, Sampled
+from dalembert.optimize import LeastSquares, Minimum
+from dalembert.surrogate import Adaptive, Surrogate, fit
+from dalembert.surrogate.scheme import Scheme
+
+SCREENED = 100
+"""Boxes bounded on the surrogate to choose starts from, an unknown."""
+
+ENOUGH = 1e-6
+"""Checks end when surrogate and true runs agree to this part of a channel's range."""
+
+NEGLIGIBLE = 0.1
+"""Or when they agree to this part of the difference between given and reproduced bands."""
+
+COARSE = 1e-4
+"""A surrogate that is wrong by more than this part of a channel's range is made anew around the answer."""
+
+MARGIN = (0.5, 0.02)
+"""How far around: parts of the answer's radius and of the search box's width."""
+
+
+@dataclass(frozen=True)
+class GlobalSurrogate:
+    """Least squares over middles and radii, on one surrogate of the model over the whole search box.
+
+    Parameters
+    ----------
+    scheme : Adaptive, Tensor or TotalDegree
+        Of the surrogate over the search box: it has to lead near the answer.
+    local : Adaptive, Tensor or TotalDegree
+        Of another one around the answer, which is made where the first one is far off there.
+    starts : int
+        Descents, from the best of many scattered boxes.
+    checks : int
+        Most times that true runs are made where the surrogate has its bounds on the answer. After each but the last the
+        surrogate is corrected by them, or where it is far off made anew around the answer, and the descent goes on.
+        0 for none.
+    tolerance : float
+        An answer is refused when the surrogate is wrong by more than this part of a channel's range: at the true runs
+        of the last check, or without one anywhere in the search box.
+    held_out : int
+        Runs of the model that only test the surrogate.
+
+    Raises
+    ------
+    InputError
+        For settings that cannot be meant.
+
+    Notes
+    -----
+    The bounds of a polynomial on a box change with the box as the polynomial does where they are taken (envelope
+    theorem), so the jacobian is exact. A few true runs check all bounds, since most are taken at the same corners.
+    """
+
+    scheme: Scheme = field(default_factory=lambda: Adaptive(tolerance=1e-2))
+    local: Scheme = field(default_factory=lambda: Adaptive(tolerance=2e-4))
+    starts: int = 4
+    checks: int = 4
+    tolerance: float = 1e-3
+    held_out: int = 4
+
+    def __post_init__(self) -> None:
+        for name, least in (("starts", 1), ("checks", 0), ("held_out", 0)):
+            if getattr(self, name) < least:
+                raise InputError(f"GlobalSurrogate: {name} is {getattr(self, name)}; expected at least {least}")
+        if not 0 < self.tolerance < np.inf:
+            raise InputError(f"GlobalSurrogate: tolerance is {self.tolerance}; expected a positive number")
+
+    @property
+    def name(self) -> str:
+        return "global"
+
+    def search(self, problem: BandProblem, seed: int) -> Found:
+        """The best box.
+
+        Raises
+        ------
+        SolveError
+            For a surrogate that cannot be made, or that is not to be trusted.
+        """
+        surrogate = self._surrogate(problem, self.scheme, seed)
+        if self.checks == 0:
+            surrogate.demand(self.tolerance * scale(problem))
+        origins = screened(problem, surrogate.polynomial, SCREENED * len(problem.unknowns.lower), self.starts, seed)
+        ends = [descend(problem, surrogate.polynomial, LeastSquares(), origin) for origin in origins]
+        best = min(ends, key=lambda end: end.fitness)
+        found, surrogate = self._refined(problem, surrogate, best, seed)
+        if found.check is not None and np.any(found.error > self.tolerance * scale(problem)):
+            raise SolveError(_refusal(problem, surrogate, found.error, self.tolerance))
+        return found
+
+    def _surrogate(self, problem: BandProblem, scheme: Scheme, seed: int) -> Surrogate:
+        journal = problem.journal
+        return fit(
+            problem.run,
+            *problem.unknowns.bounds,
+            scheme,
+            seed=seed,
+            held_out=self.held_out,
+            groups=np.tile(np.arange(problem.shape[1]), problem.shape[0]),
+            on_runs=lambda runs: journal.tell(Sampled(runs, journal.simulations)),
+        )
+
+    def _refined(self, problem: BandProblem, surrogate: Surrogate, best: Minimum, seed: int) -> tuple[Found, Surrogate]:
+        """In turn checked by true runs, made better by them or around them, and descended from the answer so far."""
+        polynomial, points, values = surrogate.polynomial, surrogate.points, surrogate.values
+        found = Found(
+            polynomial, candidate(problem, polynomial, best.x), surrogate.error, None, best.success, best.message
+        )
+        sharpest = np.inf
+        for left in reversed(range(self.checks)):
+            at = candidate(problem, polynomial, best.x)
+            checked = check(problem, polynomial, at)
+            if checked is None:
+                break
+            _tell(problem, checked)
+            worst = float(np.max(checked.error / scale(problem)))
+            if worst > sharpest:  # the correction made it worse
+                break
+            sharpest = worst
+            found = Found(polynomial, at, checked.error, checked, best.success, best.message)
+            if left == 0 or worst <= ENOUGH or np.all(checked.error <= NEGLIGIBLE * _misfit(problem, at)):
+                break
+            points, values = np.concatenate([points, checked.points]), np.concatenate([values, checked.values])
+            if worst > COARSE and problem.unknowns.leaves(at.lower, at.upper):
+                problem = replace(problem, unknowns=problem.unknowns.around(at.lower, at.upper, *MARGIN))
+                surrogate = self._surrogate(problem, self.local, seed)
+                polynomial, sharpest = surrogate.polynomial, np.inf
+                points, values = np.concatenate([points, surrogate.points]), np.concatenate([values, surrogate.values])
+            else:
+                polynomial = corrected(polynomial, at, points, values, len(checked.points))
+            best = descend(problem, polynomial, LeastSquares(), problem.unknowns.of(at.lower, at.upper))
+        return found, surrogate
+
+
+def _misfit(problem: BandProblem, at: Candidate) -> float:
+    """Root mean square of the difference between the bounds and the given ones."""
+    apart = problem.residual(at.bounds.lower, at.bounds.upper)
+    return float(np.sqrt(np.sum(apart**2) / (2 * np.sum(problem.weights))))
+
+
+def _tell(problem: BandProblem, checked: Check) -> None:
+    fitness = float(problem.fitness(checked.lower, checked.upper))
+    journal = problem.journal
+    journal.tell(Checked(len(checked.points), journal.simulations, fitness, float(checked.error.max())))
+
+
+def _refusal(problem: BandProblem, surrogate: Surrogate, error: np.ndarray, tolerance: float) -> str:
+    allowed = tolerance * scale(problem)
+    worst = int(np.argmax(error / allowed))
+    sample, channel = divmod(worst, problem.shape[1])
+    along = problem.bands.coordinate
+    order = surrogate.needed_order(np.minimum(allowed, surrogate.error / 2))
+    return (
+        f"channel {problem.bands.channels[channel]!r}, sample {sample} ({along.name} {along.values[sample]:.10g} "
+        f"{along.unit}): true runs on the identified box differ from the surrogate of order {surrogate.order} by "
+        f"{error[worst]:.2g}, more than the tolerance of {allowed[worst]:.2g}; about order {order} would "
+        f"do: {surrogate.scheme.more(order)}, allow more checks, raise the tolerance, or narrow the parameters' bounds"
+    )

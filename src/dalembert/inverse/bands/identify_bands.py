@@ -1,0 +1,168 @@
+"""Intervals of parameters from bands of a response."""
+
+from collections.abc import Iterable
+from time import perf_counter
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from dalembert.data import Bands
+from dalembert.errors import InputError, unknown
+from dalembert.forward import ForwardModel
+from dalembert.forward.provenance import provenance
+from dalembert.intervals import Box
+from dalembert.inverse.bands.band_fit import BandFit
+from dalembert.inverse.bands.band_problem import BandProblem, pose
+from dalembert.inverse.bands.candidate import slopes
+from dalembert.inverse.bands.found import Found, Method
+from dalembert.inverse.bands.global_surrogate import GlobalSurrogate
+from dalembert.inverse.bands.nested import Nested
+from dalembert.inverse.bands.status import status
+from dalembert.inverse.bands.unknowns import unknowns_of
+from dalembert.inverse.estimate import Estimate, estimate
+from dalembert.inverse.events import Finished, OnEvent
+from dalembert.inverse.journal import Journal
+
+METHODS = {"global": GlobalSurrogate, "nested": Nested}
+
+
+def identify_bands(
+    model: ForwardModel,
+    bands: Bands,
+    *,
+    intervals: Iterable[str] | None = None,
+    method: Method | str | None = None,
+    weights: ArrayLike | None = None,
+    seed: int = 0,
+    on_event: OnEvent | None = None,
+) -> BandFit:
+    """Intervals of a model's parameters over which its response has given bounds.
+
+    With Yˡ(x), Yᵘ(x) the least and largest response over the box of middles and radii x, least
+    F = Σ W ((Yˡ − given lower)² + (Yᵘ − given upper)²) over samples and channels.
+
+    Parameters
+    ----------
+    model : ForwardModel
+        Its samples must be those of the bands; it may have more channels. The bounds of its parameters are the search
+        box, inside which the identified intervals stay.
+    bands : Bands
+    intervals : names, optional
+        Parameters that are intervals, all if not given. The others are numbers: unknown too, but with radius zero.
+    method : GlobalSurrogate, Nested, "global" or "nested", optional
+        One surrogate over the search box if not given; ``Nested`` is the published way.
+    weights : array, shape (channels,) or (samples, channels), optional
+        W; 1 if not given.
+    seed : int
+        All random numbers follow from it.
+    on_event : callable, optional
+        Called with each event (see :mod:`dalembert.inverse.events`) as it happens.
+
+    Returns
+    -------
+    BandFit
+
+    Raises
+    ------
+    DataError
+        For a channel that the model lacks, samples that are not the model's.
+    InputError
+        For arguments that cannot be meant.
+    SolveError
+        For a surrogate that cannot be made or is not to be trusted, with the order that would do.
+
+    Notes
+    -----
+    Parameters whose bounds are positive and more than a decade apart are searched, and their surrogate made, by their
+    logarithm (``Parameter.log`` overrules).
+
+    Source: Guo & Jin, Inverse dynamical problem of flexible multibody systems with interval uncertainty, 2025, for the
+    formulation and the nested way.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from dalembert.forward import PythonModel
+    >>> times = np.linspace(0, 2, 21)
+    >>> decay = PythonModel(lambda rate: np.exp(-rate * times), {"rate": (0.1, 3.0)}, ["x"], times)
+    >>> bands = Bands.of(times, {"x": (np.exp(-1.2 * times), np.exp(-0.8 * times))})
+    >>> print(identify_bands(decay, bands).box)
+    rate [0.8, 1.2]
+    """
+    began = perf_counter()
+    chosen = _method(method)
+    unknowns = unknowns_of(model.parameters, intervals)
+    journal = Journal(len(bands.coordinate.values), on_event)
+    problem = pose(model, bands, weights, unknowns, journal)
+    found = chosen.search(problem, seed)
+    at, checked = found.candidate, found.check
+    told = _told(problem, found)
+    d = len(model.parameters)
+    radius_deviations = np.zeros(d)
+    radius_deviations[unknowns.chosen] = told.deviations[d:]
+    fit = BandFit(
+        parameters=model.parameters,
+        intervals=unknowns.intervals,
+        box=Box(model.parameters.names, *(unknowns.search.vectors(end) for end in (at.lower, at.upper))),
+        unknowns=unknowns.names,
+        middle_deviations=told.deviations[:d],
+        radius_deviations=radius_deviations,
+        correlation=told.correlation,
+        singular_values=told.singular_values,
+        directions=told.directions,
+        fitness=float(problem.fitness(at.bounds.lower, at.bounds.upper)),
+        bands=Bands(bands.coordinate, bands.channels, bands.lower, bands.upper),
+        weights=np.array(problem.weights),
+        lower=at.bounds.lower.reshape(problem.shape),
+        upper=at.bounds.upper.reshape(problem.shape),
+        error=found.error.reshape(problem.shape),
+        checked_lower=None if checked is None else checked.lower.reshape(problem.shape),
+        checked_upper=None if checked is None else checked.upper.reshape(problem.shape),
+        checked_fitness=None if checked is None else float(problem.fitness(checked.lower, checked.upper)),
+        history=tuple(journal.history),
+        starts=tuple(journal.starts),
+        success=found.success,
+        status=status(problem, found),
+        method=chosen.name,
+        simulations=journal.simulations,
+        seconds=perf_counter() - began,
+        provenance=provenance(
+            model,
+            chosen,
+            data=bands.fingerprint,
+            seed=seed,
+            intervals=unknowns.intervals,
+            weights="given" if weights is not None else "one",
+        ),
+    )
+    values = np.concatenate([fit.middle, fit.radius[unknowns.chosen]])
+    journal.tell(Finished(fit.success, fit.status, fit.fitness, values, fit.simulations))
+    return fit
+
+
+def _method(given: Method | str | None) -> Method:
+    if given is None:
+        return GlobalSurrogate()
+    if isinstance(given, str):
+        if given not in METHODS:
+            raise InputError(unknown("method of identifying bands", given, METHODS))
+        return METHODS[given]()
+    if not hasattr(given, "search"):
+        raise InputError(f"method is {given!r}; expected GlobalSurrogate(...), Nested(...), 'global' or 'nested'")
+    return given
+
+
+def _told(problem: BandProblem, found: Found) -> Estimate:
+    """Deviations and correlations of middles and radii, the noise estimated from the residuals."""
+    unknowns, at = problem.unknowns, found.candidate
+    by_lower, by_upper = slopes(problem, found.polynomial, at)
+    search, parameters = unknowns.search, problem.model.parameters
+    # dz/dp at the two ends; in the parameters' units these are middle ∓ radius, with nothing cut.
+    lower, upper = (
+        side / search.slope(search.vectors(end)) for side, end in ((by_lower, at.lower), (by_upper, at.upper))
+    )
+    scale = np.concatenate([parameters.scale, parameters.scale[unknowns.chosen]])
+    by_unknown = np.hstack([lower + upper, (upper - lower)[:, unknowns.chosen]]) * scale
+    freedom = 2 * np.count_nonzero(problem.weights) - len(scale)
+    fitness = float(problem.fitness(at.bounds.lower, at.bounds.upper))
+    return estimate(by_unknown, scale, fitness / freedom if freedom > 0 else np.nan)

@@ -1,5 +1,7 @@
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from dalembert.errors import InputError
 from dalembert.intervals import Box, Interval
@@ -92,3 +94,18 @@ def test_names_and_shapes_of_a_box_are_checked(box: Box) -> None:
     sentence = "a box of 1 names has bounds of shapes (2,) and (1,); expected (1,) twice"
     with pytest.raises(InputError, match=says(sentence)):
         Box(("a",), np.zeros(2), np.ones(1))
+
+
+finite = st.floats(-1e6, 1e6, allow_subnormal=False)
+
+
+@given(st.lists(st.tuples(finite, finite), min_size=1, max_size=5), st.data())
+def test_points_of_a_box_lie_in_it_and_its_corners_are_points(ends: list[tuple[float, float]], data) -> None:
+    box = Box.of({f"p{place}": (min(pair), max(pair)) for place, pair in enumerate(ends)})
+    eta = np.array(data.draw(st.lists(st.floats(-1, 1), min_size=len(ends), max_size=len(ends))))
+    points = box.points(np.stack([eta, np.zeros_like(eta), np.sign(eta)]))
+    slack = 1e-15 * np.maximum(np.abs(box.lower), np.abs(box.upper))
+    assert np.all((points >= box.lower - slack) & (points <= box.upper + slack))
+    assert np.all(box.contains(box.corners()))
+    assert len(np.unique(box.corners(), axis=0)) == 2 ** np.count_nonzero(box.radius)
+    np.testing.assert_allclose(points[1], box.middle, atol=2 * slack.max())

@@ -69,8 +69,7 @@ def bounds(
 
     Notes
     -----
-    A scan alone is wrong by a curvature times its spacing squared, however high the order of the polynomial. Bounds of
-    a batch do not depend on what else is in it.
+    A scan alone is wrong by a curvature times its spacing squared, however high the order of the polynomial.
 
     Examples
     --------

@@ -37,8 +37,10 @@ def tail(shells: np.ndarray) -> np.ndarray:
     return _pair(shells, len(shells) - 1) * decay**2 / (1 - decay**2)
 
 
-def needed_order(shells: np.ndarray, tolerance: np.ndarray) -> int:
+def needed_order(shells: np.ndarray, tolerance: np.ndarray) -> tuple[int, bool]:
     """Lowest order that leaves less than ``tolerance`` (outputs,) out, if the coefficients go on as they decay.
+
+    And whether they decay at all.
 
     From degree p on, degree q is taken to decay by r (p/q)^α: α = 0 for a geometric series, as of a function with a
     pole, α = 1 for that of an entire function such as a sine; the last shells tell which. Where no decay is seen
@@ -47,17 +49,17 @@ def needed_order(shells: np.ndarray, tolerance: np.ndarray) -> int:
     Examples
     --------
     >>> needed_order(10.0 ** -np.arange(6)[:, None], np.array([1e-9]))
-    9
+    (9, True)
     """
     order = len(shells) - 1
     left, ratio = tail(shells), _ratio(shells, order)
     if np.any(ratio[left > tolerance] >= SLOWEST):
-        return 2 * max(order, 1)
+        return 2 * max(order, 1), False
     power, reached = _power(shells, order), order
     while np.any(left > tolerance):
         reached += 1
         left = left * ratio * (order / reached) ** power
-    return reached
+    return reached, True
 
 
 def _pair(shells: np.ndarray, degree: int) -> np.ndarray:

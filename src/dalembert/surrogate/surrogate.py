@@ -72,12 +72,16 @@ class Surrogate:
         Where they do not decay yet, twice the order: the next one to try. Where the held-out runs show a larger error
         than the coefficients do, the tolerance is taken as much smaller.
         """
-        wanted = np.broadcast_to(np.asarray(tolerance, dtype=float), self.tail.shape)
+        return self._needed(np.broadcast_to(np.asarray(tolerance, dtype=float), self.tail.shape))[0]
+
+    def _needed(self, wanted: np.ndarray) -> tuple[int, bool]:
+        """The order that would do, and whether it is more than the next one to try."""
         if np.all(self.error <= wanted):
-            return self.order
+            return self.order, True
         trust = np.divide(self.tail, self.error, out=np.ones_like(self.tail), where=self.error > 0)
         share = wanted * np.maximum(trust, 1e-3) / max(len(self._shells), 1)
-        return max(self.order + 1, *(needed_order(shells, share) for shells in self._shells))
+        orders, seen = zip(*(needed_order(shells, share) for shells in self._shells), strict=True)
+        return max(self.order + 1, *orders), all(seen)
 
     def demand(self, tolerance: ArrayLike, name: Callable[[int], str] = "output {}".format) -> None:
         """Refuses a surrogate whose error is above the tolerance, a number or (outputs,).
@@ -93,9 +97,10 @@ class Surrogate:
         if np.all(self.error <= wanted):
             return
         worst = int(np.argmax(self.error / np.maximum(wanted, np.finfo(float).tiny)))
-        order = self.needed_order(wanted)
+        order, seen = self._needed(wanted)
+        advice = f"about order {order} " + ("would do" if seen else "is to be tried next, as no decay shows yet")
         raise SolveError(
             f"the surrogate of order {self.order} is wrong by about {self.error[worst]:.2g} at {name(worst)}, "
-            f"more than the tolerance of {wanted[worst]:.2g}; about order {order} would do: "
+            f"more than the tolerance of {wanted[worst]:.2g}; {advice}: "
             f"{self.scheme.more(order)}, raise the tolerance, or make the box smaller"
         )

@@ -56,7 +56,9 @@ def test_ten_parameters_of_which_few_matter_take_few_runs() -> None:
 def test_the_order_of_a_low_surrogate_is_refused_with_one_that_would_do() -> None:
     low = fit(growing, [-1, -1], [1, 1], Tensor((4, 2)))
     assert low.error.max() > 0.5
-    with pytest.raises(SolveError, match=r"^the surrogate of order 4 is wrong by about .*; about order 8 would do"):
+    with pytest.raises(
+        SolveError, match=r"^the surrogate of order 4 is wrong by about .*; about order 8 is to be tried next"
+    ):
         low.demand(1e-6)
     order = fit(growing, [-1, -1], [1, 1], Tensor((20, 2))).needed_order(1e-6)
     assert 21 <= order <= 26

@@ -9,6 +9,9 @@ from scipy.spatial import KDTree
 SWEEPS = 40
 """Passes over the coordinates when an expansion is maximised."""
 
+UNSEEN = 1e-10
+"""Part of the largest spread of the neighbours below which a direction has none."""
+
 CHUNK = 2_000_000
 """Numbers in the largest array of Hessians at once."""
 
@@ -38,30 +41,27 @@ class Expansions:
     def curvatures(self, outputs: np.ndarray) -> np.ndarray:
         """Hessians by η, shape (runs, len(outputs), f, f), from the differences of gradients to the nearest runs.
 
-        Least squares of H u = Δg/|Δη| over the unit vectors u to the neighbours, nearer ones weighing more; where there
-        are too few, the smallest H that agrees.
+        The symmetric H of least Σ w² |H Δη − Δg|² over the neighbours, w = 1/|Δη|² so that nearer ones weigh more. It
+        solves H S + S H = C + Cᵀ, S = Σ w² Δη Δηᵀ, C = Σ w² Δg Δηᵀ, in the eigenvectors of S; it is zero along those in
+        which no neighbour lies.
         """
         runs, f = self.points.shape
         neighbours = min(runs - 1, 2 * f + 2)
         if neighbours == 0:
             return np.zeros((runs, len(outputs), f, f))
-        nearest = KDTree(self.points).query(self.points, neighbours + 1)
-        distance, near = map(np.asarray, nearest)
-        hessians = np.empty((runs, len(outputs), f, f))
-        i, j = np.triu_indices(f)
-        for run in range(runs):
-            others, apart = near[run, 1:], distance[run, 1:]
-            weight = apart[0] / apart**2
-            towards = (self.points[others] - self.points[run]) * weight[:, None]
-            rows = np.zeros((neighbours, f, len(i)))
-            rows[:, i, np.arange(len(i))] = towards[:, j]
-            rows[:, j, np.arange(len(i))] = towards[:, i]
-            change = (self.slopes[np.ix_(others, outputs)] - self.slopes[run, outputs]) * weight[:, None, None]
-            right = np.moveaxis(change, 1, 2).reshape(neighbours * f, -1)
-            entries = np.linalg.lstsq(rows.reshape(neighbours * f, -1), right, rcond=1e-8)[0]
-            hessians[run][:, i, j] = entries.T
-            hessians[run][:, j, i] = entries.T
-        return hessians
+        distance, near = map(np.asarray, KDTree(self.points).query(self.points, neighbours + 1))
+        distance = np.maximum(distance[:, 1:], np.finfo(float).eps)
+        weight = (distance[:, :1] / distance**2)[..., None]
+        towards = weight * (self.points[near[:, 1:]] - self.points[:, None])
+        slopes = self.slopes[:, outputs]
+        changes = weight[..., None] * (slopes[near[:, 1:]] - slopes[:, None])
+        spread, axes = np.linalg.eigh(np.einsum("rki,rkj->rij", towards, towards))
+        mixed = np.einsum("rkoi,rkj->roij", changes, towards @ axes, optimize=True)
+        mixed = axes.mT[:, None] @ mixed
+        pairs = spread[:, :, None] + spread[:, None, :]
+        seen = pairs > UNSEEN * spread[:, -1, None, None]
+        hessians = np.where(seen[:, None], (mixed + mixed.mT) / np.where(seen, pairs, 1.0)[:, None], 0.0)
+        return axes[:, None] @ hessians @ axes.mT[:, None]
 
 
 def maxima(slope: np.ndarray, hessian: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> np.ndarray:

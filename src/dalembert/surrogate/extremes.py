@@ -1,14 +1,23 @@
 """Compiled: smallest and largest values of each output of a polynomial on boxes, by Newton's method from a scan."""
 
+from typing import Any
+
 import numpy as np
 from numba import njit
+
+# No fast-math, so that results are the same bits on every run.
+_OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy"}
+_UNCOUNTED: dict[str, Any] = {**_OPTIONS, "_nrt": False}
+compiled = njit(**_OPTIONS)
+#: For functions that make no arrays: without the counting of references.
+kernel = njit(**_UNCOUNTED)
 
 ITERATIONS, DAMPINGS = 60, 40
 CONVERGED = 1e-15
 """A step that promises less than this part of the sum of |coefficients| is not taken."""
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def _ladders(eta, degrees, tables):
     """Fills tables[derivative, k, m] with T_m(η_k) and its first two derivatives."""
     for k in range(len(eta)):
@@ -23,23 +32,23 @@ def _ladders(eta, degrees, tables):
             tables[2, k, m + 1] = 4 * tables[1, k, m] + 2 * x * tables[2, k, m] - tables[2, k, m - 1]
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract"})
-def _along(row, table, length):
-    """Σ_m row[m] table[m]."""
+@kernel
+def _along(coefficients, row, length, tables, derivative, inner):
+    """Sum of a row's coefficients times the Chebyshev polynomials of the inner direction, or their derivatives."""
     total = 0.0
     for m in range(length):
-        total += row[m] * table[m]
+        total += coefficients[row, m] * tables[derivative, inner, m]
     return total
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def _value_and_gradient(tables, inner, exponents, active, counts, lengths, coefficients, gradient):
     """Value, and the gradient with respect to η in place; a row multiplies only the directions that it depends on."""
     gradient[:] = 0.0
     value = 0.0
     for r in range(len(coefficients)):
-        along = _along(coefficients[r], tables[0, inner], lengths[r])
-        slope = _along(coefficients[r], tables[1, inner], lengths[r])
+        along = _along(coefficients, r, lengths[r], tables, 0, inner)
+        slope = _along(coefficients, r, lengths[r], tables, 1, inner)
         for i in range(counts[r]):
             factor = tables[0, active[r, i], exponents[r, i]]
             product = along * tables[1, active[r, i], exponents[r, i]]
@@ -55,14 +64,14 @@ def _value_and_gradient(tables, inner, exponents, active, counts, lengths, coeff
     return value
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def _hessian(tables, inner, exponents, active, counts, lengths, coefficients, hessian):
     """Second derivatives with respect to η, in place."""
     hessian[:] = 0.0
     for r in range(len(coefficients)):
-        along = _along(coefficients[r], tables[0, inner], lengths[r])
-        slope = _along(coefficients[r], tables[1, inner], lengths[r])
-        curvature = _along(coefficients[r], tables[2, inner], lengths[r])
+        along = _along(coefficients, r, lengths[r], tables, 0, inner)
+        slope = _along(coefficients, r, lengths[r], tables, 1, inner)
+        curvature = _along(coefficients, r, lengths[r], tables, 2, inner)
         for i in range(counts[r]):
             mixed = slope
             for m in range(counts[r]):
@@ -82,7 +91,7 @@ def _hessian(tables, inner, exponents, active, counts, lengths, coefficients, he
                 hessian[i, j] = hessian[other, inner]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def _step(hessian, gradient, free, damping, factor, step):
     """Solves (H + damping) step = −gradient in the free directions by Cholesky; whether H + damping is definite."""
     size = len(gradient)
@@ -117,14 +126,14 @@ def _step(hessian, gradient, free, damping, factor, step):
     return True
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def _minimum(eta, low, high, degrees, inner, exponents, active, counts, lengths, coefficients, work, tables):
+@kernel
+def _minimum(
+    eta, low, high, degrees, inner, exponents, active, counts, lengths, coefficients, small, work, free, tables
+):
     """Local minimum in a box by Newton's method projected onto it; η in place, the value returned."""
     size = len(eta)
     gradient, step, trial, trial_gradient = work[0], work[1], work[2], work[3]
     hessian, factor = work[4 : 4 + size], work[4 + size : 4 + 2 * size]
-    free = np.empty(size, dtype=np.bool_)
-    small = CONVERGED * np.sum(np.abs(coefficients))
     _ladders(eta, degrees, tables)
     value = _value_and_gradient(tables, inner, exponents, active, counts, lengths, coefficients, gradient)
     for _ in range(ITERATIONS):
@@ -159,12 +168,12 @@ def _minimum(eta, low, high, degrees, inner, exponents, active, counts, lengths,
         if not lower < value:
             break
         value = lower
-        eta[:] = trial
-        gradient[:] = trial_gradient
+        for k in range(size):
+            eta[k], gradient[k] = trial[k], trial_gradient[k]
     return value
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def _lowest_valleys(values, sides, sign, best, places):
     """Places of the lowest points of a scan that no neighbour along an axis is below; how many."""
     found = 0
@@ -192,7 +201,7 @@ def _lowest_valleys(values, sides, sign, best, places):
     return found
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def extremes(
     values, grid, sides, low, high, degrees, inner, exponents, active, counts, lengths, coefficients, starts, bounds, at
 ):
@@ -220,6 +229,7 @@ def extremes(
     size = low.shape[1]
     work = np.empty((4 + 2 * size, size))
     tables = np.zeros((3, size, max(2, degrees.max() + 1)))
+    free = np.empty(size, dtype=np.bool_)
     best, places = np.empty(starts), np.empty(starts, dtype=np.int64)
     eta, signed = np.empty(size), np.empty(coefficients.shape[1:])
     for b in range(len(low)):
@@ -227,13 +237,27 @@ def extremes(
             for side in range(2):
                 sign = 1.0 - 2.0 * side
                 signed[:] = sign * coefficients[o]
+                small = CONVERGED * np.sum(np.abs(signed))
                 lowest = np.inf
                 for start in range(_lowest_valleys(values[b, o], sides, sign, best, places)):
                     for k in range(size):
                         part = grid[places[start], k]
                         eta[k] = high[b, k] if part == 1 else low[b, k] + part * (high[b, k] - low[b, k])
                     value = _minimum(
-                        eta, low[b], high[b], degrees, inner, exponents, active, counts, lengths, signed, work, tables
+                        eta,
+                        low[b],
+                        high[b],
+                        degrees,
+                        inner,
+                        exponents,
+                        active,
+                        counts,
+                        lengths,
+                        signed,
+                        small,
+                        work,
+                        free,
+                        tables,
                     )
                     if value < lowest:
                         lowest = value

@@ -33,6 +33,7 @@ from dalembert.inverse import Nested as Nested
 from dalembert.inverse import ParameterSet as ParameterSet
 from dalembert.inverse import identify as identify
 from dalembert.inverse import identify_bands as identify_bands
+from dalembert.inverse import identify_set as identify_set
 from dalembert.multibody import AncfBeam as AncfBeam
 from dalembert.multibody import AncfCable as AncfCable
 from dalembert.multibody import Custom as Custom

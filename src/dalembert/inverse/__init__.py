@@ -16,7 +16,7 @@ from dalembert.inverse.events import (
 )
 from dalembert.inverse.fit import Fit
 from dalembert.inverse.identify import identify
-from dalembert.inverse.sets import ParameterSet
+from dalembert.inverse.sets import ParameterSet, identify_set
 
 __all__ = [
     "BandFit",
@@ -37,4 +37,5 @@ __all__ = [
     "as_record",
     "identify",
     "identify_bands",
+    "identify_set",
 ]

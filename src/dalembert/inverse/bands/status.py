@@ -5,7 +5,7 @@ import numpy as np
 from dalembert.inverse.bands.band_problem import BandProblem
 from dalembert.inverse.bands.check import scale
 from dalembert.inverse.bands.found import Found
-from dalembert.inverse.noise import quantum
+from dalembert.inverse.noise import quantum, random_residuals
 
 SMALL = 1e-2
 """Misfit, as a part of the bands' mean width, from which bands are said to be explained badly."""
@@ -32,34 +32,37 @@ def status(problem: BandProblem, found: Found) -> str:
 
 
 def _misfit(problem: BandProblem, found: Found) -> str:
-    """What the residual says about the given bands."""
+    """What the difference between reproduced and given bands says about the given ones."""
     bounds, given = found.candidate.bounds, problem.bands
     apart = np.stack([bounds.lower, bounds.upper]).reshape(2, *problem.shape) - np.stack([given.lower, given.upper])
-    counted = np.broadcast_to(problem.weights > 0, apart.shape)
-    apart = np.where(counted, apart, 0.0)
-    rms = np.sqrt(np.sum(apart**2, axis=(0, 1)) / np.maximum(counted.sum(axis=(0, 1)), 1))
-    width = given.width.mean(axis=0)
-    share = np.divide(rms, width, out=np.where(rms > 0, np.inf, 0.0), where=width > 0)
-    channel = int(np.argmax(share))
-    side, sample, column = np.unravel_index(
-        np.argmax(np.abs(apart) / scale(problem).reshape(problem.shape)), apart.shape
-    )
-    along = given.coordinate
-    where = (
-        f"most in the {('lower', 'upper')[side]} bound of {given.channels[column]!r} at {along.name} "
-        f"{along.values[sample]:.6g} {along.unit}".rstrip()
-        + f", by {abs(apart[side, sample, column]):.2g}"
-    )
-    digits = np.array([max(map(quantum, columns)) for columns in zip(given.lower.T, given.upper.T, strict=True)])
+    apart = np.where(problem.weights > 0, apart, 0.0)
+    rms = np.sqrt(np.mean(apart**2, axis=(0, 1)))
+    digits = [max(map(quantum, columns)) for columns in zip(given.lower.T, given.upper.T, strict=True)]
     if np.all(rms <= digits):
         return "The given bands are reproduced to the digits that they are rounded to."
+    width = given.width.mean(axis=0)
+    share = np.divide(rms, width, out=np.where(rms > 0, np.inf, 0.0), where=width > 0)
     sentence = (
-        f"The reproduced bands differ from the given ones by {share[channel]:.2g} of their mean width at rms in "
-        f"{given.channels[channel]!r}; {where}."
+        f"The reproduced bands differ from the given ones by {share.max():.2g} of their mean width at rms in "
+        f"{given.channels[int(np.argmax(share))]!r}; {_largest(problem, apart)}."
     )
-    if share[channel] > SMALL:
-        sentence += (
-            " No box of these parameters gives these bands: look at the residuals whether some values stand out, "
-            "whether the model lacks something, or whether the bounds leave the true intervals out."
-        )
-    return sentence
+    if random_residuals(np.hstack([apart[0], apart[1]]), (problem.shape[0], 2 * problem.shape[1])):
+        return sentence + " What remains looks like noise."
+    if share.max() <= SMALL:
+        return sentence
+    return (
+        f"{sentence} No box of these parameters has these bands: look at the residuals whether some values stand out, "
+        "whether the model lacks something, or whether the bounds leave the true intervals out."
+    )
+
+
+def _largest(problem: BandProblem, apart: np.ndarray) -> str:
+    """Where the largest difference is, of differences (2, samples, channels) between bands."""
+    along = problem.bands.coordinate
+    relative = np.abs(apart) / scale(problem).reshape(problem.shape)
+    side, sample, column = np.unravel_index(np.argmax(relative), apart.shape)
+    at = f"{along.name} {along.values[sample]:.6g} {along.unit}".rstrip()
+    return (
+        f"most in the {('lower', 'upper')[side]} bound of {problem.bands.channels[column]!r} at {at}, "
+        f"by {abs(apart[side, sample, column]):.2g}"
+    )

@@ -1,0 +1,182 @@
+"""All parameters that are consistent with measurements of bounded error."""
+
+from collections.abc import Mapping
+from time import perf_counter
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from dalembert.data import Measurements
+from dalembert.errors import InputError, unknown
+from dalembert.forward import ForwardModel
+from dalembert.forward.provenance import provenance
+from dalembert.intervals import Box
+from dalembert.inverse.events import Finished, OnEvent
+from dalembert.inverse.journal import Journal
+from dalembert.inverse.matching import check_finite, check_samples, columns_of
+from dalembert.inverse.search import Search
+from dalembert.inverse.sets.inner_box import inner_box
+from dalembert.inverse.sets.inversion import Inversion
+from dalembert.inverse.sets.parameter_set import ParameterSet
+from dalembert.inverse.sets.status import status
+from dalembert.inverse.simulated import named, simulated
+from dalembert.surrogate import Adaptive
+from dalembert.surrogate.scheme import Scheme
+
+RESOLUTIONS = {1: 1 / 256, 2: 1 / 64, 3: 1 / 32}
+"""Resolution by the number of parameters, if none is given; a sixteenth for more."""
+
+
+def identify_set(
+    model: ForwardModel,
+    data: Measurements,
+    *,
+    error: float | Mapping[str, float] | ArrayLike,
+    scheme: Scheme | None = None,
+    resolution: float | None = None,
+    most_boxes: int = 200_000,
+    seed: int = 0,
+    on_event: OnEvent | None = None,
+) -> ParameterSet:
+    """The set of all parameters p, within their bounds, with |R(p) − data| ≤ error at every sample and channel.
+
+    Parameters
+    ----------
+    model : ForwardModel
+        Its samples must be those of the data; it may have more channels. Made for one to three parameters; the boxes of
+        a paving grow in number as resolution^−(parameters − 1).
+    data : Measurements
+    error : number, mapping by channel, or array of shape (channels,) or (samples, channels)
+        Largest error that a value may have, in its channel's unit.
+    scheme : Adaptive, Tensor or TotalDegree, optional
+        Of the surrogates; ``Adaptive(tolerance=1e-2)`` if not given.
+    resolution : float, optional
+        Sides of the smallest boxes, as a part of the box around the set: 1/256, 1/64, 1/32 for one, two, three
+        parameters, else 1/16.
+    most_boxes : int
+        Boxes to look at; where they do not suffice, the paving is right but coarser.
+    seed : int
+        All random numbers follow from it.
+    on_event : callable, optional
+        Called with each event (see :mod:`dalembert.inverse.events`) as it happens.
+
+    Returns
+    -------
+    ParameterSet
+
+    Raises
+    ------
+    DataError
+        For a NaN in the data, a channel that the model lacks, samples that are not the model's.
+    InputError
+        For arguments that cannot be meant.
+    SolveError
+        For a surrogate that cannot be made.
+
+    Notes
+    -----
+    Set inversion by branch and prune on Chebyshev surrogates, enclosed by their Bernstein coefficients: a box is left
+    out, or inside, only if that is so with the surrogate's estimated error taken into account. The first surrogate is
+    made on the whole search box, the next ones on the box that the one before leaves. The set is as certain as the
+    estimate of the surrogate's error is.
+
+    Source: Jaulin & Walter, Set inversion via interval analysis for nonlinear bounded-error estimation, 1993.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from dalembert.forward import PythonModel
+    >>> times = np.linspace(0, 2, 21)
+    >>> decay = PythonModel(lambda rate: np.exp(-rate * times), {"rate": (0.1, 3.0)}, ["x"], times)
+    >>> data = Measurements.of(times, {"x": np.exp(-times)})
+    >>> found = identify_set(decay, data, error=0.02)
+    >>> print(found.outer)
+    rate [0.946, 1.056]
+    """
+    began = perf_counter()
+    columns = columns_of(model, data)
+    check_finite(data)
+    check_samples(model, data)
+    errors = _errors(error, data)
+    resolution = _resolution(resolution, len(model.parameters))
+    if most_boxes < 1:
+        raise InputError(f"most_boxes is {most_boxes}; expected at least 1")
+    chosen = Adaptive(tolerance=1e-2) if scheme is None else scheme
+    journal, search = Journal(len(data.coordinate.values), on_event), Search(model.parameters)
+
+    def run(points: np.ndarray) -> np.ndarray:
+        return simulated(model, columns, journal, search.vectors(points)).reshape(len(points), -1)
+
+    inversion = Inversion(run, data.values.ravel(), errors.ravel(), len(columns), chosen, most_boxes, seed, journal)
+    surrogate, paving = inversion.zoomed(search.lower, search.upper)
+    if paving.hull is not None:
+        paving = inversion.paved(surrogate, resolution)
+    inner = inner_box(paving.inside)
+    believed = inner is None or inversion.consistent(inner)
+    nearest, names = inversion.nearest, model.parameters.names
+    found = ParameterSet(
+        parameters=model.parameters,
+        data=data,
+        error=errors,
+        inside=search.vectors(paving.inside),
+        boundary=search.vectors(paving.boundary),
+        outer=None if paving.hull is None else Box(names, *(search.vectors(corner) for corner in paving.hull)),
+        inner=None if inner is None else Box(names, *search.vectors(inner)),
+        surrogate_error=surrogate.error.reshape(errors.shape),
+        resolution=resolution,
+        runs=journal.simulations,
+        seconds=perf_counter() - began,
+        success=paving.finished and believed,
+        status=status(
+            data,
+            float(np.max(surrogate.error / errors.ravel())),
+            paving,
+            nearest,
+            "" if nearest is None else named(model, search.vectors(nearest.point)),
+            believed,
+            journal.failures,
+        ),
+        provenance=provenance(
+            model,
+            chosen,
+            data=data.fingerprint,
+            seed=seed,
+            error=errors.tolist(),
+            resolution=resolution,
+            most_boxes=most_boxes,
+        ),
+    )
+    middle = np.full(len(names), np.nan) if found.outer is None else found.outer.middle
+    journal.tell(Finished(found.success, found.status, np.nan, middle, found.runs))
+    return found
+
+
+def _resolution(given: float | None, parameters: int) -> float:
+    if given is None:
+        return RESOLUTIONS.get(parameters, 1 / 16)
+    if not 0 < given < 1:
+        raise InputError(f"resolution is {given}; expected a part of the width, a number between 0 and 1")
+    return float(given)
+
+
+def _errors(given: float | Mapping[str, float] | ArrayLike, data: Measurements) -> np.ndarray:
+    """Largest errors of shape (samples, channels)."""
+    if isinstance(given, Mapping):
+        for name in given:
+            if name not in data.channels:
+                raise InputError(unknown("channel", name, data.channels, "error"))
+        missing = [name for name in data.channels if name not in given]
+        if missing:
+            raise InputError(
+                f"no error given for channel {missing[0]!r}; give one for each of {', '.join(data.channels)}"
+            )
+        given = [given[name] for name in data.channels]
+    errors = np.asarray(given, dtype=float)
+    if errors.shape not in ((), data.values.shape[1:], data.values.shape):
+        raise InputError(
+            f"an error of shape {errors.shape} was given; expected one number, (channels,) = {data.values.shape[1:]} "
+            f"or (samples, channels) = {data.values.shape}"
+        )
+    if not (np.all(np.isfinite(errors)) and np.all(errors > 0)):
+        raise InputError("errors must be finite and positive")
+    return np.array(np.broadcast_to(errors, data.values.shape))

@@ -1,0 +1,110 @@
+"""Surrogates on smaller and smaller boxes around the set of consistent parameters."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from itertools import product
+
+import numpy as np
+
+from dalembert.inverse.events import Paved, Sampled
+from dalembert.inverse.journal import Journal
+from dalembert.inverse.sets.paving import Limits, Paving, pave
+from dalembert.surrogate import Surrogate, fit
+from dalembert.surrogate.scheme import Scheme
+
+COARSE = 1 / 16
+"""Resolution of the pavings that only look for a smaller box around the set."""
+
+ZOOMS = 8
+"""Most surrogates, each on the box that the one before leaves."""
+
+SHRINKS = 0.7
+"""Another one is made where a side of that box shrinks below this part."""
+
+CORNERS = 6
+"""Parameters up to which all corners of a box are checked by true runs."""
+
+
+@dataclass(frozen=True, eq=False)
+class Nearest:
+    """The run that violates the data least: its point (d,), and its largest difference in units of the error."""
+
+    point: np.ndarray
+    excess: float
+    output: int
+
+
+@dataclass(eq=False)
+class Inversion:
+    """Outputs of true runs that are to keep within ``error`` of ``data``, all three (outputs,).
+
+    Parameters
+    ----------
+    run : callable
+        Search points (n, d) to outputs (n, outputs); NaN where a run failed.
+    data, error : array, shape (outputs,)
+    channels : int
+        Outputs are samples × channels, flat.
+    scheme : Scheme
+    most_boxes : int
+    seed : int
+    journal : Journal
+    nearest : Nearest
+        Of all runs so far.
+    """
+
+    run: Callable[[np.ndarray], np.ndarray]
+    data: np.ndarray
+    error: np.ndarray
+    channels: int
+    scheme: Scheme
+    most_boxes: int
+    seed: int
+    journal: Journal
+    nearest: Nearest | None = field(default=None, init=False)
+
+    def zoomed(self, lower: np.ndarray, upper: np.ndarray) -> tuple[Surrogate, Paving]:
+        """The last surrogate, on a box close around the set, and a coarse paving on it."""
+        for left in reversed(range(ZOOMS)):
+            surrogate = fit(
+                self._seen,
+                lower,
+                upper,
+                self.scheme,
+                seed=self.seed,
+                groups=np.arange(len(self.data)) % self.channels,
+                on_runs=lambda runs: self.journal.tell(Sampled(runs, self.journal.simulations)),
+            )
+            paving = self.paved(surrogate, COARSE)
+            if paving.hull is None or left == 0:
+                break
+            low, high = paving.hull
+            if np.all(high - low > SHRINKS * (upper - lower)):
+                break
+            lower, upper = low, high
+        return surrogate, paving
+
+    def paved(self, surrogate: Surrogate, resolution: float) -> Paving:
+        """Paving of the box of a surrogate."""
+        limits = Limits(self.data - self.error, self.data + self.error, surrogate.error)
+        return pave(surrogate.polynomial, limits, resolution, self.most_boxes, self._told)
+
+    def consistent(self, box: np.ndarray) -> bool:
+        """Whether true runs at the corners of a box (2, d) keep within the error; two opposite ones of many."""
+        d = box.shape[1]
+        choices = list(product((0, 1), repeat=d)) if d <= CORNERS else [(0,) * d, (1,) * d]
+        corners = box[np.array(choices), np.arange(d)]
+        return bool(np.all(np.abs(self._seen(corners) - self.data) <= self.error))
+
+    def _seen(self, points: np.ndarray) -> np.ndarray:
+        """True runs, the nearest one remembered."""
+        values = self.run(points)
+        excess = np.abs(values - self.data) / self.error
+        worst = np.where(np.isfinite(excess).all(axis=1), excess.max(axis=1), np.inf)
+        best = int(np.argmin(worst))
+        if self.nearest is None or worst[best] < self.nearest.excess:
+            self.nearest = Nearest(points[best], float(worst[best]), int(np.argmax(excess[best])))
+        return values
+
+    def _told(self, inside: int, boundary: int, waiting: int) -> None:
+        self.journal.tell(Paved(inside, boundary, waiting))

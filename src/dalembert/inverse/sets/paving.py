@@ -1,0 +1,106 @@
+"""Boxes in, out of, and on the boundary of the set where a polynomial keeps between limits."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from dalembert.surrogate import ChebyshevPolynomial, bounds
+
+AS_THEY_ARE = 1e9
+"""A gap that no Bernstein coefficients leave, so that boxes are halved by the paving alone."""
+
+
+@dataclass(frozen=True, eq=False)
+class Limits:
+    """A polynomial is to keep from ``lower`` to ``upper``, (outputs,), and is known to ``error`` (outputs,)."""
+
+    lower: np.ndarray
+    upper: np.ndarray
+    error: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Paving:
+    """Boxes (boxes, 2, d) inside and on the boundary; not ``finished`` if there were too many to look at."""
+
+    inside: np.ndarray
+    boundary: np.ndarray
+    finished: bool
+
+    @property
+    def hull(self) -> tuple[np.ndarray, np.ndarray] | None:
+        """Corners (d,), (d,) of the smallest box around all of them; None if there is none."""
+        boxes = np.concatenate([self.inside, self.boundary])
+        return (boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)) if len(boxes) else None
+
+
+def pave(
+    polynomial: ChebyshevPolynomial,
+    limits: Limits,
+    resolution: float,
+    most_boxes: int,
+    tell: Callable[[int, int, int], None] = lambda inside, boundary, waiting: None,
+) -> Paving:
+    """Paving of the set of points in the polynomial's box at which it keeps its limits, by branch and prune.
+
+    A box is outside where a Bernstein enclosure leaves the limits by more than the error, inside where it keeps them by
+    more than the error, and halved otherwise.
+
+    Parameters
+    ----------
+    polynomial : ChebyshevPolynomial
+    limits : Limits
+    resolution : float
+        Boxes are halved until their sides are no longer than this part of the polynomial's box.
+    most_boxes : int
+        Boxes to look at.
+    tell : callable
+        Called with the numbers of boxes inside, on the boundary and waiting, after each halving.
+
+    Examples
+    --------
+    >>> parabola = ChebyshevPolynomial([-1.0], [1.0], [[0], [2]], [[0.5], [0.5]])  # x²
+    >>> quarter = Limits(np.array([-1.0]), np.array([0.26]), np.zeros(1))
+    >>> paving = pave(parabola, quarter, 0.25, 100)
+    >>> paving.inside[:, :, 0].tolist(), paving.boundary[:, :, 0].tolist()
+    ([[-0.5, 0.0], [0.0, 0.5]], [[-1.0, -0.5], [0.5, 1.0]])
+    """
+    size = polynomial.upper - polynomial.lower
+    boxes = np.stack([polynomial.lower, polynomial.upper])[None]
+    inside, boundary, looked = [boxes[:0]], [boxes[:0]], 0
+    finished = True
+    while len(boxes):
+        looked += len(boxes)
+        low, high = enclosures(polynomial, boxes)
+        out = np.any((low > limits.upper + limits.error) | (high < limits.lower - limits.error), axis=1)
+        within = np.all((low >= limits.lower + limits.error) & (high <= limits.upper - limits.error), axis=1)
+        inside.append(boxes[within & ~out])
+        boxes = boxes[~within & ~out]
+        sides = (boxes[:, 1] - boxes[:, 0]) / size
+        small = np.all(sides <= resolution * (1 + 1e-9), axis=1)
+        boundary.append(boxes[small])
+        boxes = boxes[~small]
+        if looked + 2 * len(boxes) > most_boxes:
+            boundary.append(boxes)
+            finished = False
+            break
+        boxes = _halved(boxes, np.argmax(sides[~small], axis=1))
+        tell(sum(map(len, inside)), sum(map(len, boundary)), len(boxes))
+    return Paving(np.concatenate(inside), np.concatenate(boundary), finished)
+
+
+def enclosures(polynomial: ChebyshevPolynomial, boxes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Bounds (boxes, outputs) twice, from Bernstein coefficients as they are: halving the boxes makes them sharp."""
+    found = bounds(polynomial, boxes[:, 0], boxes[:, 1], "bernstein", gap=AS_THEY_ARE)
+    return found.lower, found.upper
+
+
+def _halved(boxes: np.ndarray, along: np.ndarray) -> np.ndarray:
+    """Both halves of boxes (n, 2, d) along directions (n,)."""
+    rows = np.arange(len(boxes))
+    middle = boxes[rows, :, along].mean(axis=1)
+    halves = np.repeat(boxes[None], 2, axis=0)
+    halves[0, rows, 1, along] = middle
+    halves[1, rows, 0, along] = middle
+    return np.moveaxis(halves, 0, 1).reshape(-1, *boxes.shape[1:])

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from dalembert.data import read_bands
 from dalembert.study import Study, load, plan, run_study
 from dalembert.study.tasks import TASKS, Outcome
 
@@ -33,6 +34,12 @@ def found(study: Study, outcome: Outcome, row: dict[str, Any]) -> float:
     match study.task:
         case "identify":
             return outcome.best["fitness"] if quantity == "fitness" else outcome.best["values"][quantity]
+        case "identify_bands" if quantity == "simulations":
+            return getattr(outcome, "result").simulations  # noqa: B009
+        case "identify_bands" | "identify_set":
+            return outcome.best[quantity] if quantity == "fitness" else outcome.best["values"][quantity]
+        case "propagate":
+            return bounded(study, getattr(outcome, "result"), row)  # noqa: B009
         case "simulate":
             trajectory: Any = getattr(outcome, "trajectory")  # noqa: B009 (an outcome of this task has one)
             sample = int(np.argmin(np.abs(trajectory.times - row["at"])))
@@ -44,6 +51,20 @@ def found(study: Study, outcome: Outcome, row: dict[str, Any]) -> float:
             assert curve.values[sample] == pytest.approx(row["at"], abs=1e-9)
             return float(curve.responses[sample, curve.channels.index(quantity)])
     raise AssertionError(study.task)
+
+
+def bounded(study: Study, result: Any, row: dict[str, Any]) -> float:
+    """Rms difference of the bounds from a table, the number of runs, or the largest error of a compared method."""
+    match row["quantity"]:
+        case "rms":
+            columns = {"AB.end.x": ("x_lower", "x_upper"), "AB.end.y": ("y_lower", "y_upper")}
+            table = read_bands(study.path.parent / row["table"], columns=columns)
+            return float(np.sqrt(np.mean([(result.lower - table.lower) ** 2, (result.upper - table.upper) ** 2])))
+        case "runs":
+            return result.runs
+        case "largest error":
+            return next(line.largest for line in result.rows if line.method == row["method"])
+    raise AssertionError(row)
 
 
 @pytest.mark.parametrize("path", FILES, ids=name)

@@ -44,8 +44,7 @@ def schemes() -> dict[str, type]:
     """Schemes of surrogates, by the names that a study file gives them."""
     from dalembert import surrogate
 
-    names = {"total-degree": "TotalDegree", "tensor": "Tensor", "adaptive": "Adaptive"}
-    return {name: getattr(surrogate, kind) for name, kind in names.items() if hasattr(surrogate, kind)}
+    return {"total-degree": surrogate.TotalDegree, "tensor": surrogate.Tensor, "adaptive": surrogate.Adaptive}
 
 
 @cache

@@ -107,11 +107,18 @@ def test_intervals_from_bands_have_their_report(intervals):
         "rad",
         "",
     ]
-    assert rows[2][-1] == "a fixed number"
+    assert rows[2][-1] == "a single number"
     assert rows[2][3:5] == ["nan", "nan"]
     assert intervals.table("starts")[0][5:] == [
         f"{name} {part} at end" for part in ("middle", "radius") for name in ("theta1", "theta2")
     ]
+
+
+def test_a_radius_within_its_deviation_is_marked(tmp_path):
+    result = band_fit()
+    result.radius, result.radius_deviations = np.array([0.0393, 3e-5]), np.array([4e-4, 2e-5])
+    rows = read_page(report(result, tmp_path / "a.html")).table("intervals")
+    assert [row[-1] for row in rows[1:]] == ["", "hardly told from a single number"]
 
 
 def test_residuals_of_the_bands_are_those_of_the_true_runs(intervals):

@@ -125,6 +125,14 @@ def test_a_model_may_stand_in_a_file_of_its_own(write):
     assert set(study.files) == {"model.toml"}
 
 
+def test_a_parameter_wins_over_a_constant_of_the_model_file(write):
+    model = PENDULUM[PENDULUM.index("[constants]") : PENDULUM.index("[solver]")]
+    write(model, "model.toml")
+    rest = PENDULUM[: PENDULUM.index("[constants]")] + PENDULUM[PENDULUM.index("[solver]") :]
+    path = write(rest + '[parameters.L]\nlower = 1.0\nupper = 3.0\n[model]\nfile = "model.toml"\n')
+    assert load(path).builder(theta=0.5, L=2.5).bodies[0].length == 2.5
+
+
 def test_a_mistake_in_the_model_file_names_that_file(write):
     write('[model]\n[[model.body]]\nkind = "PointMass"\nname = "p"\nmass = "1 m"\n', "model.toml")
     path = write('[solver]\nstep = 1\n[simulate]\nend = -1\n[model]\nfile = "model.toml"\n')
@@ -275,13 +283,16 @@ horizon = "growin"
         (
             ("[solver]", "[sweep]\nat=1\nchannels=['x']\nover.theta=[1.0]\n[solver]"),
             [
-                "study.toml: [simulate] and [sweep] are given; "
-                "a study has one task, one of [simulate], [identify], [sweep]"
+                "study.toml: [simulate] and [sweep] are given; a study has one task, one of "
+                "[simulate], [identify], [sweep], [propagate], [identify_bands], [identify_set]"
             ],
         ),
         (
             ('[simulate]\nend = "1 s"', ""),
-            ["study.toml: no task is given; a study has one task, one of [simulate], [identify], [sweep]"],
+            [
+                "study.toml: no task is given; a study has one task, one of "
+                "[simulate], [identify], [sweep], [propagate], [identify_bands], [identify_set]"
+            ],
         ),
         (('[solver]\nstep = "1 ms"', ""), ["study.toml: the table [solver] is missing; expected at least its step"]),
         (

@@ -28,7 +28,6 @@ class Intervals(Section):
     @property
     def table(self) -> Table:
         fit = self.fit
-        least = NONE * (fit.parameters.upper - fit.parameters.lower)
         rows = [
             (
                 cell(item.name),
@@ -40,7 +39,7 @@ class Intervals(Section):
                 cell(float(fit.radius[k]), fit.radius_deviations[k]),
                 cell(float(fit.radius_deviations[k]), digits=2),
                 cell(item.unit),
-                cell("a fixed number" if fit.radius[k] <= least[k] else "", mark=bool(fit.radius[k] <= least[k])),
+                cell(note(fit, k), mark=bool(note(fit, k))),
             )
             for k, item in enumerate(fit.parameters)
         ]
@@ -60,3 +59,10 @@ class Intervals(Section):
         )
         caption += ", diamonds the true ends." if self.truth else "."
         return (Plot("intervals", charts.intervals(self.fit, self.truth), caption),)
+
+
+def note(fit: BandFitLike, k: int) -> str:
+    """Whether an interval is one, or a single number as far as the bands tell."""
+    if fit.radius[k] <= NONE * (fit.parameters.upper[k] - fit.parameters.lower[k]):
+        return "a single number"
+    return "hardly told from a single number" if fit.radius[k] <= 2 * fit.radius_deviations[k] else ""

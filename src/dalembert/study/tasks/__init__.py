@@ -1,6 +1,8 @@
 """The tasks that a study file can ask for, by the names of their tables."""
 
 from dalembert.study.tasks.identify import Identify
+from dalembert.study.tasks.identify_bands import IdentifyBands
+from dalembert.study.tasks.identify_set import IdentifySet
 from dalembert.study.tasks.propagate import Propagate
 from dalembert.study.tasks.simulate import Simulate
 from dalembert.study.tasks.sweep import SweepTask
@@ -11,6 +13,8 @@ TASKS: dict[str, Task] = {
     "identify": Identify(),
     "sweep": SweepTask(),
     "propagate": Propagate(),
+    "identify_bands": IdentifyBands(),
+    "identify_set": IdentifySet(),
 }
 
 __all__ = ["TASKS", "Outcome", "Task"]

@@ -30,7 +30,9 @@ class IdentifySetTable(StudyTable):
 
     error: Errors = Field(description="largest error of the data: a number, or one for each channel")
     scheme: Any = None
-    resolution: float | None = Field(None, gt=0, lt=1, description="smallest box, as a part of the bounds' width")
+    resolution: float | None = Field(
+        None, gt=0, lt=1, description="sides of the smallest boxes, as a part of the box around the set"
+    )
     most_boxes: int | None = Field(None, ge=1, description="boxes looked at before it ends with a coarser paving")
     seed: int = Field(0, ge=0, description="of all random numbers")
     truth: dict[str, Number] = Field({}, description="parameters that are known, to be marked in the figures")

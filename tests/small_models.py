@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from dalembert.data import Measurements
+from dalembert.data import Bands, Measurements
 from dalembert.forward import PythonModel
 
 TIMES = np.linspace(0, 4, 41)
@@ -27,3 +27,13 @@ def measured(model, values, noise=0.0, seed=0, deviations=None):
     noisy = exact + noise * np.random.default_rng(seed).standard_normal(exact.shape)
     names = [channel.name for channel in model.channels]
     return Measurements.of(model.coordinate, dict(zip(names, noisy.T, strict=True)), deviations)
+
+
+def banded(model, lower, upper, points=201):
+    """Bands of a model's own response over a box of parameters that it is monotonic in, or scanned."""
+    axes = [np.linspace(low, high, points if high > low else 1) for low, high in zip(lower, upper, strict=True)]
+    grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, len(axes))
+    values = model.evaluate(grid).only()
+    names = [channel.name for channel in model.channels]
+    low, high = values.min(axis=0), values.max(axis=0)
+    return Bands.of(model.coordinate, {name: (low[:, k], high[:, k]) for k, name in enumerate(names)})

@@ -93,3 +93,10 @@ def weights_of(given: ArrayLike | None, shape: tuple[int, ...]) -> np.ndarray:
     if not (np.all(np.isfinite(weights)) and np.all(weights >= 0) and np.any(weights > 0)):
         raise InputError("weights must be finite and not negative, and at least one of them positive")
     return np.broadcast_to(weights, shape)
+
+
+def place(data: Labelled, output: int) -> str:
+    """Where one of samples × channels outputs lies, for example ``"channel 'AB.end.x', time 0.5 s"``."""
+    sample, column = divmod(output, len(data.channels))
+    along = data.coordinate
+    return f"channel {data.channels[column]!r}, {along.name} {along.values[sample]:.6g} {along.unit}".rstrip()

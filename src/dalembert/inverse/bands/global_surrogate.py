@@ -1,10 +1,11 @@
 """One surrogate over the whole search box, on which all candidate boxes are bounded."""
 
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 
-from dalembert.errors import InputError, SolveError
+from dalembert.errors import InputError
 from dalembert.inverse.bands.band_problem import BandProblem
 from dalembert.inverse.bands.candidate import Candidate, candidate
 from dalembert.inverse.bands.check import Check, check, scale
@@ -12,6 +13,7 @@ from dalembert.inverse.bands.correction import corrected
 from dalembert.inverse.bands.descent import descend, screened
 from dalembert.inverse.bands.found import Found
 from dalembert.inverse.events import Checked, Sampled
+from dalembert.inverse.matching import place
 from dalembert.optimize import LeastSquares, Minimum
 from dalembert.surrogate import Adaptive, Surrogate, fit
 from dalembert.surrogate.scheme import Scheme
@@ -92,14 +94,16 @@ class GlobalSurrogate:
             For a surrogate that cannot be made, or that is not to be trusted.
         """
         surrogate = self._surrogate(problem, self.scheme, seed)
+        allowed = self.tolerance * scale(problem)
         if self.checks == 0:
-            surrogate.demand(self.tolerance * scale(problem))
+            surrogate.demand(allowed, partial(place, problem.bands))
         origins = screened(problem, surrogate.polynomial, SCREENED * len(problem.unknowns.lower), self.starts, seed)
         ends = [descend(problem, surrogate.polynomial, LeastSquares(), origin) for origin in origins]
         best = min(ends, key=lambda end: end.fitness)
         found, surrogate = self._refined(problem, surrogate, best, seed)
-        if found.check is not None and np.any(found.error > self.tolerance * scale(problem)):
-            raise SolveError(_refusal(problem, surrogate, found.error, self.tolerance))
+        if found.check is not None:
+            told = replace(surrogate, tail=np.minimum(surrogate.tail, found.error), held_out=found.error)
+            told.demand(allowed, partial(place, problem.bands))
         return found
 
     def _surrogate(self, problem: BandProblem, scheme: Scheme, seed: int) -> Surrogate:
@@ -156,17 +160,3 @@ def _tell(problem: BandProblem, checked: Check) -> None:
     fitness = float(problem.fitness(checked.lower, checked.upper))
     journal = problem.journal
     journal.tell(Checked(len(checked.points), journal.simulations, fitness, float(checked.error.max())))
-
-
-def _refusal(problem: BandProblem, surrogate: Surrogate, error: np.ndarray, tolerance: float) -> str:
-    allowed = tolerance * scale(problem)
-    worst = int(np.argmax(error / allowed))
-    sample, channel = divmod(worst, problem.shape[1])
-    along = problem.bands.coordinate
-    order = surrogate.needed_order(np.minimum(allowed, surrogate.error / 2))
-    return (
-        f"channel {problem.bands.channels[channel]!r}, sample {sample} ({along.name} {along.values[sample]:.10g} "
-        f"{along.unit}): true runs on the identified box differ from the surrogate of order {surrogate.order} by "
-        f"{error[worst]:.2g}, more than the tolerance of {allowed[worst]:.2g}; about order {order} would "
-        f"do: {surrogate.scheme.more(order)}, allow more checks, raise the tolerance, or narrow the parameters' bounds"
-    )

@@ -5,6 +5,7 @@ import numpy as np
 from dalembert.inverse.bands.band_problem import BandProblem
 from dalembert.inverse.bands.check import scale
 from dalembert.inverse.bands.found import Found
+from dalembert.inverse.matching import place
 from dalembert.inverse.noise import quantum, random_residuals
 
 SMALL = 1e-2
@@ -58,11 +59,7 @@ def _misfit(problem: BandProblem, found: Found) -> str:
 
 def _largest(problem: BandProblem, apart: np.ndarray) -> str:
     """Where the largest difference is, of differences (2, samples, channels) between bands."""
-    along = problem.bands.coordinate
-    relative = np.abs(apart) / scale(problem).reshape(problem.shape)
-    side, sample, column = np.unravel_index(np.argmax(relative), apart.shape)
-    at = f"{along.name} {along.values[sample]:.6g} {along.unit}".rstrip()
-    return (
-        f"most in the {('lower', 'upper')[side]} bound of {problem.bands.channels[column]!r} at {at}, "
-        f"by {abs(apart[side, sample, column]):.2g}"
-    )
+    flat = apart.reshape(2, -1)
+    side, output = np.unravel_index(np.argmax(np.abs(flat) / scale(problem)), flat.shape)
+    bound = ("lower", "upper")[side]
+    return f"most in the {bound} bound of {place(problem.bands, int(output))}, by {abs(flat[side, output]):.2g}"

@@ -91,7 +91,7 @@ def identify_set(
     >>> data = Measurements.of(times, {"x": np.exp(-times)})
     >>> found = identify_set(decay, data, error=0.02)
     >>> print(found.outer)
-    rate [0.946, 1.056]
+    rate [0.946996, 1.05604]
     """
     began = perf_counter()
     columns = columns_of(model, data)

@@ -3,6 +3,7 @@
 import numpy as np
 
 from dalembert.data import Measurements
+from dalembert.inverse.matching import place
 from dalembert.inverse.sets.inversion import Nearest
 from dalembert.inverse.sets.paving import Paving
 
@@ -34,12 +35,9 @@ def status(
     if paving.hull is None:
         parts.append("The set is empty: no parameters within their bounds are consistent with the data.")
         if nearest is not None and np.isfinite(nearest.excess):
-            sample, column = divmod(nearest.output, len(data.channels))
-            along = data.coordinate
             parts.append(
                 f"The nearest run, at {at}, differs by {nearest.excess:.3g} times the error in "
-                f"{data.channels[column]!r} at {along.name} {along.values[sample]:.6g} {along.unit}".rstrip()
-                + "; raise the error, widen the bounds, or look what the model lacks."
+                f"{place(data, nearest.output)}; raise the error, widen the bounds, or look what the model lacks."
             )
     elif not paving.finished:
         parts.append(

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
-from dalembert.multibody.kernels.linear import BAND, DENSE, Layout
+from dalembert.multibody.kernels.linear import BAND, DENSE, Layout, padded
 from dalembert.multibody.kernels.model import KINDS, Slots
 
 _SMALL = 90  # unknowns up to which a kept dense inverse is faster than a kept band factorisation
@@ -78,7 +78,8 @@ class Structure:
     def dense(self) -> tuple[Slots, Layout]:
         """Slots and layout of a dense matrix by columns."""
         rows, columns = self._couplings
-        return self._slots(columns * self.size + rows), Layout(DENSE, self.size, 0, 0, np.zeros(0, dtype=np.int64))
+        lead = padded(self.size)
+        return self._slots(columns * lead + rows), Layout(DENSE, self.size, 0, lead, np.zeros(0, dtype=np.int64))
 
     @cached_property
     def band(self) -> tuple[Slots, Layout]:
@@ -92,9 +93,9 @@ class Structure:
         order[reverse_cuthill_mckee(pattern, symmetric_mode=True)] = np.arange(self.size)
         order[self.size] = 0
         i, j = order[rows], order[columns]
-        reach = int(np.max(np.abs(i - j)[inside]))
-        lead = 3 * reach + 1
-        return self._slots(j * lead + 2 * reach + i - j), Layout(BAND, self.size, reach, reach, order[: self.size])
+        reach = padded(int(np.max(np.abs(i - j)[inside])))
+        lead = 3 * reach + 2
+        return self._slots(j * lead + 2 * reach + i - j), Layout(BAND, self.size, reach, lead, order[: self.size])
 
     @property
     def kept(self) -> tuple[Slots, Layout]:
@@ -104,4 +105,4 @@ class Structure:
     @cached_property
     def fresh(self) -> tuple[Slots, Layout]:
         """Slots and layout for a matrix that is factorised at each step."""
-        return self.band if 2 * self.band[1].lower < self.size else self.dense
+        return self.band if 2 * self.band[1].reach < self.size else self.dense

@@ -19,7 +19,7 @@ def _initial_matrix(problem, dual, state, dual_work, constraints, exact):
     tangent(*arguments, (0.0, 0.0, 1.0), (1.0, 0.0), dual_work, exact.matrix)
     for i in range(len(constraints)):
         exact.matrix[i] += constraints[i]
-    return factorise(problem.exact_layout, problem.lapack, exact)
+    return factorise(problem.exact_layout, exact)
 
 
 @compiled
@@ -43,7 +43,7 @@ def accelerate(problem, model, dual, directions, t, within, state, dstates, proj
         constraint_rates(model, n, state.x, state.v, state.a, work, rate, second)
         for i in range(n, last):
             delta[i] = second[i]
-        solve(problem.exact_layout, problem.lapack, exact, delta, answer)
+        solve(problem.exact_layout, exact, delta, answer)
         subtract(n, answer, state)
     r, drate, dsecond = lifted[3], lifted[4], lifted[5]
     for d in range(len(dstates.x)):
@@ -54,7 +54,7 @@ def accelerate(problem, model, dual, directions, t, within, state, dstates, proj
         constraint_rates(tilted, n, lifted[0], lifted[1], lifted[2], dual_work, drate, dsecond)
         for i in range(last):
             delta[i] = (r[i].imag if i < n else dsecond[i].imag) / STEP
-        solve(problem.exact_layout, problem.lapack, exact, delta, answer)
+        solve(problem.exact_layout, exact, delta, answer)
         subtract(n, answer, dstate)
     return True
 
@@ -65,7 +65,7 @@ def _project(problem, model, directions, t, within, state, dstates, work, dual_w
     n, last = problem.n, len(state.x) - 1
     w, answer, rate, second = np.zeros(last + 1), np.zeros(last + 1), np.zeros(last + 1), np.zeros(last + 1)
     constraint_rates(model, n, state.x, state.v, state.a, work, rate, second)
-    solve(problem.exact_layout, problem.lapack, exact, rate, w)
+    solve(problem.exact_layout, exact, rate, w)
     for i in range(n):
         state.v[i] -= w[i]
     forces, still, drate, dsecond = lifted[3], lifted[4], lifted[5], lifted[6]
@@ -87,6 +87,6 @@ def _project(problem, model, directions, t, within, state, dstates, work, dual_w
         residual(tilted, n, lifted[0], lifted[1], lifted[2], dual_work, 1.0, still)
         for i in range(last):
             answer[i] = (forces[i].imag - still[i].imag if i < n else -drate[i].imag) / STEP
-        solve(problem.exact_layout, problem.lapack, exact, answer, rate)
+        solve(problem.exact_layout, exact, answer, rate)
         for i in range(n):
             dstate.v[i] += rate[i]

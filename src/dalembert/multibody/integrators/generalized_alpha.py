@@ -10,10 +10,10 @@ from dalembert.multibody.integrators.derivatives import differentiate
 from dalembert.multibody.integrators.lifting import set_signals
 from dalembert.multibody.integrators.newton import Newton, converge, learn
 from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR, TOO_MANY_STEPS
-from dalembert.multibody.kernels.compiled import compiled
+from dalembert.multibody.kernels.compiled import compiled, inlined
 from dalembert.multibody.kernels.linear import storage
 from dalembert.multibody.kernels.model import select, workspace
-from dalembert.multibody.kernels.motion import Motion, clear, coefficients, copy, interpolate, row, still
+from dalembert.multibody.kernels.motion import Motion, clear, coefficients, copy, glance, interpolate, row, still
 
 STARTS = ("consistent", "zero")
 _HALVINGS = 8  # of a fixed step that Newton does not converge on
@@ -153,8 +153,9 @@ def _integrate(problem, edges, settings, model, dual, directions, state, dstates
             copy(new, old)
             c = coefficients(length, settings.spectral_radius)
             set_signals(model, target, within, work)
-            set_signals(dual, target, within, dual_work)
-            status, detail = converge(problem, model, dual, c, settings.newton_tolerance, old, new, newton, log)
+            status, detail = converge(
+                problem, model, dual, c, target, within, settings.newton_tolerance, old, new, newton, log
+            )
             error = 0.0
             if status == DONE and settings.adaptive:
                 for i in range(n):
@@ -219,9 +220,11 @@ def _integrate(problem, edges, settings, model, dual, directions, state, dstates
     return DONE, edges[-1], 0
 
 
-@compiled
+@inlined
 def _record(n, length, share, old, new, dolds, dnews, out, dout, due):
     """Write the states at an output time."""
     interpolate(n, length, share, old, new, out.x[due], out.v[due], out.a[due])
     for d in range(len(dnews.x)):
-        interpolate(n, length, share, row(dolds, d), row(dnews, d), dout.x[d, due], dout.v[d, due], dout.a[d, due])
+        interpolate(
+            n, length, share, glance(dolds, d), glance(dnews, d), dout.x[d, due], dout.v[d, due], dout.a[d, due]
+        )

@@ -4,9 +4,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dalembert.multibody.integrators.lifting import set_signals
 from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR
-from dalembert.multibody.kernels.assembly import residual, tangent
-from dalembert.multibody.kernels.compiled import kernel
+from dalembert.multibody.kernels.assembly import residual_here, tangent
+from dalembert.multibody.kernels.compiled import inlined, kernel
 from dalembert.multibody.kernels.linear import factorise, solve
 from dalembert.multibody.kernels.motion import advance
 
@@ -36,16 +37,17 @@ class Newton(NamedTuple):
 
 
 @kernel
-def _renew(problem, dual, c, new, newton):
+def _renew(problem, dual, c, t, within, new, newton):
+    set_signals(dual, t, within, newton.dual_work)
     tangent(
         dual, problem.slots, problem.n, new.x, new.v, new.a, (c.dq, c.dv, 1.0), (1.0, 1.0 / c.dq), newton.dual_work,
         newton.factors.matrix,
     )  # fmt: skip
-    newton.memory[0] = c.step if factorise(problem.layout, problem.lapack, newton.factors) else 0.0
+    newton.memory[0] = c.step if factorise(problem.layout, newton.factors) else 0.0
     return newton.memory[0] != 0.0
 
 
-@kernel
+@inlined
 def _predict(n, c, old, slope, new):
     """Accelerations and multipliers of the new state, by those of the old one and their last change."""
     for i in range(n):
@@ -55,7 +57,7 @@ def _predict(n, c, old, slope, new):
     advance(n, c, old, new)
 
 
-@kernel
+@inlined
 def learn(n, c, old, new, slope):
     """Change of accelerations and multipliers over a step."""
     for i in range(n):
@@ -64,7 +66,7 @@ def learn(n, c, old, new, slope):
         slope[i] = (new.x[i] - old.x[i]) / c.step
 
 
-@kernel
+@inlined
 def _correct(n, c, scale, delta, old, new):
     """Apply a Newton correction: its size against the scales, and the coordinate that moved most."""
     norm, worst = 0.0, 0
@@ -79,21 +81,21 @@ def _correct(n, c, scale, delta, old, new):
     return norm, worst
 
 
-@kernel
-def converge(problem, model, dual, c, tolerance, old, new, newton, log):
+@inlined
+def converge(problem, model, dual, c, t, within, tolerance, old, new, newton, log):
     """Newton iteration on new accelerations and multipliers: status, and iterations or the unknown that moved most."""
     n, memory = problem.n, newton.memory
     _predict(n, c, old, newton.slope, new)
     fresh = not (0.8 * memory[0] < c.step < 1.25 * memory[0]) or memory[1] > _AGED
     if fresh:
         log.counts[2] += 1
-        if not _renew(problem, dual, c, new, newton):
+        if not _renew(problem, dual, c, t, within, new, newton):
             return SINGULAR, 0
         memory[1] = _AGED
     before, norm, worst = 0.0, 1.0, 0
     for iteration in range(1, _MOST_ITERATIONS + 1):
-        residual(model, n, new.x, new.v, new.a, newton.work, 1.0 / c.dq, newton.r)
-        solve(problem.layout, problem.lapack, newton.factors, newton.r, newton.delta)
+        residual_here(model, n, new.x, new.v, new.a, newton.work, 1.0 / c.dq, newton.r)
+        solve(problem.layout, newton.factors, newton.r, newton.delta)
         log.counts[1] += 1
         norm, worst = _correct(n, c, problem.scale, newton.delta, old, new)
         if not norm < 1e100 or norm <= tolerance:
@@ -109,7 +111,7 @@ def converge(problem, model, dual, c, tolerance, old, new, newton, log):
             if fresh and rate > 2.0:
                 break
             log.counts[2] += 1
-            if not _renew(problem, dual, c, new, newton):
+            if not _renew(problem, dual, c, t, within, new, newton):
                 return SINGULAR, worst
             fresh = True
         before = norm

@@ -33,7 +33,6 @@ class Problem(NamedTuple):
     layout: tuple
     exact_slots: tuple
     exact_layout: tuple
-    lapack: np.ndarray
     times: np.ndarray
     edges: np.ndarray
     stretches: np.ndarray

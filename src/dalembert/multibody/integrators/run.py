@@ -9,7 +9,6 @@ from dalembert.multibody.assemble import scales
 from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha, integrate
 from dalembert.multibody.integrators.problem import DONE, SINGULAR, TOO_MANY_STEPS, Log, Problem, Settings
 from dalembert.multibody.kernels.dual import STEP
-from dalembert.multibody.kernels.linear import LAPACK
 from dalembert.multibody.kernels.model import KINDS, Block, Model, Signals
 from dalembert.multibody.kernels.motion import Motion
 from dalembert.multibody.lowering import Lowered
@@ -105,7 +104,7 @@ def make_problem(lowered: Lowered, times: np.ndarray) -> Problem:
     slots, layout = structure.kept
     exact_slots, exact_layout = structure.fresh
     return Problem(
-        structure.n, scales(lowered), slots, layout, exact_slots, exact_layout, LAPACK, np.asarray(times, dtype=float),
+        structure.n, scales(lowered), slots, layout, exact_slots, exact_layout, np.asarray(times, dtype=float),
         np.zeros((0, 0)), np.zeros(0, dtype=np.int64),
     )  # fmt: skip
 

@@ -3,6 +3,7 @@
 from dalembert.multibody.kernels import beam, body, cable, friction, joints, load, spring, user
 from dalembert.multibody.kernels.compiled import inlined, kernel, template
 from dalembert.multibody.kernels.dual import STEP
+from dalembert.multibody.kernels.markers import GROUND
 
 
 @inlined
@@ -23,12 +24,8 @@ def _add_residual(function, width, block, callbacks, x, v, a, work, r):
             r[index[e, i]] += work.r[i]
 
 
-@kernel
-def residual(model, n, x, v, a, work, scale, r):
-    """Fill ``r`` (N + 1,): the equations of motion, then the constraints times ``scale``.
-
-    The signals in ``work`` hold the time.
-    """
+@template
+def _residual(model, n, x, v, a, work, scale, r):
     for i in range(len(r)):
         r[i] = 0.0
     c = model.callbacks
@@ -46,12 +43,33 @@ def residual(model, n, x, v, a, work, scale, r):
     r[last] = 0.0
 
 
+@kernel
+def residual(model, n, x, v, a, work, scale, r):
+    """Fill ``r`` (N + 1,): the equations of motion, then the constraints times ``scale``.
+
+    The signals in ``work`` hold the time.
+    """
+    _residual(model, n, x, v, a, work, scale, r)
+
+
+@inlined
+def residual_here(model, n, x, v, a, work, scale, r):
+    """The same, written into the caller."""
+    _residual(model, n, x, v, a, work, scale, r)
+
+
+@inlined
+def _none(data, meta, e):
+    """No component of the kind."""
+    return False
+
+
 @template
-def _add_tangent(function, width, block, slots, callbacks, n, x, v, a, by, rows, work, matrix, damping=-1):
-    """Tangents by the complex step; only of components whose number ``damping``, where one is named, is not zero."""
+def _add_tangent(function, width, block, slots, callbacks, n, x, v, a, by, rows, work, matrix, known=_none):
+    """Tangents by the complex step; but for components whose tangent is ``known`` by a formula."""
     index, last = block.index, len(x) - 1
     for e in range(len(index)):
-        if damping >= 0 and block.data[e, damping] == 0.0:
+        if known(block.data, block.meta, e):
             continue
         gather(index, e, width, x, v, a, work)
         for j in range(width):
@@ -73,11 +91,11 @@ def _add_tangent(function, width, block, slots, callbacks, n, x, v, a, by, rows,
 
 
 @template
-def _add_elements(function, damping, width, block, slots, n, x, by, rows, work, matrix):
+def _add_elements(function, known, width, block, slots, n, x, by, rows, work, matrix):
     """Tangents of undamped beam elements, by their formulas."""
     index = block.index
     for e in range(len(index)):
-        if block.data[e, damping] != 0.0:
+        if not known(block.data, block.meta, e):
             continue
         for i in range(width):
             work.real[i] = x[index[e, i]]
@@ -87,25 +105,44 @@ def _add_elements(function, damping, width, block, slots, n, x, by, rows, work, 
                 matrix[slots[e, i, j]] += work.matrix[i, j] * rows[0]
 
 
+@template
+def _add_points(block, slots, by, rows, matrix):
+    """Tangents of the joints that join points: ones, and their signs."""
+    for e in range(len(block.index)):
+        if not joints.joins_points(block.data, block.meta, e):
+            continue
+        for side in range(2):
+            if block.meta[e, 1 + side] == GROUND:
+                continue
+            sign = 2.0 * side - 1.0
+            for k in range(2):
+                place, multiplier = 4 * side + k, joints.MULTIPLIERS + k
+                matrix[slots[e, place, multiplier]] += sign * rows[0]
+                matrix[slots[e, multiplier, place]] += sign * by[0] * rows[1]
+
+
 @kernel
 def tangent(dual, slots, n, x, v, a, by, rows, work, matrix):
     """Fill the flat ``matrix`` with the residual's derivative along ``by[0] dq + by[1] dv + by[2] da``, and dlambda.
 
     Rows of the equations of motion are multiplied by ``rows[0]``, those of the constraints by ``rows[1]``. ``dual`` is
     the model in complex numbers; the columns of a component come from the complex step of its residual, but for
-    undamped beams, where the formula is five times as fast (the sensitivities need a tangent at each step).
+    undamped beams and pins between points, where the formula is five times as fast (the sensitivities need a tangent at
+    each step).
     """
     for i in range(len(matrix)):
         matrix[i] = 0.0
     c = dual.callbacks
-    d, w = beam.DAMPING, beam.WIDTH
-    _add_elements(beam.tangent, d, w, dual.beams, slots.beams, n, x, by, rows, work, matrix)
-    _add_tangent(beam.residual, w, dual.beams, slots.beams, c, n, x, v, a, by, rows, work, matrix, d)
-    d, w = cable.DAMPING, cable.WIDTH
-    _add_elements(cable.tangent, d, w, dual.cables, slots.cables, n, x, by, rows, work, matrix)
-    _add_tangent(cable.residual, w, dual.cables, slots.cables, c, n, x, v, a, by, rows, work, matrix, d)
+    known, w = beam.undamped, beam.WIDTH
+    _add_elements(beam.tangent, known, w, dual.beams, slots.beams, n, x, by, rows, work, matrix)
+    _add_tangent(beam.residual, w, dual.beams, slots.beams, c, n, x, v, a, by, rows, work, matrix, known)
+    known, w = cable.undamped, cable.WIDTH
+    _add_elements(cable.tangent, known, w, dual.cables, slots.cables, n, x, by, rows, work, matrix)
+    _add_tangent(cable.residual, w, dual.cables, slots.cables, c, n, x, v, a, by, rows, work, matrix, known)
     _add_tangent(body.residual, body.WIDTH, dual.bodies, slots.bodies, c, n, x, v, a, by, rows, work, matrix)
-    _add_tangent(joints.residual, joints.WIDTH, dual.joints, slots.joints, c, n, x, v, a, by, rows, work, matrix)
+    known, w = joints.joins_points, joints.WIDTH
+    _add_points(dual.joints, slots.joints, by, rows, matrix)
+    _add_tangent(joints.residual, w, dual.joints, slots.joints, c, n, x, v, a, by, rows, work, matrix, known)
     _add_tangent(
         friction.residual, friction.WIDTH, dual.frictions, slots.frictions, c, n, x, v, a, by, rows, work, matrix
     )

@@ -18,9 +18,16 @@ WIDTH = 12
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(3)
 XI, W = (_POINTS + 1) / 2, _WEIGHTS / 2
 ACROSS = np.array([-0.5, 0.5]) / np.sqrt(3.0)
-AXIAL = (0, 2, 6, 8)  # slots of the vectors that bend the axis
+AXIAL = (0, 2, 8)  # slots of r1, r1_x and r2_x; forces on r2 are those on r1, their sign turned
+INNER = (0, 1, 2, 3, 8, 9, 4, 5, 10, 11)  # slots of all but r2, in the order in which blocks are filled
 DAMPING = 8  # column of the retardation time
 S1, S2, S5 = 6 * XI * (XI - 1), 1 - 4 * XI + 3 * XI**2, 3 * XI**2 - 2 * XI
+
+
+@inlined
+def undamped(data, meta, e):
+    """Whether an element is without material damping, so that `tangent` holds for it."""
+    return data[e, DAMPING] == 0.0
 
 
 @inlined
@@ -140,23 +147,24 @@ def tangent(x, data, e, by, matrix):
             p0, p1, p2 = _add(p0, 1.0, p), _add(p1, y, p), _add(p2, y * y, p)
             q0, q1, r0 = _add(q0, 1.0, q), _add(q1, y, q), _add(r0, 1.0, r)
         w = by[0] * 0.5 * W[g] * h * height * data[e, 2].real
-        along = s1, s2, -s1, s5
-        for i in range(4):
+        along = s1, s2, s5
+        for i in range(3):
             row = AXIAL[i]
-            for j in range(4):
+            for j in range(i, 3):
                 hermite.spread(matrix, row, AXIAL[j], w * along[i] * along[j], p0)
             for j in range(2):
                 turn, lift = (2 * j - 1) * across, xi if j == 1 else 1 - xi
                 mixed = _add((turn * p1[0], turn * p1[1], turn * p1[2], turn * p1[3]), lift, q0)
                 hermite.spread(matrix, row, 4 + 6 * j, w * along[i], mixed)
-                hermite.spread(matrix, 4 + 6 * j, row, w * along[i], (mixed[0], mixed[2], mixed[1], mixed[3]))
         for i in range(2):
             turn_i, lift_i = (2 * i - 1) * across, xi if i == 1 else 1 - xi
-            for j in range(2):
+            for j in range(i, 2):
                 turn_j, lift_j = (2 * j - 1) * across, xi if j == 1 else 1 - xi
                 block = _add(_add(nothing, turn_i * turn_j, p2), turn_i * lift_j, q1)
                 block = _add(block, lift_i * turn_j, (q1[0], q1[2], q1[1], q1[3]))
                 hermite.spread(matrix, 4 + 6 * i, 4 + 6 * j, w, _add(block, lift_i * lift_j, r0))
+    hermite.mirror(matrix, INNER)
+    hermite.oppose(matrix, 6, WIDTH)
     mass, rotatory = data[e, 3].real, by[2] * data[e, 4].real
     hermite.mass_matrix(mass, h, 0, 2, 6, 8, by[2], matrix)
     hermite.mass_matrix(mass, h, 1, 3, 7, 9, by[2], matrix)

@@ -17,7 +17,8 @@ from dalembert.multibody.kernels.dual import reciprocal, root
 
 WIDTH = 8
 DAMPING = 4  # column of the retardation time
-SLOTS = (0, 2, 6)  # of r1, r1' and r2'
+SLOTS = (0, 2, 6)  # of r1, r1' and r2'; forces on r2 are those on r1, their sign turned
+INNER = (0, 1, 2, 3, 6, 7)  # of all their components
 
 
 def _gauss(points: int) -> tuple[np.ndarray, ...]:
@@ -45,6 +46,12 @@ def _curvature(tx, ty, cx, cy):
     square = reciprocal(tx * tx + ty * ty)
     kappa = (tx * cy - ty * cx) * square
     return kappa, (cy - 2 * kappa * tx) * square, -(cx + 2 * kappa * ty) * square, square
+
+
+@inlined
+def undamped(data, meta, e):
+    """Whether an element is without material damping, so that `tangent` holds for it."""
+    return data[e, DAMPING] == 0.0
 
 
 @inlined
@@ -111,7 +118,7 @@ def tangent(x, data, e, by, matrix):
         cubed, rest = w * inverse * inverse * inverse, w * (1.0 - inverse)
         block = rest + tx * tx * cubed, tx * ty * cubed, tx * ty * cubed, rest + ty * ty * cubed
         for i in range(3):
-            for j in range(3):
+            for j in range(i, 3):
                 hermite.spread(matrix, SLOTS[i], SLOTS[j], s[i] * s[j], block)
     for g in range(3):
         s = B1[g] * across, B2[g], B5[g]
@@ -136,7 +143,7 @@ def tangent(x, data, e, by, matrix):
         )
         cc = w * qx * qx, w * qx * qy, w * qx * qy, w * qy * qy
         for i in range(3):
-            for j in range(3):
+            for j in range(i, 3):
                 a, b, d, f = s[i] * s[j], s[i] * c[j], c[i] * s[j], c[i] * c[j]
                 block = (
                     a * tt[0] + (b + d) * tc[0] + f * cc[0],
@@ -145,14 +152,8 @@ def tangent(x, data, e, by, matrix):
                     a * tt[3] + (b + d) * tc[3] + f * cc[3],
                 )
                 hermite.spread(matrix, SLOTS[i], SLOTS[j], 1.0, block)
-    # The forces depend on the difference of r1 and r2 only: rows and columns of r2 are those of r1, their sign turned.
-    for i in range(2):
-        for j in range(WIDTH):
-            if j < 4 or j > 5:
-                matrix[4 + i, j] = -matrix[i, j]
-    for i in range(WIDTH):
-        for j in range(2):
-            matrix[i, 4 + j] = -matrix[i, j]
+    hermite.mirror(matrix, INNER)
+    hermite.oppose(matrix, 4, WIDTH)
     hermite.mass_matrix(mass, h, 0, 2, 4, 6, by[2], matrix)
     hermite.mass_matrix(mass, h, 1, 3, 5, 7, by[2], matrix)
 

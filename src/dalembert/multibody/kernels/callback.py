@@ -1,4 +1,4 @@
-"""Calls from a kernel into a C function by its address: a function of the user's, or a routine of LAPACK.
+"""Calls from a kernel into a C function by its address: a function of the user's.
 
 The address is data, so that a new function needs no new compilation and compiled kernels can be kept on disk.
 """

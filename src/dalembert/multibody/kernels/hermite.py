@@ -69,3 +69,20 @@ def spread(matrix, i, j, factor, block):
     matrix[i, j + 1] += factor * block[1]
     matrix[i + 1, j] += factor * block[2]
     matrix[i + 1, j + 1] += factor * block[3]
+
+
+@inlined
+def mirror(matrix, slots):
+    """Complete a symmetric local ``matrix`` of which, in the order of the slots, the upper half is filled."""
+    for i in range(len(slots)):
+        for j in range(i):
+            matrix[slots[i], slots[j]] = matrix[slots[j], slots[i]]
+
+
+@inlined
+def oppose(matrix, k, width):
+    """Rows and columns of the position at slot ``k``: those of the position at slot 0, their sign turned."""
+    for j in range(width):
+        matrix[k, j], matrix[k + 1, j] = -matrix[0, j], -matrix[1, j]
+    for i in range(width):
+        matrix[i, k], matrix[i, k + 1] = -matrix[i, 0], -matrix[i, 1]

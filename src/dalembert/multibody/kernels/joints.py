@@ -11,6 +11,7 @@ Meta: joint kind, marker kinds of a and b, signal of a prescribed motion, 1 wher
 from dalembert.multibody.kernels.compiled import inlined, kernel
 from dalembert.multibody.kernels.dual import root, sin_cos, wrapped
 from dalembert.multibody.kernels.markers import (
+    RIGID,
     acceleration,
     angle,
     direction,
@@ -73,6 +74,12 @@ def twist_pair(x, meta, e, torque, r):
 def axis(x, data, meta, e):
     """Unit vector of a prismatic joint's axis, which turns with a."""
     return direction(meta[e, 1], 0, x, data[e, 2] + data[e, 7])
+
+
+@inlined
+def joins_points(data, meta, e):
+    """Whether a joint pins points that do not turn about a body's centre, so that its tangent is constant."""
+    return meta[e, 0] == REVOLUTE and meta[e, 1] != RIGID and meta[e, 2] != RIGID
 
 
 @inlined

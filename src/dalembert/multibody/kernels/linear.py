@@ -1,114 +1,220 @@
-"""Factorisation and solution of the linear systems: a dense inverse for small models, LAPACK's band solver for others.
+"""Factorisation and solution of the linear systems: a dense inverse for small models, a band for others.
 
 A factorisation is kept over many solutions. Where a matrix is small, the product with its inverse is several times
-faster than the triangular solutions, and the Newton iteration around it corrects its rounding.
+faster than the triangular solutions, and the Newton iteration around it corrects its rounding. Both are written out
+here: for some dozens of unknowns in a narrow band LAPACK's calls were measured to take three times as long.
 """
 
 from typing import NamedTuple
 
 import numpy as np
-from numba.extending import get_cython_function_address
 
-from dalembert.multibody.kernels.callback import call
 from dalembert.multibody.kernels.compiled import compiled, inlined, kernel
+from dalembert.multibody.kernels.vector import LANES, add_multiple, add_two_multiples
 
 DENSE, BAND = range(2)
-#: Addresses of LAPACK's routines as SciPy carries them; data to the kernels, see `callback`.
-LAPACK = np.array(
-    [
-        get_cython_function_address("scipy.linalg.cython_lapack", name)
-        for name in ("dgetrf", "dgetri", "dgbtrf", "dgbtrs")
-    ],
-    dtype=np.int64,
-)
-_BLOCK = 32  # columns that dgetri treats at a time, for the size of its work array
+_ENOUGH = 0.01  # share of a column's largest entry that a diagonal entry needs to stay the pivot
 
 
 class Layout(NamedTuple):
-    """Where a matrix's entries are kept: kind, size N, bands below and above, place of each unknown in the band."""
+    """Where a matrix's entries are kept: kind, size N, reach of the band, stored column, place of each unknown.
+
+    Entry (i, j) stands at ``j lead + i``, in a band at ``j lead + 2 reach + i - j``, which leaves room for what the
+    exchange of rows fills in. Reach and dense columns are padded to whole vectors.
+    """
 
     kind: int
     size: int
-    lower: int
-    upper: int
+    reach: int
+    lead: int
     order: np.ndarray
 
 
 class Factors(NamedTuple):
-    """A matrix (flat, by columns), its factorisation, and what LAPACK works with."""
+    """A matrix (flat, by columns) that its factorisation overwrites; pivots, first row of each column, a vector."""
 
     matrix: np.ndarray
-    factored: np.ndarray
     pivots: np.ndarray
-    numbers: np.ndarray
+    tops: np.ndarray
     buffer: np.ndarray
-    letter: np.ndarray
 
 
-@kernel
-def lead(layout):
-    """Length of a stored column."""
-    return layout.size if layout.kind == DENSE else 2 * layout.lower + layout.upper + 1
+def padded(count: int) -> int:
+    """The next number of whole vectors."""
+    return -(-count // LANES) * LANES
 
 
 @compiled
 def storage(layout):
     """Room for a matrix and its factorisation."""
     size = layout.size
-    entries = lead(layout) * size
-    numbers = np.array([size, lead(layout), layout.lower, layout.upper, _BLOCK * size, 1, 0], dtype=np.int32)
-    letter = np.array([ord("N")], dtype=np.uint8)
-    return Factors(
-        np.zeros(entries), np.zeros(entries), np.zeros(size, np.int32), numbers, np.zeros(_BLOCK * size), letter
-    )
+    whole = np.zeros(size, np.int64)
+    return Factors(np.zeros(layout.lead * size), whole, np.zeros(size, np.int64), np.zeros(size + 3 * layout.reach))
 
 
 @kernel
-def factorise(layout, lapack, factors):
-    """Factorise (or invert) the matrix; whether it was regular."""
-    for i in range(len(factors.matrix)):
-        factors.factored[i] = factors.matrix[i]
-    n = factors.numbers
-    size, ld, lower, upper, room, info = n[0:1], n[1:2], n[2:3], n[3:4], n[4:5], n[6:7]
+def factorise(layout, factors):
+    """Factorise (or invert) the matrix in its place; whether it was regular."""
     if layout.kind == DENSE:
-        call(lapack[0], size, size, factors.factored, ld, factors.pivots, info)
-        if info[0] == 0:
-            call(lapack[1], size, factors.factored, ld, factors.pivots, factors.buffer, room, info)
-    else:
-        call(lapack[2], size, size, lower, upper, factors.factored, ld, factors.pivots, info)
-    return info[0] == 0
+        return _invert(layout.size, layout.lead, factors.matrix, factors.pivots)
+    return _factorise_band(layout.size, layout.reach, layout.lead, factors.matrix, factors.pivots, factors.tops)
 
 
 @inlined
-def _multiply(matrix, size, given, answer):
+def _largest(a, begin, count):
+    """Number of the entry of the largest size, and whether it is needed as the pivot in the first one's stead."""
+    first = largest = abs(a[begin])
+    found = 0
+    for i in range(1, count):
+        size = abs(a[begin + i])
+        if size > largest:
+            largest, found = size, i
+    return 0 if first >= _ENOUGH * largest else found
+
+
+@inlined
+def _exchange(a, i, j):
+    a[i], a[j] = a[j], a[i]
+
+
+@kernel
+def _invert(size, lead, a, pivots):
+    """Gauss and Jordan's inverse."""
+    for k in range(size):
+        own = k * lead
+        p = pivots[k] = k + _largest(a, own + k, size - k)
+        if p != k:
+            for j in range(size):
+                _exchange(a, j * lead + k, j * lead + p)
+        if a[own + k] == 0.0:
+            return False
+        inverse = 1.0 / a[own + k]
+        a[own + k] = 0.0
+        for j in range(size):
+            factor = a[j * lead + k] * inverse
+            if j != k and factor != 0.0:
+                add_multiple(a, j * lead, a, own, -factor, lead)
+                a[j * lead + k] = factor
+        for i in range(size):
+            a[own + i] *= -inverse
+        a[own + k] = inverse
+    for k in range(size - 1, -1, -1):
+        p = pivots[k]
+        if p != k:
+            for i in range(size):
+                _exchange(a, k * lead + i, p * lead + i)
+    return True
+
+
+@inlined
+def _pivot(size, reach, lead, a, pivots, tops, k, last):
+    """Exchange rows if column ``k`` needs it, and divide the column; the last column that is concerned."""
+    d = k * lead + 2 * reach
+    p = pivots[k] = _largest(a, d, reach + 1)
+    while last < min(k + p + reach, size - 1):
+        last += 1
+        tops[last] = k
+    if p > 0:
+        for j in range(k, last + 1):
+            row = j * lead + 2 * reach + k - j
+            _exchange(a, row, row + p)
+    if a[d] == 0.0:
+        return -1
+    a[d] = 1.0 / a[d]
+    for i in range(1, reach + 1):
+        a[d + i] *= a[d]
+    return last
+
+
+@kernel
+def _factorise_band(size, reach, lead, a, pivots, tops):
+    """Triangular factors; the lower one has ones on its diagonal, of the upper one the diagonal is inverted.
+
+    Two columns at a time where the second one needs no exchange of rows, which halves the passes over the others.
+    """
+    last = tops[0] = 0
+    above = 2 * reach
+    k = 0
+    while k < size:
+        last = _pivot(size, reach, lead, a, pivots, tops, k, last)
+        if last < 0:
+            return False
+        own, begin = k * lead + above, k + 1
+        if k + 1 < size:
+            row = own + lead - 1
+            add_multiple(a, row + 1, a, own + 1, -a[row], reach)
+            begin = k + 2
+            if _largest(a, row + 1, reach + 1) == 0:
+                last = _pivot(size, reach, lead, a, pivots, tops, k + 1, last)
+                if last < 0:
+                    return False
+                for j in range(k + 2, last + 1):
+                    row = j * lead + above + k - j
+                    first = a[row]
+                    a[row + 1] -= first * a[own + 1]
+                    if first != 0.0 or a[row + 1] != 0.0:
+                        add_two_multiples(a, row + 2, a, own + 2, -first, own + lead + 1, -a[row + 1], reach)
+                k += 2
+                continue
+        for j in range(begin, last + 1):
+            row = j * lead + above + k - j
+            if a[row] != 0.0:
+                add_multiple(a, row + 1, a, own + 1, -a[row], reach)
+        k += 1
+    return True
+
+
+@inlined
+def _multiply(matrix, size, lead, given, answer):
     """Product of a square matrix by columns with a vector, four columns at a time."""
     for i in range(size):
         answer[i] = 0.0
     whole = size // 4 * 4
     for j in range(0, whole, 4):
         a, b, c, d = given[j], given[j + 1], given[j + 2], given[j + 3]
-        k, l, m, n = j * size, (j + 1) * size, (j + 2) * size, (j + 3) * size  # noqa: E741 - the four columns in order
+        first, second = matrix[j * lead : j * lead + size], matrix[(j + 1) * lead : (j + 1) * lead + size]
+        third, fourth = matrix[(j + 2) * lead : (j + 2) * lead + size], matrix[(j + 3) * lead : (j + 3) * lead + size]
         for i in range(size):
-            answer[i] += matrix[k + i] * a + matrix[l + i] * b + matrix[m + i] * c + matrix[n + i] * d
+            answer[i] += first[i] * a + second[i] * b + third[i] * c + fourth[i] * d
     for j in range(whole, size):
-        a, k = given[j], j * size
+        a, column = given[j], matrix[j * lead : j * lead + size]
         for i in range(size):
-            answer[i] += matrix[k + i] * a
+            answer[i] += column[i] * a
 
 
 @kernel
-def solve(layout, lapack, factors, given, answer):
+def solve(layout, factors, given, answer):
     """Solve for the first N entries of ``given``, into those of ``answer``."""
-    size = layout.size
+    size, reach, lead, order = layout.size, layout.reach, layout.lead, layout.order
+    a, pivots, tops, x = factors.matrix, factors.pivots, factors.tops, factors.buffer
     if layout.kind == DENSE:
-        _multiply(factors.factored, size, given, answer)
+        _multiply(a, size, lead, given, answer)
         return
-    n, order, buffer = factors.numbers, layout.order, factors.buffer
+    above = 2 * reach  # room before the first unknown, and behind the last one
     for i in range(size):
-        buffer[order[i]] = given[i]
-    call(
-        lapack[3], factors.letter, n[0:1], n[2:3], n[3:4], n[5:6], factors.factored, n[1:2], factors.pivots, buffer,
-        n[0:1], n[6:7],
-    )  # fmt: skip
+        x[above + order[i]] = given[i]
+    for i in range(above + size, len(x)):
+        x[i] = 0.0
+    k = 0
+    while k < size:
+        own, at = k * lead + above, above + k
+        if pivots[k] > 0:
+            _exchange(x, at, at + pivots[k])
+        if k + 1 < size and pivots[k + 1] == 0:
+            x[at + 1] -= x[at] * a[own + 1]
+            add_two_multiples(x, at + 2, a, own + 2, -x[at], own + lead + 1, -x[at + 1], reach)
+            k += 2
+        else:
+            add_multiple(x, at + 1, a, own + 1, -x[at], reach)
+            k += 1
+    while k > 0:
+        k -= 1
+        own, at = k * lead + above, above + k
+        x[at] *= a[own]
+        if k > 0:
+            x[at - 1] = (x[at - 1] - x[at] * a[own - 1]) * a[own - lead]
+            count = -(-(k - 1 - min(tops[k], tops[k - 1])) // LANES) * LANES
+            add_two_multiples(x, at - 1 - count, a, own - 1 - count, -x[at], own - lead - count, -x[at - 1], count)
+            k -= 1
     for i in range(size):
-        answer[i] = buffer[order[i]]
+        answer[i] = x[above + order[i]]

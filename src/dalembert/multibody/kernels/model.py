@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dalembert.multibody.kernels import beam, body, cable, friction, joints, load, spring, user
-from dalembert.multibody.kernels.compiled import compiled, inlined
+from dalembert.multibody.kernels.compiled import compiled, inlined, template
 
 #: The kinds in the order of the fields of `Model`.
 KINDS = {
@@ -81,8 +81,8 @@ class Work(NamedTuple):
     matrix: np.ndarray
 
 
+@template
 def _select(stack, d):
-    """Model ``d`` of a stack, whose numbers and callbacks have one more leading axis."""
     return Model(
         Block(stack.beams.index, stack.beams.meta, stack.beams.data[d]),
         Block(stack.cables.index, stack.cables.meta, stack.cables.data[d]),
@@ -97,9 +97,16 @@ def _select(stack, d):
     )
 
 
-select = compiled(_select)
-#: The same inside functions that do not count references.
-glance = inlined(_select)
+@compiled
+def select(stack, d):
+    """Model ``d`` of a stack, whose numbers and callbacks have one more leading axis."""
+    return _select(stack, d)
+
+
+@inlined
+def glance(stack, d):
+    """The same inside functions that do not count references."""
+    return _select(stack, d)
 
 
 @compiled

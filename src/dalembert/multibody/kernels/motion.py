@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dalembert.multibody.kernels.compiled import compiled, inlined, kernel
+from dalembert.multibody.kernels.compiled import compiled, inlined, kernel, template
 
 
 class Motion(NamedTuple):
@@ -51,14 +51,21 @@ def copy(source, target):
         target.x[i], target.v[i], target.a[i], target.w[i] = source.x[i], source.v[i], source.a[i], source.w[i]
 
 
+@template
 def _row(stack, d):
-    """State ``d`` of a stack of states."""
     return Motion(stack.x[d], stack.v[d], stack.a[d], stack.w[d])
 
 
-row = compiled(_row)
-#: The same inside functions that do not count references.
-glance = inlined(_row)
+@compiled
+def row(stack, d):
+    """State ``d`` of a stack of states."""
+    return _row(stack, d)
+
+
+@inlined
+def glance(stack, d):
+    """The same inside functions that do not count references."""
+    return _row(stack, d)
 
 
 @kernel

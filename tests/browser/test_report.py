@@ -4,7 +4,7 @@ import pytest
 
 from dalembert.report import figures, report
 from dalembert.report.look import DARK, LIGHT
-from stand_ins import fit, motion, sweep
+from stand_ins import band_fit, comparison, fit, motion, parameter_set, propagation, sweep
 
 pytestmark = pytest.mark.slow
 NASTY = "<img src=x onerror=\"document.title='run'\">"
@@ -135,3 +135,28 @@ def test_a_sweep_is_drawn(chromium, tmp_path):
     tab = chromium.open(report(sweep(), tmp_path / "sweep.html"))
     assert tab.run("document.querySelectorAll('.canvas[data-drawn] .main-svg .js-line').length") >= 6
     assert tab.complaints == []
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("make", [propagation, comparison, band_fit, parameter_set])
+def test_reports_on_intervals_are_drawn(chromium, tmp_path, make, scheme):
+    path = report(make(), tmp_path / "a.html")
+    tab = chromium.open(path, scheme=scheme)
+    drawn = tab.run("[...document.querySelectorAll('.canvas[data-drawn]')].map((place) => place.id)")
+    assert drawn == [f"figure-{name}" for name in figures(make())]
+    assert tab.complaints == []
+    assert tab.requests == [path.as_uri()]
+
+
+@pytest.mark.parametrize(("scheme", "palette"), [("light", LIGHT), ("dark", DARK)])
+def test_the_inside_of_a_band_is_faint_and_follows_the_page(chromium, tmp_path, scheme, palette):
+    tab = chromium.open(report(propagation(), tmp_path / "a.html"), scheme=scheme)
+    fill = "document.querySelector('#figure-bands-1 .js-fill').style"
+    assert tab.run(f"{fill}.fill") == _colour(palette.series[0])
+    assert 0.1 < float(tab.run(f"{fill}.fillOpacity")) < 0.4
+
+
+@pytest.mark.parametrize("make", [propagation, comparison, band_fit, parameter_set])
+def test_reports_on_intervals_fit_a_phone(chromium, tmp_path, make):
+    tab = chromium.open(report(make(), tmp_path / "a.html"), width=400, height=800, touch=True)
+    assert tab.run("[innerWidth, document.documentElement.scrollWidth]") == [400, 400]

@@ -173,6 +173,15 @@ def test_an_empty_set_says_so(tmp_path):
     assert "No parameters explain all data." in page.text
 
 
+def test_a_long_value_of_the_provenance_is_whole_in_the_csv(tmp_path):
+    found = parameter_set()
+    found.provenance = {"error": [0.002] * 100}
+    page = read_page(report(found, tmp_path / "a.html"))
+    assert str(found.provenance["error"]) not in page.text
+    assert str(found.provenance["error"])[:200] + " …" in page.text
+    assert page.table("provenance")[1] == ["error", str(found.provenance["error"])]
+
+
 @pytest.mark.parametrize("make", [propagation, comparison, band_fit, parameter_set])
 def test_the_same_result_gives_the_same_bytes(make, tmp_path):
     pages = [report(make(), tmp_path / name).read_bytes() for name in ("a.html", "b.html")]

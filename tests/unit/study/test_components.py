@@ -6,7 +6,8 @@ from dataclasses import InitVar, dataclass, field
 import pytest
 from pydantic import TypeAdapter, ValidationError
 
-from dalembert.study.components import one_of, table_of
+from dalembert.errors import InputError
+from dalembert.study.components import one_of, settings_of, table_of
 from dalembert.study.expressions import Expression
 from dalembert.study.places import Place
 
@@ -159,3 +160,56 @@ def test_the_schema_tells_units_and_kinds():
 def test_the_default_kind_need_not_be_named():
     adapter = TypeAdapter(one_of([table_of(Wave, default=True)], "Wave"))
     assert adapter.validate_python({"height": 1, "rate": 2}).settings() == Wave(1.0, 2.0)
+
+
+@dataclass(frozen=True)
+class Coarse:
+    points: int = 3
+
+    def __post_init__(self) -> None:
+        if self.points < 2:
+            raise InputError(f"Coarse: points is {self.points}; expected at least 2")
+
+
+@dataclass(frozen=True)
+class Fine:
+    knots: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True)
+class Method:
+    grid: Coarse | Fine = Fine()
+    pair: tuple[int, int] = (1, 2)
+
+
+GRID = settings_of({"coarse": Coarse, "fine": Fine})
+METHOD = TypeAdapter(settings_of({"method": Method}, {"Coarse": GRID}))
+
+
+@pytest.mark.parametrize(
+    ("given", "settings"),
+    [
+        ("method", Method()),
+        ({"kind": "method", "grid": "coarse"}, Method(Coarse())),
+        (
+            {"kind": "method", "grid": {"kind": "fine", "knots": [1, "1/2"]}, "pair": [3, 4]},
+            Method(Fine((1.0, 0.5)), (3, 4)),
+        ),
+    ],
+)
+def test_settings_are_a_name_or_a_table_and_hold_others(given, settings):
+    assert METHOD.validate_python(given).settings() == settings
+
+
+def test_settings_that_cannot_be_are_refused_where_they_stand():
+    with pytest.raises(ValidationError) as caught:
+        METHOD.validate_python({"kind": "method", "grid": {"kind": "coarse", "points": 1}})
+    (error,) = caught.value.errors()
+    assert [step for step in error["loc"] if step in ("method", "grid")] == ["grid"]
+    assert error["msg"] == "Coarse: points is 1; expected at least 2"
+
+
+def test_the_schema_of_settings_tells_names_and_tables():
+    schema = METHOD.json_schema()
+    assert {"coarse", "fine", "method"} <= schema["$defs"].keys()
+    assert {"enum": ["coarse", "fine"], "type": "string"} in schema["$defs"]["method"]["properties"]["grid"]["oneOf"]

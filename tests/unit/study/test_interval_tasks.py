@@ -11,6 +11,7 @@ from dalembert.errors import DalembertError
 from dalembert.study import load, plan, report_run, run_study
 from dalembert.study.events import read_events
 from dalembert.study.listing import rows
+from dalembert.study.runner import unknowns
 from pages import read_page
 
 TIMES = np.linspace(0, 1, 11)
@@ -174,6 +175,7 @@ def test_a_parameter_that_is_a_number_is_identified_without_a_radius(write):
         write(BANDS.replace("[identify_bands]", '[identify_bands]\nintervals = ["height"]\nweights = { x = 2.0 }'))
     )
     assert plan(study).startswith("identifies intervals of height and the numbers rate from the bands of x")
+    assert unknowns(study) == ("rate middle", "height middle", "height radius")
     _, outcome = run_study(study)
     values = outcome.best["values"]
     assert values["rate lower"] == values["rate upper"]

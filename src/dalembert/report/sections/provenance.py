@@ -5,7 +5,10 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from dalembert.report.sections.section import Section
-from dalembert.report.table import Table, cell
+from dalembert.report.table import Cell, Table, cell
+
+LONGEST = 200
+"""Characters of a value that a page shows."""
 
 
 @dataclass(frozen=True)
@@ -19,8 +22,13 @@ class Provenance(Section):
 
     @property
     def table(self) -> Table:
-        rows = [(cell(key), cell(str(value))) for key, value in _flat(self.facts)]
+        rows = [(cell(key), _shortened(str(value))) for key, value in _flat(self.facts)]
         return Table("provenance", "What made this result", ("what", "value"), rows)
+
+
+def _shortened(text: str) -> Cell:
+    """Cell of a text, its end left out of the page where it is long, but not of the CSV."""
+    return Cell(text, text if len(text) <= LONGEST else f"{text[:LONGEST]} …")
 
 
 def _flat(facts: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, Any]]:

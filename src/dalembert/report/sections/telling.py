@@ -5,9 +5,12 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from dalembert.report import charts
+from dalembert.report.charts.correlation import unknowns
 from dalembert.report.needs import BandFitLike, FitLike
 from dalembert.report.plot import Plot
 from dalembert.report.sections.section import Section
+
+MOST_BESIDE = 3
 
 
 @dataclass(frozen=True)
@@ -19,6 +22,11 @@ class Telling(Section):
     fit: FitLike | BandFitLike
     sentences: Sequence[str] = ()
     spectrum: Plot | None = None
+
+    @property
+    def beside(self) -> bool:
+        """Whether the figures have room side by side: combinations of many unknowns have long names."""
+        return len(unknowns(self.fit)) <= MOST_BESIDE
 
     @property
     def plots(self) -> tuple[Plot, ...]:

@@ -1,0 +1,48 @@
+"""What a user sees of a run while it goes on."""
+
+import io
+
+import pytest
+from rich.console import Console
+
+from dalembert.study.progress import Watch
+
+
+def _printed(event: dict, names: tuple[str, ...] = ()) -> str:
+    stream = io.StringIO()
+    with Watch(Console(file=stream, width=200), names) as watch:
+        watch(event)
+    return stream.getvalue().rstrip("\n")
+
+
+@pytest.mark.parametrize(
+    ("event", "text"),
+    [
+        ({"event": "ran", "method": "scan", "runs": 128, "failed": 0, "most": 441}, "scan · 128 simulations"),
+        ({"event": "ran", "method": "scan", "runs": 9, "failed": 2, "most": 9}, "scan · 9 simulations, 2 failed"),
+        ({"event": "sampled", "runs": 45, "simulations": 57}, "surrogate · 45 simulations"),
+        (
+            {"event": "checked", "runs": 8, "simulations": 93, "fitness": 3e-7, "error": 9.3e-6},
+            "check by 8 simulations · wrong by 9.3e-06",
+        ),
+        ({"event": "checked", "runs": 8, "simulations": 9, "fitness": None, "error": None}, "check by 8 simulations"),
+        (
+            {"event": "paved", "inside": 3, "boundary": 4, "waiting": 5},
+            "3 boxes inside, 4 on the boundary, 5 to look at",
+        ),
+        ({"event": "simulating", "end": 2.0}, "simulating to 2 s"),
+        (
+            {"event": "swept", "parameter": "a", "value": 0.5, "done": 3, "total": 9, "failure": None},
+            "a = 0.5 · 3 of 9",
+        ),
+        ({"event": "run-started", "task": "propagate"}, ""),
+    ],
+)
+def test_events_are_told_in_a_line(event, text):
+    assert _printed(event) == text
+
+
+def test_the_best_values_have_the_names_of_the_unknowns():
+    event = {"event": "iteration", "start": 0, "iteration": 2, "simulations": 85, "best": 1e-6, "values": [0.75, 0.05]}
+    told = _printed(event, ("theta1 middle", "theta1 radius"))
+    assert told == "start 1 · 85 simulations · best 1e-06 · theta1 middle = 0.75, theta1 radius = 0.05"

@@ -59,8 +59,8 @@ def bounds(
     starts : int
         Valleys of the scan to refine from, at most, for each bound.
     gap : float
-        For "bernstein": subdivides until bounds are this close, relative to the sum of |coefficients| without the
-        constant one.
+        For "bernstein": subdivides until bounds are this close, relative to the sum of the coefficients' sizes
+        without the constant one.
 
     Raises
     ------

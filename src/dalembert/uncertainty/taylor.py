@@ -12,7 +12,7 @@ from dalembert.uncertainty.runs import Runs
 
 @dataclass(frozen=True)
 class Taylor:
-    """Bounds of the response linearised in the middle of the box: f(x_c) ± Σ |∂f/∂x_i| x_w,i.
+    """Bounds of the response linearised in the middle of the box: ``f(x_c) ± Σ |∂f/∂x_i| x_w,i``.
 
     Parameters
     ----------

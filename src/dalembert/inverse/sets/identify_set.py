@@ -38,7 +38,7 @@ def identify_set(
     seed: int = 0,
     on_event: OnEvent | None = None,
 ) -> ParameterSet:
-    """The set of all parameters p, within their bounds, with |R(p) − data| ≤ error at every sample and channel.
+    """The set of all parameters p, within their bounds, with ``|R(p) − data| ≤ error`` at every sample and channel.
 
     Parameters
     ----------

@@ -15,7 +15,7 @@ from dalembert.parameters import Parameters
 
 @dataclass(frozen=True, eq=False)
 class ParameterSet:
-    """The set {p : |R(p) − data| ≤ error everywhere} within the parameters' bounds, paved with boxes.
+    """The set ``{p : |R(p) − data| ≤ error everywhere}`` within the parameters' bounds, paved with boxes.
 
     Parameters
     ----------

@@ -6,11 +6,17 @@ from typing import ClassVar, Literal
 import numpy as np
 
 from dalembert.errors import InputError, unknown
-from dalembert.surrogate import Tensor, bounds, fit
+from dalembert.surrogate import Adaptive, Surrogate, bounds, fit
 from dalembert.surrogate.bounds import METHODS
 from dalembert.surrogate.scheme import Scheme
 from dalembert.uncertainty.found import Found
 from dalembert.uncertainty.runs import Runs
+
+SCANNED, MOST_EACH = 10_000, 257
+"""Points of the scan that the optimisation of the polynomial begins with, and most in one direction."""
+
+STARTS = 5
+"""Valleys of the scan that are followed to their bottom."""
 
 
 @dataclass(frozen=True)
@@ -20,7 +26,8 @@ class Chebyshev:
     Parameters
     ----------
     scheme : TotalDegree, Tensor or Adaptive
-        Which terms the polynomial has, and at which points the model is run.
+        Which terms the polynomial has, and at which points the model is run. The usual adaptive one aims at a hundredth
+        of ``tolerance``.
     tolerance : float
         Largest estimated error of the polynomial, as a part of the largest variation of a sample of the channel over
         the box. A worse polynomial is refused, with the order that would do.
@@ -44,7 +51,7 @@ class Chebyshev:
     """
 
     name: ClassVar[str] = "chebyshev"
-    scheme: Scheme = Tensor(8)
+    scheme: Scheme = Adaptive()
     tolerance: float = 1e-4
     bounds: Literal["optimise", "scan", "bernstein"] = "optimise"
     held_out: int = 8
@@ -73,7 +80,8 @@ class Chebyshev:
             groups=np.tile(np.arange(channels), samples),
         )
         surrogate.demand(self.tolerance * surrogate.scale, runs.place)
-        found = bounds(surrogate.polynomial, box.lower, box.upper, self.bounds)
+        fine = {"points": _scanned(surrogate), "starts": STARTS} if self.bounds == "optimise" else {}
+        found = bounds(surrogate.polynomial, box.lower, box.upper, self.bounds, **fine)
         margin = surrogate.error if self.bounds == "bernstein" else 0.0
         at_lower, at_upper = (
             None if part is None else part.reshape(*shape, len(box)) for part in (found.at_lower, found.at_upper)
@@ -88,6 +96,13 @@ class Chebyshev:
             f"The bounds of a polynomial of order {surrogate.order} in place of the model, {_worth(self.bounds)}.",
             not runs.failures,
         )
+
+
+def _scanned(surrogate: Surrogate) -> int:
+    """Points of a scan in each direction: a single box can afford more than a batch of boxes can."""
+    degrees = surrogate.polynomial.degrees
+    fine = int(SCANNED ** (1 / max(1, np.count_nonzero(degrees))))
+    return max(int(degrees.max(initial=0)) + 2, min(fine, MOST_EACH))
 
 
 def _worth(way: str) -> str:

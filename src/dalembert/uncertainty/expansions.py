@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.spatial import KDTree
@@ -11,6 +12,9 @@ SWEEPS = 40
 
 UNSEEN = 1e-10
 """Part of the largest spread of the neighbours below which a direction has none."""
+
+CLOSE = 0.02
+"""Distance of neighbours below which they say little about the error of an expansion."""
 
 CHUNK = 2_000_000
 """Numbers in the largest array of Hessians at once."""
@@ -46,15 +50,13 @@ class Expansions:
         which no neighbour lies.
         """
         runs, f = self.points.shape
-        neighbours = min(runs - 1, 2 * f + 2)
-        if neighbours == 0:
+        near, distance = self._neighbours
+        if near.size == 0:
             return np.zeros((runs, len(outputs), f, f))
-        distance, near = map(np.asarray, KDTree(self.points).query(self.points, neighbours + 1))
-        distance = np.maximum(distance[:, 1:], np.finfo(float).eps)
         weight = (distance[:, :1] / distance**2)[..., None]
-        towards = weight * (self.points[near[:, 1:]] - self.points[:, None])
+        towards = weight * (self.points[near] - self.points[:, None])
         slopes = self.slopes[:, outputs]
-        changes = weight[..., None] * (slopes[near[:, 1:]] - slopes[:, None])
+        changes = weight[..., None] * (slopes[near] - slopes[:, None])
         spread, axes = np.linalg.eigh(np.einsum("rki,rkj->rij", towards, towards))
         mixed = np.einsum("rkoi,rkj->roij", changes, towards @ axes, optimize=True)
         mixed = axes.mT[:, None] @ mixed
@@ -62,6 +64,27 @@ class Expansions:
         seen = pairs > UNSEEN * spread[:, -1, None, None]
         hessians = np.where(seen[:, None], (mixed + mixed.mT) / np.where(seen, pairs, 1.0)[:, None], 0.0)
         return axes[:, None] @ hessians @ axes.mT[:, None]
+
+    def doubts(self, outputs: np.ndarray, hessians: np.ndarray) -> np.ndarray:
+        """Largest error |Δη|⁻³ of each expansion at its neighbours, shape (runs, len(outputs)).
+
+        Neighbours closer than ``CLOSE`` count as at this distance, where rounding would else be taken for an error.
+        """
+        near, distance = self._neighbours
+        if near.size == 0:
+            return np.zeros(hessians.shape[:2])
+        values, slopes = self.values[:, outputs], self.slopes[:, outputs]
+        steps = (self.points[near] - self.points[:, None])[:, :, None]
+        foretold = values[:, None] + expand(slopes[:, None], hessians[:, None], steps)
+        return np.max(np.abs(values[near] - foretold) / np.maximum(distance, CLOSE)[..., None] ** 3, axis=1)
+
+    @cached_property
+    def _neighbours(self) -> tuple[np.ndarray, np.ndarray]:
+        """The runs nearest to each run, and their distances; both (runs, neighbours)."""
+        runs, f = self.points.shape
+        found = KDTree(self.points).query(self.points, min(runs, 2 * f + 3))
+        distance, near = (np.reshape(part, (runs, -1))[:, 1:] for part in found)
+        return near, np.maximum(distance, np.finfo(float).eps)
 
 
 def maxima(slope: np.ndarray, hessian: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> np.ndarray:

@@ -21,16 +21,20 @@ class Optimise:
     tolerance : float
         Stops when no run lets expect a gain above this part of the widest band of its channel.
     start : int, optional
-        Points of a Latin hypercube to begin with, beside the middle of the box and, for up to four intervals, its
-        corners; 8 an interval if not given. More points see more of a response that swings within the box.
+        Points of a Latin hypercube to begin with, beside the middle of the box and of its faces and, for up to four
+        intervals, its corners; 8 an interval if not given. More points see more of a response that swings within the
+        box.
     most_runs : int
         Stops there with what was found; a response with its sensitivities counts as 1 + parameters.
 
     Notes
     -----
-    Gradients of neighbouring runs give the curvature of every output at every run. Each run's expansion proposes where,
-    within the distance of the first points, each output is smallest and largest; the expansion of the run that is
-    nearest to that place has the last word on what is to be gained. A proposal that serves several outputs is run once.
+    Gradients of neighbouring runs give the curvature of every output at every run, and the values of these neighbours
+    how wrong such an expansion is. Each run's expansion proposes where, within the distance of the first points, each
+    output is smallest and largest; the expansion of the run that is nearest to that place says what is to be gained
+    there, its own error in favour. A proposal that serves several outputs is run once. No search of this kind can prove
+    that it has seen every peak: of random cubics in two parameters about one bound in a thousand is missed by 1e-5 of
+    its width.
     """
 
     name: ClassVar[str] = "optimise"
@@ -82,4 +86,5 @@ class Optimise:
         corners = np.stack(np.meshgrid(*[[-1.0, 1.0]] * f, indexing="ij"), -1).reshape(-1, f) if f <= 4 else None
         number = 8 * f if self.start is None else self.start
         inside = 2 * qmc.LatinHypercube(f, optimization="random-cd", rng=seed).random(number) - 1 if number else None
-        return np.concatenate([part for part in (np.zeros((1, f)), corners, inside) if part is not None])
+        faces = np.concatenate([np.eye(f), -np.eye(f)]) if f > 1 else None
+        return np.concatenate([part for part in (np.zeros((1, f)), corners, faces, inside) if part is not None])

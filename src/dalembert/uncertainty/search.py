@@ -124,6 +124,7 @@ class Search:
         lower, upper = np.maximum(-1 - known.points, -self.radius), np.minimum(1 - known.points, self.radius)
         for outputs in known.chunks():
             curvatures = known.curvatures(outputs)
+            doubts = known.doubts(outputs, curvatures)
             for side, best in ((-1, self.extremes.lower), (1, self.extremes.upper)):
                 values, slopes = side * known.values[:, outputs], side * known.slopes[:, outputs]
                 hessians, least = side * curvatures, side * best.ravel()[outputs] + self._least[outputs]
@@ -133,6 +134,7 @@ class Search:
                 near, apart = tried.nearest(points)
                 steps = points - known.points[near]
                 expected = values[near, output] + expand(slopes[near, output], hessians[near, output], steps)
+                expected += doubts[near, output] * apart**3
                 expected[(near < 0) | (apart < SAME)] = -np.inf
                 first = _first(output, expected)
                 first = first[expected[first] > least[output[first]]]
@@ -144,10 +146,12 @@ class Search:
         """Few of the wanted points that serve all outputs; ``near`` (n,) are the runs that know about each point."""
         near, wanted = near[:MOST], wanted[np.arange(min(MOST, len(near)))]
         outputs, column = np.unique(wanted.outputs, return_inverse=True)
-        curvatures = known.curvatures(outputs)[near][:, column]
+        curvatures = known.curvatures(outputs)
+        doubts = known.doubts(outputs, curvatures)[near][:, column]
         steps = (wanted.points - known.points[near])[:, None]
         at = np.ix_(near, wanted.outputs)
-        expected = known.values[at] + expand(known.slopes[at], curvatures, steps)
+        expected = known.values[at] + expand(known.slopes[at], curvatures[near][:, column], steps)
+        expected += wanted.sides * doubts * np.linalg.norm(steps, axis=2) ** 3
         best = np.where(
             wanted.sides < 0, self.extremes.lower.ravel()[wanted.outputs], self.extremes.upper.ravel()[wanted.outputs]
         )

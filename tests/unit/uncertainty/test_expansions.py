@@ -37,7 +37,23 @@ def test_an_expansion_foretells_every_other_run_of_a_quadratic_response():
 
 def test_a_single_run_knows_no_curvature():
     known, _ = quadratic(2, outputs=3, runs=1)
-    assert known.curvatures(np.arange(3)).tolist() == np.zeros((1, 3, 2, 2)).tolist()
+    curvatures = known.curvatures(np.arange(3))
+    assert curvatures.tolist() == np.zeros((1, 3, 2, 2)).tolist()
+    assert known.doubts(np.arange(3), curvatures).tolist() == [[0.0, 0.0, 0.0]]
+
+
+def test_an_expansion_is_doubted_by_its_error_at_its_neighbours():
+    """x³ from runs at 0 and ±½: gradients tell no curvature at 0, and the error is that of the whole cubic."""
+    x = np.array([[0.0], [0.5], [-0.5]])
+    known = Expansions(x, x**3, 3 * x[:, :, None] ** 2)
+    curvatures = known.curvatures(np.arange(1))
+    assert curvatures[0].item() == pytest.approx(0, abs=1e-12)
+    assert known.doubts(np.arange(1), curvatures)[0].item() == pytest.approx(1.0)
+
+
+def test_an_exact_expansion_is_not_doubted():
+    known, _ = quadratic(3, outputs=2, runs=12)
+    assert np.max(known.doubts(np.arange(2), known.curvatures(np.arange(2)))) < 1e-10
 
 
 def test_outputs_come_in_chunks_that_cover_them_once(monkeypatch):

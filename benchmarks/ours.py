@@ -1,5 +1,7 @@
 """The benchmark models written for dalembert."""
 
+from collections.abc import Callable
+
 import numpy as np
 
 import dalembert as da
@@ -63,6 +65,15 @@ def chain(bar: Bar) -> da.System:
     cable = system.add(_cable("C", bar, bar.youngs_modulus, bar.angle))
     system.add(da.RevoluteJoint("O", system.ground, cable.start))
     return system
+
+
+def response(builder, integration: Integration) -> Callable[[], np.ndarray]:
+    """Channels of joint and tip at the output times, (samples, channels), and no more: what the peer keeps, too."""
+    one = {"one": (0.0, 1.0)}  # a model needs a parameter; this one does nothing
+    model = da.TimeResponse(
+        lambda one: builder(), one, JOINT_AND_TIP, integration.times, solver=solver(integration), workers=1
+    )
+    return lambda: model.evaluate(np.zeros((1, 1))).only()[0]
 
 
 def simulated(system: da.System, integration: Integration, channels: tuple[str, ...]) -> np.ndarray:

@@ -23,22 +23,20 @@ def main() -> list[dict[str, object]]:
 
 
 def _cables(case: FlexiblePendulum) -> dict[str, object]:
-    system = ours.cable_pendulum()
     return _row(
         "flexible pendulum, 2 + 4 cables",
         case.integration,
-        lambda: ours.simulated(system, case.integration, ours.JOINT_AND_TIP),
+        ours.response(ours.cable_pendulum, case.integration),
         peers.flexible_pendulum(case),
         peers.flexible_pendulum(case, contractivity=peers.AS_IT_COMES),
     )
 
 
 def _arm(name: str, case: TwoLinkArm) -> dict[str, object]:
-    system = ours.two_link_arm(case)
     return _row(
         name,
         case.integration,
-        lambda: ours.simulated(system, case.integration, ours.JOINT_AND_TIP),
+        ours.response(lambda: ours.two_link_arm(case), case.integration),
         peers.two_link_arm(case),
         peers.two_link_arm(case, contractivity=peers.AS_IT_COMES),
     )
@@ -47,7 +45,7 @@ def _arm(name: str, case: TwoLinkArm) -> dict[str, object]:
 def _beams(case: FlexiblePendulum) -> dict[str, object]:
     """Exudyn has no such planar element; the row stands for itself, with twice the coordinates of the cables."""
     system = ours.beam_pendulum()
-    times = timing.interleaved({"ours": lambda: ours.simulated(system, case.integration, ours.JOINT_AND_TIP)})
+    times = timing.interleaved({"ours": ours.response(ours.beam_pendulum, case.integration)})
     trajectory = da.simulate(system, case.integration.end, solver=ours.solver(case.integration))
     return {
         "model": "flexible pendulum, 2 + 4 fully parametrised beams",

@@ -1,6 +1,7 @@
 """How an identification from bands went, in full sentences with advice."""
 
 import numpy as np
+from scipy.stats import norm
 
 from dalembert.inverse.bands.band_problem import BandProblem
 from dalembert.inverse.bands.check import scale
@@ -10,6 +11,9 @@ from dalembert.inverse.noise import quantum, random_residuals
 
 SMALL = 1e-2
 """Misfit, as a part of the bands' mean width, from which bands are said to be explained badly."""
+
+CHANCE = 1e-3
+"""Probability with which normal noise would make some bound stand out."""
 
 
 def status(problem: BandProblem, found: Found) -> str:
@@ -37,24 +41,27 @@ def _misfit(problem: BandProblem, found: Found) -> str:
     bounds, given = found.candidate.bounds, problem.bands
     apart = np.stack([bounds.lower, bounds.upper]).reshape(2, *problem.shape) - np.stack([given.lower, given.upper])
     apart = np.where(problem.weights > 0, apart, 0.0)
-    rms = np.sqrt(np.mean(apart**2, axis=(0, 1)))
     digits = [max(map(quantum, columns)) for columns in zip(given.lower.T, given.upper.T, strict=True)]
-    if np.all(rms <= digits):
+    if np.all(np.abs(apart) <= digits):
         return "The given bands are reproduced to the digits that they are rounded to."
-    width = given.width.mean(axis=0)
+    rms, width = np.sqrt(np.mean(apart**2, axis=(0, 1))), given.width.mean(axis=0)
     share = np.divide(rms, width, out=np.where(rms > 0, np.inf, 0.0), where=width > 0)
-    sentence = (
+    parts = [
         f"The reproduced bands differ from the given ones by {share.max():.2g} of their mean width at rms in "
         f"{given.channels[int(np.argmax(share))]!r}; {_largest(problem, apart)}."
-    )
-    if random_residuals(np.hstack([apart[0], apart[1]]), (problem.shape[0], 2 * problem.shape[1])):
-        return sentence + " What remains looks like noise."
-    if share.max() <= SMALL:
-        return sentence
-    return (
-        f"{sentence} No box of these parameters has these bands: look at the residuals whether some values stand out, "
-        "whether the model lacks something, or whether the bounds leave the true intervals out."
-    )
+    ]
+    largest = np.max(np.abs(apart) / np.where(rms > 0, rms, 1.0))
+    stands_out = largest > norm.isf(CHANCE / (2 * max(1, 2 * np.count_nonzero(problem.weights))))
+    if stands_out:
+        parts.append(f"One bound stands out, {largest:.2g} times the rms of its channel: look whether it is a slip.")
+    if not stands_out and random_residuals(np.hstack(tuple(apart)), (problem.shape[0], 2 * problem.shape[1])):
+        parts.append("What remains looks like noise.")
+    elif share.max() > SMALL:
+        parts.append(
+            "No box of these parameters has these bands: look at the residuals, whether the model lacks something, or "
+            "whether the bounds leave the true intervals out."
+        )
+    return " ".join(parts)
 
 
 def _largest(problem: BandProblem, apart: np.ndarray) -> str:

@@ -174,6 +174,8 @@ def test_bands_that_no_box_has_show_themselves():
     upper[20] += 0.5
     fit = identify_bands(DECAY, Bands.of(TIMES, {"x": (lower[:, 0], upper[:, 0])}))
     assert "most in the upper bound of channel 'x', time 2 s, by 0.4" in fit.status
+    assert "One bound stands out, 8." in fit.status
+    assert "look whether it is a slip" in fit.status
 
 
 def test_bands_with_noise_are_said_to_have_it():

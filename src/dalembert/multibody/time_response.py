@@ -86,7 +86,7 @@ class TimeResponse:
             ("channel_names", tuple(channels)),
             ("times", times),
             ("solver", solver or GeneralizedAlpha(step=float(times[-1]) / 1000)),
-            ("workers", workers or len(os.sched_getaffinity(0))),
+            ("workers", workers or cores()),
         ):
             object.__setattr__(self, name, value)
 
@@ -244,6 +244,11 @@ def _inexact(parameter: str, error: Exception) -> InputError:
         "use NumPy's functions instead of those of math, and no float() or comparison on parameters; "
         "or wrap the model in a PythonModel with derivative='central-differences'"
     )
+
+
+def cores() -> int:
+    """Cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _parts(count: int, workers: int) -> list[np.ndarray]:

@@ -112,28 +112,30 @@ class RunFolder:
     @contextmanager
     def locked(self) -> Iterator[None]:
         """Hold the folder: no other process may run in it, and the lock ends with this one, however it dies."""
-        import fcntl
+        from filelock import FileLock, Timeout
 
-        with self._lock.open("w") as file:
-            try:
-                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except OSError:
-                raise InputError(
-                    f"a run is going on in {self.path}; wait for it, stop it, or choose another folder with --out"
-                ) from None
+        lock = FileLock(self._lock, timeout=0)
+        try:
+            lock.acquire()
+        except Timeout:
+            raise InputError(
+                f"a run is going on in {self.path}; wait for it, stop it, or choose another folder with --out"
+            ) from None
+        try:
             yield
+        finally:
+            lock.release()
 
     def _is_locked(self) -> bool:
-        import fcntl
+        from filelock import FileLock, Timeout
 
-        try:
-            with self._lock.open() as file:
-                fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
-        except FileNotFoundError:
+        if not self._lock.is_file():
             return False
-        except OSError:
+        try:
+            with FileLock(self._lock, timeout=0):
+                return False
+        except Timeout:
             return True
-        return False
 
 
 def new_folder(name: str, out: Path | None = None, *, force: bool = False) -> RunFolder:

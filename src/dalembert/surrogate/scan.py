@@ -10,6 +10,8 @@ from dalembert.surrogate.polynomial import ChebyshevPolynomial
 
 MOST_POINTS = 20_000
 """Points of the largest grid: more directions are scanned at as many points spread over box and sides."""
+FEWEST = 9
+"""Points in each of up to three directions at low degrees, so that no valley beside another is overlooked."""
 DENSE = 1_000_000
 """Largest table of coefficients, absent terms as zeros, for which grids are evaluated direction by direction."""
 
@@ -31,13 +33,14 @@ class Scan:
 
 
 def spread(polynomial: ChebyshevPolynomial, points: int | None) -> Scan:
-    """Points at which to scan: in each direction as many as asked for, or two more than the degree.
+    """Points at which to scan: in each direction as many as asked for, or two more than the degree, at least FEWEST.
 
     Chebyshev points of the second kind, cos πj/(n − 1), both ends included; equidistant ones where a number is asked
     for. In so many directions that a grid would be too large: a Sobol sequence, half of its coordinates at the ends.
     """
     degrees = polynomial.degrees
-    sides = np.where(degrees > 0, degrees + 2 if points is None else points, 1)
+    least = FEWEST if len(degrees) <= 3 else 0
+    sides = np.where(degrees > 0, np.maximum(degrees + 2, least) if points is None else points, 1)
     if np.prod(sides.astype(float)) > MOST_POINTS:
         sobol = qmc.Sobol(2 * len(degrees), scramble=False).random_base2(12)
         place, end = sobol[:, : len(degrees)], sobol[:, len(degrees) :]

@@ -27,7 +27,7 @@ _NAMES = {
     "errors": "DalembertError InputError ModelError SolveError DataError",
     "parameters": "Parameter Parameters",
     "intervals": "Box Interval",
-    "forward": "Channel Coordinate ForwardModel PythonModel Responses",
+    "forward": "Channel Coordinate ForwardModel PythonModel Responses Sensor Sensors",
     "optimize": "ImprovedParticleSwarm LeastSquares Minimiser ParticleSwarm",
     "surrogate": "Adaptive ChebyshevPolynomial Surrogate Tensor TotalDegree",
     "data": "Bands Measurements read_bands read_csv",

@@ -24,6 +24,8 @@ from dalembert.forward import Coordinate as Coordinate
 from dalembert.forward import ForwardModel as ForwardModel
 from dalembert.forward import PythonModel as PythonModel
 from dalembert.forward import Responses as Responses
+from dalembert.forward import Sensor as Sensor
+from dalembert.forward import Sensors as Sensors
 from dalembert.intervals import Box as Box
 from dalembert.intervals import Interval as Interval
 from dalembert.inverse import BandFit as BandFit

@@ -1,7 +1,8 @@
-"""The protocol that every model fulfils, and models made of plain functions."""
+"""The protocol that every model fulfils, models made of plain functions, and what sensors see of a model."""
 
 from dalembert.forward.model import Channel, Coordinate, ForwardModel
 from dalembert.forward.python_model import PythonModel
 from dalembert.forward.responses import Responses
+from dalembert.forward.sensors import Sensor, Sensors
 
-__all__ = ["Channel", "Coordinate", "ForwardModel", "PythonModel", "Responses"]
+__all__ = ["Channel", "Coordinate", "ForwardModel", "PythonModel", "Responses", "Sensor", "Sensors"]

@@ -1,0 +1,117 @@
+"""What sensors read of a response: delays, gains and offsets against closed forms, their derivatives, and refusals."""
+
+import numpy as np
+import pytest
+
+from dalembert.errors import InputError
+from dalembert.forward import ForwardModel, PythonModel, Sensor, Sensors
+from dalembert.parameters import Parameter
+from support import says
+
+FINE = np.linspace(0, 4, 401)
+STAMPS = np.array([0.5, 0.83, 1.7, 2.0, 3.14])
+POINT = np.array([3.0, 0.07, 1.5, -0.2])
+
+
+def swing(rate):
+    if np.real(rate) > 8:
+        raise RuntimeError("too fast")
+    return np.stack([np.cos(rate * FINE), np.sin(rate * FINE)], axis=1)
+
+
+SWING = PythonModel(swing, {"rate": (1.0, 9.0)}, ["x", "y"], FINE)
+SEEN = Sensors(SWING, {"x": Sensor(delay=(-0.1, 0.2), gain=(0.5, 2.0), offset=(-1, 1))}, STAMPS)
+
+
+def exact(rate, delay, gain, offset):
+    return np.stack([gain * np.cos(rate * (STAMPS - delay)) + offset, np.sin(rate * STAMPS)], axis=1)
+
+
+def test_readings_are_the_response_delayed_scaled_and_shifted():
+    assert isinstance(SEEN, ForwardModel)
+    np.testing.assert_allclose(SEEN.evaluate(POINT[None]).only()[0], exact(*POINT), atol=1e-9)
+    np.testing.assert_allclose(SEEN.linearise(POINT)[0], exact(*POINT), atol=1e-9)
+
+
+def test_unknowns_are_named_by_their_channel_and_begin_where_a_sensor_is_perfect():
+    assert SEEN.parameters.names == ("rate", "x delay", "x gain", "x offset")
+    assert [item.unit for item in SEEN.parameters] == ["", "s", "", ""]
+    assert SEEN.parameters.start.tolist() == [5.0, 0.0, 1.0, 0.0]
+    late = Sensors(SWING, {"y": Sensor(delay=(0.1, 0.3), gain=Parameter("any", 0.5, 2, start=1.1))}, STAMPS)
+    assert late.parameters.start.tolist() == [5.0, 0.2, 1.1]
+
+
+def test_derivatives_are_those_of_the_closed_form():
+    step = 1e-6
+    moved = [exact(*(POINT + step * way)) - exact(*(POINT - step * way)) for way in np.eye(4)]
+    np.testing.assert_allclose(SEEN.jacobian(POINT), np.stack(moved, axis=2) / (2 * step), atol=2e-8)
+
+
+def test_stamps_that_are_samples_are_read_without_interpolation():
+    stamps = FINE[[50, 83, 170]]
+    seen = Sensors(SWING, {"x": Sensor(gain=(0.5, 2.0))}, stamps)
+    assert seen.evaluate(np.array([[3.0, 1.0]])).only()[0].tobytes() == swing(3.0)[[50, 83, 170]].tobytes()
+
+
+def test_a_run_that_fails_is_marked_and_the_others_return():
+    responses = SEEN.evaluate(np.array([POINT, [8.5, 0, 1, 0]]))
+    assert responses.failures == (None, "RuntimeError: too fast")
+    np.testing.assert_allclose(responses.values[0], exact(*POINT), atol=1e-9)
+
+
+def test_the_first_readings_need_only_the_beginning_of_the_model():
+    part = SEEN.first(2)
+    assert part.coordinate.values.tolist() == [0.5, 0.83]
+    assert part.model.coordinate.values[-1] == pytest.approx(0.98)  # 0.1 s early, and room for the spline
+    np.testing.assert_allclose(part.evaluate(POINT[None]).only()[0], exact(*POINT)[:2], atol=1e-6)
+    whole = SEEN.first(5)
+    assert whole.coordinate.values.tolist() == STAMPS.tolist()
+    assert part.fingerprint != SEEN.fingerprint
+
+
+def test_at_rest_readings_from_before_the_first_sample_are_the_first_state():
+    stamps = np.array([0.0, 0.05, 0.2])
+    seen = Sensors(SWING, {"x": Sensor(delay=(0.0, 0.1))}, stamps, at_rest=True)
+    response, slopes = seen.linearise(np.array([3.0, 0.1]))
+    np.testing.assert_allclose(response[:, 0], [1.0, 1.0, np.cos(0.3)], atol=1e-9)
+    np.testing.assert_allclose(slopes[:2, 0], 0.0, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("sensors", "times", "sentence"),
+    [
+        ({"z": Sensor(gain=(0, 2))}, STAMPS, "Sensors: unknown channel 'z'; known: x, y"),
+        (
+            {"x": Sensor()},
+            STAMPS,
+            "Sensors: the sensor of 'x' has no delay, gain or offset; give bounds of one, or leave it out",
+        ),
+        (
+            {"x": Sensor(delay=(0.0, 0.6))},
+            STAMPS,
+            "Sensors: the first reading of 'x', at time 0.5 s, may show the motion at -0.1 s, and the model begins at "
+            "0 s; leave out the first readings, lower the delay's upper bound, or give at_rest=True if nothing moves "
+            "before",
+        ),
+        (
+            {"x": Sensor(delay=(-1.0, 0.0))},
+            STAMPS,
+            "Sensors: the last reading of 'x', at time 3.14 s, may show the motion at 4.14 s, and the model ends at "
+            "4 s; build the model with samples until then",
+        ),
+        (
+            {"x": Sensor(gain=(0, 2))},
+            np.array([1.0, 4.5]),
+            "Sensors: the last reading of 'x', at time 4.5 s, may show the motion at 4.5 s, and the model ends at 4 s; "
+            "build the model with samples until then",
+        ),
+        (
+            {"x": Sensor(gain=(2, 1))},
+            STAMPS,
+            "parameter 'x gain': bounds are (2.0, 1.0); expected two finite numbers, the lower one first",
+        ),
+    ],
+)
+def test_what_sensors_cannot_read_is_told(sensors, times, sentence):
+    with pytest.raises(InputError, match=says(sentence)):
+        Sensors(SWING, sensors, times)

@@ -12,10 +12,11 @@ from dalembert.inverse.bands.check import Check, check, scale
 from dalembert.inverse.bands.correction import corrected
 from dalembert.inverse.bands.descent import descend, screened
 from dalembert.inverse.bands.found import Found
-from dalembert.inverse.events import Checked, Sampled
+from dalembert.inverse.events import Checked
 from dalembert.inverse.matching import place
+from dalembert.inverse.surrogates import surrogate_of
 from dalembert.optimize import LeastSquares, Minimum
-from dalembert.surrogate import Adaptive, Surrogate, fit
+from dalembert.surrogate import Adaptive, Surrogate
 from dalembert.surrogate.scheme import Scheme
 
 SCREENED = 100
@@ -107,15 +108,9 @@ class GlobalSurrogate:
         return found
 
     def _surrogate(self, problem: BandProblem, scheme: Scheme, seed: int) -> Surrogate:
-        journal = problem.journal
-        return fit(
-            problem.run,
-            *problem.unknowns.bounds,
-            scheme,
-            seed=seed,
-            held_out=self.held_out,
-            groups=np.tile(np.arange(problem.shape[1]), problem.shape[0]),
-            on_runs=lambda runs: journal.tell(Sampled(runs, journal.simulations)),
+        low, high = problem.unknowns.bounds
+        return surrogate_of(
+            problem.run, low, high, scheme, problem.journal, shape=problem.shape, seed=seed, held_out=self.held_out
         )
 
     def _refined(self, problem: BandProblem, surrogate: Surrogate, best: Minimum, seed: int) -> tuple[Found, Surrogate]:

@@ -9,8 +9,9 @@ from dalembert.inverse.bands.band_problem import BandProblem
 from dalembert.inverse.bands.candidate import candidate
 from dalembert.inverse.bands.check import check
 from dalembert.inverse.bands.found import Found
+from dalembert.inverse.surrogates import surrogate_of
 from dalembert.optimize import ImprovedParticleSwarm, ParticleSwarm, Progress
-from dalembert.surrogate import ChebyshevPolynomial, TotalDegree, bounds, fit
+from dalembert.surrogate import ChebyshevPolynomial, TotalDegree, bounds
 from dalembert.surrogate.basis import chebyshev, products, total_degree
 
 WIDENED = 1e-3
@@ -60,10 +61,12 @@ class Nested:
             points[..., unknowns.chosen] += (1 + eta) / 2 * width
             values = problem.run(points.reshape(-1, points.shape[-1])).reshape(len(x), len(eta), -1)
             ok = np.all(np.isfinite(values), axis=(1, 2))
+            result = np.full(len(x), np.inf)
+            if not ok.any():
+                return result
             coefficients = np.moveaxis(solve @ values[ok], 1, 0).reshape(len(exponents), -1)
             one = np.ones(eta.shape[1])
             found = bounds(ChebyshevPolynomial(-one, one, exponents, coefficients), -one, one)
-            result = np.full(len(x), np.inf)
             result[ok] = problem.fitness(*(side.reshape(ok.sum(), -1) for side in (found.lower, found.upper)))
             return result
 
@@ -96,11 +99,13 @@ class Nested:
         least = WIDENED * (search.upper - search.lower)
         thin = upper - lower < 2 * least
         middle = np.clip((lower + upper) / 2, search.lower + least, search.upper - least)
-        surrogate = fit(
+        surrogate = surrogate_of(
             problem.run,
             np.where(thin, middle - least, lower),
             np.where(thin, middle + least, upper),
             self.scheme,
+            problem.journal,
+            shape=problem.shape,
             seed=seed,
             held_out=0,
         )

@@ -43,13 +43,17 @@ def test_a_swarm_of_boxes_passes_over_those_that_fail():
 
 
 @pytest.mark.parametrize("scheme", [Adaptive(1e-2), Tensor(6)])
-@pytest.mark.parametrize("inverse", ["bands", "set"])
-def test_schemes_that_need_every_run_say_why_one_failed(scheme, inverse):
+@pytest.mark.parametrize(
+    "inverse",
+    [
+        lambda scheme: identify_bands(model(in_a_corner), BANDS, method=GlobalSurrogate(scheme)),
+        lambda scheme: identify_set(model(in_a_corner), DATA, error=0.05, scheme=scheme),
+    ],
+    ids=["bands", "set"],
+)
+def test_schemes_that_need_every_run_say_why_one_failed(inverse, scheme):
     with pytest.raises(SolveError) as error:
-        if inverse == "bands":
-            identify_bands(model(in_a_corner), BANDS, method=GlobalSurrogate(scheme))
-        else:
-            identify_set(model(in_a_corner), DATA, error=0.05, scheme=scheme)
+        inverse(scheme)
     assert "keep the box away from where the model fails, or use TotalDegree" in str(error.value)
     assert re.search(
         r"; the model's first failure: RuntimeError: out of reach \(at size = [\d.]+, rate = [\d.]+\)$",

@@ -101,7 +101,7 @@ def fit(
             values=response + noise,
             deviations=np.array([5e-3, 5e-3]),
         ),
-        residuals=noise,
+        residuals=response - (response + noise),
         history=history,
         starts=ends,
         success=True,

@@ -1,7 +1,7 @@
 """Measured motion: channels along a coordinate, and how exact they are."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -9,6 +9,9 @@ from numpy.typing import ArrayLike
 from dalembert.data.labels import check_labels, coordinate_of, cut, digest, table_of
 from dalembert.errors import DataError, unknown
 from dalembert.forward import Coordinate
+
+MISSING = ("refuse", "leave-out")
+TURN = 2 * np.pi
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,20 +28,32 @@ class Measurements:
         In SI units.
     deviations : array, shape (channels,), optional
         Standard deviation of each channel's noise, in the channel's unit.
+    missing : {"refuse", "leave-out"}
+        What a NaN among the values means to a method: a defect, or a sample that was not measured and does not count.
+    wraps : tuple of str
+        Channels that are angles in rad known up to whole turns: their differences count modulo 2π.
 
     Raises
     ------
     DataError
-        For a coordinate that goes backwards, shapes that do not fit, names that repeat, deviations not positive.
+        For a coordinate that goes backwards, shapes that do not fit, names that repeat, deviations not positive, an
+        unknown word for ``missing``, a wrapping channel that there is not.
     """
 
     coordinate: Coordinate
     channels: tuple[str, ...]
     values: np.ndarray
     deviations: np.ndarray | None = None
+    missing: str = "refuse"
+    wraps: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         check_labels(self.coordinate, self.channels, values=self.values)
+        if self.missing not in MISSING:
+            raise DataError(unknown("word", self.missing, MISSING, "missing"))
+        for name in self.wraps:
+            if name not in self.channels:
+                raise DataError(unknown("channel", name, self.channels, "wraps"))
         if self.deviations is not None:
             self._check_deviations(self.deviations)
 
@@ -58,6 +73,9 @@ class Measurements:
         coordinate: Coordinate | ArrayLike,
         channels: Mapping[str, ArrayLike],
         deviations: Mapping[str, float] | ArrayLike | None = None,
+        *,
+        missing: str = "refuse",
+        wraps: Iterable[str] = (),
     ) -> "Measurements":
         """Measurements from columns by name.
 
@@ -68,6 +86,10 @@ class Measurements:
         channels : mapping of str to array, shape (samples,)
         deviations : number, mapping by channel, or array of shape (channels,), optional
             Standard deviations of the noise; one number holds for all channels.
+        missing : {"refuse", "leave-out"}
+            With ``"leave-out"`` a NaN is a sample that was not measured, and does not count.
+        wraps : iterable of str
+            Channels that are angles known up to whole turns.
 
         Examples
         --------
@@ -77,16 +99,49 @@ class Measurements:
         """
         along = coordinate_of(coordinate)
         names = tuple(channels)
-        return cls(along, names, table_of(along, channels), _deviations(deviations, names))
+        return cls(along, names, table_of(along, channels), _deviations(deviations, names), missing, tuple(wraps))
+
+    @property
+    def present(self) -> np.ndarray:
+        """Mask of the values that were measured, shape (samples, channels)."""
+        return np.isfinite(self.values)
+
+    @property
+    def wrapping(self) -> np.ndarray:
+        """Mask of the channels that wrap, shape (channels,)."""
+        return np.isin(self.channels, self.wraps)
+
+    @property
+    def continuous(self) -> np.ndarray:
+        """The values, shape (samples, channels), wrapping channels without their jumps by whole turns."""
+        values = self.values.copy()
+        for column in np.flatnonzero(self.wrapping):
+            there = self.present[:, column]
+            values[there, column] = np.unwrap(values[there, column])
+        return values
+
+    def difference(self, response: np.ndarray) -> np.ndarray:
+        """Response − values, both (..., samples, channels); NaN where a value is missing.
+
+        In wrapping channels less the nearest number of whole turns, so that it lies within ±π:
+
+        >>> Measurements.of([0.0], {"angle": [3.1]}, wraps=["angle"]).difference(np.array([[-3.1]])).round(6).item()
+        0.083185
+        """
+        difference = response - self.values
+        if not self.wraps:
+            return difference
+        return np.where(self.wrapping, difference - TURN * np.rint(difference / TURN), difference)
 
     def first(self, samples: int) -> "Measurements":
         """The first ``samples`` samples."""
-        return Measurements(cut(self.coordinate, samples), self.channels, self.values[:samples], self.deviations)
+        return replace(self, coordinate=cut(self.coordinate, samples), values=self.values[:samples])
 
     @property
     def fingerprint(self) -> str:
         """Hash of all that the measurements say."""
         arrays = [self.values] if self.deviations is None else [self.values, self.deviations]
+        arrays += [self.wrapping] if self.wraps else []
         return digest(self.coordinate, self.channels, *arrays)
 
 

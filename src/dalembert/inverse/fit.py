@@ -32,7 +32,7 @@ class Fit:
     fitness : float
         Σ W (R − data)² over samples and channels.
     response, residuals : array, shape (samples, channels)
-        R at ``values``, and R − data.
+        R at ``values``, and R − data: NaN where a value is missing, modulo a turn in wrapping channels.
     data : Measurements
     weights : array, shape (samples, channels)
         W.
@@ -69,7 +69,7 @@ class Fit:
 
     @property
     def residuals(self) -> np.ndarray:
-        return self.response - self.data.values
+        return self.data.difference(self.response)
 
     @property
     def estimates(self) -> dict[str, float]:

@@ -58,13 +58,14 @@ def check_samples(model: ForwardModel, data: Labelled) -> None:
 
 
 def check_finite(data: Measurements) -> None:
-    """Refuse measurements with a value that is not a number.
+    """Refuse measurements with a value that is not a number, unless NaN is to be left out and something remains.
 
     Raises
     ------
     DataError
     """
-    missing = np.argwhere(~np.isfinite(data.values))
+    leave_out = data.missing == "leave-out"
+    missing = np.argwhere(np.isinf(data.values) if leave_out else ~np.isfinite(data.values))
     if len(missing):
         sample, column = missing[0]
         raise DataError(
@@ -72,6 +73,10 @@ def check_finite(data: Measurements) -> None:
             f"{data.coordinate.values[sample]:.10g} {data.coordinate.unit}): {data.values[sample, column]}; "
             f"expected a finite number ({len(missing)} are not); leave out these samples or the channel"
         )
+    empty = ~np.any(data.present, axis=0)
+    if np.any(empty):
+        name = data.channels[int(np.argmax(empty))]
+        raise DataError(f"channel {name!r}: not one value is there; expected at least one; leave out the channel")
 
 
 def weights_of(given: ArrayLike | None, shape: tuple[int, ...]) -> np.ndarray:

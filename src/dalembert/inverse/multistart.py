@@ -81,7 +81,9 @@ def horizons(problem: Problem, horizon: str | None) -> list[int]:
     if horizon is None:
         return [problem.samples]
     least = max(3, -(-2 * len(problem.search.lower) // problem.weights.shape[1]))
-    return [problem.samples // part for part in (8, 4, 2) if problem.samples // part >= least] + [problem.samples]
+    measured = np.cumsum(np.mean(problem.data.present, axis=1)).round(9)  # samples, gaps taken off
+    parts = [problem.samples // part for part in (8, 4, 2)]
+    return [samples for samples in parts if samples > 0 and measured[samples - 1] >= least] + [problem.samples]
 
 
 def _attempts(ladder: list[Problem], starts: int, seed: int, first: np.ndarray) -> Iterator[tuple[np.ndarray, int]]:
@@ -109,7 +111,7 @@ def _screen(ladder: list[Problem], number: int, seed: int) -> tuple[np.ndarray, 
     """Points (number, parameters) of a Latin hypercube, and their misfit over each horizon, (rungs, number)."""
     whole = ladder[-1]
     points = hypercube(whole, number, seed)
-    squares = whole.weights * (whole.responses(whole.search.vectors(points)) - whole.data.values) ** 2
+    squares = whole.weights * whole.misfit(whole.responses(whole.search.vectors(points))) ** 2
     scores = np.array([squares[:, : rung.samples].sum(axis=(1, 2)) for rung in ladder])
     scores = np.where(np.isfinite(scores), scores, np.inf)
     whole.journal.screened(scores[-1])
@@ -132,7 +134,9 @@ def _reproduced(problem: Problem, ends: list[End]) -> bool:
     best, *others = sorted(ends, key=lambda end: end.fitness)
     at = best.linearisation
     freedom = problem.compared - len(best.point)
-    if at is None or freedom <= 0 or not random_residuals(problem.residual(at.response), problem.weights.shape):
+    if at is None or freedom <= 0:
+        return False
+    if not random_residuals(problem.residual(at.response), problem.weights.shape, problem.measured):
         return False
     slopes, variance = problem.slopes(at), best.fitness / freedom
     return any(

@@ -39,14 +39,31 @@ def noise_floor(problem: Problem) -> NoiseFloor:
     """
     data, weights = problem.data, problem.weights
     given = np.zeros(len(data.channels)) if data.deviations is None else data.deviations
-    quanta = np.array([quantum(column) for column in data.values.T])
-    spread = data.values.std(axis=0)
+    quanta = np.array([quantum(column[there]) for column, there in zip(data.values.T, data.present.T, strict=True)])
+    spread = _filled(problem).std(axis=0)
     expected = float(np.sum(weights * (given**2 + quanta**2 / 12 + (1e-6 * spread) ** 2)))
-    signal = float(np.sum(weights * (data.values - data.values.mean(axis=0)) ** 2))
     source = "given deviations" if given.any() else "rounding of the data" if quanta.any() else "arithmetic"
     return NoiseFloor(
-        expected * float(chi2.ppf(0.999, problem.compared)) / problem.compared, source, expected < SMALL * signal
+        expected * float(chi2.ppf(0.999, problem.compared)) / problem.compared,
+        source,
+        expected < SMALL * signal(problem),
     )
+
+
+def signal(problem: Problem) -> float:
+    """Σ W (data − mean)²: what a response that explains nothing leaves."""
+    values = _filled(problem)
+    return float(np.sum(problem.weights * (values - values.mean(axis=0)) ** 2))
+
+
+def _filled(problem: Problem) -> np.ndarray:
+    """Data without jumps by whole turns, their gaps filled with the channel's mean."""
+    data = problem.data
+    values, there = data.continuous, data.present
+    if np.all(there):
+        return values
+    mean = np.sum(np.where(there, values, 0.0), axis=0) / np.maximum(1, np.sum(there, axis=0))
+    return np.where(there, values, mean)
 
 
 def quantum(column: np.ndarray) -> float:
@@ -72,6 +89,9 @@ def autocorrelation(residual: np.ndarray, shape: tuple[int, int]) -> float:
     return float(np.sum(table[1:] * table[:-1]) / max(np.sum(table**2), np.finfo(float).tiny))
 
 
-def random_residuals(residual: np.ndarray, shape: tuple[int, int]) -> bool:
-    """Whether residuals look like noise: their autocorrelation is within three of its deviations, 1/√values."""
-    return abs(autocorrelation(residual, shape)) < 3 / np.sqrt(residual.size)
+def random_residuals(residual: np.ndarray, shape: tuple[int, int], values: int | None = None) -> bool:
+    """Whether residuals look like noise: their autocorrelation is within three of its deviations, 1/√values.
+
+    ``values`` is the number of those that are there, all of them if not given; the residuals of the others are 0.
+    """
+    return abs(autocorrelation(residual, shape)) < 3 / np.sqrt(residual.size if values is None else values)

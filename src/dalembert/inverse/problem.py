@@ -27,6 +27,8 @@ class Linearisation:
 class Problem:
     """Fitness g(p) = Σ W (R(p) − data)² over samples and channels.
 
+    Values that are missing have W = 0; differences of wrapping channels count modulo a turn.
+
     Parameters
     ----------
     model : ForwardModel
@@ -55,6 +57,11 @@ class Problem:
         """Number of values that count."""
         return int(np.count_nonzero(self.weights))
 
+    @property
+    def measured(self) -> int:
+        """Number of values that are not missing."""
+        return int(np.count_nonzero(self.data.present))
+
     def first(self, samples: int) -> "Problem":
         """The same problem over the first ``samples`` samples."""
         if samples == self.samples:
@@ -69,8 +76,12 @@ class Problem:
 
     def fitness(self, points: np.ndarray) -> np.ndarray:
         """Fitness (batch,) at search points (batch, parameters); NaN where a sample failed."""
-        residuals = self.responses(self.search.vectors(points)) - self.data.values
-        return np.einsum("sc,bsc->b", self.weights, residuals**2)
+        misfit = self.misfit(self.responses(self.search.vectors(points)))
+        return np.einsum("sc,bsc->b", self.weights, misfit**2)
+
+    def misfit(self, response: np.ndarray) -> np.ndarray:
+        """R − data, both (..., samples, channels); 0 where a value is missing, NaN elsewhere if a sample failed."""
+        return np.where(self.data.present, self.data.difference(response), 0.0)
 
     def linearise(self, vector: np.ndarray) -> Linearisation:
         """Response and jacobian at a parameter vector.
@@ -94,7 +105,7 @@ class Problem:
 
     def residual(self, response: np.ndarray) -> np.ndarray:
         """W^½ (R − data) as a vector, shape (samples × channels,)."""
-        return (np.sqrt(self.weights) * (response - self.data.values)).ravel()
+        return (np.sqrt(self.weights) * self.misfit(response)).ravel()
 
     def slopes(self, at: Linearisation, unit: np.ndarray | None = None) -> np.ndarray:
         """Jacobian of :meth:`residual` with respect to p/unit, (samples × channels, parameters).
@@ -120,7 +131,8 @@ def pose(model: ForwardModel, data: Measurements, weights: ArrayLike | None, jou
     Raises
     ------
     DataError
-        For a NaN, a channel that the model lacks, samples that lie elsewhere than the model's.
+        For a NaN in data that do not leave it out, a channel that the model lacks, samples that lie elsewhere than
+        the model's.
     InputError
         For weights of another shape, or negative.
     """
@@ -131,7 +143,9 @@ def pose(model: ForwardModel, data: Measurements, weights: ArrayLike | None, jou
 
 
 def _weights(data: Measurements, given: ArrayLike | None) -> np.ndarray:
-    """W of shape (samples, channels)."""
+    """W of shape (samples, channels), 0 where a value is missing."""
     if given is None and data.deviations is not None:
-        return np.broadcast_to(data.deviations**-2.0, data.values.shape)
-    return weights_of(given, data.values.shape)
+        weights = np.broadcast_to(data.deviations**-2.0, data.values.shape)
+    else:
+        weights = weights_of(given, data.values.shape)
+    return weights if np.all(data.present) else np.where(data.present, weights, 0.0)

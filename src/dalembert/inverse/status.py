@@ -3,7 +3,7 @@
 import numpy as np
 
 from dalembert.inverse.descent import End
-from dalembert.inverse.noise import NoiseFloor, autocorrelation, random_residuals
+from dalembert.inverse.noise import NoiseFloor, autocorrelation, random_residuals, signal
 from dalembert.inverse.problem import Problem
 from dalembert.inverse.rivals import rivals
 from dalembert.inverse.simulated import named
@@ -28,12 +28,11 @@ def status(problem: Problem, best: End, response: np.ndarray, floor: NoiseFloor)
         parts.append(f"{failed} simulations failed and were passed over, the first: {problem.journal.failures[0]}.")
     residual = problem.residual(response)
     if best.fitness > floor.fitness:
-        spread = np.sum(problem.weights * (problem.data.values - problem.data.values.mean(axis=0)) ** 2)
-        share = 1 - best.fitness / max(spread, np.finfo(float).tiny)
+        share = 1 - best.fitness / max(signal(problem), np.finfo(float).tiny)
         parts.append(f"The response explains {100 * share:.4g} % of the data's variation.")
     if best.fitness <= floor.fitness:
         parts.append(f"The misfit is at the floor that the noise of the data allows (known from {floor.source}).")
-    elif not random_residuals(residual, problem.weights.shape):
+    elif not random_residuals(residual, problem.weights.shape, problem.measured):
         parts.append(
             "The residuals are no mere noise, neighbouring samples correlate by "
             f"{autocorrelation(residual, problem.weights.shape):.2f}; look whether the model lacks something, "

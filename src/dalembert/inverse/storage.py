@@ -5,10 +5,9 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from dalembert.data import Measurements
 from dalembert.files import read_dataset, write_dataset
-from dalembert.forward import Coordinate
 from dalembert.inverse.fit import Fit
+from dalembert.inverse.stored_data import data_labels, data_of, stored_data
 from dalembert.inverse.stored_search import search_of, stored_ends, stored_search
 from dalembert.parameters import Parameter, Parameters
 
@@ -22,7 +21,6 @@ def to_xarray(fit: Fit) -> "Dataset":
     """Dataset over parameter, sample coordinate, channel, step and start; what is not an array stands in attributes."""
     from xarray import Dataset
 
-    along, data = fit.data.coordinate, fit.data
     variables: dict[str, Any] = {
         "values": ("parameter", fit.values),
         "deviations": ("parameter", fit.deviations),
@@ -30,17 +28,14 @@ def to_xarray(fit: Fit) -> "Dataset":
         "singular_values": ("combination", fit.singular_values),
         "directions": (("combination", "parameter"), fit.directions),
         "response": (("sample", "channel"), fit.response),
-        "data": (("sample", "channel"), data.values),
+        **stored_data(fit.data),
         "residuals": (("sample", "channel"), fit.residuals),
         "weights": (("sample", "channel"), fit.weights),
         **stored_search(fit.history, fit.starts, "parameter", len(fit.parameters)),
     }
-    if data.deviations is not None:
-        variables["data_deviations"] = ("channel", data.deviations)
     coordinates = {
         "parameter": ("parameter", list(fit.parameters.names)),
-        "channel": ("channel", list(data.channels)),
-        "coordinate": ("sample", along.values, {"long_name": along.name, "units": along.unit}),
+        **data_labels(fit.data),
     }
     told = {
         "parameters": [asdict(item) for item in fit.parameters],
@@ -73,8 +68,7 @@ def from_xarray(dataset: "Dataset") -> Fit:
     """The fit that :func:`to_xarray` turned into a dataset."""
     told = json.loads(dataset.attrs["settings"])
     a = {str(name): variable.values for name, variable in dataset.variables.items()}
-    along = dataset["coordinate"]
-    history, starts = search_of(a, told["ends"], along.size)
+    history, starts = search_of(a, told["ends"], dataset.sizes["sample"])
     return Fit(
         parameters=Parameters(tuple(Parameter(**item) for item in told["parameters"])),
         values=a["values"],
@@ -84,12 +78,7 @@ def from_xarray(dataset: "Dataset") -> Fit:
         directions=a["directions"],
         fitness=float(dataset.attrs["fitness"]),
         response=a["response"],
-        data=Measurements(
-            Coordinate(along.attrs["long_name"], along.attrs["units"], a["coordinate"]),
-            tuple(map(str, a["channel"])),
-            a["data"],
-            a.get("data_deviations"),
-        ),
+        data=data_of(dataset),
         weights=a["weights"],
         history=history,
         starts=starts,

@@ -13,7 +13,7 @@ def summary(fit: Fit) -> str:
         rows.append((item.name, f"{value:.7g}", known, item.unit, f"{item.lower:.6g} to {item.upper:.6g}"))
     facts = [
         f"method       {fit.method}",
-        f"fitness      {fit.fitness:.6g} (weighted sum of squares of {fit.response.size} values)",
+        f"fitness      {fit.fitness:.6g} (weighted sum of squares of {int(fit.data.present.sum())} values)",
         f"simulations  {fit.simulations}",
         f"starts       {len(fit.starts)}",
     ]

@@ -20,7 +20,7 @@ class CoordinateLike(Protocol):
 
 
 class MeasurementsLike(Protocol):
-    """Data: values (samples, channels), standard deviations (channels,) if they are known."""
+    """Data: values (samples, channels), NaN where one is missing; standard deviations (channels,) if they are known."""
 
     @property
     def coordinate(self) -> CoordinateLike: ...
@@ -76,6 +76,8 @@ class FitLike(Protocol):
     def fitness(self) -> float: ...
     @property
     def response(self) -> np.ndarray: ...
+    @property
+    def residuals(self) -> np.ndarray: ...
     @property
     def data(self) -> MeasurementsLike: ...
     @property

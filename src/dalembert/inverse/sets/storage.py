@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from dalembert.data import Measurements
 from dalembert.files import read_dataset, write_dataset
-from dalembert.forward import Coordinate
 from dalembert.intervals import Box
 from dalembert.inverse.sets.parameter_set import ParameterSet
+from dalembert.inverse.stored_data import data_labels, data_of, stored_data
 from dalembert.parameters import Parameter, Parameters
 
 if TYPE_CHECKING:
@@ -24,24 +23,20 @@ def to_xarray(found: ParameterSet) -> "Dataset":
     """Dataset over parameter, side, box, sample and channel; what is no array stands in attributes."""
     from xarray import Dataset
 
-    along, data = found.data.coordinate, found.data
     variables: dict[str, Any] = {
-        "data": (("sample", "channel"), data.values),
+        **stored_data(found.data),
         "error": (("sample", "channel"), np.array(found.error)),
         "surrogate_error": (("sample", "channel"), np.array(found.surrogate_error)),
         "boxes": (("box", "side", "parameter"), np.concatenate([found.inside, found.boundary])),
         "is_inside": ("box", np.arange(len(found.inside) + len(found.boundary)) < len(found.inside)),
     }
-    if data.deviations is not None:
-        variables["data_deviations"] = ("channel", data.deviations)
     for name, box in (("outer", found.outer), ("inner", found.inner)):
         if box is not None:
             variables[name] = (("side", "parameter"), np.stack([box.lower, box.upper]))
     coordinates = {
         "parameter": ("parameter", list(found.parameters.names)),
         "side": ("side", ["lower", "upper"]),
-        "channel": ("channel", list(data.channels)),
-        "coordinate": ("sample", along.values, {"long_name": along.name, "units": along.unit}),
+        **data_labels(found.data),
     }
     told = {"parameters": [asdict(item) for item in found.parameters], "provenance": found.provenance}
     attributes = {
@@ -70,18 +65,12 @@ def from_xarray(dataset: "Dataset") -> ParameterSet:
     """The result that :func:`to_xarray` turned into a dataset."""
     told = json.loads(dataset.attrs["settings"])
     a = {str(name): variable.values for name, variable in dataset.variables.items()}
-    along = dataset["coordinate"]
     parameters = Parameters(tuple(Parameter(**item) for item in told["parameters"]))
     is_inside = a["is_inside"].astype(bool)
     boxes = {name: Box(parameters.names, *a[name]) if name in a else None for name in ("outer", "inner")}
     return ParameterSet(
         parameters=parameters,
-        data=Measurements(
-            Coordinate(along.attrs["long_name"], along.attrs["units"], a["coordinate"]),
-            tuple(map(str, a["channel"])),
-            a["data"],
-            a.get("data_deviations"),
-        ),
+        data=data_of(dataset),
         error=a["error"],
         inside=a["boxes"][is_inside],
         boundary=a["boxes"][~is_inside],

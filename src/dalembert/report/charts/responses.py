@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
@@ -57,7 +58,9 @@ def responses(fit: FitLike, channels: Sequence[str] | None = None, *, title: str
 
 def _channel(figure: go.Figure, fit: FitLike, column: int, colour: str) -> None:
     at, name = fit.data.coordinate.values, plain(fit.data.channels[column])
-    measured, computed = fit.data.values[:, column], fit.response[:, column]
+    measured, residual = fit.data.values[:, column], fit.residuals[:, column]
+    computed, nearest = fit.response[:, column], measured + residual
+    computed = np.where(np.abs(computed - nearest) > 1, nearest, computed)  # whole turns away, where they do not count
     few = len(at) <= FEW
     dots = (
         {"color": colour, "size": 7, "symbol": "circle-open"} if few else {"color": colour, "size": 3, "opacity": 0.4}
@@ -66,7 +69,7 @@ def _channel(figure: go.Figure, fit: FitLike, column: int, colour: str) -> None:
     for word, values, row, style in (
         ("measured", measured, 1, {"mode": "markers", "marker": dots}),
         ("computed", computed, 1, {"mode": "lines", "line": {"color": colour, "width": 2}}),
-        ("residual", computed - measured, 2, {"mode": "lines+markers" if few else "lines", "marker": small}),
+        ("residual", residual, 2, {"mode": "lines+markers" if few else "lines", "marker": small}),
     ):
         kept = thin(values)
         trace = go.Scatter(x=at[kept], y=values[kept], name=f"{name} {word}", legendgroup=name, showlegend=row == 1)

@@ -39,12 +39,13 @@ class Comparison(Section):
     @property
     def table(self) -> Table:
         data = self.fit.data
-        residuals = self.fit.response - data.values
+        residuals = np.where(np.isfinite(self.fit.residuals), self.fit.residuals, 0.0)  # 0 where a value is missing
+        counts = np.count_nonzero(np.isfinite(data.values), axis=0)
         deviations = np.full(len(data.channels), np.nan) if data.deviations is None else data.deviations
         rows = [
             (
                 cell(channel),
-                cell(float(np.sqrt(np.mean(residuals[:, column] ** 2))), digits=4),
+                cell(float(np.sqrt(np.sum(residuals[:, column] ** 2) / counts[column])), digits=4),
                 cell(float(np.abs(residuals[:, column]).max()), digits=4),
                 cell(float(data.coordinate.values[np.abs(residuals[:, column]).argmax()])),
                 cell(float(deviations[column])),

@@ -1,0 +1,42 @@
+"""Measurements as variables of a dataset, and back."""
+
+from typing import TYPE_CHECKING, Any
+
+from dalembert.data import Measurements
+from dalembert.forward import Coordinate
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+
+def stored_data(data: Measurements) -> dict[str, Any]:
+    """Variables over ``sample`` and ``channel``."""
+    variables: dict[str, Any] = {"data": (("sample", "channel"), data.values, {"missing": data.missing})}
+    if data.deviations is not None:
+        variables["data_deviations"] = ("channel", data.deviations)
+    if data.wraps:
+        variables["data_wraps"] = ("channel", data.wrapping)
+    return variables
+
+
+def data_labels(data: Measurements) -> dict[str, Any]:
+    """Coordinates ``channel`` and ``coordinate``."""
+    along = data.coordinate
+    return {
+        "channel": ("channel", list(data.channels)),
+        "coordinate": ("sample", along.values, {"long_name": along.name, "units": along.unit}),
+    }
+
+
+def data_of(dataset: "Dataset") -> Measurements:
+    """The measurements that are in a dataset."""
+    along, channels = dataset["coordinate"], tuple(map(str, dataset["channel"].values))
+    wraps = dataset["data_wraps"].values.astype(bool) if "data_wraps" in dataset else [False] * len(channels)
+    return Measurements(
+        Coordinate(along.attrs["long_name"], along.attrs["units"], along.values),
+        channels,
+        dataset["data"].values,
+        dataset["data_deviations"].values if "data_deviations" in dataset else None,
+        dataset["data"].attrs.get("missing", "refuse"),
+        tuple(name for name, wrap in zip(channels, wraps, strict=True) if wrap),
+    )

@@ -111,7 +111,7 @@ def _screen(ladder: list[Problem], number: int, seed: int) -> tuple[np.ndarray, 
     """Points (number, parameters) of a Latin hypercube, and their misfit over each horizon, (rungs, number)."""
     whole = ladder[-1]
     points = hypercube(whole, number, seed)
-    squares = whole.weights * whole.misfit(whole.responses(whole.search.vectors(points))) ** 2
+    squares = whole.squares(whole.responses(whole.search.vectors(points)))
     scores = np.array([squares[:, : rung.samples].sum(axis=(1, 2)) for rung in ladder])
     scores = np.where(np.isfinite(scores), scores, np.inf)
     whole.journal.screened(scores[-1])

@@ -9,6 +9,7 @@ from dalembert.data import Measurements
 from dalembert.errors import InputError, SolveError
 from dalembert.forward import ForwardModel
 from dalembert.inverse.journal import Journal
+from dalembert.inverse.loss import Loss
 from dalembert.inverse.matching import check_finite, check_samples, columns_of, weights_of
 from dalembert.inverse.search import Search
 from dalembert.inverse.simulated import named, simulated
@@ -39,6 +40,8 @@ class Problem:
         W.
     search : Search
     journal : Journal
+    loss : Loss, optional
+        The square if not given; all that is minimised are squares of residuals that it has transformed.
     """
 
     model: ForwardModel
@@ -47,6 +50,7 @@ class Problem:
     weights: np.ndarray
     search: Search
     journal: Journal
+    loss: Loss | None = None
 
     @property
     def samples(self) -> int:
@@ -76,8 +80,16 @@ class Problem:
 
     def fitness(self, points: np.ndarray) -> np.ndarray:
         """Fitness (batch,) at search points (batch, parameters); NaN where a sample failed."""
-        misfit = self.misfit(self.responses(self.search.vectors(points)))
-        return np.einsum("sc,bsc->b", self.weights, misfit**2)
+        responses = self.responses(self.search.vectors(points))
+        if self.loss is not None:
+            return np.sum(self.squares(responses), axis=(1, 2))
+        return np.einsum("sc,bsc->b", self.weights, self.misfit(responses) ** 2)
+
+    def squares(self, responses: np.ndarray) -> np.ndarray:
+        """What each value adds to the fitness, both (..., samples, channels)."""
+        if self.loss is not None:
+            return self.loss.residual(np.sqrt(self.weights) * self.misfit(responses)) ** 2
+        return self.weights * self.misfit(responses) ** 2
 
     def misfit(self, response: np.ndarray) -> np.ndarray:
         """R − data, both (..., samples, channels); 0 where a value is missing, NaN elsewhere if a sample failed."""
@@ -104,8 +116,9 @@ class Problem:
         return Linearisation(vector, response[:, self.columns], jacobian[:, self.columns])
 
     def residual(self, response: np.ndarray) -> np.ndarray:
-        """W^½ (R − data) as a vector, shape (samples × channels,)."""
-        return (np.sqrt(self.weights) * self.misfit(response)).ravel()
+        """W^½ (R − data), transformed by the loss, as a vector, shape (samples × channels,)."""
+        plain = (np.sqrt(self.weights) * self.misfit(response)).ravel()
+        return plain if self.loss is None else self.loss.residual(plain)
 
     def slopes(self, at: Linearisation, unit: np.ndarray | None = None) -> np.ndarray:
         """Jacobian of :meth:`residual` with respect to p/unit, (samples × channels, parameters).
@@ -113,8 +126,10 @@ class Problem:
         Without ``unit`` (parameters,) with respect to the search coordinates.
         """
         unit = self.search.slope(at.vector) if unit is None else unit
-        jacobian = np.sqrt(self.weights)[:, :, None] * at.jacobian * unit
-        return jacobian.reshape(-1, len(at.vector))
+        factor = np.sqrt(self.weights)
+        if self.loss is not None:
+            factor = factor * self.loss.slope(factor * self.misfit(at.response))
+        return (factor[:, :, None] * at.jacobian * unit).reshape(-1, len(at.vector))
 
     def gradient(self, point: np.ndarray) -> np.ndarray:
         """Gradient of the fitness at a search point, both (parameters,); zero where the sample fails."""

@@ -107,7 +107,9 @@ def identify_set(
     def run(points: np.ndarray) -> np.ndarray:
         return simulated(model, columns, journal, search.vectors(points)).reshape(len(points), -1)
 
-    inversion = Inversion(run, data.values.ravel(), errors.ravel(), len(columns), chosen, most_boxes, seed, journal)
+    shape = (len(data.values), len(columns))
+    wraps = np.tile(data.wrapping, len(data.values))
+    inversion = Inversion(run, data.values.ravel(), errors.ravel(), wraps, shape, chosen, most_boxes, seed, journal)
     surrogate, paving = inversion.zoomed(search.lower, search.upper)
     if paving.hull is not None:
         paving = inversion.paved(surrogate, resolution)

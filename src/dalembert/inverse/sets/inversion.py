@@ -6,10 +6,12 @@ from itertools import product
 
 import numpy as np
 
-from dalembert.inverse.events import Paved, Sampled
+from dalembert.data.measurements import TURN
+from dalembert.inverse.events import Paved
 from dalembert.inverse.journal import Journal
 from dalembert.inverse.sets.paving import Limits, Paving, pave
-from dalembert.surrogate import Surrogate, fit
+from dalembert.inverse.surrogates import surrogate_of
+from dalembert.surrogate import Surrogate
 from dalembert.surrogate.scheme import Scheme
 
 COARSE = 1 / 16
@@ -43,8 +45,11 @@ class Inversion:
     run : callable
         Search points (n, d) to outputs (n, outputs); NaN where a run failed.
     data, error : array, shape (outputs,)
-    channels : int
-        Outputs are samples × channels, flat.
+        NaN among the data for what was not measured.
+    wraps : array of bool, shape (outputs,)
+        Angles that count modulo a turn.
+    shape : (int, int)
+        Samples and channels; outputs are samples × channels, flat.
     scheme : Scheme
     most_boxes : int
     seed : int
@@ -56,7 +61,8 @@ class Inversion:
     run: Callable[[np.ndarray], np.ndarray]
     data: np.ndarray
     error: np.ndarray
-    channels: int
+    wraps: np.ndarray
+    shape: tuple[int, int]
     scheme: Scheme
     most_boxes: int
     seed: int
@@ -66,14 +72,8 @@ class Inversion:
     def zoomed(self, lower: np.ndarray, upper: np.ndarray) -> tuple[Surrogate, Paving]:
         """The last surrogate, on a box close around the set, and a coarse paving on it."""
         for left in reversed(range(ZOOMS)):
-            surrogate = fit(
-                self._seen,
-                lower,
-                upper,
-                self.scheme,
-                seed=self.seed,
-                groups=np.arange(len(self.data)) % self.channels,
-                on_runs=lambda runs: self.journal.tell(Sampled(runs, self.journal.simulations)),
+            surrogate = surrogate_of(
+                self._seen, lower, upper, self.scheme, self.journal, shape=self.shape, seed=self.seed
             )
             paving = self.paved(surrogate, COARSE)
             if paving.hull is None or left == 0:
@@ -86,7 +86,7 @@ class Inversion:
 
     def paved(self, surrogate: Surrogate, resolution: float) -> Paving:
         """Paving of the box of a surrogate."""
-        limits = Limits(self.data - self.error, self.data + self.error, surrogate.error)
+        limits = Limits(self.data, self.error, surrogate.error, self.wraps)
         return pave(surrogate.polynomial, limits, resolution, self.most_boxes, self._told)
 
     def consistent(self, box: np.ndarray) -> bool:
@@ -94,13 +94,20 @@ class Inversion:
         d = box.shape[1]
         choices = list(product((0, 1), repeat=d)) if d <= CORNERS else [(0,) * d, (1,) * d]
         corners = box[np.array(choices), np.arange(d)]
-        return bool(np.all(np.abs(self._seen(corners) - self.data) <= self.error))
+        return bool(np.all(self._excess(self._seen(corners)) <= 1))
+
+    def _excess(self, values: np.ndarray) -> np.ndarray:
+        """|values − data| in units of the error, both (n, outputs); infinite where a run failed."""
+        apart = values - self.data
+        apart -= np.where(self.wraps, TURN * np.rint(apart / TURN), 0.0)
+        excess = np.where(np.isnan(self.data), 0.0, np.abs(apart) / self.error)
+        return np.where(np.isnan(excess), np.inf, excess)
 
     def _seen(self, points: np.ndarray) -> np.ndarray:
         """True runs, the nearest one remembered."""
         values = self.run(points)
-        excess = np.abs(values - self.data) / self.error
-        worst = np.where(np.isfinite(excess).all(axis=1), excess.max(axis=1), np.inf)
+        excess = self._excess(values)
+        worst = excess.max(axis=1)
         best = int(np.argmin(worst))
         if self.nearest is None or worst[best] < self.nearest.excess:
             self.nearest = Nearest(points[best], float(worst[best]), int(np.argmax(excess[best])))

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dalembert.data.measurements import TURN
 from dalembert.surrogate import ChebyshevPolynomial, bounds
 
 AS_THEY_ARE = 1e9
@@ -13,11 +14,30 @@ AS_THEY_ARE = 1e9
 
 @dataclass(frozen=True, eq=False)
 class Limits:
-    """A polynomial is to keep from ``lower`` to ``upper``, (outputs,), and is known to ``error`` (outputs,)."""
+    """A polynomial, known to ``error``, is to keep within ``radius`` of ``middle``, all (outputs,).
 
-    lower: np.ndarray
-    upper: np.ndarray
+    An output whose middle is NaN has no limits; one that ``wraps`` (mask (outputs,)) counts modulo a turn.
+    """
+
+    middle: np.ndarray
+    radius: np.ndarray
     error: np.ndarray
+    wraps: np.ndarray | None = None
+
+    def judge(self, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Which boxes (boxes,) keep the limits, and which leave them, from bounds (boxes, outputs) on them.
+
+        Of a wrapping output the whole turn next to the middle of its bounds decides: bounds that reach to another one
+        reach to this one, too.
+        """
+        low, high = low - self.middle, high - self.middle
+        if self.wraps is not None:
+            turns = np.where(self.wraps, TURN * np.rint((low + high) / 2 / TURN), 0.0)
+            low, high = low - turns, high - turns
+        free = np.isnan(self.middle)
+        surely, perhaps = self.radius - self.error, self.radius + self.error
+        kept = np.all(free | ((low >= -surely) & (high <= surely)), axis=1)
+        return kept, np.any((low > perhaps) | (high < -perhaps), axis=1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,8 +81,8 @@ def pave(
     Examples
     --------
     >>> parabola = ChebyshevPolynomial([-1.0], [1.0], [[0], [2]], [[0.5], [0.5]])  # x²
-    >>> quarter = Limits(np.array([-1.0]), np.array([0.26]), np.zeros(1))
-    >>> paving = pave(parabola, quarter, 0.25, 100)
+    >>> small = Limits(np.array([0.0]), np.array([0.26]), np.zeros(1))
+    >>> paving = pave(parabola, small, 0.25, 100)
     >>> paving.inside[:, :, 0].tolist(), paving.boundary[:, :, 0].tolist()
     ([[-0.5, 0.0], [0.0, 0.5]], [[-1.0, -0.5], [0.5, 1.0]])
     """
@@ -73,8 +93,7 @@ def pave(
     while len(boxes):
         looked += len(boxes)
         low, high = enclosures(polynomial, boxes)
-        out = np.any((low > limits.upper + limits.error) | (high < limits.lower - limits.error), axis=1)
-        within = np.all((low >= limits.lower + limits.error) & (high <= limits.upper - limits.error), axis=1)
+        within, out = limits.judge(low, high)
         inside.append(boxes[within & ~out])
         boxes = boxes[~within & ~out]
         sides = (boxes[:, 1] - boxes[:, 0]) / size

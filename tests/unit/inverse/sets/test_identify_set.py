@@ -87,6 +87,28 @@ def test_errors_may_differ_from_channel_to_channel(error):
     np.testing.assert_allclose(found.outer["slope"].radius, 0.05, atol=0.005)
 
 
+def test_values_that_were_not_measured_have_no_limits():
+    whole = measured(LINE, [1.0, 2.0])
+    values = whole.values.copy()
+    values[1:40, 0] = np.nan
+    gaps = Measurements.of(TIMES, {"x": values[:, 0]}, missing="leave-out")
+    found = identify_set(LINE, gaps, error=0.1)
+    every = identify_set(LINE, Measurements.of(TIMES, {"x": whole.values[:, 0]}), error=0.1)
+    np.testing.assert_allclose(found.outer.lower, every.outer.lower, atol=1e-3)
+    np.testing.assert_allclose(found.outer.upper, every.outer.upper, atol=1e-3)
+
+
+def test_angles_that_wrap_count_modulo_a_turn():
+    """|x − 0.5| ≤ 0.2 modulo 2π over [−7, 8]: three intervals."""
+    model = PythonModel(lambda x: np.array([x]), {"x": (-7.0, 8.0)}, ["angle"], NOWHEN)
+    found = identify_set(model, Measurements.of(NOWHEN, {"angle": [0.5]}, wraps=["angle"]), error=0.2)
+    middles = 0.5 + 2 * np.pi * np.array([-1, 0, 1])
+    assert np.all(found.contains(middles[:, None]) == 1)
+    assert np.all(found.contains(middles[:2, None] + np.pi) == 0)
+    assert found.volume[0] < 3 * 0.4 < found.volume[1]
+    assert found.success
+
+
 def test_inconsistent_data_have_an_empty_set_and_a_sentence_that_says_where():
     found = identify_set(DISC, Measurements.of(NOWHEN, {"r": [10.0]}), error=0.5)
     assert found.empty

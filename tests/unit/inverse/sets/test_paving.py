@@ -18,7 +18,7 @@ def squares(d):
 
 
 def limits(lower, upper, error=0.0):
-    return Limits(np.array([lower]), np.array([upper]), np.array([error]))
+    return Limits(np.array([(lower + upper) / 2]), np.array([(upper - lower) / 2]), np.array([error]))
 
 
 def volume(boxes):
@@ -80,7 +80,7 @@ def test_the_error_of_the_surrogate_makes_the_inside_smaller_and_the_whole_large
 def test_every_output_counts():
     """A strip along each axis: their intersection is a square."""
     polynomial = ChebyshevPolynomial([-2.0, -2.0], [2.0, 2.0], [[1, 0], [0, 1]], [[2.0, 0.0], [0.0, 2.0]])
-    paving = pave(polynomial, Limits(np.array([-1.0, 0.0]), np.array([0.5, 1.5]), np.zeros(2)), 1 / 64, 10**5)
+    paving = pave(polynomial, Limits(np.array([-0.25, 0.75]), np.array([0.75, 0.75]), np.zeros(2)), 1 / 64, 10**5)
     np.testing.assert_allclose(paving.hull, [[-1.0, 0.0], [0.5, 1.5]], atol=4 / 64)
     assert volume(paving.inside) <= 1.5**2 <= volume(paving.inside) + volume(paving.boundary)
     inner = inner_box(paving.inside)

@@ -31,7 +31,7 @@ _NAMES = {
     "optimize": "ImprovedParticleSwarm LeastSquares Minimiser ParticleSwarm",
     "surrogate": "Adaptive ChebyshevPolynomial Surrogate Tensor TotalDegree",
     "data": "Bands Measurements read_bands read_csv",
-    "inverse": "BandFit Fit GlobalSurrogate Nested ParameterSet identify identify_bands identify_set",
+    "inverse": "BandFit Experiment Fit GlobalSurrogate Nested ParameterSet identify identify_bands identify_set",
     "multibody": """
         System AncfBeam AncfCable RigidBody RigidBar PointMass Point
         RevoluteJoint PrismaticJoint FixedJoint DistanceJoint PrescribedMotion

@@ -29,6 +29,7 @@ from dalembert.forward import Sensors as Sensors
 from dalembert.intervals import Box as Box
 from dalembert.intervals import Interval as Interval
 from dalembert.inverse import BandFit as BandFit
+from dalembert.inverse import Experiment as Experiment
 from dalembert.inverse import Fit as Fit
 from dalembert.inverse import GlobalSurrogate as GlobalSurrogate
 from dalembert.inverse import Nested as Nested

@@ -14,14 +14,19 @@ from dalembert.inverse.events import (
     Step,
     as_record,
 )
+from dalembert.inverse.experiment_fit import ExperimentFit
+from dalembert.inverse.experiments import Experiment
 from dalembert.inverse.fit import Fit
 from dalembert.inverse.identify import identify
 from dalembert.inverse.sets import ParameterSet, identify_set
+from dalembert.inverse.validation import Validation
 
 __all__ = [
     "BandFit",
     "Checked",
     "Event",
+    "Experiment",
+    "ExperimentFit",
     "Finished",
     "Fit",
     "GlobalSurrogate",
@@ -34,6 +39,7 @@ __all__ = [
     "StartBegan",
     "StartEnd",
     "Step",
+    "Validation",
     "as_record",
     "identify",
     "identify_bands",

@@ -11,6 +11,9 @@ from dalembert.data import Measurements
 from dalembert.hooks import hook
 from dalembert.inverse.estimate import Estimate, Identifiability, sentences
 from dalembert.inverse.events import StartEnd, Step
+from dalembert.inverse.experiment_fit import ExperimentFit, experiment_fit
+from dalembert.inverse.experiments import Part
+from dalembert.inverse.validation import Validation
 from dalembert.parameters import Parameters
 
 
@@ -30,12 +33,13 @@ class Fit:
     directions : array, shape (parameters, parameters)
         A row a singular value: the combination of p/scale that it belongs to.
     fitness : float
-        Σ W (R − data)² over samples and channels.
+        Σ W (R − data)² over samples and channels, or the sum of the losses.
     response, residuals : array, shape (samples, channels)
         R at ``values``, and R − data: NaN where a value is missing, modulo a turn in wrapping channels.
     data : Measurements
+        Those of several experiments in one table, NaN where one has no sample in a row; see :attr:`experiments`.
     weights : array, shape (samples, channels)
-        W.
+        W, 0 where a value was not fitted.
     history : tuple of Step
         Best fitness along each start, where all samples were compared.
     starts : tuple of StartEnd
@@ -47,6 +51,10 @@ class Fit:
         A response with its sensitivities counts as 1 + parameters.
     provenance : mapping
         Versions, seed, hashes of model and data, method and settings.
+    parts : tuple of Part
+        Where each of several experiments stands in the response; empty for a model with its data.
+    validation : Validation, optional
+        How what was not fitted is predicted.
     """
 
     parameters: Parameters
@@ -66,6 +74,13 @@ class Fit:
     method: str
     simulations: int
     provenance: Mapping[str, Any]
+    parts: tuple[Part, ...] = ()
+    validation: Validation | None = None
+
+    @property
+    def experiments(self) -> tuple[ExperimentFit, ...]:
+        """Each of several experiments with its response, data and residuals."""
+        return tuple(experiment_fit(part, self.data, self.response, self.weights) for part in self.parts)
 
     @property
     def residuals(self) -> np.ndarray:

@@ -36,10 +36,10 @@ def _cauchy_pull(x: np.ndarray) -> np.ndarray:
 
 LOSSES: dict[str, tuple[Curve, Curve, Curve, float]] = {
     "huber": (_huber, _huber_pull, lambda x: np.where(x <= 1, 1.0, 0.0), 1.345),
-    "soft-l1": (_soft_l1, _soft_l1_pull, lambda x: (1 + x**2) ** -1.5, 1.5),
+    "soft-l1": (_soft_l1, _soft_l1_pull, lambda x: (1 + x**2) ** -1.5, 1.287),
     "cauchy": (_cauchy, _cauchy_pull, lambda x: (1 - x**2) / (1 + x**2) ** 2, 2.385),
 }
-"""By name: ϱ(x) of x = \\|r\\|/scale ≥ 0, half its first and second derivative, and the usual scale."""
+"""By name: ϱ(x) of a residual's size over the scale, half its first and second derivative, and the usual scale."""
 
 NAMES = ("linear", *LOSSES)
 

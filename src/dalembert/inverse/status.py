@@ -27,7 +27,14 @@ def status(problem: Problem, best: End, response: np.ndarray, floor: NoiseFloor)
     if failed:
         parts.append(f"{failed} simulations failed and were passed over, the first: {problem.journal.failures[0]}.")
     residual = problem.residual(response)
-    if best.fitness > floor.fitness:
+    if problem.loss is not None:
+        plain = (np.sqrt(problem.weights) * problem.misfit(response)).ravel()
+        beyond = int(np.count_nonzero(np.abs(plain) > problem.loss.scale))
+        parts.append(
+            f"{beyond} of {problem.compared} weighted residuals exceed {problem.loss.scale:.4g} and pull less than "
+            "their squares would."
+        )
+    elif best.fitness > floor.fitness:
         share = 1 - best.fitness / max(signal(problem), np.finfo(float).tiny)
         parts.append(f"The response explains {100 * share:.4g} % of the data's variation.")
     if best.fitness <= floor.fitness:

@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, Any
 from dalembert.files import read_dataset, write_dataset
 from dalembert.inverse.fit import Fit
 from dalembert.inverse.stored_data import data_labels, data_of, stored_data
+from dalembert.inverse.stored_parts import parts_of, stored_parts, told_parts
 from dalembert.inverse.stored_search import search_of, stored_ends, stored_search
+from dalembert.inverse.validation import Validation
 from dalembert.parameters import Parameter, Parameters
 
 if TYPE_CHECKING:
@@ -32,7 +34,10 @@ def to_xarray(fit: Fit) -> "Dataset":
         "residuals": (("sample", "channel"), fit.residuals),
         "weights": (("sample", "channel"), fit.weights),
         **stored_search(fit.history, fit.starts, "parameter", len(fit.parameters)),
+        **stored_parts(fit.parts, len(fit.response)),
     }
+    if fit.validation is not None:
+        variables["validation_weights"] = (("sample", "channel"), fit.validation.weights)
     coordinates = {
         "parameter": ("parameter", list(fit.parameters.names)),
         **data_labels(fit.data),
@@ -41,6 +46,11 @@ def to_xarray(fit: Fit) -> "Dataset":
         "parameters": [asdict(item) for item in fit.parameters],
         "ends": stored_ends(fit.starts),
         "provenance": fit.provenance,
+        "samples": fit.history[-1].samples if fit.history else len(fit.response),
+        "parts": told_parts(fit.parts),
+        "validation": None
+        if fit.validation is None
+        else {"what": fit.validation.what, "misfit": fit.validation.misfit, "fitted": fit.validation.fitted},
     }
     attributes = {
         "format": FORMAT,
@@ -68,7 +78,8 @@ def from_xarray(dataset: "Dataset") -> Fit:
     """The fit that :func:`to_xarray` turned into a dataset."""
     told = json.loads(dataset.attrs["settings"])
     a = {str(name): variable.values for name, variable in dataset.variables.items()}
-    history, starts = search_of(a, told["ends"], dataset.sizes["sample"])
+    history, starts = search_of(a, told["ends"], told["samples"])
+    validation = told["validation"]
     return Fit(
         parameters=Parameters(tuple(Parameter(**item) for item in told["parameters"])),
         values=a["values"],
@@ -87,4 +98,6 @@ def from_xarray(dataset: "Dataset") -> Fit:
         method=str(dataset.attrs["method"]),
         simulations=int(dataset.attrs["simulations"]),
         provenance=told["provenance"],
+        parts=parts_of(a, told["parts"]),
+        validation=None if validation is None else Validation(weights=a["validation_weights"], **validation),
     )

@@ -17,7 +17,22 @@ def summary(fit: Fit) -> str:
         f"simulations  {fit.simulations}",
         f"starts       {len(fit.starts)}",
     ]
-    return "\n".join([*table(rows), "", *facts, "", fit.status, *fit.identifiability().sentences])
+    experiments = experiments_table(fit)
+    told = [fit.status, *([] if fit.validation is None else [str(fit.validation)]), *fit.identifiability().sentences]
+    return "\n".join([*table(rows), "", *facts, "", *experiments, *told])
+
+
+def experiments_table(fit: Fit) -> list[str]:
+    """Lines of a table of experiments and their residuals, with an empty one after it; none for a single one."""
+    if not fit.experiments:
+        return []
+    rows = [("experiment", "channel", "samples", "rms residual", "")]
+    for item in fit.experiments:
+        for column, channel in enumerate(item.data.channels):
+            own = item.residuals[item.data.present[:, column], column]
+            rms = f"{np.sqrt(np.mean(own**2)):.4g}"
+            rows.append((item.name, channel, str(len(own)), rms, "" if item.fitted else "predicted"))
+    return [*table(rows), ""]
 
 
 def table(rows: list[tuple[str, ...]]) -> list[str]:

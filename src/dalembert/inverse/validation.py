@@ -1,0 +1,149 @@
+"""Samples or experiments that are not fitted, but predicted."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from dalembert.errors import InputError, unknown
+from dalembert.inverse.experiments import JointModel
+from dalembert.inverse.problem import Problem
+
+WORSE = 1.5
+"""Ratio of residuals from which a prediction is said to be worse than the fit."""
+
+
+@dataclass(frozen=True, eq=False)
+class Validation:
+    """How well a fit predicts what it was not fitted to.
+
+    Parameters
+    ----------
+    what : str
+        What was not fitted, in words.
+    weights : array, shape (samples, channels)
+        W of the values that were not fitted, 0 for the others.
+    misfit, fitted : float
+        Root mean square of W^½ (R − data) over the values that were not fitted, and over those that were.
+    """
+
+    what: str
+    weights: np.ndarray
+    misfit: float
+    fitted: float
+
+    def __str__(self) -> str:
+        told = f"Not fitted: {self.what}. There the weighted residuals are {self.misfit:.3g} in the root mean square"
+        if self.fitted == 0:
+            return f"{told}, those of the fit 0."
+        ratio = self.misfit / self.fitted
+        advice = (
+            "; the model lacks something that shows there, or the data that were fitted tell too little"
+            if ratio > WORSE
+            else ""
+        )
+        return f"{told}, {ratio:.3g} times those of the fit{advice}."
+
+
+@dataclass(frozen=True, eq=False)
+class Split:
+    """A problem, the part of it that is fitted, and what the other part is, in words.
+
+    ``fitted`` (samples, channels) masks the values of the whole problem that are fitted.
+    """
+
+    whole: Problem
+    part: Problem
+    fitted: np.ndarray
+    what: str
+
+    def validation(self, response: np.ndarray) -> Validation | None:
+        """How a response (samples, channels) predicts what was not fitted; None if all was."""
+        if self.part is self.whole:
+            return None
+        weights = np.where(self.fitted, 0.0, self.whole.weights)
+        squares = self.whole.misfit(response) ** 2
+        of_fit = self.whole.weights - weights
+        return Validation(self.what, weights, *(_rms(squares, own) for own in (weights, of_fit)))
+
+
+def split(problem: Problem, validation: float | str | Sequence[str] | None) -> Split:
+    """A problem without a share of its samples at the end, or without some of its experiments.
+
+    Raises
+    ------
+    InputError
+        For a share that leaves nothing on one side, an unknown experiment, one with parameters of its own.
+    """
+    everything = np.ones(problem.weights.shape, dtype=bool)
+    if validation is None:
+        return Split(problem, problem, everything, "nothing")
+    if isinstance(validation, (int, float)):
+        return _ends(problem, float(validation), everything)
+    return _experiments(problem, (validation,) if isinstance(validation, str) else tuple(validation), everything)
+
+
+def _ends(problem: Problem, share: float, fitted: np.ndarray) -> Split:
+    if not 0 < share < 1:
+        raise InputError(f"validation is {share:g}; expected a share of the samples between 0 and 1, such as 0.25")
+    kept = problem.samples - round(share * problem.samples)
+    if kept < 2 or kept == problem.samples:
+        raise InputError(
+            f"validation is {share:g}, which leaves {kept} of {problem.samples} samples to be fitted and "
+            f"{problem.samples - kept} to be predicted; expected at least 2 and 1"
+        )
+    fitted[kept:] = False
+    along = problem.data.coordinate
+    what = (
+        f"what comes after {100 * along.values[kept - 1]:.3g} % of each experiment's time"
+        if isinstance(problem.model, JointModel)
+        else f"the last {problem.samples - kept} of {problem.samples} samples"
+    )
+    return Split(problem, problem.first(kept), fitted, what)
+
+
+def _experiments(problem: Problem, names: tuple[str, ...], fitted: np.ndarray) -> Split:
+    model = problem.model
+    if not isinstance(model, JointModel):
+        raise InputError(
+            f"validation is {', '.join(map(repr, names))}, but there is one experiment; expected a share such as 0.25"
+        )
+    known = [part.name for part in model.parts]
+    for name in names:
+        if name not in known:
+            raise InputError(unknown("experiment", name, known, "validation"))
+    kept = [name for name in known if name not in names]
+    if not kept or not names:
+        raise InputError("validation: expected at least one experiment to be fitted, and one to be predicted")
+    told = {
+        index for part, wiring in zip(model.parts, model.wiring, strict=True) if part.name in kept for index in wiring
+    }
+    for index, name in enumerate(model.parameters.names):
+        if index not in told:
+            raise InputError(
+                f"parameter {name!r} belongs to experiments for validation alone, so that nothing tells it; fit one of "
+                "them, or fix the parameter"
+            )
+    columns = np.concatenate([part.columns for part in model.parts if part.name in kept])
+    fitted[:, [column for column in range(fitted.shape[1]) if column not in columns]] = False
+    data = problem.data
+    channels = tuple(data.channels[column] for column in columns)
+    part = replace(
+        problem,
+        model=model.only(kept),
+        columns=problem.columns[columns],
+        weights=problem.weights[:, columns],
+        data=replace(
+            data,
+            channels=channels,
+            values=data.values[:, columns],
+            deviations=None if data.deviations is None else data.deviations[columns],
+            wraps=tuple(name for name in data.wraps if name in channels),
+        ),
+    )
+    plural = "s" if len(names) > 1 else ""
+    return Split(problem, part, fitted, f"the experiment{plural} {', '.join(map(repr, names))}")
+
+
+def _rms(squares: np.ndarray, weights: np.ndarray) -> float:
+    return float(np.sqrt(np.sum(weights * squares) / max(1, np.count_nonzero(weights))))

@@ -1,0 +1,115 @@
+"""What is kept for validation is not fitted, but predicted and told."""
+
+import numpy as np
+import pytest
+
+from dalembert.data import Measurements
+from dalembert.errors import InputError
+from dalembert.forward import PythonModel
+from dalembert.inverse import Experiment, Fit, identify
+from small_models import DECAY, TIMES, measured
+from support import says
+
+
+def test_a_share_at_the_end_does_not_touch_the_fit():
+    data = measured(DECAY, [2.0, 0.8], 0.02, deviations=0.02)
+    whole = identify(DECAY, data, validation=0.25)
+    part = identify(DECAY.first(31), data.first(31))
+    np.testing.assert_allclose(whole.values, part.values, rtol=1e-9)
+    assert whole.fitness == pytest.approx(part.fitness, rel=1e-12)
+    assert whole.response.shape == (41, 1)
+    np.testing.assert_allclose(whole.response[:31], part.response, rtol=1e-9)
+    assert not whole.weights[31:].any()
+    np.testing.assert_array_equal(whole.validation.weights[:31], 0)
+    scaled = whole.residuals[:, 0] / 0.02
+    assert whole.validation.misfit == pytest.approx(np.sqrt(np.mean(scaled[31:] ** 2)))
+    assert whole.validation.fitted == pytest.approx(np.sqrt(np.mean(scaled[:31] ** 2)))
+    assert whole.validation.misfit == pytest.approx(1.0, abs=0.5)
+    assert "Not fitted: the last 10 of 41 samples." in whole.summary()
+
+
+def test_a_model_that_lacks_something_predicts_worse_than_it_fits():
+    bent = 2 * np.exp(-0.8 * TIMES) + 0.05 * TIMES**2
+    fit = identify(DECAY, Measurements.of(TIMES, {"x": bent}, 0.01), validation=0.5)
+    assert fit.validation.misfit > 3 * fit.validation.fitted
+    ratio = fit.validation.misfit / fit.validation.fitted
+    assert str(fit.validation) == (
+        f"Not fitted: the last 20 of 41 samples. There the weighted residuals are {fit.validation.misfit:.3g} in the "
+        f"root mean square, {ratio:.3g} times those of the fit; the model lacks something that shows there, or the "
+        "data that were fitted tell too little."
+    )
+
+
+def experiments():
+    return [
+        Experiment(name, DECAY, measured(DECAY, [2.0, 0.8], 0.02, seed, deviations=0.02))
+        for seed, name in enumerate(["a", "b", "c"])
+    ]
+
+
+def test_whole_experiments_are_predicted(tmp_path):
+    fit = identify(experiments(), validation="b")
+    without = identify([experiments()[0], experiments()[2]])
+    np.testing.assert_allclose(fit.values, without.values, rtol=1e-9)
+    assert fit.fitness == pytest.approx(without.fitness, rel=1e-12)
+    assert [item.fitted for item in fit.experiments] == [True, False, True]
+    np.testing.assert_allclose(fit.experiments[1].response, fit.experiments[0].response)
+    assert fit.validation.what == "the experiment 'b'"
+    assert fit.validation.misfit == pytest.approx(np.sqrt(np.mean((fit.experiments[1].residuals / 0.02) ** 2)))
+    assert any(line.split()[-1] == "predicted" for line in fit.summary().splitlines() if line.startswith("b "))
+    fit.save(tmp_path / "fit.nc")
+    back = Fit.load(tmp_path / "fit.nc")
+    assert str(back.validation) == str(fit.validation)
+    assert back.validation.weights.tobytes() == fit.validation.weights.tobytes()
+
+
+def test_the_ends_of_all_experiments_are_predicted():
+    fit = identify(experiments(), validation=0.25)
+    assert fit.validation.what == "what comes after 75 % of each experiment's time"
+    assert [int(np.count_nonzero(item.weights)) for item in fit.experiments] == [31, 31, 31]
+
+
+@pytest.mark.parametrize(
+    ("given", "validation", "sentence"),
+    [
+        ("one", 1.5, "validation is 1.5; expected a share of the samples between 0 and 1, such as 0.25"),
+        (
+            "one",
+            0.01,
+            "validation is 0.01, which leaves 41 of 41 samples to be fitted and 0 to be predicted; expected at least 2 "
+            "and 1",
+        ),
+        ("one", "a", "validation is 'a', but there is one experiment; expected a share such as 0.25"),
+        ("several", ["d"], "validation: unknown experiment 'd'; known: a, b, c"),
+        (
+            "several",
+            ["a", "b", "c"],
+            "validation: expected at least one experiment to be fitted, and one to be predicted",
+        ),
+        ("several", [], "validation: expected at least one experiment to be fitted, and one to be predicted"),
+        (
+            "own",
+            "b",
+            "parameter 'b.size' belongs to experiments for validation alone, so that nothing tells it; fit one of "
+            "them, or fix the parameter",
+        ),
+    ],
+)
+def test_what_cannot_be_kept_for_validation_is_told(given, validation, sentence):
+    data = measured(DECAY, [2.0, 0.8])
+    arguments = {
+        "one": (DECAY, data),
+        "several": (experiments(),),
+        "own": ([Experiment(name, DECAY, data, ("size",)) for name in ("a", "b")],),
+    }[given]
+    with pytest.raises(InputError, match=says(sentence)):
+        identify(*arguments, validation=validation)
+
+
+def test_a_perfect_fit_is_told_without_a_ratio():
+    model = PythonModel(lambda x: x * np.array([1.0, 1.0, 1.0]), {"x": (0.0, 2.0)}, ["y"], [0, 1, 2])
+    fit = identify(model, Measurements.of([0.0, 1.0, 2.0], {"y": [1.0, 1.0, 1.0]}), validation=0.34, start=[1.0])
+    assert str(fit.validation) == (
+        "Not fitted: the last 1 of 3 samples. There the weighted residuals are 0 in the root mean square, those of the "
+        "fit 0."
+    )

@@ -28,10 +28,13 @@ _NAMES = {
     "parameters": "Parameter Parameters",
     "intervals": "Box Interval",
     "forward": "Channel Coordinate ForwardModel PythonModel Responses Sensor Sensors",
-    "optimize": "ImprovedParticleSwarm LeastSquares Minimiser ParticleSwarm",
+    "optimize": "ImprovedParticleSwarm LeastSquares Minimiser ParticleSwarm ResponseSensitivity",
     "surrogate": "Adaptive ChebyshevPolynomial Surrogate Tensor TotalDegree",
     "data": "Bands Measurements read_bands read_csv",
-    "inverse": "BandFit Experiment Fit GlobalSurrogate Nested ParameterSet identify identify_bands identify_set",
+    "inverse": """
+        BandFit Designs Experiment Fit GlobalSurrogate Nested ParameterSet Prediction Profiles
+        design identifiability identify identify_bands identify_set predict profile
+    """,
     "multibody": """
         System AncfBeam AncfCable RigidBody RigidBar PointMass Point
         RevoluteJoint PrismaticJoint FixedJoint DistanceJoint PrescribedMotion

@@ -28,6 +28,9 @@ class Parameter:
     log : bool, optional
         Whether the identification searches its logarithm, so that factors count and not differences. If not given:
         where both bounds are positive and more than a decade apart.
+    deviation : float, optional
+        What is known before any data: the standard deviation of the true value around ``start``. It enters an
+        identification as one more measurement; the data then need deviations too.
     """
 
     name: str
@@ -37,6 +40,7 @@ class Parameter:
     scale: float | None = None
     start: float | None = None
     log: bool | None = None
+    deviation: float | None = None
 
     def __post_init__(self) -> None:
         if not (np.isfinite(self.lower) and np.isfinite(self.upper) and self.lower < self.upper):
@@ -50,6 +54,11 @@ class Parameter:
             raise InputError(
                 f"parameter {self.name!r}: start {self.start} lies outside its bounds "
                 f"({self.lower}, {self.upper}); widen the bounds or move the start"
+            )
+        if self.deviation is not None and not (np.isfinite(self.deviation) and self.deviation > 0):
+            raise InputError(
+                f"parameter {self.name!r}: deviation is {self.deviation}; expected a positive number, the standard "
+                "deviation of what is known of it before any data"
             )
         if self.log and not self.lower > 0:
             raise InputError(

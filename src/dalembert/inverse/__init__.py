@@ -7,6 +7,7 @@ from dalembert.inverse.events import (
     Event,
     Finished,
     Paved,
+    Profiled,
     Sampled,
     Screened,
     StartBegan,
@@ -19,11 +20,13 @@ from dalembert.inverse.experiments import Experiment
 from dalembert.inverse.fit import Fit
 from dalembert.inverse.identify import identify
 from dalembert.inverse.sets import ParameterSet, identify_set
+from dalembert.inverse.telling import Designs, Prediction, Profile, Profiles, design, identifiability, predict, profile
 from dalembert.inverse.validation import Validation
 
 __all__ = [
     "BandFit",
     "Checked",
+    "Designs",
     "Event",
     "Experiment",
     "ExperimentFit",
@@ -34,6 +37,10 @@ __all__ = [
     "Nested",
     "ParameterSet",
     "Paved",
+    "Prediction",
+    "Profile",
+    "Profiled",
+    "Profiles",
     "Sampled",
     "Screened",
     "StartBegan",
@@ -41,7 +48,11 @@ __all__ = [
     "Step",
     "Validation",
     "as_record",
+    "design",
+    "identifiability",
     "identify",
     "identify_bands",
     "identify_set",
+    "predict",
+    "profile",
 ]

@@ -25,7 +25,7 @@ class End:
     linearisation: Linearisation | None = None
 
 
-class _Memo:
+class Memo:
     """Residual and jacobian of a problem at search points, so that a point is simulated at most twice.
 
     After an accepted point the next one is simulated with its sensitivities at once, since it will most likely be
@@ -40,13 +40,13 @@ class _Memo:
         vector, hopeful = self.problem.search.vectors(point), self.hopeful
         self.hopeful = False
         if not hopeful:
-            return self.problem.residual(self.problem.responses(vector[None])[0])
+            return self.problem.residuals(vector, self.problem.responses(vector[None])[0])
         try:
             at = self.problem.linearise(vector)
         except SolveError:
-            return np.full(self.problem.weights.size, np.nan)
+            return np.full(self.problem.weights.size + self.problem.priors, np.nan)
         self.at = at
-        return self.problem.residual(at.response)
+        return self.problem.residuals(vector, at.response)
 
     def jacobian(self, point: np.ndarray) -> np.ndarray:
         vector = self.problem.search.vectors(point)
@@ -67,7 +67,7 @@ def descend(ladder: Sequence[Problem], method: LeastSquares, point: np.ndarray) 
 
 
 def _local(problem: Problem, method: LeastSquares, point: np.ndarray) -> End:
-    memo, journal, search = _Memo(problem), problem.journal, problem.search
+    memo, journal, search = Memo(problem), problem.journal, problem.search
     best = End(point, np.inf, False, "")
 
     def progress(now: Progress) -> None:

@@ -59,6 +59,16 @@ class Paved:
 
 
 @dataclass(frozen=True, eq=False)
+class Profiled:
+    """A profile likelihood has one more value of a parameter: how much worse it explains the data."""
+
+    kind: ClassVar[str] = "profiled"
+    parameter: str
+    excess: float
+    simulations: int
+
+
+@dataclass(frozen=True, eq=False)
 class Step:
     """One iteration of one start.
 
@@ -121,7 +131,7 @@ class Finished:
     simulations: int
 
 
-Event = StartBegan | Screened | Sampled | Checked | Paved | Step | StartEnd | Finished
+Event = StartBegan | Screened | Sampled | Checked | Paved | Profiled | Step | StartEnd | Finished
 OnEvent = Callable[[Event], None]
 
 

@@ -41,7 +41,7 @@ def noise_floor(problem: Problem) -> NoiseFloor:
     given = np.zeros(len(data.channels)) if data.deviations is None else data.deviations
     quanta = np.array([quantum(column[there]) for column, there in zip(data.values.T, data.present.T, strict=True)])
     spread = _filled(problem).std(axis=0)
-    expected = float(np.sum(weights * (given**2 + quanta**2 / 12 + (1e-6 * spread) ** 2)))
+    expected = float(np.sum(weights * (given**2 + quanta**2 / 12 + (1e-6 * spread) ** 2))) + problem.priors
     source = "given deviations" if given.any() else "rounding of the data" if quanta.any() else "arithmetic"
     return NoiseFloor(
         expected * float(chi2.ppf(0.999, problem.compared)) / problem.compared,

@@ -11,6 +11,7 @@ from dalembert.forward import ForwardModel
 from dalembert.inverse.journal import Journal
 from dalembert.inverse.loss import Loss
 from dalembert.inverse.matching import check_finite, check_samples, columns_of, weights_of
+from dalembert.inverse.prior import check_priors, prior_residual, prior_slopes
 from dalembert.inverse.search import Search
 from dalembert.inverse.simulated import named, simulated
 
@@ -26,7 +27,7 @@ class Linearisation:
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """Fitness g(p) = Σ W (R(p) − data)² over samples and channels.
+    """Fitness g(p) = Σ W (R(p) − data)² over samples and channels, + Σ ((p − start)/deviation)² over priors.
 
     Values that are missing have W = 0; differences of wrapping channels count modulo a turn.
 
@@ -58,8 +59,13 @@ class Problem:
 
     @property
     def compared(self) -> int:
-        """Number of values that count."""
-        return int(np.count_nonzero(self.weights))
+        """Number of values that count, those of priors among them."""
+        return int(np.count_nonzero(self.weights)) + self.priors
+
+    @property
+    def priors(self) -> int:
+        """Number of parameters of which something is known before the data."""
+        return sum(item.deviation is not None for item in self.model.parameters)
 
     @property
     def measured(self) -> int:
@@ -80,10 +86,12 @@ class Problem:
 
     def fitness(self, points: np.ndarray) -> np.ndarray:
         """Fitness (batch,) at search points (batch, parameters); NaN where a sample failed."""
-        responses = self.responses(self.search.vectors(points))
+        vectors = self.search.vectors(points)
+        responses = self.responses(vectors)
+        prior = np.sum(prior_residual(self.model.parameters, vectors) ** 2, axis=1)
         if self.loss is not None:
-            return np.sum(self.squares(responses), axis=(1, 2))
-        return np.einsum("sc,bsc->b", self.weights, self.misfit(responses) ** 2)
+            return np.sum(self.squares(responses), axis=(1, 2)) + prior
+        return np.einsum("sc,bsc->b", self.weights, self.misfit(responses) ** 2) + prior
 
     def squares(self, responses: np.ndarray) -> np.ndarray:
         """What each value adds to the fitness, both (..., samples, channels)."""
@@ -120,8 +128,12 @@ class Problem:
         plain = (np.sqrt(self.weights) * self.misfit(response)).ravel()
         return plain if self.loss is None else self.loss.residual(plain)
 
+    def residuals(self, vector: np.ndarray, response: np.ndarray) -> np.ndarray:
+        """:meth:`residual`, and the priors' behind it: what the fitness is the sum of squares of."""
+        return np.concatenate([self.residual(response), prior_residual(self.model.parameters, vector)])
+
     def slopes(self, at: Linearisation, unit: np.ndarray | None = None) -> np.ndarray:
-        """Jacobian of :meth:`residual` with respect to p/unit, (samples × channels, parameters).
+        """Jacobian of :meth:`residuals` with respect to p/unit, (samples × channels + priors, parameters).
 
         Without ``unit`` (parameters,) with respect to the search coordinates.
         """
@@ -129,7 +141,8 @@ class Problem:
         factor = np.sqrt(self.weights)
         if self.loss is not None:
             factor = factor * self.loss.slope(factor * self.misfit(at.response))
-        return (factor[:, :, None] * at.jacobian * unit).reshape(-1, len(at.vector))
+        rows = (factor[:, :, None] * at.jacobian * unit).reshape(-1, len(at.vector))
+        return np.concatenate([rows, prior_slopes(self.model.parameters, unit)]) if self.priors else rows
 
     def gradient(self, point: np.ndarray) -> np.ndarray:
         """Gradient of the fitness at a search point, both (parameters,); zero where the sample fails."""
@@ -137,7 +150,7 @@ class Problem:
             at = self.linearise(self.search.vectors(point))
         except SolveError:
             return np.zeros_like(point)
-        return 2 * self.slopes(at).T @ self.residual(at.response)
+        return 2 * self.slopes(at).T @ self.residuals(at.vector, at.response)
 
 
 def pose(model: ForwardModel, data: Measurements, weights: ArrayLike | None, journal: Journal) -> Problem:
@@ -149,8 +162,9 @@ def pose(model: ForwardModel, data: Measurements, weights: ArrayLike | None, jou
         For a NaN in data that do not leave it out, a channel that the model lacks, samples that lie elsewhere than
         the model's.
     InputError
-        For weights of another shape, or negative.
+        For weights of another shape, or negative; for priors beside data of unknown noise.
     """
+    check_priors(model.parameters, known=weights is not None or data.deviations is not None)
     columns = columns_of(model, data)
     check_finite(data)
     check_samples(model, data)

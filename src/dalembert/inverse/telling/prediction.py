@@ -1,0 +1,186 @@
+"""The result of a prediction: a response and its bands."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+import numpy as np
+
+from dalembert.data import Measurements
+from dalembert.forward import Coordinate
+from dalembert.inverse.combinations import listed
+from dalembert.inverse.summary import table
+from dalembert.inverse.telling.result import Result
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+
+@dataclass(frozen=True, eq=False)
+class Prediction(Result):
+    """Bands of a response, sample by sample, of a given probability.
+
+    Parameters
+    ----------
+    coordinate : Coordinate
+    channels, units : tuple of str
+    response : array, shape (samples, channels)
+        At the identified values.
+    deviations : array, shape (samples, channels)
+        Standard deviations of the response, from those of the parameters.
+    noise : array, shape (channels,)
+        Standard deviation of a measurement; NaN for channels that were not measured.
+    data : Measurements or None
+        What was fitted.
+    level : float
+    quantile : float
+        Deviations on either side.
+    known : bool
+        Whether the noise was known, or estimated from the residuals.
+    simulations : int
+    provenance : mapping
+    """
+
+    FORMAT: ClassVar[str] = "dalembert prediction 1"
+
+    coordinate: Coordinate
+    channels: tuple[str, ...]
+    units: tuple[str, ...]
+    response: np.ndarray
+    deviations: np.ndarray
+    noise: np.ndarray
+    data: Measurements | None
+    level: float
+    quantile: float
+    known: bool
+    simulations: int
+    provenance: Mapping[str, Any]
+
+    @property
+    def lower(self) -> np.ndarray:
+        """Lower ends of the band of the true response, (samples, channels)."""
+        return self.response - self.quantile * self.deviations
+
+    @property
+    def upper(self) -> np.ndarray:
+        """Upper ends of the band of the true response, (samples, channels)."""
+        return self.response + self.quantile * self.deviations
+
+    @property
+    def measured_lower(self) -> np.ndarray:
+        """Lower ends of the band of a new measurement, (samples, channels)."""
+        return self.response - self.quantile * np.hypot(self.deviations, self.noise)
+
+    @property
+    def measured_upper(self) -> np.ndarray:
+        """Upper ends of the band of a new measurement, (samples, channels)."""
+        return self.response + self.quantile * np.hypot(self.deviations, self.noise)
+
+    @property
+    def success(self) -> bool:
+        """Whether every band is finite."""
+        return bool(np.all(np.isfinite(self.deviations)))
+
+    @property
+    def status(self) -> str:
+        """How wide the bands are, and what they leave out, in full sentences."""
+        part = f"{100 * self.level:g} %"
+        if np.any(np.isnan(self.deviations)):
+            return "No bands: the fit has no deviations, since the model gave no sensitivities."
+        lost = [repr(name) for name, wide in zip(self.channels, self.deviations.T, strict=True) if np.isinf(wide).any()]
+        parts = []
+        if lost:
+            parts.append(
+                f"The band of {listed(lost)} is infinitely wide: it depends on a combination of the parameters that "
+                "the data did not tell."
+            )
+        ratio = 2 * self.quantile * self.deviations.max(axis=0) / np.maximum(np.ptp(self.response, axis=0), 1e-300)
+        finite = np.flatnonzero(np.isfinite(ratio))
+        if len(finite):
+            widest = finite[np.argmax(ratio[finite])]
+            parts.append(
+                f"The {part} band of the response is at most {100 * ratio[widest]:.2g} % as wide as the response "
+                f"varies, in {self.channels[widest]!r}."
+            )
+        source = "given deviations" if self.known else "the residuals"
+        parts.append(
+            f"The noise is known from {source}; the bands hold if the model is right and nearly linear in the "
+            "parameters between their ends."
+        )
+        return " ".join(parts)
+
+    def summary(self) -> str:
+        """Widths of the bands as a text table with the status."""
+        rows = [("channel", "unit", "widest", "with noise")]
+        for k, (name, unit) in enumerate(zip(self.channels, self.units, strict=True)):
+            response, measured = self.upper - self.lower, self.measured_upper - self.measured_lower
+            rows.append((name, unit, f"{response[:, k].max():.4g}", f"{measured[:, k].max():.4g}"))
+        return "\n".join([*table(rows), "", self.status])
+
+    def to_xarray(self) -> "Dataset":
+        """Everything as an :class:`xarray.Dataset` over sample and channel."""
+        from xarray import Dataset
+
+        from dalembert.inverse.stored_data import stored_data
+
+        along = self.coordinate
+        variables: dict[str, Any] = {
+            "response": (("sample", "channel"), self.response),
+            "deviations": (("sample", "channel"), self.deviations),
+            "lower": (("sample", "channel"), self.lower),
+            "upper": (("sample", "channel"), self.upper),
+            "noise": ("channel", self.noise),
+        }
+        told: dict[str, Any] = {"units": self.units, "provenance": self.provenance, "known": self.known}
+        if self.data is not None:
+            given, measured = stored_data(self.data), self.data.coordinate
+            names = {"sample": "measured_sample", "channel": "measured_channel"}
+            for name, (over, *rest) in given.items():
+                over = over if isinstance(over, tuple) else (over,)
+                variables[name] = (tuple(names[dimension] for dimension in over), *rest)
+            labels = {"long_name": measured.name, "units": measured.unit}
+            variables["measured_at"] = ("measured_sample", measured.values, labels)
+            told["measured"] = self.data.channels
+        return Dataset(
+            variables,
+            {
+                "channel": ("channel", list(self.channels)),
+                "coordinate": ("sample", along.values, {"long_name": along.name, "units": along.unit}),
+            },
+            {
+                "format": self.FORMAT,
+                "level": self.level,
+                "quantile": self.quantile,
+                "status": self.status,
+                "simulations": self.simulations,
+                "settings": json.dumps(told, sort_keys=True),
+            },
+        )
+
+    @classmethod
+    def from_xarray(cls, dataset: "Dataset") -> Self:
+        """The prediction that :meth:`to_xarray` turned into a dataset."""
+        from dalembert.inverse.stored_data import data_of
+
+        told = json.loads(dataset.attrs["settings"])
+        along, data = dataset["coordinate"], None
+        if "measured" in told:
+            own = dataset.drop_vars(["channel", "coordinate"]).drop_dims(["sample", "channel"])
+            own = own.rename({"measured_sample": "sample", "measured_channel": "channel"})
+            own = own.rename_vars({"measured_at": "coordinate"}).assign_coords(channel=told["measured"])
+            data = data_of(own)
+        return cls(
+            coordinate=Coordinate(along.attrs["long_name"], along.attrs["units"], along.values),
+            channels=tuple(map(str, dataset["channel"].values)),
+            units=tuple(told["units"]),
+            response=dataset["response"].values,
+            deviations=dataset["deviations"].values,
+            noise=dataset["noise"].values,
+            data=data,
+            level=float(dataset.attrs["level"]),
+            quantile=float(dataset.attrs["quantile"]),
+            known=bool(told["known"]),
+            simulations=int(dataset.attrs["simulations"]),
+            provenance=told["provenance"],
+        )

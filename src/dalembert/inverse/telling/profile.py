@@ -1,0 +1,171 @@
+"""Profile likelihood: how much worse the data are explained with one parameter held elsewhere."""
+
+from collections.abc import Collection, Iterable, Sequence
+
+import numpy as np
+from scipy.stats import chi2, f
+
+from dalembert.data import Measurements
+from dalembert.errors import InputError, unknown
+from dalembert.forward import ForwardModel
+from dalembert.forward.provenance import provenance
+from dalembert.inverse.confidence import check_level, freedom, noise_is_known, variance
+from dalembert.inverse.events import OnEvent
+from dalembert.inverse.experiments import Experiment, joint
+from dalembert.inverse.fit import Fit
+from dalembert.inverse.journal import Journal
+from dalembert.inverse.problem import Problem, pose
+from dalembert.inverse.telling.profiles import Profile, Profiles
+from dalembert.inverse.telling.walk import Walk, walked
+from dalembert.optimize import LeastSquares
+
+POINTS = 12
+"""Values of a parameter on each side of the identified one, at most, if not given."""
+
+
+def profile(
+    model: ForwardModel | Sequence[Experiment],
+    data: Measurements | None,
+    fit: Fit,
+    *,
+    names: Collection[str] | None = None,
+    level: float = 0.95,
+    points: int = POINTS,
+    on_event: OnEvent | None = None,
+) -> Profiles:
+    """Profile likelihood of identified parameters, and the intervals where the data do not contradict them.
+
+    Parameters
+    ----------
+    model : ForwardModel, or sequence of Experiment
+        What was fitted.
+    data : Measurements or None
+        What it was fitted to; None for experiments, which have their own.
+    fit : Fit
+        Its weights are used.
+    names : collection of str, optional
+        Parameters to profile; all if not given.
+    level : float
+        Probability that an interval holds the true value.
+    points : int
+        Values on each side of the identified one at most, from 4.
+    on_event : callable, optional
+        Called with an event a value.
+
+    Returns
+    -------
+    Profiles
+
+    Raises
+    ------
+    DataError
+        For data that do not fit the model.
+    InputError
+        For an unknown parameter, too few points, a level that is no probability, a fit with a robust loss.
+    SolveError
+        If the response at the identified values cannot be simulated.
+
+    Notes
+    -----
+    For values of one parameter p_k the misfit g is made least over all others, warm-started along the valley. The
+    interval is where (g − g_fit)/s² stays below the quantile of chi-square with one degree of freedom; where the noise
+    s² is estimated from the residuals, that of F(1, freedom). For a linear response it is the value ∓ quantile ×
+    deviation; where the response bends, or other parameters make up for the change, only the profile is right. A side
+    ends at the first crossing, or open at the parameter's bound.
+
+    Source: Raue et al., Bioinformatics 25 (2009), 1923-1929; Bates and Watts, Nonlinear Regression Analysis, 1988.
+
+    Examples
+    --------
+    >>> from dalembert.forward import PythonModel
+    >>> from dalembert.inverse import identify
+    >>> times = np.linspace(0.0, 2.0, 21)
+    >>> line = PythonModel(lambda slope: slope * times, {"slope": (0.0, 3.0)}, ["x"], times)
+    >>> data = Measurements.of(times, {"x": 2 * times}, deviations=0.1)
+    >>> told = profile(line, data, identify(line, data))
+    >>> radius = np.sqrt(3.841458820694124) * 0.1 / np.sqrt(np.sum(times**2))
+    >>> np.allclose(told.intervals["slope"], (2 - radius, 2 + radius), rtol=1e-8)
+    True
+    """
+    check_level(level, "profile")
+    if points < 4:
+        raise InputError(f"profile: points is {points}; expected at least 4")
+    if fit.provenance.get("loss") not in (None, "linear"):
+        raise InputError(
+            f"profile: the fit has the loss {fit.provenance['loss']!r}, whose minimum is no likelihood; fit with the "
+            "loss 'linear', the outliers left out"
+        )
+    chosen = _names(fit, names)
+    problem = _problem(model, data, fit, on_event)
+    noise, values = variance(fit), fit.values
+    if not noise > 0:
+        raise InputError(
+            "profile: the noise of the data is not known, and the fit leaves no residuals to estimate it from; give "
+            "the data's deviations"
+        )
+    at = problem.linearise(values)
+    best = float(np.sum(problem.residuals(values, at.response) ** 2))
+    known = noise_is_known(fit)
+    threshold = float(chi2.ppf(level, 1) if known else f.ppf(level, 1, freedom(fit)))
+    curves = []
+    for k in (fit.parameters.names.index(name) for name in chosen):
+        sides = [
+            walked(problem, at, k, side, Walk(best, noise, threshold, points, LeastSquares(trials=30)))
+            for side in (-1, 1)
+        ]
+        curves.append(_curve(fit, k, sides))
+    return Profiles(
+        parameters=fit.parameters,
+        values=values,
+        deviations=fit.deviations,
+        curves=tuple(curves),
+        level=level,
+        threshold=threshold,
+        variance=noise,
+        known=known,
+        simulations=problem.journal.simulations,
+        provenance=provenance(problem.model, LeastSquares(trials=30), level=level, points=points),
+    )
+
+
+def _names(fit: Fit, names: Collection[str] | None) -> Iterable[str]:
+    known = fit.parameters.names
+    for name in names or ():
+        if name not in known:
+            raise InputError(unknown("parameter", name, known, "profile: names"))
+    return known if names is None else [name for name in known if name in names]
+
+
+def _problem(
+    model: ForwardModel | Sequence[Experiment], data: Measurements | None, fit: Fit, on_event: OnEvent | None
+) -> Problem:
+    """The problem that was solved."""
+    if isinstance(model, ForwardModel):
+        if data is None:
+            raise InputError("profile: no data were given; expected the measurements that the model was fitted to")
+        whole, given = model, data
+    else:
+        whole, given = joint(model)
+    if whole.parameters.names != fit.parameters.names:
+        raise InputError(
+            f"profile: the model has the parameters {', '.join(whole.parameters.names)}, the fit "
+            f"{', '.join(fit.parameters.names)}; expected the same"
+        )
+    return pose(whole, given, fit.weights, Journal(len(given.coordinate.values), on_event))
+
+
+def _curve(fit: Fit, k: int, sides: list) -> Profile:
+    """Both sides of a profile, joined at the identified value."""
+    below, above = sides
+    rows = [*below.rows[::-1], (0.0, fit.values), *above.rows]
+    points = np.array([vector for _, vector in rows])
+    return Profile(
+        name=fit.parameters.names[k],
+        values=points[:, k].copy(),
+        excess=np.array([excess for excess, _ in rows]),
+        points=points,
+        lower=below.end,
+        upper=above.end,
+        open=(below.open, above.open),
+        broken=(below.broken, above.broken),
+    )

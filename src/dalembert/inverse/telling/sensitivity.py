@@ -1,0 +1,60 @@
+"""Weighted sensitivities of a model's response, before there are any data."""
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from dalembert.errors import InputError, SolveError, unknown
+from dalembert.forward import ForwardModel
+
+
+def noise_of(
+    model: ForwardModel, deviations: Mapping[str, float] | ArrayLike, where: str
+) -> tuple[tuple[str, ...], np.ndarray, np.ndarray]:
+    """Channels, their places in the model, and the standard deviations of their noise, each (channels,).
+
+    A mapping chooses the channels that it names; a number holds for all that the model has.
+
+    Raises
+    ------
+    InputError
+        For a channel that the model lacks, or a deviation that is not positive.
+    """
+    known = tuple(channel.name for channel in model.channels)
+    names = tuple(deviations) if isinstance(deviations, Mapping) else known
+    for name in names:
+        if name not in known:
+            raise InputError(unknown("channel", name, known, f"{where}: deviations"))
+    given = [deviations[name] for name in names] if isinstance(deviations, Mapping) else deviations
+    values = np.asarray(given, dtype=float)
+    if values.shape not in ((), (len(names),)) or not names:
+        raise InputError(
+            f"{where}: deviations of shape {values.shape} were given; expected a number, or one for each of "
+            f"{', '.join(known)}"
+        )
+    values = np.broadcast_to(values, (len(names),))
+    for name, value in zip(names, values, strict=True):
+        if not (np.isfinite(value) and value > 0):
+            raise InputError(f"{where}: channel {name!r}: its deviation is {value}; expected a positive number")
+    return names, np.array([known.index(name) for name in names]), values
+
+
+def at_of(model: ForwardModel, at: Mapping[str, float] | ArrayLike | None) -> np.ndarray:
+    """The parameter vector (parameters,) to look at; the first guesses if none is given."""
+    return model.parameters.start if at is None else np.asarray(model.parameters.vector(at), dtype=float)
+
+
+def jacobian_at(model: ForwardModel, vector: np.ndarray) -> np.ndarray:
+    """Jacobian (samples, channels, parameters) at a vector (parameters,).
+
+    Raises
+    ------
+    SolveError
+        Where the simulation fails, or the jacobian is not finite.
+    """
+    jacobian = model.linearise(vector)[1]
+    if not np.all(np.isfinite(jacobian)):
+        at = ", ".join(f"{name} = {value:.6g}" for name, value in model.parameters.mapping(vector).items())
+        raise SolveError(f"the sensitivities at {at} are not finite; look at the model there, or look elsewhere")
+    return jacobian

@@ -1,11 +1,13 @@
-"""Minimisers: particle swarms, least squares, and SciPy's by name. They know nothing of models or data."""
+"""Minimisers: swarms, least squares, response sensitivity, and SciPy's by name. They know nothing of models or data."""
 
 from dalembert.optimize.improved_particle_swarm import ImprovedParticleSwarm
 from dalembert.optimize.least_squares import LeastSquares
 from dalembert.optimize.minimiser import Minimiser
-from dalembert.optimize.minimum import Minimum, Objective, OnIteration, Progress
+from dalembert.optimize.minimum import Minimum, Objective, OnIteration, Progress, RegularisedStep
 from dalembert.optimize.particle_swarm import ParticleSwarm
+from dalembert.optimize.response_sensitivity import ResponseSensitivity
 from dalembert.optimize.swarm import Swarm, SwarmState
+from dalembert.optimize.tikhonov import Regularised
 
 __all__ = [
     "ImprovedParticleSwarm",
@@ -16,6 +18,9 @@ __all__ = [
     "OnIteration",
     "ParticleSwarm",
     "Progress",
+    "Regularised",
+    "RegularisedStep",
+    "ResponseSensitivity",
     "Swarm",
     "SwarmState",
 ]

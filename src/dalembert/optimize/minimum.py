@@ -12,6 +12,37 @@ Objective = Callable[[np.ndarray], np.ndarray]
 """Fitness of a batch, (batch, parameters) to (batch,); NaN or an infinity marks a sample that failed."""
 
 
+@dataclass(frozen=True, eq=False)
+class RegularisedStep:
+    """Account of one regularised step, ‖A d − b‖² + μ² ‖d‖² least, that led to a point.
+
+    Parameters
+    ----------
+    mu : float
+        Weight that the step was taken with.
+    chosen : float
+        Weight before it was raised for agreement: the corner of the L-curve, say.
+    agreement : float
+        Fall of the sum of squares over the fall that the linear model foresaw.
+    trials : int
+        Points tried until one agreed.
+    residual, length : float
+        ‖b‖ before the step, and ‖d‖.
+    weights, residual_norms, step_norms : array, shape (points,)
+        The L-curve: ‖A d − b‖ and ‖d‖ of many weights, increasing.
+    """
+
+    mu: float
+    chosen: float
+    agreement: float
+    trials: int
+    residual: float
+    length: float
+    weights: np.ndarray
+    residual_norms: np.ndarray
+    step_norms: np.ndarray
+
+
 @dataclass(frozen=True)
 class Progress:
     """How far a minimiser has come.
@@ -23,12 +54,15 @@ class Progress:
         Lowest fitness so far; infinite while every sample has failed.
     x : array, shape (parameters,)
         Where it was found.
+    regularised : RegularisedStep, optional
+        The step that led there, from methods that take such steps.
     """
 
     iteration: int
     evaluations: int
     best: float
     x: np.ndarray
+    regularised: RegularisedStep | None = None
 
 
 OnIteration = Callable[[Progress], None]

@@ -30,7 +30,7 @@ _NAMES = {
     "forward": "Channel Coordinate ForwardModel PythonModel Responses Sensor Sensors",
     "optimize": "ImprovedParticleSwarm LeastSquares Minimiser ParticleSwarm ResponseSensitivity",
     "surrogate": "Adaptive ChebyshevPolynomial Surrogate Tensor TotalDegree",
-    "data": "Bands Measurements read_bands read_csv",
+    "data": "Bands Measurements derivative read read_bands read_csv read_mat read_netcdf read_parquet read_uff",
     "inverse": """
         BandFit Designs Experiment Fit GlobalSurrogate Nested ParameterSet Prediction Profiles
         design identifiability identify identify_bands identify_set predict profile

@@ -1,7 +1,21 @@
 """Measured data in."""
 
 from dalembert.data.bands import Bands
-from dalembert.data.csv_file import read_bands, read_csv
+from dalembert.data.bands_file import read_bands
+from dalembert.data.derivative import Derivative, derivative
 from dalembert.data.measurements import Measurements
+from dalembert.data.readers import read, read_csv, read_mat, read_netcdf, read_parquet, read_uff
 
-__all__ = ["Bands", "Measurements", "read_bands", "read_csv"]
+__all__ = [
+    "Bands",
+    "Derivative",
+    "Measurements",
+    "derivative",
+    "read",
+    "read_bands",
+    "read_csv",
+    "read_mat",
+    "read_netcdf",
+    "read_parquet",
+    "read_uff",
+]

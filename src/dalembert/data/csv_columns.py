@@ -7,13 +7,16 @@ from pathlib import Path
 
 import numpy as np
 
+from dalembert.data.columns import Columns
+from dalembert.data.opening import absent
 from dalembert.errors import DataError, unknown
 
+GAPS = ("", "na")
+"""What stands, beside ``nan`` in any spelling, in the cell of a value that was not measured."""
 
-def read_columns(
-    path: Path, time: str, names: Iterable[str] | None, separator: str
-) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """The times (samples,), and columns (samples,) by their names in the file.
+
+def csv_columns(path: Path, time: str, names: Iterable[str] | None, missing: str, separator: str) -> Columns:
+    """Times and columns by their names in the file.
 
     Parameters
     ----------
@@ -22,28 +25,39 @@ def read_columns(
         Column of the times, which must grow.
     names : iterable of str, optional
         Columns wanted; all but the times if not given.
+    missing : {"refuse", "leave-out"}
+        Whether an empty cell, NA or NaN is a defect, or becomes a NaN.
     separator : str
 
     Raises
     ------
     DataError
-        Naming file, line and column: no such file, empty file, missing column (with the nearest names), a cell that is
-        empty, NaN or not a number, a line too short or too long, a time that does not grow.
+        Naming file, line and column: no such file, empty file, missing column (with the nearest names) or one that is
+        there twice, a cell that is empty, NaN or not a number, a line too short or too long, a time that does not grow.
     """
     header, rows = _read(path, separator)
     wanted = [name for name in header if name != time] if names is None else list(dict.fromkeys(names))
     for column in (time, *wanted):
         if column not in header:
             raise DataError(unknown("column", column, header, str(path)))
+        if header.count(column) > 1:
+            raise DataError(
+                f"{path}: {header.count(column)} columns are called {column!r}; expected one; rename the others"
+            )
+
+    def number(line: int, place: int, cell: str) -> float:
+        gap = missing == "leave-out" and header[place] != time and cell.lower() in (*GAPS, "nan")
+        return math.nan if gap else _number(path, line, header[place], cell)
+
     places = [header.index(column) for column in (time, *wanted)]
-    table = np.array([[_number(path, line, header[place], cells[place]) for place in places] for line, cells in rows])
+    table = np.array([[number(line, place, cells[place]) for place in places] for line, cells in rows])
     for (line, _), before, now in zip(rows[1:], table[:-1, 0], table[1:, 0], strict=True):
         if now <= before:
             raise DataError(
                 f"{path}, line {line}, column {time!r}: {now:.10g} comes after {before:.10g}; expected growing times; "
                 "sort the lines or remove the repeated one"
             )
-    return table[:, 0], dict(zip(wanted, table[:, 1:].T, strict=True))
+    return Columns(path, time, table[:, 0], dict(zip(wanted, table[:, 1:].T, strict=True)))
 
 
 def _read(path: Path, separator: str) -> tuple[list[str], list[tuple[int, list[str]]]]:
@@ -55,8 +69,7 @@ def _read(path: Path, separator: str) -> tuple[list[str], list[tuple[int, list[s
                 (reader.line_num, [cell.strip() for cell in cells]) for cells in reader if any(map(str.strip, cells))
             ]
     except FileNotFoundError:
-        near = [entry.name for entry in path.parent.glob("*")] if path.parent.is_dir() else []
-        raise DataError(unknown("file", path.name, near, f"folder {path.parent}")) from None
+        raise absent(path) from None
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise DataError(f"{path}: cannot be read as text with columns ({error})") from error
     if len(lines) < 2:

@@ -137,6 +137,101 @@ class Measurements:
         """The first ``samples`` samples."""
         return replace(self, coordinate=cut(self.coordinate, samples), values=self.values[:samples])
 
+    def between(self, begin: float, end: float) -> "Measurements":
+        """The samples from ``begin`` to ``end`` of the coordinate, both included.
+
+        Raises
+        ------
+        DataError
+            If there are none.
+        """
+        along = self.coordinate.values
+        return self._picked((along >= begin) & (along <= end), f"from {begin:.10g} to {end:.10g}")
+
+    def every(self, step: int) -> "Measurements":
+        """Every ``step``-th sample, the first one among them; the others' information is lost.
+
+        Raises
+        ------
+        DataError
+            For a step below 1.
+        """
+        if step < 1:
+            raise DataError(f"every {step} samples; expected at least 1")
+        return self._picked(np.arange(len(self.values)) % step == 0, "")
+
+    def _picked(self, mask: np.ndarray, what: str) -> "Measurements":
+        along = self.coordinate
+        if not np.any(mask):
+            raise DataError(
+                f"no sample lies {what}; the {along.name} runs from {along.values[0]:.10g} to {along.values[-1]:.10g} "
+                f"{along.unit}"
+            )
+        return replace(
+            self, coordinate=Coordinate(along.name, along.unit, along.values[mask]), values=self.values[mask]
+        )
+
+    def resampled(self, samples: ArrayLike) -> "Measurements":
+        """The channels at other samples of the coordinate, by cubic splines through the values.
+
+        A spline is no filter: the new samples are values of the same motion, which is what a model sampled there
+        gives too, aliased or not; for a spectrum, data must be low-pass filtered before they are sampled more coarsely.
+        Noise is not averaged away, and where the new samples are denser than the old ones neighbours share it, so that
+        they hold less information than they are counted as.
+
+        New samples in a gap are missing. Wrapping channels are interpolated without their jumps and wrapped again.
+
+        Parameters
+        ----------
+        samples : array, shape (new samples,)
+            Growing, within the data.
+
+        Raises
+        ------
+        DataError
+            For samples that lie outside the data, or do not grow.
+
+        Examples
+        --------
+        >>> data = Measurements.of([0.0, 0.3, 0.5, 1.0], {"x": [0.0, 0.09, 0.25, 1.0]})
+        >>> data.resampled([0.0, 0.4, 0.8]).values.round(12).tolist()
+        [[0.0], [0.16], [0.64]]
+        """
+        from dalembert.data.resampling import resampled
+
+        return resampled(self, np.array(samples, dtype=float))
+
+    def with_derivative(
+        self,
+        channel: str,
+        name: str,
+        *,
+        order: int = 1,
+        window: int | None = None,
+        degree: int = 3,
+        deviation: float | None = None,
+    ) -> "Measurements":
+        """The measurements and a channel ``name`` beside them, a derivative of another one.
+
+        Its deviation, where the data have deviations, is ``deviation``, or else the error that
+        :func:`~dalembert.data.derivative` tells, which takes the same arguments.
+
+        Examples
+        --------
+        >>> times = np.linspace(0, 1, 51)
+        >>> data = Measurements.of(times, {"x": times**2}, deviations=1e-3).with_derivative("x", "vx")
+        >>> data.channels, bool(np.max(np.abs(data.values[:, 1] - 2 * times)) < 5 * data.deviations[1])
+        (('x', 'vx'), True)
+        """
+        from dalembert.data.derivative import derivative
+
+        found = derivative(self, channel, order=order, window=window, degree=degree)
+        deviations = self.deviations
+        if deviations is not None:
+            deviations = np.append(deviations, found.error if deviation is None else deviation)
+        values = np.column_stack([self.values, found.values])
+        return replace(self, channels=(*self.channels, name), values=values, deviations=deviations)
+
     @property
     def fingerprint(self) -> str:
         """Hash of all that the measurements say."""

@@ -1,0 +1,70 @@
+"""Bands from files."""
+
+from collections.abc import Collection, Mapping
+from pathlib import Path
+
+from dalembert.data.bands import Bands
+from dalembert.data.formats import columns_in
+from dalembert.data.opening import told_of
+from dalembert.errors import DataError
+
+
+def read_bands(
+    path: str | Path,
+    time: str = "t",
+    columns: Mapping[str, tuple[str, str]] | None = None,
+    *,
+    separator: str = ",",
+    units: Mapping[str, str] | None = None,
+    format: str | None = None,  # noqa: A002
+) -> Bands:
+    """Bands from a file of any format that :func:`read` knows.
+
+    Parameters
+    ----------
+    path : path
+    time : str
+        Column of the times.
+    columns : mapping of str to (str, str), optional
+        Columns of each channel's lower and upper bounds, for example ``{"AB.end.x": ("x_lower", "x_upper")}``. If not
+        given, every pair of columns ``name_lower`` and ``name_upper`` is the channel ``name``.
+    separator, units, format
+        As in :func:`read`.
+
+    Raises
+    ------
+    DataError
+        As :func:`read`; where a lower bound is larger than its upper bound; where a channel has not two columns.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     file = Path(folder) / "bounds.csv"
+    ...     _ = file.write_text("t,x_lower,x_upper\\n0.0,0.9,1.1\\n0.1,0.8,1.2\\n")
+    ...     read_bands(file, columns={"AB.end.x": ("x_lower", "x_upper")}).upper.tolist()
+    [[1.1], [1.2]]
+    """
+    path = Path(path)
+    if columns is not None:
+        for name, pair in columns.items():
+            if isinstance(pair, str) or len(pair) != 2:
+                raise DataError(f"columns, channel {name!r}: {pair!r} was given; expected two names, (lower, upper)")
+    names = None if columns is None else [column for pair in columns.values() for column in pair]
+    found = columns_in(path, time, names, separator=separator, units=[*(units or ())], format=format)
+    along, table = found.converted(units)
+    pairs = _pairs(path, table) if columns is None else columns
+    with told_of(path):
+        return Bands.of(along, {name: (table[lower], table[upper]) for name, (lower, upper) in pairs.items()})
+
+
+def _pairs(path: Path, names: Collection[str]) -> dict[str, tuple[str, str]]:
+    """Columns that are bounds of one channel, by its name."""
+    stems = [name.removesuffix("_lower") for name in names if name.endswith("_lower")]
+    pairs = {stem: (f"{stem}_lower", f"{stem}_upper") for stem in stems if f"{stem}_upper" in names}
+    if not pairs:
+        raise DataError(
+            f"{path}: no two columns are named NAME_lower and NAME_upper; "
+            "give columns = {channel: (lower column, upper column)}"
+        )
+    return pairs

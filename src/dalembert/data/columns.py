@@ -1,0 +1,165 @@
+"""Columns of a file, whatever its format: chosen by name, checked, and in SI units."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from dalembert.errors import DataError, InputError, unknown
+from dalembert.forward import Coordinate
+from dalembert.units import is_si, si
+
+
+@dataclass(frozen=True, eq=False)
+class Columns:
+    """What a file holds.
+
+    Parameters
+    ----------
+    path : Path
+    time : str
+        Name of the column that the samples lie along.
+    along : array, shape (samples,)
+        Its numbers, growing.
+    table : mapping of str to array, shape (samples,)
+        The other columns.
+    units : mapping of str to str
+        Units of columns that the file itself names.
+    frequency : bool
+        Whether the samples lie along a frequency in Hz, not along time.
+    """
+
+    path: Path
+    time: str
+    along: np.ndarray
+    table: Mapping[str, np.ndarray]
+    units: Mapping[str, str] = field(default_factory=dict)
+    frequency: bool = False
+
+    def converted(self, units: Mapping[str, str] | None) -> tuple[Coordinate, dict[str, np.ndarray]]:
+        """Coordinate and columns in SI units, from the given units, or else those that the file names.
+
+        Raises
+        ------
+        DataError
+            For a unit that is unknown, that is no mere multiple of an SI unit, or that is no time for the times; for a
+            unit of a column that there is not.
+        """
+        for name in units or {}:
+            if name not in (self.time, *self.table):
+                raise DataError(unknown("column", name, [self.time, *self.table], f"{self.path}, units"))
+        chosen = {**self.units, **(units or {})}
+        name, unit = ("frequency", "Hz") if self.frequency else ("time", "s")
+        along = self.along * self._factor(self.time, chosen, unit)
+        table = {column: values * self._factor(column, chosen, None) for column, values in self.table.items()}
+        return Coordinate(name, unit, along), table
+
+    def _factor(self, column: str, units: Mapping[str, str], expected: str | None) -> float:
+        """How many SI units the unit of a column is."""
+        unit = units.get(column, "").strip()
+        if unit in ("", "1"):
+            return 1.0
+        where = f"{self.path}, column {column!r}"
+        try:
+            one, ten = si(f"1 {unit}", None), si(f"10 {unit}", None)
+        except InputError:
+            raise DataError(
+                f"{where}: the unit {unit!r} is unknown; expected one such as 'mm', 'deg' or 'm/s^2'; give it in units"
+            ) from None
+        if abs(ten - 10 * one) > 1e-9 * abs(ten):
+            raise DataError(f"{where}: the unit {unit!r} has an offset; expected a multiple of an SI unit, such as 'K'")
+        if expected is None:
+            return one
+        try:
+            return si(f"1 {unit}", expected)
+        except InputError:
+            kind = "frequency such as 'Hz' or 'kHz'" if self.frequency else "time such as 's' or 'ms'"
+            raise DataError(f"{where}: the unit {unit!r} was given; expected that of a {kind}") from None
+
+
+def chosen(
+    path: Path, columns: Mapping[str, np.ndarray], time: str, names: Iterable[str] | None, missing: str
+) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    """The times (samples,), and columns (samples,) by name, of all that a file holds.
+
+    Times that are dates become seconds since the first. Without ``names`` all columns of numbers as long as the times
+    are chosen.
+
+    Raises
+    ------
+    DataError
+        Naming file, column and sample: a missing column (with the nearest names), one of another length, text, complex
+        numbers, a value that is not finite (NaN unless it is to be left out), a time that does not grow.
+    """
+    wanted = None if names is None else list(dict.fromkeys(names))
+    for column in (time, *(wanted or ())):
+        if column not in columns:
+            raise DataError(unknown("column", column, columns, str(path)))
+    along = _numbers(path, time, _seconds(columns[time]))
+    if wanted is None:
+        wanted = [name for name, column in columns.items() if name != time and _fits(column, along)]
+        if not wanted:
+            raise DataError(f"{path}: no column of numbers is as long as {time!r}, {len(along)} samples; name another")
+    table = {name: _numbers(path, name, columns[name]) for name in wanted}
+    for name, column in table.items():
+        if len(column) != len(along):
+            raise DataError(f"{path}, column {name!r}: {len(column)} values; expected {len(along)}, as {time!r} has")
+    check_finite(path, time, along, missing="refuse")
+    for name, column in table.items():
+        check_finite(path, name, column, missing)
+    check_growing(path, time, along)
+    return along, table
+
+
+def check_finite(path: Path, name: str, column: np.ndarray, missing: str) -> None:
+    """Refuse a column with a value that is not finite; NaN is allowed where it is to be left out."""
+    wrong = np.isinf(column) if missing == "leave-out" else ~np.isfinite(column)
+    if np.any(wrong):
+        sample = int(np.argmax(wrong))
+        advice = (
+            "" if np.isinf(column[sample]) or missing == "leave-out" else ", or leave it out: missing = 'leave-out'"
+        )
+        raise DataError(
+            f"{path}, column {name!r}, sample {sample}: {column[sample]}; expected a finite number; "
+            f"remove the sample or the column{advice}"
+        )
+
+
+def check_growing(path: Path, time: str, along: np.ndarray) -> None:
+    """Refuse times that do not grow."""
+    back = np.flatnonzero(np.diff(along) <= 0)
+    if len(back):
+        now = int(back[0]) + 1
+        raise DataError(
+            f"{path}, column {time!r}, sample {now}: {along[now]:.10g} comes after {along[now - 1]:.10g}; expected "
+            "growing times; sort the samples or remove the repeated one"
+        )
+
+
+def foreign(unit: str) -> bool:
+    """Whether a unit that a file names is none, or needs no conversion, the other way round."""
+    return unit not in ("", "1", "NONE") and not is_si(unit)
+
+
+def _numbers(path: Path, name: str, column: np.ndarray) -> np.ndarray:
+    where = f"{path}, column {name!r}"
+    if column.ndim != 1:
+        raise DataError(f"{where}: an array of shape {column.shape}; expected one number a sample")
+    if column.dtype.kind == "c":
+        raise DataError(f"{where}: complex numbers; expected real ones, such as a motion over time")
+    if column.dtype.kind not in "fiub":
+        raise DataError(f"{where}: {'dates' if column.dtype.kind in 'mM' else 'no numbers'}; expected numbers")
+    return column.astype(float)
+
+
+def _fits(column: np.ndarray, along: np.ndarray) -> bool:
+    return column.shape == along.shape and column.dtype.kind in "fiu"
+
+
+def _seconds(column: np.ndarray) -> np.ndarray:
+    """Dates and durations as seconds since the first."""
+    if column.dtype.kind not in "mM" or len(column) == 0:
+        return column
+    since = (column - column[0]).astype("timedelta64[ns]")
+    return np.where(np.isnat(since), np.nan, since.astype(np.int64) * 1e-9)

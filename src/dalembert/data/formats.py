@@ -1,0 +1,67 @@
+"""The formats that data are read from, each with a function that gives columns."""
+
+from collections.abc import Collection, Iterable
+from pathlib import Path
+
+from dalembert.data.columns import Columns
+from dalembert.data.csv_columns import csv_columns
+from dalembert.data.mat_file import mat_columns
+from dalembert.data.netcdf_file import netcdf_columns
+from dalembert.data.parquet_file import parquet_columns
+from dalembert.data.uff_file import uff_columns
+from dalembert.errors import DataError, unknown
+
+SUFFIXES = {
+    "csv": (".csv", ".txt"),
+    "parquet": (".parquet", ".pq"),
+    "mat": (".mat",),
+    "uff": (".uff", ".unv", ".uf", ".bunv"),
+    "netcdf": (".nc", ".nc4", ".cdf"),
+}
+"""Suffixes of the files of each format."""
+
+
+def columns_in(
+    path: Path,
+    time: str,
+    names: Iterable[str] | None,
+    *,
+    missing: str = "refuse",
+    separator: str = ",",
+    units: Collection[str] = (),
+    format: str | None = None,  # noqa: A002
+) -> Columns:
+    """Columns of a file by their names in it, as the format says or else the suffix.
+
+    ``units`` are the columns of which the unit is known whatever the file says of it.
+
+    Raises
+    ------
+    DataError
+        For a format or a suffix that is unknown, and whatever is wrong with the file.
+    """
+    kind = format_of(path) if format is None else format
+    if kind == "csv":
+        return csv_columns(path, time, names, missing, separator)
+    if kind == "uff":
+        return uff_columns(path, names, missing, units)
+    readers = {"parquet": parquet_columns, "mat": mat_columns, "netcdf": netcdf_columns}
+    if kind not in readers:
+        raise DataError(unknown("format", kind, SUFFIXES, str(path)))
+    return readers[kind](path, time, names, missing)
+
+
+def format_of(path: Path) -> str:
+    """Name of the format that a suffix stands for.
+
+    >>> format_of(Path("motion.MAT"))
+    'mat'
+    """
+    for name, suffixes in SUFFIXES.items():
+        if path.suffix.lower() in suffixes:
+            return name
+    known = ", ".join(suffix for suffixes in SUFFIXES.values() for suffix in suffixes)
+    raise DataError(
+        f"{path}: the suffix {path.suffix!r} stands for no format; expected one of {known}; rename the file, or say "
+        f"which format it has: {', '.join(SUFFIXES)}"
+    )

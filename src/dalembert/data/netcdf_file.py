@@ -1,0 +1,60 @@
+"""Columns of a NetCDF file, version 3 or 4."""
+
+import re
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from dalembert.data.columns import Columns, chosen
+from dalembert.data.opening import reading
+from dalembert.errors import DataError, unknown
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+
+def netcdf_columns(path: Path, time: str, names: Iterable[str] | None, missing: str) -> Columns:
+    """Times and columns: variables along the times' dimension, each with the unit that its ``units`` attribute names.
+
+    A variable over another dimension too gives a column an entry: ``response[AB.end.x]`` where that dimension has
+    labels, else ``q[0]``.
+    """
+    with reading(path, "NetCDF"):
+        import h5py
+        from xarray import load_dataset
+
+        engine = "h5netcdf" if h5py.is_hdf5(path) else "scipy"
+        dataset = load_dataset(path, engine=engine, decode_times=False)
+        held = [
+            (label, array, unit) for name in dataset.variables for label, array, unit in _parts(dataset, name, time)
+        ]
+    if time not in dataset.variables:
+        raise DataError(unknown("column", time, map(str, dataset.variables), str(path)))
+    along, table = chosen(path, {label: array for label, array, _ in held}, time, names, missing)
+    units = {label: unit for label, _, unit in held if unit and (label in table or label == time)}
+    return Columns(path, time, along, table, units)
+
+
+def _parts(dataset: "Dataset", name: object, time: str) -> Iterator[tuple[str, np.ndarray, str]]:
+    """Columns that a variable gives, with their unit."""
+    variable = dataset.variables[name]  # pyright: ignore[reportArgumentType]
+    along = dataset.variables[time].dims[:1] if time in dataset.variables else ()
+    unit = _unit(str(variable.attrs.get("units", "")))
+    if variable.ndim == 2 and along and along[0] in variable.dims:
+        (other,) = (dimension for dimension in variable.dims if dimension != along[0])
+        labels = dataset.variables[other].values if other in dataset.variables else range(variable.sizes[other])
+        for label, part in zip(labels, variable.transpose(other, along[0]).values, strict=True):
+            yield f"{name}[{label}]", part, unit
+    else:
+        yield str(name), np.atleast_1d(variable.values), unit
+
+
+def _unit(text: str) -> str:
+    """A unit as the convention for NetCDF writes it, ``m s-2`` or ``seconds since 2020-01-01``, as we do.
+
+    >>> _unit("m s-2"), _unit("seconds since 2020-01-01"), _unit("kg m^2"), _unit("degrees")
+    ('m s^-2', 'seconds', 'kg m^2', 'degrees')
+    """
+    return re.sub(r"(?<=[A-Za-z])(-?\d)", r"^\1", text.partition(" since ")[0].strip())

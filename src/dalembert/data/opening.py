@@ -1,0 +1,58 @@
+"""Opening files of data by libraries, each of which has errors of its own."""
+
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+from dalembert.errors import DataError, unknown
+
+
+def absent(path: Path) -> DataError:
+    """Error for a file that is not there, with its neighbours' names."""
+    near = [entry.name for entry in path.parent.glob("*")] if path.parent.is_dir() else []
+    return DataError(unknown("file", path.name, near, f"folder {path.parent}"))
+
+
+@contextmanager
+def reading(path: Path, what: str) -> Iterator[None]:
+    """Whatever a library says against a file, as one sentence: the file cannot be read as ``what``."""
+    if not path.is_file():
+        raise absent(path)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # what matters is refused by name afterwards
+            yield
+    except DataError:
+        raise
+    except Exception as error:  # a malformed file may meet any error of a library
+        reason = next(iter(str(error).splitlines()), "") or type(error).__name__
+        raise DataError(f"{path}: cannot be read as {what} ({reason})") from error
+
+
+def library(name: str, path: Path, what: str) -> Any:
+    """A module that comes with the extra ``data``.
+
+    Raises
+    ------
+    DataError
+        Saying what to install, if it is not there.
+    """
+    try:
+        return import_module(name)
+    except ImportError:
+        package = name.partition(".")[0]
+        raise DataError(
+            f"{path}: {package} is needed to read {what}, and is not installed; run: pip install 'dalembert[data]'"
+        ) from None
+
+
+@contextmanager
+def told_of(path: Path) -> Iterator[None]:
+    """Defects of data, told with the file that they come from."""
+    try:
+        yield
+    except DataError as error:
+        raise DataError(f"{path}: {error}") from error

@@ -1,0 +1,23 @@
+"""Columns of a Parquet file."""
+
+from collections.abc import Iterable
+from pathlib import Path
+
+import numpy as np
+
+from dalembert.data.columns import Columns, chosen
+from dalembert.data.opening import library, reading
+
+
+def parquet_columns(path: Path, time: str, names: Iterable[str] | None, missing: str) -> Columns:
+    """Times and columns; a null is a NaN."""
+    with reading(path, "Parquet"):
+        parquet = library("pyarrow.parquet", path, "Parquet files")
+        table = parquet.read_table(path)
+        held = {name: _array(table.column(place)) for place, name in enumerate(table.column_names)}
+    return Columns(path, time, *chosen(path, held, time, names, missing))
+
+
+def _array(column) -> np.ndarray:
+    """A column as an array: of numbers or dates, or of objects for everything else."""
+    return np.asarray(column.to_numpy())

@@ -1,0 +1,176 @@
+"""Measurements from files."""
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from numpy.typing import ArrayLike
+
+from dalembert.data.formats import columns_in
+from dalembert.data.measurements import Measurements
+from dalembert.data.opening import told_of
+
+
+def read(
+    path: str | Path,
+    time: str = "t",
+    columns: Mapping[str, str] | None = None,
+    deviations: Mapping[str, float] | ArrayLike | None = None,
+    *,
+    units: Mapping[str, str] | None = None,
+    missing: str = "refuse",
+    wraps: Iterable[str] = (),
+    format: str | None = None,  # noqa: A002
+    separator: str = ",",
+) -> Measurements:
+    """Measurements from a file: CSV, Parquet, MAT (version 5 and 7.3), UFF (dataset 58) or NetCDF.
+
+    Parameters
+    ----------
+    path : path
+    time : str
+        Column of the times. A universal file has none to name: there it is the abscissa, ``"t"`` in ``units``.
+    columns : mapping of str to str, optional
+        Column of each channel, for example ``{"AB.end.x": "case1_x"}``; every column by its own name if not given. In
+        a MAT file a column is a vector, a field of a struct, ``"run.x"``, or a part of a matrix, ``"q(:,1)"``; in a
+        universal file a function, by its response node and direction, ``"12:+X"``, or its first ID line; in NetCDF a
+        variable, or an entry of one, ``"response[AB.end.x]"``.
+    deviations : number, mapping by channel, or array of shape (channels,), optional
+        Standard deviations of the noise, in SI units.
+    units : mapping of str to str, optional
+        Unit of each column of the file that is not in SI units, for example ``{"t": "ms", "case1_x": "mm"}``. Units
+        that a NetCDF file names are known without it.
+    missing : {"refuse", "leave-out"}
+        With ``"leave-out"`` an empty cell, a null or a NaN is a sample that was not measured, and does not count.
+    wraps : iterable of str
+        Channels that are angles known up to whole turns.
+    format : {"csv", "parquet", "mat", "uff", "netcdf"}, optional
+        By the file's suffix if not given.
+    separator : str
+        Of the cells of a CSV file.
+
+    Raises
+    ------
+    DataError
+        Naming file, column and line or sample: no such file, a file that is not what its suffix says, a column that is
+        missing (with the nearest names) or has another length than the times, a value that is no finite number, a
+        time that does not grow, an unknown unit, a library that is not installed.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     file = Path(folder) / "motion.csv"
+    ...     _ = file.write_text("ms,x\\n0,1000\\n100,900\\n")
+    ...     data = read(file, "ms", {"AB.end.x": "x"}, units={"ms": "ms", "x": "mm"})
+    >>> data.coordinate.values.tolist(), data.values.tolist()
+    ([0.0, 0.1], [[1.0], [0.9]])
+    """
+    path = Path(path)
+    names = None if columns is None else columns.values()
+    found = columns_in(path, time, names, missing=missing, separator=separator, units=[*(units or ())], format=format)
+    along, table = found.converted(units)
+    chosen = {name: name for name in table} if columns is None else columns
+    with told_of(path):
+        channels = {name: table[column] for name, column in chosen.items()}
+        return Measurements.of(along, channels, deviations, missing=missing, wraps=wraps)
+
+
+def read_csv(
+    path: str | Path,
+    time: str = "t",
+    columns: Mapping[str, str] | None = None,
+    deviations: Mapping[str, float] | ArrayLike | None = None,
+    *,
+    separator: str = ",",
+    units: Mapping[str, str] | None = None,
+    missing: str = "refuse",
+    wraps: Iterable[str] = (),
+) -> Measurements:
+    """Measurements from a CSV file with a header line, whatever its suffix; the arguments are those of :func:`read`.
+
+    Raises
+    ------
+    DataError
+        Naming file, line and column: no such file, empty file, missing column (with the nearest names), a cell that is
+        empty, NaN or not a number, a line too short or too long, a time that does not grow.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     file = Path(folder) / "motion.csv"
+    ...     _ = file.write_text("t,x\\n0.0,1.0\\n0.1,0.9\\n")
+    ...     read_csv(file, columns={"AB.end.x": "x"}).values.tolist()
+    [[1.0], [0.9]]
+    """
+    more: dict[str, Any] = {"units": units, "missing": missing, "wraps": wraps, "separator": separator}
+    return read(path, time, columns, deviations, format="csv", **more)
+
+
+def read_parquet(
+    path: str | Path,
+    time: str = "t",
+    columns: Mapping[str, str] | None = None,
+    deviations: Mapping[str, float] | ArrayLike | None = None,
+    **more: Any,
+) -> Measurements:
+    """Measurements from a Parquet file; the arguments are those of :func:`read`.
+
+    Times may be dates: they become seconds since the first.
+    """
+    return read(path, time, columns, deviations, format="parquet", **more)
+
+
+def read_mat(
+    path: str | Path,
+    time: str = "t",
+    columns: Mapping[str, str] | None = None,
+    deviations: Mapping[str, float] | ArrayLike | None = None,
+    **more: Any,
+) -> Measurements:
+    """Measurements from a MAT file of MATLAB, version 5 or 7.3; the arguments are those of :func:`read`.
+
+    Tables and timeseries of MATLAB cannot be read by anything else: save their columns as vectors.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> from scipy.io import savemat
+    >>> with TemporaryDirectory() as folder:
+    ...     savemat(Path(folder) / "run.mat", {"run": {"time": [0.0, 0.1], "angle": [[45.0, 30.0], [90.0, 20.0]]}})
+    ...     columns = {"crank.angle": "run.angle(:,1)"}
+    ...     data = read_mat(Path(folder) / "run.mat", "run.time", columns, units={"run.angle(:,1)": "deg"})
+    >>> data.values.round(4).tolist()
+    [[0.7854], [1.5708]]
+    """
+    return read(path, time, columns, deviations, format="mat", **more)
+
+
+def read_uff(
+    path: str | Path,
+    columns: Mapping[str, str] | None = None,
+    deviations: Mapping[str, float] | ArrayLike | None = None,
+    **more: Any,
+) -> Measurements:
+    """Measurements from a universal file, its functions at nodes (dataset 58); the arguments are those of :func:`read`.
+
+    Functions over frequency give measurements along a frequency in Hz. Functions of which the file says that they are
+    not in SI units are refused until ``units`` names their unit, since that is free text there. An evenly spaced
+    abscissa is stored with six digits of its distance.
+    """
+    return read(path, "t", columns, deviations, format="uff", **more)
+
+
+def read_netcdf(
+    path: str | Path,
+    time: str = "t",
+    columns: Mapping[str, str] | None = None,
+    deviations: Mapping[str, float] | ArrayLike | None = None,
+    **more: Any,
+) -> Measurements:
+    """Measurements from a NetCDF file, version 3 or 4; the arguments are those of :func:`read`.
+
+    What the attribute ``units`` of a variable says is converted to SI.
+    """
+    return read(path, time, columns, deviations, format="netcdf", **more)

@@ -1,0 +1,51 @@
+"""Measurements at other samples."""
+
+from dataclasses import replace
+
+import numpy as np
+from scipy.interpolate import make_interp_spline
+
+from dalembert.data.labels import check_labels
+from dalembert.data.measurements import TURN, Measurements
+from dalembert.data.stretches import stretches
+from dalembert.errors import DataError
+from dalembert.forward import Coordinate
+
+CLOSE = 1e-9
+"""Samples as close as this part of the coordinate's span are the same."""
+
+
+def resampled(data: Measurements, samples: np.ndarray) -> Measurements:
+    """Measurements at other samples (new samples,), by splines between the gaps of each channel."""
+    along = data.coordinate
+    given = Coordinate(along.name, along.unit, np.atleast_1d(samples))
+    check_labels(given, data.channels)
+    first, last = along.values[[0, -1]]
+    close = CLOSE * max(float(last - first), np.finfo(float).tiny)
+    outside = (given.values < first - close) | (given.values > last + close)
+    if np.any(outside):
+        raise DataError(
+            f"{along.name} {given.values[np.argmax(outside)]:.10g} {along.unit} lies outside the data, which run from "
+            f"{first:.10g} to {last:.10g} {along.unit}; expected samples within; nothing is known beyond"
+        )
+    values = np.column_stack(
+        [
+            _channel(along.values, column, there, given.values, close)
+            for column, there in zip(data.continuous.T, data.present.T, strict=True)
+        ]
+    )
+    turned = (values + TURN / 2) % TURN - TURN / 2
+    return replace(data, coordinate=given, values=np.where(data.wrapping, turned, values))
+
+
+def _channel(
+    along: np.ndarray, values: np.ndarray, present: np.ndarray, samples: np.ndarray, close: float
+) -> np.ndarray:
+    """A channel at new samples; NaN in gaps."""
+    result = np.full(len(samples), np.nan)
+    for run in stretches(present):
+        x, y = along[run], values[run]
+        inside = (samples >= x[0] - close) & (samples <= x[-1] + close)
+        spline = make_interp_spline(x, y, k=min(3, len(x) - 1))
+        result[inside] = spline(samples[inside])
+    return result

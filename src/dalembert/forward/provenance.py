@@ -11,8 +11,8 @@ import dalembert
 from dalembert.forward.model import ForwardModel
 
 
-def provenance(model: ForwardModel, method: object, **settings: Any) -> dict[str, Any]:
-    """Versions, hashes of model and data, method and settings, in what JSON can hold; no times and no paths."""
+def provenance(model: ForwardModel, method: object = None, **settings: Any) -> dict[str, Any]:
+    """Versions, hashes of model and data, method if there is one, settings, as JSON holds them; no times, no paths."""
     own = {field.name: getattr(method, field.name) for field in fields(method)} if is_dataclass(method) else {}
     return json.loads(
         json.dumps(
@@ -21,7 +21,7 @@ def provenance(model: ForwardModel, method: object, **settings: Any) -> dict[str
                 "numpy": np.__version__,
                 "scipy": scipy.__version__,
                 "model": model.fingerprint,
-                "method": {"name": type(method).__name__, "settings": own},
+                **({} if method is None else {"method": {"name": type(method).__name__, "settings": own}}),
                 **settings,
             },
             default=str,

@@ -29,11 +29,11 @@ class Fit:
         weights were given, else from the variance of the residuals. NaN where they could not be computed.
     correlation : array, shape (parameters, parameters)
     singular_values : array, shape (parameters,)
-        Of W^½ ∂R/∂p · scale, largest first.
+        Of W^½ ∂R/∂p · scale, with a row scale/deviation a prior; largest first.
     directions : array, shape (parameters, parameters)
         A row a singular value: the combination of p/scale that it belongs to.
     fitness : float
-        Σ W (R − data)² over samples and channels, or the sum of the losses.
+        Σ W (R − data)² over samples and channels, or the sum of the losses; + Σ ((p − start)/deviation)² over priors.
     response, residuals : array, shape (samples, channels)
         R at ``values``, and R − data: NaN where a value is missing, modulo a turn in wrapping channels.
     data : Measurements
@@ -94,7 +94,18 @@ class Fit:
     def identifiability(self) -> Identifiability:
         """What the data can tell: singular values, combinations, and sentences on what they cannot."""
         told = Estimate(self.deviations, self.correlation, self.singular_values, self.directions)
-        return Identifiability(self.singular_values, self.directions, sentences(self.parameters, self.values, told))
+        found = sentences(self.parameters, self.values, told)
+        return Identifiability(self.singular_values, self.directions, found, self.deviations, self.correlation)
+
+    def intervals(self, level: float = 0.95) -> dict[str, tuple[float, float]]:
+        """Interval of each parameter that holds its true value with a probability, by name: value ∓ q × deviation.
+
+        q is the quantile of the normal distribution where the noise is known, else of Student's t. Right where the
+        response is nearly linear within the interval; :func:`dalembert.profile` asks the response itself.
+        """
+        from dalembert.inverse.confidence import intervals
+
+        return intervals(self, level)
 
     def summary(self) -> str:
         """The result as a text table with its status."""

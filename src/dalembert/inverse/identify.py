@@ -93,6 +93,8 @@ def identify(
 
     Notes
     -----
+    A parameter with a ``deviation`` is known before the data: ((p − start)/deviation)² is added to what is made least.
+
     Parameters whose bounds are positive and more than a decade apart are searched by their logarithm
     (``Parameter.log`` overrules). A failed simulation is infinitely bad, and never ends the run.
 
@@ -148,7 +150,7 @@ def identify(
     vector = problem.search.vectors(best.point)
     at = best.linearisation or _linearised(problem, vector)
     response = problem.responses(vector[None])[0] if at is None else at.response
-    told = _told(problem, at, best.fitness, known=given)
+    told = _told(problem, at, best.fitness, known=given or problem.priors > 0)
     whole = response if problem is posed else posed.responses(vector[None])[0]
     fit = Fit(
         parameters=model.parameters,

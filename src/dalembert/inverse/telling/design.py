@@ -105,7 +105,7 @@ def design(
         deviations=np.array([row[5].deviations for row in rows]),
         singular_values=np.array([row[5].singular_values for row in rows]),
         simulations=1 + len(vector),
-        provenance=provenance(model, None, at=vector.tolist(), criterion=criterion),
+        provenance=provenance(model, at=vector.tolist(), criterion=criterion),
     )
 
 

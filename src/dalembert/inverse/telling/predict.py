@@ -2,22 +2,24 @@
 
 import numpy as np
 
-from dalembert.errors import InputError, SolveError
+from dalembert.errors import InputError, SolveError, unknown
 from dalembert.forward import ForwardModel
 from dalembert.forward.provenance import provenance
 from dalembert.inverse.confidence import check_level, noise_is_known, quantile, variance
 from dalembert.inverse.estimate import UNSEEN
+from dalembert.inverse.experiments import Experiment
 from dalembert.inverse.fit import Fit
 from dalembert.inverse.telling.prediction import Prediction
 
 
-def predict(model: ForwardModel, fit: Fit, level: float = 0.95) -> Prediction:
+def predict(model: ForwardModel | Experiment, fit: Fit, level: float = 0.95) -> Prediction:
     """Response at identified parameters, with bands in which the true response, and a new measurement, are expected.
 
     Parameters
     ----------
-    model : ForwardModel
-        With the fit's parameters; the one that was fitted, or one with other channels or over another horizon.
+    model : ForwardModel or Experiment
+        Its parameters must be among the fit's: the model that was fitted, or one with other channels or over another
+        horizon; or one of several experiments that were fitted.
     fit : Fit
     level : float
         Probability that the band holds the true value, sample by sample.
@@ -29,7 +31,7 @@ def predict(model: ForwardModel, fit: Fit, level: float = 0.95) -> Prediction:
     Raises
     ------
     InputError
-        For a model with other parameters, or a level that is no probability.
+        For a model with a parameter that was not identified, or a level that is no probability.
     SolveError
         If the simulation fails.
 
@@ -54,30 +56,42 @@ def predict(model: ForwardModel, fit: Fit, level: float = 0.95) -> Prediction:
     [0.196]
     """
     check_level(level, "predict")
-    if model.parameters.names != fit.parameters.names:
-        raise InputError(
-            f"predict: the model has the parameters {', '.join(model.parameters.names)}, the fit "
-            f"{', '.join(fit.parameters.names)}; expected the same"
-        )
-    response, jacobian = model.linearise(fit.values)
+    data, prefix = fit.data, ""
+    if isinstance(model, Experiment):
+        parameters, data, prefix, model = model.parameters, model.data, f"{model.name}.", model.model
+    else:
+        parameters = tuple(model.parameters)
+    wiring = _wiring([item.name for item in parameters], fit)
+    response, own = model.linearise(fit.values[wiring])
+    jacobian = np.zeros((*response.shape, len(fit.values)))
+    jacobian[:, :, wiring] = own
     if not (np.all(np.isfinite(response)) and np.all(np.isfinite(jacobian))):
         raise SolveError("predict: the response at the identified values, or its jacobian, is not finite")
     names = tuple(channel.name for channel in model.channels)
-    measured = tuple(name for name in names if name in fit.data.channels)
+    same = data.coordinate.name == model.coordinate.name and set(names) & set(data.channels)
     return Prediction(
         coordinate=model.coordinate,
         channels=names,
         units=tuple(channel.unit for channel in model.channels),
         response=response,
         deviations=_deviations(fit, jacobian),
-        noise=np.array([_noise(fit, name) for name in names]),
-        data=fit.data if measured and fit.data.coordinate.name == model.coordinate.name else None,
+        noise=np.array([_noise(fit, prefix + name) for name in names]),
+        data=data if same else None,
         level=level,
         quantile=quantile(fit, level),
         known=noise_is_known(fit),
-        simulations=1 + len(fit.values),
-        provenance=provenance(model, None, level=level, data=fit.data.fingerprint),
+        simulations=1 + len(wiring),
+        provenance=provenance(model, level=level, data=fit.data.fingerprint),
     )
+
+
+def _wiring(names: list[str], fit: Fit) -> np.ndarray:
+    """Where parameters stand among the identified ones."""
+    known = fit.parameters.names
+    for name in names:
+        if name not in known:
+            raise InputError(unknown("parameter", name, known, "predict: the model has one that was not identified"))
+    return np.array([known.index(name) for name in names], dtype=int)
 
 
 def _deviations(fit: Fit, jacobian: np.ndarray) -> np.ndarray:

@@ -90,10 +90,10 @@ def profile(
     check_level(level, "profile")
     if points < 4:
         raise InputError(f"profile: points is {points}; expected at least 4")
-    if fit.provenance.get("loss") not in (None, "linear"):
+    if "loss" in fit.provenance:
         raise InputError(
-            f"profile: the fit has the loss {fit.provenance['loss']!r}, whose minimum is no likelihood; fit with the "
-            "loss 'linear', the outliers left out"
+            f"profile: the fit has the loss {fit.provenance['loss']['name']!r}, whose minimum is no likelihood; fit "
+            "with the loss 'linear', the outliers left out"
         )
     chosen = _names(fit, names)
     problem = _problem(model, data, fit, on_event)

@@ -1,7 +1,6 @@
 """Responses are at the time stamps, not a step late: damping comes back, and readings one step late would bias it."""
 
 import numpy as np
-import pytest
 
 import dalembert as da
 

@@ -23,6 +23,7 @@ from dalembert.report.sections import (
     Consistent,
     Diagnostics,
     Estimates,
+    Experiments,
     GivenBands,
     Intervals,
     Methods,
@@ -60,7 +61,7 @@ def contents(
     known = truth or {}
     match result:
         case FitLike():
-            own = [headline.of_fit(result, title, notes), Estimates(result), Comparison(result)]
+            own = [headline.of_fit(result, title, notes), Estimates(result), _compared(result)]
             moving = [] if trajectory is None else _motion(trajectory, points, result)
             checks = [] if trajectory is None else [Diagnostics(trajectory)]
             sections = [*own, *moving, *_search(result), *_telling(result), *checks]
@@ -85,6 +86,12 @@ def contents(
             )
     facts = getattr(result, "provenance", {})
     return [*sections, Provenance(facts, study)] if facts or study else sections
+
+
+def _compared(fit: FitLike) -> Section:
+    """The response against the data, or, of several experiments, each against its own."""
+    experiments = tuple(getattr(fit, "experiments", ()))
+    return Experiments(fit, experiments) if experiments else Comparison(fit)
 
 
 def _motion(trajectory: TrajectoryLike, points: tuple[str, ...], fit: FitLike | None = None) -> list[Section]:

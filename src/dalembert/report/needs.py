@@ -32,6 +32,26 @@ class MeasurementsLike(Protocol):
     def deviations(self) -> np.ndarray | None: ...
 
 
+class ResponseLike(Protocol):
+    """Data beside the response (samples, channels) that is to explain them, and response − data."""
+
+    @property
+    def data(self) -> MeasurementsLike: ...
+    @property
+    def response(self) -> np.ndarray: ...
+    @property
+    def residuals(self) -> np.ndarray: ...
+
+
+class ExperimentLike(ResponseLike, Protocol):
+    """One of several experiments; ``fitted`` says whether it was fitted, or only predicted."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def fitted(self) -> bool: ...
+
+
 class StepLike(Protocol):
     """One iteration of one start: its best fitness after so many simulations."""
 

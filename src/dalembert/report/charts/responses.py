@@ -9,7 +9,7 @@ from plotly.subplots import make_subplots
 
 from dalembert.errors import InputError, unknown
 from dalembert.report.look import LIGHT, plain, themed
-from dalembert.report.needs import FitLike
+from dalembert.report.needs import ResponseLike
 from dalembert.report.quantities import labelled, quantity
 from dalembert.report.thin import thin
 
@@ -17,14 +17,16 @@ FEW = 200
 """Samples up to which each is drawn as a circle of its own."""
 
 
-def responses(fit: FitLike, channels: Sequence[str] | None = None, *, title: str = "Response and data") -> go.Figure:
+def responses(
+    fit: ResponseLike, channels: Sequence[str] | None = None, *, title: str = "Response and data"
+) -> go.Figure:
     """Computed responses as lines, data as circles, and below them computed minus measured.
 
     Dotted lines in the residuals are two standard deviations of the data, where these are known.
 
     Parameters
     ----------
-    fit : FitLike
+    fit : Fit, or one of its experiments
     channels : sequence of str, optional
         Channels to draw, all if not given; they share an axis.
     title : str
@@ -56,7 +58,7 @@ def responses(fit: FitLike, channels: Sequence[str] | None = None, *, title: str
     return figure.update_layout(hovermode="x unified")
 
 
-def _channel(figure: go.Figure, fit: FitLike, column: int, colour: str) -> None:
+def _channel(figure: go.Figure, fit: ResponseLike, column: int, colour: str) -> None:
     at, name = fit.data.coordinate.values, plain(fit.data.channels[column])
     measured, residual = fit.data.values[:, column], fit.residuals[:, column]
     computed, nearest = fit.response[:, column], measured + residual

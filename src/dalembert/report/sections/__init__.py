@@ -5,6 +5,7 @@ from dalembert.report.sections.comparison import Comparison
 from dalembert.report.sections.consistent import Consistent
 from dalembert.report.sections.diagnostics import Diagnostics
 from dalembert.report.sections.estimates import Estimates
+from dalembert.report.sections.experiments import Experiments
 from dalembert.report.sections.given_bands import GivenBands
 from dalembert.report.sections.headline import Headline
 from dalembert.report.sections.intervals import Intervals
@@ -22,6 +23,7 @@ __all__ = [
     "Consistent",
     "Diagnostics",
     "Estimates",
+    "Experiments",
     "GivenBands",
     "Headline",
     "Intervals",

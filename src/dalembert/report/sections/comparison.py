@@ -1,18 +1,21 @@
 """Responses against data."""
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from dalembert.report import charts
-from dalembert.report.look import plain
-from dalembert.report.needs import FitLike
+from dalembert.report.look import LIGHT, plain
+from dalembert.report.needs import FitLike, ResponseLike
 from dalembert.report.plot import Plot
 from dalembert.report.quantities import by_quantity, labelled
 from dalembert.report.sections.samples import samples
 from dalembert.report.sections.section import Section
-from dalembert.report.table import Table, cell
+from dalembert.report.table import Cell, Table, cell
+
+HOW = "Lines are computed with the identified values, circles are data; below, computed minus measured."
+SHADED = "The shaded part was not fitted."
 
 
 @dataclass(frozen=True)
@@ -24,41 +27,79 @@ class Comparison(Section):
     fit: FitLike
 
     @property
+    def validation(self) -> str:
+        """How what was not fitted is predicted, in a sentence; empty if all was fitted."""
+        return validation(self.fit)
+
+    @property
     def plots(self) -> tuple[Plot, ...]:
-        channels = self.fit.data.channels
-        chosen = [[channels[number] for number in group] for group in by_quantity(channels)]
-        return tuple(
-            Plot(
-                f"responses-{place}",
-                charts.responses(self.fit, group, title=", ".join(plain(name) for name in group)),
-                "Lines are computed with the identified values, circles are data; below, computed minus measured.",
-            )
-            for place, group in enumerate(chosen, start=1)
-        )
+        return plots(self.fit, "responses")
 
     @property
     def table(self) -> Table:
-        data = self.fit.data
-        residuals = np.where(np.isfinite(self.fit.residuals), self.fit.residuals, 0.0)  # 0 where a value is missing
-        counts = np.count_nonzero(np.isfinite(data.values), axis=0)
-        deviations = np.full(len(data.channels), np.nan) if data.deviations is None else data.deviations
-        rows = [
-            (
-                cell(channel),
-                cell(float(np.sqrt(np.sum(residuals[:, column] ** 2) / counts[column])), digits=4),
-                cell(float(np.abs(residuals[:, column]).max()), digits=4),
-                cell(float(data.coordinate.values[np.abs(residuals[:, column]).argmax()])),
-                cell(float(deviations[column])),
-            )
-            for column, channel in enumerate(data.channels)
-        ]
-        at = labelled(f"largest at {data.coordinate.name}", data.coordinate.unit)
+        rows = [tuple(row) for row in residual_cells(self.fit)]
+        at = labelled(f"largest at {self.fit.data.coordinate.name}", self.fit.data.coordinate.unit)
         columns = ("channel", "rms residual", "largest residual", at, "deviation of the data")
         return Table("residuals", "Residuals, in the units of their channels", columns, rows)
 
     @property
     def samples(self) -> Table | None:
         """All samples, for download, unless they are too many for a page."""
-        data = self.fit.data
-        series = {"measured": data.values, "computed": self.fit.response}
-        return samples("responses", "Measured and computed samples", data.coordinate, data.channels, series)
+        return all_samples(self.fit, "responses", "Measured and computed samples")
+
+
+def validation(fit: FitLike) -> str:
+    """How what was not fitted is predicted, in a sentence; empty if all was fitted."""
+    told = getattr(fit, "validation", None)
+    return "" if told is None else str(told)
+
+
+def plots(compared: ResponseLike, name: str, lead: str = "") -> tuple[Plot, ...]:
+    """A figure for each quantity, named ``name-1`` …, its title after ``lead``."""
+    channels = compared.data.channels
+    found = []
+    for place, group in enumerate(by_quantity(channels), start=1):
+        chosen = [channels[number] for number in group]
+        figure = charts.responses(compared, chosen, title=lead + ", ".join(plain(name) for name in chosen))
+        begins = first_predicted(compared)
+        if begins is not None:
+            figure.add_vrect(x0=begins, x1=compared.data.coordinate.values[-1], fillcolor=LIGHT.muted, opacity=0.12)
+        found.append(Plot(f"{name}-{place}", figure, HOW if begins is None else f"{HOW} {SHADED}"))
+    return tuple(found)
+
+
+def first_predicted(compared: ResponseLike) -> float | None:
+    """Where the samples at the end that were not fitted begin; None where there are none, or only such."""
+    weights: Any = getattr(compared, "weights", None)
+    if weights is None:
+        return None
+    fitted = np.flatnonzero(np.any(np.asarray(weights) > 0, axis=1))
+    along = compared.data.coordinate.values
+    return (
+        None if len(fitted) == 0 or fitted[-1] == len(along) - 1 else float(along[fitted[-1] : fitted[-1] + 2].mean())
+    )
+
+
+def residual_cells(compared: ResponseLike) -> list[list[Cell]]:
+    """Cells of each channel: its name, rms and largest residual, where that is, and the deviation of the data."""
+    data = compared.data
+    residuals = np.where(np.isfinite(compared.residuals), compared.residuals, 0.0)  # 0 where a value is missing
+    counts = np.count_nonzero(np.isfinite(data.values), axis=0)
+    deviations = np.full(len(data.channels), np.nan) if data.deviations is None else data.deviations
+    return [
+        [
+            cell(channel),
+            cell(float(np.sqrt(np.sum(residuals[:, column] ** 2) / counts[column])), digits=4),
+            cell(float(np.abs(residuals[:, column]).max()), digits=4),
+            cell(float(data.coordinate.values[np.abs(residuals[:, column]).argmax()])),
+            cell(float(deviations[column])),
+        ]
+        for column, channel in enumerate(data.channels)
+    ]
+
+
+def all_samples(compared: ResponseLike, name: str, caption: str) -> Table | None:
+    """Measured and computed samples, unless they are too many for a page."""
+    data = compared.data
+    series = {"measured": data.values, "computed": compared.response}
+    return samples(name, caption, data.coordinate, data.channels, series)

@@ -50,7 +50,7 @@ def test_readings_one_step_late_bias_the_damping_and_leave_residuals():
 
 def test_an_unknown_delay_gain_and_offset_are_told_apart_from_the_mechanism():
     fine = da.TimeResponse(oscillator, PARAMETERS, ["bob.centre.x"], np.arange(0, 1001) * 5e-3, solver=SOLVER)
-    sensor = da.Sensor(delay=(0.0, 0.05), gain=(0.5, 2.0), offset=(-0.5, 0.5))
-    seen = da.Sensors(fine, {"bob.centre.x": sensor}, TIMES, at_rest=True)
+    sensor = da.Sensor(delay=(0.0, 0.05), gain=(0.5, 2.0), offset=(-0.5, 0.5), at_rest=True)
+    seen = da.Sensors(fine, {"bob.centre.x": sensor}, TIMES)
     fit = da.identify(seen, measured(1.1 * motion(TIMES - 0.0273) - 0.2))
     np.testing.assert_allclose(fit.values, [DAMPING, STIFFNESS, 0.0273, 1.1, -0.2], rtol=1e-4)

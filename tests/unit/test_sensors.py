@@ -71,7 +71,7 @@ def test_the_first_readings_need_only_the_beginning_of_the_model():
 
 def test_at_rest_readings_from_before_the_first_sample_are_the_first_state():
     stamps = np.array([0.0, 0.05, 0.2])
-    seen = Sensors(SWING, {"x": Sensor(delay=(0.0, 0.1))}, stamps, at_rest=True)
+    seen = Sensors(SWING, {"x": Sensor(delay=(0.0, 0.1), at_rest=True)}, stamps)
     response, slopes = seen.linearise(np.array([3.0, 0.1]))
     np.testing.assert_allclose(response[:, 0], [1.0, 1.0, np.cos(0.3)], atol=1e-9)
     np.testing.assert_allclose(slopes[:2, 0], 0.0, atol=1e-12)

@@ -34,11 +34,15 @@ class Sensor:
         1 if not given.
     offset : (lower, upper) or Parameter, optional
         In the channel's unit; 0 if not given.
+    at_rest : bool
+        Whether the channel keeps its first value until the first sample of the model, so that earlier readings are
+        known too; if not, readings from before are refused.
     """
 
     delay: Bounds | None = None
     gain: Bounds | None = None
     offset: Bounds | None = None
+    at_rest: bool = False
 
 
 @dataclass(frozen=True)
@@ -53,9 +57,6 @@ class Sensors:
         By channel; the others are read as they are.
     times : array, shape (samples,), optional
         Time stamps of the readings; the model's own samples if not given.
-    at_rest : bool
-        Whether the mechanism rests at its first state until the first sample of the model, so that earlier readings
-        are known too; if not, readings from before it are refused.
 
     Raises
     ------
@@ -91,16 +92,8 @@ class Sensors:
     sensors: Mapping[str, Sensor]
     parameters: Parameters
     coordinate: Coordinate
-    at_rest: bool
 
-    def __init__(
-        self,
-        model: ForwardModel,
-        sensors: Mapping[str, Sensor],
-        times: ArrayLike | None = None,
-        *,
-        at_rest: bool = False,
-    ) -> None:
+    def __init__(self, model: ForwardModel, sensors: Mapping[str, Sensor], times: ArrayLike | None = None) -> None:
         along = model.coordinate
         stamps = along.values if times is None else np.array(times, dtype=float)
         own = [entry for name, sensor in sensors.items() for entry in _unknowns(model, name, sensor)]
@@ -109,7 +102,6 @@ class Sensors:
             ("sensors", dict(sensors)),
             ("parameters", Parameters((*model.parameters, *own))),
             ("coordinate", Coordinate(along.name, along.unit, stamps)),
-            ("at_rest", at_rest),
         ):
             object.__setattr__(self, name, value)
         self._check_reach()
@@ -121,7 +113,8 @@ class Sensors:
     @property
     def fingerprint(self) -> str:
         """Hash of the model, the sensors and the time stamps."""
-        text = repr((self.model.fingerprint, self.parameters.names, sorted(self.sensors), self.at_rest))
+        at_rest = sorted(name for name, sensor in self.sensors.items() if sensor.at_rest)
+        text = repr((self.model.fingerprint, self.parameters.names, at_rest))
         return hashlib.sha256(text.encode() + self.coordinate.values.tobytes()).hexdigest()
 
     def evaluate(self, vectors: np.ndarray) -> Responses:
@@ -163,7 +156,7 @@ class Sensors:
         needed = int(np.searchsorted(own, stamps[-1] - earliest, side="left")) + 1
         kept = min(len(own), needed + DEGREE)
         inner = self.model if kept == len(own) else self.model.first(kept)
-        return Sensors(inner, self.sensors, stamps, at_rest=self.at_rest)
+        return Sensors(inner, self.sensors, stamps)
 
     def _read(self, vector: np.ndarray, response: np.ndarray) -> np.ndarray:
         """Readings (samples, channels) of one response of the model."""
@@ -208,7 +201,7 @@ class Sensors:
         for name in (channel.name for channel in self.channels):
             least, most = self._bounds(name)
             begins, ends = stamps[0] - most, stamps[-1] - least
-            if begins < own[0] - slack and not self.at_rest:
+            if begins < own[0] - slack and not (name in self.sensors and self.sensors[name].at_rest):
                 raise InputError(
                     f"Sensors: the first reading of {name!r}, at {along.name} {stamps[0]:.6g} {along.unit}, may show "
                     f"the motion at {begins:.6g} {along.unit}, and the model begins at {own[0]:.6g} {along.unit}; "

@@ -55,7 +55,8 @@ def enclosures(
         )
     outputs = polynomial.coefficients.shape[1]
     varying = np.any(polynomial.exponents > 0, axis=1)
-    wanted = gap * np.sum(np.abs(polynomial.coefficients[varying]), axis=0)
+    variation = np.sum(np.abs(polynomial.coefficients[varying]), axis=0)
+    wanted = np.multiply(gap, variation, out=np.zeros(outputs), where=variation > 0)  # the gap may be infinite
     rounding = _rounding(polynomial)
     # Coordinates s in [0, 1] of the polynomial's box, rounded outwards.
     ends = [np.clip((polynomial.eta(side) + 1) / 2 + out * 1e-15, 0, 1) for side, out in ((low, -1), (high, 1))]

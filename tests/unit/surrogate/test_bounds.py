@@ -118,6 +118,13 @@ def test_a_gap_is_kept_and_a_loose_one_costs_sharpness_alone(decaying, boxes) ->
     assert np.max(tight.lower - hull.lower) > 1e-2
 
 
+def test_an_infinite_gap_is_the_hull_of_the_bernstein_coefficients_also_of_a_constant() -> None:
+    flat = ChebyshevPolynomial([-1.0], [1.0], [[0], [2]], [[0.5, 3.0], [0.5, 0.0]])
+    found = bounds(flat, [[-1.0]], [[1.0]], "bernstein", gap=np.inf)
+    np.testing.assert_allclose(found.lower, [[-1.0, 3.0]], atol=1e-12)
+    np.testing.assert_allclose(found.upper, [[1.0, 3.0]], atol=1e-12)
+
+
 def test_many_directions_are_bounded_by_a_spread_of_starts() -> None:
     """Σ (x_k − k/20)², whose bounds are known, in ten directions."""
     places = np.arange(10) / 20

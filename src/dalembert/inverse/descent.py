@@ -7,7 +7,7 @@ import numpy as np
 
 from dalembert.errors import SolveError
 from dalembert.inverse.problem import Linearisation, Problem
-from dalembert.optimize import LeastSquares, Progress
+from dalembert.optimize import Progress, Squares
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,7 +56,7 @@ class Memo:
         return self.problem.slopes(self.at)
 
 
-def descend(ladder: Sequence[Problem], method: LeastSquares, point: np.ndarray) -> End:
+def descend(ladder: Sequence[Problem], method: Squares, point: np.ndarray) -> End:
     """Least squares from a search point on each problem of a ladder, the last one the whole problem.
 
     The shorter horizons only lead the way and are left early.
@@ -66,14 +66,14 @@ def descend(ladder: Sequence[Problem], method: LeastSquares, point: np.ndarray) 
     return _local(ladder[-1], method, point)
 
 
-def _local(problem: Problem, method: LeastSquares, point: np.ndarray) -> End:
+def _local(problem: Problem, method: Squares, point: np.ndarray) -> End:
     memo, journal, search = Memo(problem), problem.journal, problem.search
     best = End(point, np.inf, False, "")
 
     def progress(now: Progress) -> None:
         nonlocal best
         best = End(now.x, now.best, False, "")
-        journal.step(now.best, search.vectors(now.x), problem.samples)
+        journal.step(now.best, search.vectors(now.x), problem.samples, now.regularised)
 
     try:
         found = method.minimise(memo.residual, memo.jacobian, search.lower, search.upper, point, on_iteration=progress)

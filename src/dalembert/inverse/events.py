@@ -1,10 +1,12 @@
 """What a running identification tells: one small dataclass an event, the same for progress bar, log and result."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import asdict, dataclass, fields, is_dataclass
 from typing import Any, ClassVar
 
 import numpy as np
+
+from dalembert.optimize import RegularisedStep
 
 
 @dataclass(frozen=True, eq=False)
@@ -19,7 +21,7 @@ class StartBegan:
 
 @dataclass(frozen=True, eq=False)
 class Screened:
-    """Points of a Latin hypercube were simulated to choose starts from; ``best`` is the lowest fitness among them."""
+    """Points spread over the bounds were simulated to choose starts from; ``best`` is the lowest fitness among them."""
 
     kind: ClassVar[str] = "screened"
     points: int
@@ -83,6 +85,8 @@ class Step:
         Where it was found.
     samples : int
         Samples compared; fewer than all while the horizon still grows.
+    regularised : RegularisedStep, optional
+        How response sensitivity took the step that led there.
     """
 
     kind: ClassVar[str] = "iteration"
@@ -92,6 +96,7 @@ class Step:
     best: float
     values: np.ndarray
     samples: int
+    regularised: RegularisedStep | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,4 +154,6 @@ def as_record(event: Event) -> dict[str, Any]:
 def _plain(value: Any) -> Any:
     if isinstance(value, np.ndarray):
         return [_plain(entry) for entry in value.tolist()]
+    if is_dataclass(value) and not isinstance(value, type):
+        return {name: _plain(entry) for name, entry in asdict(value).items()}
     return None if isinstance(value, float) and not np.isfinite(value) else value

@@ -20,22 +20,24 @@ from dalembert.inverse.multistart import HORIZONS, multistart
 from dalembert.inverse.noise import noise_floor
 from dalembert.inverse.problem import Linearisation, Problem, pose
 from dalembert.inverse.runs import Method, polished, runs
+from dalembert.inverse.spread import SPREADS
 from dalembert.inverse.status import status
 from dalembert.inverse.validation import split
-from dalembert.optimize import LeastSquares, Minimiser
+from dalembert.optimize import LeastSquares, Minimiser, Squares
 
 
 def identify(
     model: ForwardModel | Sequence[Experiment],
     data: Measurements | None = None,
     *,
-    method: LeastSquares | Method | str | None = None,
+    method: Squares | Method | str | None = None,
     starts: int | None = None,
     seed: int = 0,
     start: Mapping[str, float] | ArrayLike | None = None,
     weights: ArrayLike | Mapping[str, ArrayLike] | None = None,
     polish: bool = False,
     horizon: str | None = "growing",
+    spread: str = "latin-hypercube",
     loss: str = "linear",
     loss_scale: float | None = None,
     validation: float | str | Sequence[str] | None = None,
@@ -50,10 +52,10 @@ def identify(
         parameters of the same name are shared, except those that an experiment has for its own.
     data : Measurements
         Left out with experiments, which have their own.
-    method : LeastSquares, ParticleSwarm, ImprovedParticleSwarm, Minimiser or its name
+    method : LeastSquares, ResponseSensitivity, ParticleSwarm, ImprovedParticleSwarm, Minimiser or its name
         Least squares with exact sensitivities if not given.
     starts : int, optional
-        Starts at most; 8 for least squares and 1 for the others if not given.
+        Starts at most; 8 for least squares and response sensitivity, 1 for the others if not given.
     seed : int
         All random numbers follow from it.
     start : mapping by name, or array of shape (parameters,), optional
@@ -67,6 +69,8 @@ def identify(
         For least squares: ``"growing"`` fits an eighth, a quarter, a half of the samples, then all, each from the end
         of the one before; None fits all samples at once. Each of several experiments is cut at the same part of its
         time.
+    spread : {"latin-hypercube", "sobol"}
+        How the points that starts are chosen from are spread over the bounds.
     loss : {"linear", "huber", "soft-l1", "cauchy"}
         What is summed of each weighted residual W^½ (R − data): its square, or, so that outliers pull less, scale² ϱ(x)
         of its size x over the scale, where ϱ(x) is x² up to 1 and 2x − 1 beyond; 2 (√(1 + x²) − 1); ln(1 + x²).
@@ -120,10 +124,12 @@ def identify(
     (np.float64(6.3), True)
     """
     method = _method(method)
-    squares = isinstance(method, LeastSquares)
+    squares = isinstance(method, Squares)
     starts = _starts(starts, 8 if squares else 1)
     if horizon not in HORIZONS:
         raise InputError(unknown("horizon", str(horizon), [name for name in HORIZONS if name]))
+    if spread not in SPREADS:
+        raise InputError(unknown("spread", str(spread), SPREADS))
     model, data, weights, parts = _joined(model, data, weights)
     given = data.deviations is not None and weights is None
     journal = Journal(len(data.coordinate.values), on_event)
@@ -133,11 +139,11 @@ def identify(
     origin = None if start is None else _origin(problem, start)
     floor = noise_floor(problem)
 
-    if isinstance(method, LeastSquares):
+    if isinstance(method, Squares):
         first = _origin(problem, model.parameters.start) if origin is None else origin
-        ends = multistart(problem, method, floor, starts=starts, seed=seed, horizon=horizon, start=first)
+        ends = multistart(problem, method, floor, starts=starts, seed=seed, horizon=horizon, spread=spread, start=first)
     else:
-        ends = runs(problem, method, floor, starts=starts, seed=seed, start=origin)
+        ends = runs(problem, method, floor, starts=starts, seed=seed, spread=spread, start=origin)
     best = min(ends, key=lambda end: end.fitness)
     if not np.isfinite(best.fitness):
         raise SolveError(
@@ -145,7 +151,7 @@ def identify(
             "look at the model there, or change the bounds or the start"
         )
     if not best.stationary and (polish or (squares and starts > 1)):
-        best = polished(problem, method if isinstance(method, LeastSquares) else LeastSquares(), best)
+        best = polished(problem, method if isinstance(method, Squares) else LeastSquares(), best)
 
     vector = problem.search.vectors(best.point)
     at = best.linearisation or _linearised(problem, vector)
@@ -179,6 +185,7 @@ def identify(
             weights="given" if weights is not None else "data",
             polish=polish,
             horizon=horizon,
+            spread=spread,
             **_beyond(loss, posed, validation),
         ),
         parts=parts,
@@ -188,15 +195,15 @@ def identify(
     return fit
 
 
-def _method(given: LeastSquares | Method | str | None) -> LeastSquares | Method:
+def _method(given: Squares | Method | str | None) -> Squares | Method:
     if given is None:
         return LeastSquares()
     if isinstance(given, str):
         return Minimiser(given)
     if not hasattr(given, "minimise"):
         raise InputError(
-            f"method is {given!r}; expected LeastSquares(), ParticleSwarm(), ImprovedParticleSwarm(), or a Minimiser "
-            "or its name"
+            f"method is {given!r}; expected LeastSquares(), ResponseSensitivity(), ParticleSwarm(), "
+            "ImprovedParticleSwarm(), or a Minimiser or its name"
         )
     return given
 

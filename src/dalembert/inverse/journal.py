@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from dalembert.inverse.events import Event, OnEvent, Screened, StartBegan, StartEnd, Step
+from dalembert.optimize import RegularisedStep
 
 
 @dataclass
@@ -35,8 +36,8 @@ class Journal:
         self._iteration, self._before = 0, self.simulations
         self.tell(StartBegan(len(self.starts), self.simulations, values))
 
-    def step(self, best: float, values: np.ndarray, samples: int) -> None:
-        step = Step(len(self.starts), self._iteration, self.simulations, best, values, samples)
+    def step(self, best: float, values: np.ndarray, samples: int, regularised: RegularisedStep | None = None) -> None:
+        step = Step(len(self.starts), self._iteration, self.simulations, best, values, samples, regularised)
         self._iteration += 1
         if samples == self.samples:
             self.history.append(step)

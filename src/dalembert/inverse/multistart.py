@@ -5,13 +5,13 @@ from dataclasses import replace
 from itertools import count
 
 import numpy as np
-from scipy.stats import qmc
 
 from dalembert.inverse.descent import End, descend
 from dalembert.inverse.neighbours import neighbours
 from dalembert.inverse.noise import NoiseFloor, random_residuals
 from dalembert.inverse.problem import Problem
-from dalembert.optimize import LeastSquares
+from dalembert.inverse.spread import spread_points
+from dalembert.optimize import Squares
 
 HORIZONS = ("growing", None)
 
@@ -27,12 +27,13 @@ APART = 0.05
 
 def multistart(
     problem: Problem,
-    method: LeastSquares,
+    method: Squares,
     floor: NoiseFloor,
     *,
     starts: int,
     seed: int,
     horizon: str | None,
+    spread: str,
     start: np.ndarray,
 ) -> list[End]:
     """Ends of up to ``starts`` descents from search points.
@@ -44,7 +45,7 @@ def multistart(
     ladder = [problem.first(samples) for samples in horizons(problem, horizon)]
     hasty = method if starts == 1 else replace(method, gain=max(1e-3, method.gain))
     ends: list[End] = []
-    for point, rung in _attempts(ladder, starts, seed, start):
+    for point, rung in _attempts(ladder, starts, seed, spread, start):
         ends.append(_descent(ladder[rung:], hasty, point))
         if floor.conclusive and ends[-1].fitness <= floor.fitness:
             return ends
@@ -53,7 +54,7 @@ def multistart(
     return ends if starts == 1 else ends + _beside(problem, hasty, min(ends, key=lambda end: end.fitness), starts)
 
 
-def _descent(ladder: list[Problem], method: LeastSquares, point: np.ndarray) -> End:
+def _descent(ladder: list[Problem], method: Squares, point: np.ndarray) -> End:
     """End of a descent, told to the journal."""
     journal, search = ladder[-1].journal, ladder[-1].search
     values = search.vectors(point)
@@ -63,7 +64,7 @@ def _descent(ladder: list[Problem], method: LeastSquares, point: np.ndarray) -> 
     return end
 
 
-def _beside(problem: Problem, method: LeastSquares, best: End, most: int) -> list[End]:
+def _beside(problem: Problem, method: Squares, best: End, most: int) -> list[End]:
     """Ends of up to ``most`` descents from beside the best end, and from beside a better one that they lead to."""
     ends: list[End] = []
     while True:
@@ -86,16 +87,18 @@ def horizons(problem: Problem, horizon: str | None) -> list[int]:
     return [samples for samples in parts if samples > 0 and measured[samples - 1] >= least] + [problem.samples]
 
 
-def _attempts(ladder: list[Problem], starts: int, seed: int, first: np.ndarray) -> Iterator[tuple[np.ndarray, int]]:
+def _attempts(
+    ladder: list[Problem], starts: int, seed: int, spread: str, first: np.ndarray
+) -> Iterator[tuple[np.ndarray, int]]:
     """Search points to start from, each with the rung of the ladder to begin on.
 
-    The given start comes first, its horizon growing from the shortest. Then points of a Latin hypercube are simulated
-    in one batch, and the horizons, half of the samples, a quarter, an eighth, take turns to name the best point left
+    The given start comes first, its horizon growing from the shortest. Then points spread over the box are simulated in
+    one batch, and the horizons, half of the samples, a quarter, an eighth, take turns to name the best point left
     by the misfit over themselves and to grow from it: the longer ones stand above the noise, the shorter ones hold
     fewer false minima.
     """
     yield first, 0
-    points, scores = _screen(ladder, SCREENED * starts * len(first), seed)
+    points, scores = _screen(ladder, SCREENED * starts * len(first), seed, spread)
     search, longest = ladder[-1].search, max(0, len(ladder) - 2)
     free = np.isfinite(scores[-1])
     for turn in count():
@@ -107,22 +110,15 @@ def _attempts(ladder: list[Problem], starts: int, seed: int, first: np.ndarray) 
         yield points[chosen], rung
 
 
-def _screen(ladder: list[Problem], number: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
-    """Points (number, parameters) of a Latin hypercube, and their misfit over each horizon, (rungs, number)."""
+def _screen(ladder: list[Problem], number: int, seed: int, spread: str) -> tuple[np.ndarray, np.ndarray]:
+    """Points (number, parameters) over the box, and their misfit over each horizon, (rungs, number)."""
     whole = ladder[-1]
-    points = hypercube(whole, number, seed)
+    points = spread_points(whole, number, seed, spread)
     squares = whole.squares(whole.responses(whole.search.vectors(points)))
     scores = np.array([squares[:, : rung.samples].sum(axis=(1, 2)) for rung in ladder])
     scores = np.where(np.isfinite(scores), scores, np.inf)
     whole.journal.screened(scores[-1])
     return points, scores
-
-
-def hypercube(problem: Problem, number: int, seed: int) -> np.ndarray:
-    """Search points (number, parameters) of a Latin hypercube over the box."""
-    low, high = problem.search.lower, problem.search.upper
-    sampler = qmc.LatinHypercube(len(low), rng=np.random.default_rng((seed, 1)))
-    return low + (high - low) * sampler.random(number)
 
 
 def _reproduced(problem: Problem, ends: list[End]) -> bool:

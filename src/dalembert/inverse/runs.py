@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from dalembert.inverse.descent import End, descend
-from dalembert.inverse.multistart import hypercube
 from dalembert.inverse.noise import NoiseFloor
 from dalembert.inverse.problem import Problem
-from dalembert.optimize import LeastSquares, Minimiser, Minimum, Objective, OnIteration, Progress
+from dalembert.inverse.spread import spread_points
+from dalembert.optimize import Minimiser, Minimum, Objective, OnIteration, Progress, Squares
 
 
 class Method(Protocol):
@@ -29,15 +29,22 @@ class Method(Protocol):
 
 
 def runs(
-    problem: Problem, method: Method, floor: NoiseFloor, *, starts: int, seed: int, start: np.ndarray | None
+    problem: Problem,
+    method: Method,
+    floor: NoiseFloor,
+    *,
+    starts: int,
+    seed: int,
+    spread: str,
+    start: np.ndarray | None,
 ) -> list[End]:
     """Ends of up to ``starts`` runs, the first from the search point ``start`` if there is one, seeds counting up.
 
-    Local minimisers begin the other runs at points of a Latin hypercube; swarms scatter their own points.
+    Local minimisers begin the other runs at points spread over the box; swarms scatter their own points.
     """
     points: list[np.ndarray | None] = [start, *[None] * (starts - 1)]
     if isinstance(method, Minimiser):
-        points[1:] = list(hypercube(problem, starts, seed))[1:]
+        points[1:] = list(spread_points(problem, starts, seed, spread))[1:]
     ends: list[End] = []
     for number, point in enumerate(points):
         ends.append(_run(problem, method, seed + number, point))
@@ -46,7 +53,7 @@ def runs(
     return ends
 
 
-def polished(problem: Problem, method: LeastSquares, best: End) -> End:
+def polished(problem: Problem, method: Squares, best: End) -> End:
     """Where least squares ends from ``best``, as a start of its own; ``best`` if it comes no further."""
     journal, vector = problem.journal, problem.search.vectors(best.point)
     journal.began(vector)

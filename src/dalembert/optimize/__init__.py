@@ -6,6 +6,7 @@ from dalembert.optimize.minimiser import Minimiser
 from dalembert.optimize.minimum import Minimum, Objective, OnIteration, Progress, RegularisedStep
 from dalembert.optimize.particle_swarm import ParticleSwarm
 from dalembert.optimize.response_sensitivity import ResponseSensitivity
+from dalembert.optimize.squares import Squares
 from dalembert.optimize.swarm import Swarm, SwarmState
 from dalembert.optimize.tikhonov import Regularised
 
@@ -21,6 +22,7 @@ __all__ = [
     "Regularised",
     "RegularisedStep",
     "ResponseSensitivity",
+    "Squares",
     "Swarm",
     "SwarmState",
 ]

@@ -8,7 +8,7 @@ from dalembert.data import Measurements
 from dalembert.errors import InputError, SolveError
 from dalembert.forward import PythonModel
 from dalembert.inverse import as_record, identify
-from dalembert.optimize import ImprovedParticleSwarm, LeastSquares, Minimiser, ParticleSwarm
+from dalembert.optimize import ImprovedParticleSwarm, LeastSquares, Minimiser, ParticleSwarm, ResponseSensitivity
 from dalembert.parameters import Parameter
 from small_models import DECAY, LINE, TIMES, line, measured
 
@@ -69,6 +69,7 @@ def test_a_model_may_have_more_channels_than_the_data_in_another_order():
 
 METHODS = [
     LeastSquares(),
+    ResponseSensitivity(),
     ParticleSwarm(particles=20, iterations=40),
     ImprovedParticleSwarm(),
     Minimiser("Nelder-Mead"),
@@ -96,7 +97,7 @@ def test_another_seed_takes_another_way():
     assert one.values.tobytes() != other.values.tobytes()
 
 
-@pytest.mark.parametrize("method", METHODS[1:])
+@pytest.mark.parametrize("method", METHODS[2:])
 def test_polish_ends_where_least_squares_ends(method):
     data = measured(DECAY, [2.0, 0.8], noise=0.05)
     fit = identify(DECAY, data, method=method, polish=True)
@@ -272,10 +273,11 @@ def test_parameters_that_cannot_be_told_apart_are_named():
     [
         ({"starts": 0}, "starts is 0; expected at least 1"),
         ({"horizon": "grow"}, "unknown horizon 'grow'; did you mean 'growing'?"),
+        ({"spread": "sobel"}, "unknown spread 'sobel'; did you mean 'sobol'?"),
         ({"method": "Powel"}, "unknown minimiser 'Powel'; did you mean 'Powell'?"),
         (
             {"method": 3},
-            "method is 3; expected LeastSquares(), ParticleSwarm(), ImprovedParticleSwarm(), "
+            "method is 3; expected LeastSquares(), ResponseSensitivity(), ParticleSwarm(), ImprovedParticleSwarm(), "
             "or a Minimiser or its name",
         ),
         (

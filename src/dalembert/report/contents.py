@@ -16,11 +16,13 @@ from dalembert.report.needs import (
     SweepLike,
     TrajectoryLike,
 )
+from dalembert.report.needs_telling import DesignsLike, PredictionLike, ProfilesLike
 from dalembert.report.plot import Plot
 from dalembert.report.sections import (
     Bounds,
     Comparison,
     Consistent,
+    Designing,
     Diagnostics,
     Estimates,
     Experiments,
@@ -28,6 +30,8 @@ from dalembert.report.sections import (
     Intervals,
     Methods,
     Motion,
+    Predicting,
+    Profiling,
     Provenance,
     Search,
     Section,
@@ -36,9 +40,21 @@ from dalembert.report.sections import (
     bound_headlines,
     headline,
     motion,
+    telling_headlines,
 )
 
-Result = FitLike | TrajectoryLike | SweepLike | PropagationLike | ComparisonLike | BandFitLike | ParameterSetLike
+Result = (
+    FitLike
+    | TrajectoryLike
+    | SweepLike
+    | PropagationLike
+    | ComparisonLike
+    | BandFitLike
+    | ParameterSetLike
+    | ProfilesLike
+    | PredictionLike
+    | DesignsLike
+)
 
 
 def contents(
@@ -50,6 +66,8 @@ def contents(
     study: str | None = None,
     points: tuple[str, ...] = (),
     truth: Mapping[str, Any] | None = None,
+    profiles: ProfilesLike | None = None,
+    prediction: PredictionLike | None = None,
 ) -> list[Section]:
     """Sections of a report in reading order; the first is the headline.
 
@@ -64,7 +82,7 @@ def contents(
             own = [headline.of_fit(result, title, notes), Estimates(result), _compared(result)]
             moving = [] if trajectory is None else _motion(trajectory, points, result)
             checks = [] if trajectory is None else [Diagnostics(trajectory)]
-            sections = [*own, *moving, *_search(result), *_telling(result), *checks]
+            sections = [*own, *moving, *_search(result), *_telling(result), *_beyond(profiles, prediction), *checks]
         case BandFitLike():
             own = [bound_headlines.of_band_fit(result, title, notes), Intervals(result, known), GivenBands(result)]
             sections = [*own, *_search(result), *_telling(result)]
@@ -75,6 +93,12 @@ def contents(
             sections = [*own, Bounds(reference(result))]
         case ParameterSetLike():
             sections = [bound_headlines.of_set(result, title, notes), Consistent(result, known)]
+        case ProfilesLike():
+            sections = [telling_headlines.of_profiles(result, title, notes), Profiling(result)]
+        case PredictionLike():
+            sections = [telling_headlines.of_prediction(result, title, notes), Predicting(result)]
+        case DesignsLike():
+            sections = [telling_headlines.of_designs(result, title, notes), Designing(result)]
         case TrajectoryLike():
             sections = [headline.of_trajectory(result, title, notes), *_motion(result, points), Diagnostics(result)]
         case SweepLike():
@@ -116,3 +140,9 @@ def _telling(fit: FitLike | BandFitLike) -> list[Section]:
         figure = charts.singular_values(told.singular_values, told.directions, names)
         spectrum = Plot("singular-values", figure, "A small value is a combination that the data hardly tell.")
     return [Telling(fit, sentences, spectrum)] if len(names) > 1 or sentences else []
+
+
+def _beyond(profiles: ProfilesLike | None, prediction: PredictionLike | None) -> list[Section]:
+    """The sections on profiles and prediction of a fit, where they were made."""
+    first: list[Section] = [] if profiles is None else [Profiling(profiles)]
+    return first if prediction is None else [*first, Predicting(prediction)]

@@ -12,17 +12,19 @@ def figures(result: Result, **options: Any) -> dict[str, go.Figure]:
 
     Parameters
     ----------
-    result : Fit, Trajectory, Propagation, Comparison, BandFit, ParameterSet or sweep
+    result : Fit, Trajectory, Propagation, Comparison, BandFit, ParameterSet, Profiles, Prediction, Designs or sweep
     **options
-        ``trajectory``, ``points`` and ``truth``, as in :func:`dalembert.report.report`.
+        ``trajectory``, ``points``, ``truth``, ``profiles`` and ``prediction``, as in :func:`dalembert.report.report`.
 
     Returns
     -------
     dict of str to plotly.graph_objects.Figure
-        For a fit ``"parameters"``, ``"responses-1"``, ``"convergence"``, ``"correlation"`` …, for a trajectory
+        For a fit ``"parameters"``, ``"responses-1"``, ``"convergence"``, ``"correlation"`` …, from response
+        sensitivity ``"l-curve"`` and ``"steps"`` too, for a trajectory
         ``"mechanism"``, ``"energies"``, ``"violations"``, ``"newton"``, for bounds ``"bands-1"`` …, for methods
         compared ``"methods"`` and ``"differences"`` too, for intervals from bands ``"intervals"``,
-        ``"residual-bands-1"`` …, for a set ``"paving-1"`` …, for a sweep ``"sweep-1"`` ….
+        ``"residual-bands-1"`` …, for a set ``"paving-1"`` …, for a sweep ``"sweep-1"`` …, for profiles
+        ``"profile-1"`` …, for a prediction ``"prediction-1"`` …, for designs ``"ranking"`` and ``"horizons"``.
 
     Raises
     ------

@@ -18,6 +18,7 @@ from dalembert.files import write_text
 from dalembert.report.contents import Result, contents
 from dalembert.report.look import DARK, FONT, LIGHT, exchanged, template
 from dalembert.report.needs import TrajectoryLike
+from dalembert.report.needs_telling import PredictionLike, ProfilesLike
 from dalembert.report.plot import SAFE
 
 
@@ -31,12 +32,14 @@ def report(
     study: str | None = None,
     points: Sequence[str] = (),
     truth: Mapping[str, Any] | None = None,
+    profiles: ProfilesLike | None = None,
+    prediction: PredictionLike | None = None,
 ) -> Path:
     """Write an HTML report that opens offline in any browser, in its light or dark, and asks nothing of the network.
 
     Parameters
     ----------
-    result : Fit, Trajectory, Propagation, Comparison, BandFit, ParameterSet or sweep
+    result : Fit, Trajectory, Propagation, Comparison, BandFit, ParameterSet, Profiles, Prediction, Designs or sweep
     path : path
         The file is written whole or not at all; its folder is made.
     title : str, optional
@@ -51,6 +54,10 @@ def report(
     truth : mapping of str, optional
         What is known of the parameters, to be drawn beside what was found: (lower, upper) for intervals identified from
         bands, a number for a set of parameters.
+    profiles : Profiles, optional
+        Profile likelihoods of a fit, for a section of its report.
+    prediction : Prediction, optional
+        Bands of a fit's response, for a section of its report.
 
     Returns
     -------
@@ -71,6 +78,8 @@ def report(
         study=study,
         points=tuple(points),
         truth=truth,
+        profiles=profiles,
+        prediction=prediction,
     )
     environment = _environment()
     scripts = [Markup(get_plotlyjs()), Markup(_packaged("page.js"))]

@@ -3,17 +3,22 @@
 from dalembert.report.charts.bands import bands
 from dalembert.report.charts.convergence import convergence
 from dalembert.report.charts.correlation import correlation
+from dalembert.report.charts.designs import horizons, ranking
 from dalembert.report.charts.energies import energies
 from dalembert.report.charts.intervals import intervals
+from dalembert.report.charts.l_curve import l_curve
 from dalembert.report.charts.mechanism import mechanism
 from dalembert.report.charts.methods import differences, methods
 from dalembert.report.charts.newton import newton
 from dalembert.report.charts.parameters import parameters
 from dalembert.report.charts.paving import paving
+from dalembert.report.charts.prediction import prediction
+from dalembert.report.charts.profile import profile
 from dalembert.report.charts.residual_bands import residual_bands
 from dalembert.report.charts.responses import responses
 from dalembert.report.charts.singular_values import singular_values
 from dalembert.report.charts.starts import starts
+from dalembert.report.charts.steps import steps
 from dalembert.report.charts.sweep import sweep
 from dalembert.report.charts.violations import violations
 
@@ -23,16 +28,22 @@ __all__ = [
     "correlation",
     "differences",
     "energies",
+    "horizons",
     "intervals",
+    "l_curve",
     "mechanism",
     "methods",
     "newton",
     "parameters",
     "paving",
+    "prediction",
+    "profile",
+    "ranking",
     "residual_bands",
     "responses",
     "singular_values",
     "starts",
+    "steps",
     "sweep",
     "violations",
 ]

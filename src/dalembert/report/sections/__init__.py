@@ -3,6 +3,7 @@
 from dalembert.report.sections.bounds import Bounds
 from dalembert.report.sections.comparison import Comparison
 from dalembert.report.sections.consistent import Consistent
+from dalembert.report.sections.designing import Designing
 from dalembert.report.sections.diagnostics import Diagnostics
 from dalembert.report.sections.estimates import Estimates
 from dalembert.report.sections.experiments import Experiments
@@ -11,6 +12,8 @@ from dalembert.report.sections.headline import Headline
 from dalembert.report.sections.intervals import Intervals
 from dalembert.report.sections.methods import Methods
 from dalembert.report.sections.motion import Motion
+from dalembert.report.sections.predicting import Predicting
+from dalembert.report.sections.profiling import Profiling
 from dalembert.report.sections.provenance import Provenance
 from dalembert.report.sections.search import Search
 from dalembert.report.sections.section import Section
@@ -21,6 +24,7 @@ __all__ = [
     "Bounds",
     "Comparison",
     "Consistent",
+    "Designing",
     "Diagnostics",
     "Estimates",
     "Experiments",
@@ -29,6 +33,8 @@ __all__ = [
     "Intervals",
     "Methods",
     "Motion",
+    "Predicting",
+    "Profiling",
     "Provenance",
     "Search",
     "Section",

@@ -5,6 +5,7 @@ from typing import ClassVar
 
 from dalembert.report import charts
 from dalembert.report.charts.correlation import unknowns
+from dalembert.report.charts.l_curve import accounts
 from dalembert.report.charts.starts import ranked
 from dalembert.report.needs import BandFitLike, FitLike
 from dalembert.report.plot import Plot
@@ -23,10 +24,16 @@ class Search(Section):
     @property
     def plots(self) -> tuple[Plot, ...]:
         come = Plot("convergence", charts.convergence(self.fit), "One line a start; the winning one in colour.")
-        if len(self.fit.starts) < 2:
-            return (come,)
-        ends = "Starts in order of their final fitness; a flat step is a minimum that many starts lead to."
-        return (come, Plot("starts", charts.starts(self.fit), ends))
+        plots = [come]
+        if len(self.fit.starts) > 1:
+            ends = "Starts in order of their final fitness; a flat step is a minimum that many starts lead to."
+            plots.append(Plot("starts", charts.starts(self.fit), ends))
+        if accounts(self.fit):
+            corner = "The weight is chosen at the corner, and raised until the step goes as the linear model foresees."
+            went = "Agreement is the fall of the sum of squares over the fall foreseen; 1 is just as foreseen."
+            plots.append(Plot("l-curve", charts.l_curve(self.fit), corner))
+            plots.append(Plot("steps", charts.steps(self.fit), went))
+        return tuple(plots)
 
     @property
     def table(self) -> Table:

@@ -1,0 +1,98 @@
+"""A predicted response with its bands, beside the data."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import plotly.graph_objects as go
+from plotly.subplots import make_subplots
+
+from dalembert.report.charts.bands import dressed, outline, selected
+from dalembert.report.charts.responses import FEW
+from dalembert.report.look import LIGHT, faint, plain
+from dalembert.report.needs_telling import PredictionLike
+from dalembert.report.thin import thin
+
+
+def prediction(
+    result: PredictionLike, channels: Sequence[str] | None = None, *, title: str = "Prediction"
+) -> go.Figure:
+    """Response with the band of its true value, fainter the band of a new measurement; below, half the widths.
+
+    Parameters
+    ----------
+    result : PredictionLike
+    channels : sequence of str, optional
+        Channels to draw, all if not given; they share an axis.
+    title : str
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+
+    Raises
+    ------
+    InputError
+        For a channel that is not predicted.
+    """
+    chosen = selected(result, channels, "prediction")
+    figure = make_subplots(rows=2, shared_xaxes=True, row_heights=[0.72, 0.28], vertical_spacing=0.05)
+    for place, name in enumerate(chosen):
+        _channel(figure, result, result.channels.index(name), LIGHT.series[place % len(LIGHT.series)])
+    return dressed(figure, result, chosen, title, below="± band").update_yaxes(rangemode="tozero", row=2)
+
+
+def _channel(figure: go.Figure, result: PredictionLike, column: int, colour: str) -> None:
+    at, name, centre = result.coordinate.values, plain(result.channels[column]), result.response[:, column]
+    bands = (
+        ("measurement", result.measured_lower[:, column], result.measured_upper[:, column], 0.12, "dot"),
+        ("response", result.lower[:, column], result.upper[:, column], 0.3, "solid"),
+    )
+    for word, lower, upper, opacity, dash in bands:
+        if not np.all(np.isfinite(upper - lower)):
+            continue
+        x, y = outline(at, lower, upper)
+        figure.add_scatter(
+            x=x,
+            y=y,
+            name=f"{name}, {100 * result.level:g} % of {word}",
+            legendgroup=name,
+            mode="lines",
+            line={"width": 0, "color": colour},
+            fill="toself",
+            fillcolor=faint(colour, opacity),
+            hoverinfo="skip",
+            row=1,
+            col=1,
+        )
+        half = (upper - lower) / 2
+        kept = thin(half)
+        figure.add_scatter(
+            x=at[kept],
+            y=half[kept],
+            name=f"{name}, ± {word}",
+            legendgroup=name,
+            showlegend=False,
+            mode="lines",
+            line={"color": colour, "width": 1.5, "dash": dash},
+            row=2,
+            col=1,
+        )
+    kept = thin(centre)
+    line = {"color": colour, "width": 2}
+    figure.add_scatter(
+        x=at[kept], y=centre[kept], name=f"{name} predicted", legendgroup=name, mode="lines", line=line, row=1, col=1
+    )
+    if result.data is not None and result.channels[column] in result.data.channels:
+        measured = result.data.values[:, result.data.channels.index(result.channels[column])]
+        kept, when = thin(measured), result.data.coordinate.values
+        size = 6 if len(when) <= FEW else 3
+        figure.add_scatter(
+            x=when[kept],
+            y=measured[kept],
+            name=f"{name} measured",
+            legendgroup=name,
+            mode="markers",
+            marker={"color": colour, "size": size, "symbol": "circle-open"},
+            row=1,
+            col=1,
+        )

@@ -1,12 +1,23 @@
 """The tables of a study file that name data: measurements, and bounds of them."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import Field, PlainValidator, ValidationInfo, WithJsonSchema
+from pydantic import (
+    AfterValidator,
+    Discriminator,
+    Field,
+    PlainValidator,
+    Tag,
+    ValidationInfo,
+    WithJsonSchema,
+    model_validator,
+)
 
+from dalembert.data.formats import SUFFIXES
+from dalembert.errors import unknown
 from dalembert.study.context import Context
-from dalembert.study.numbers import fixed
+from dalembert.study.numbers import fixed, samples
 from dalembert.study.table import Read, StudyTable, problem
 
 if TYPE_CHECKING:
@@ -26,31 +37,100 @@ def _read_file(value: Any, info: ValidationInfo) -> Path:
 DataFile = Annotated[Path, PlainValidator(_read_file), WithJsonSchema({"type": "string"})]
 
 
-class CsvTable(StudyTable):
-    """A CSV file and its column of times."""
+Format = Annotated[str, Read(Literal[tuple(SUFFIXES)])]  # pyright: ignore[reportInvalidTypeForm]
+
+
+class FileTable(StudyTable):
+    """A file of columns: CSV, Parquet, MAT, UFF or NetCDF."""
 
     file: DataFile = Field(description="relative to the study file")
-    time: str = Field("t", description="name of the column of times, in s")
-    separator: str = Field(",", min_length=1, max_length=1)
+    format: Format | None = Field(None, description="by the suffix of the file if not given")
+    time: str = Field("t", description="name of the column of times")
+    units: dict[str, str] = Field({}, description="unit of each column that is not in SI units: case1_x = 'mm'")
+    separator: str = Field(",", min_length=1, max_length=1, description="of the cells of a CSV file")
+
+    @property
+    def how(self) -> dict[str, Any]:
+        """Arguments that say how the file is read."""
+        return {"format": self.format, "units": self.units, "separator": self.separator}
 
 
-class DataTable(CsvTable):
-    """Measured data: a CSV file, its column of times, and the column of each channel."""
+class DerivativeTable(StudyTable):
+    """A channel that is the derivative of another."""
+
+    of: str = Field(description="the channel that it is the derivative of")
+    order: int = Field(1, ge=1)
+    window: int | None = Field(None, ge=3, description="samples of each polynomial; of the least error if not given")
+    degree: int = Field(3, ge=1, description="of the polynomials")
+
+
+Differentiated = Annotated[
+    Annotated[str, AfterValidator(lambda name: DerivativeTable.model_validate({"of": name})), Tag("name")]
+    | Annotated[DerivativeTable, Tag("table")],
+    Discriminator(lambda value: "name" if isinstance(value, str) else "table"),
+]
+
+
+class DataTable(FileTable):
+    """Measured data: a file, its column of times, the column of each channel, and what becomes of them."""
 
     columns: dict[str, str] = Field(min_length=1, description="column of each channel: 'AB.end.x' = 'case1_x'")
     deviations: dict[str, Annotated[float, Read(fixed(None))]] | None = Field(
         None, description="standard deviation of each channel's noise"
     )
+    missing: Literal["refuse", "leave-out"] = Field("refuse", description="what becomes of values that are not there")
+    wraps: list[str] = Field([], description="channels that are angles known up to whole turns")
+    derivatives: dict[str, Annotated[DerivativeTable, Read(Differentiated)]] = Field(
+        {}, description="channels that are derivatives of others: 'crank.rate' = 'crank.angle'"
+    )
+    between: Annotated[list[Annotated[float, Read(fixed("s"))]], Field(min_length=2, max_length=2)] | None = Field(
+        None, description="times between which samples are kept"
+    )
+    every: int | None = Field(None, ge=1, description="keep every so manyth sample")
+    resample: Annotated[tuple[float, ...], Read(samples("s"))] | None = Field(
+        None, description="times at which splines through the samples are taken"
+    )
+
+    @model_validator(mode="after")
+    def _check(self) -> "DataTable":
+        wrong = [unknown("channel", name, self.columns, "wraps") for name in self.wraps if name not in self.columns]
+        for name, derivative in self.derivatives.items():
+            if name in self.columns:
+                wrong.append(f"derivatives: the channel {name!r} has a column already; expected another name")
+            if derivative.of not in self.columns:
+                wrong.append(unknown("channel", derivative.of, self.columns, f"derivatives, {name!r}"))
+        if self.every is not None and self.resample is not None:
+            wrong.append("every and resample are both given; expected one of them")
+        if wrong:
+            raise problem(*wrong)
+        return self
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Channels that the data have."""
+        return (*self.columns, *self.derivatives)
 
     def read(self) -> "Measurements":
         """The data."""
-        from dalembert.data import read_csv
+        from dalembert.data import read
+        from dalembert.data.opening import told_of
 
-        return read_csv(self.file, self.time, self.columns, self.deviations, separator=self.separator)
+        given = self.deviations
+        measured = None if given is None else {name: given[name] for name in given if name not in self.derivatives}
+        data = read(self.file, self.time, self.columns, measured, missing=self.missing, wraps=self.wraps, **self.how)
+        with told_of(self.file):
+            for name, one in self.derivatives.items():
+                how = {"order": one.order, "window": one.window, "degree": one.degree}
+                data = data.with_derivative(one.of, name, **how, deviation=(given or {}).get(name))
+            if self.between is not None:
+                data = data.between(*self.between)
+            if self.every is not None:
+                data = data.every(self.every)
+            return data if self.resample is None else data.resampled(self.resample)
 
 
-class BandsTable(CsvTable):
-    """Bounds of channels: a CSV file, its column of times, and two columns of each channel."""
+class BandsTable(FileTable):
+    """Bounds of channels: a file, its column of times, and two columns of each channel."""
 
     columns: dict[str, Annotated[list[str], Field(min_length=2, max_length=2)]] = Field(
         min_length=1, description="columns of each channel, the lower bounds first: 'AB.end.x' = ['x_lower', 'x_upper']"
@@ -61,4 +141,4 @@ class BandsTable(CsvTable):
         from dalembert.data import read_bands
 
         columns = {name: (lower, upper) for name, (lower, upper) in self.columns.items()}
-        return read_bands(self.file, self.time, columns, separator=self.separator)
+        return read_bands(self.file, self.time, columns, **self.how)

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic import AfterValidator, Discriminator, Field, Tag, create_model
 
 from dalembert.errors import InputError, unknown
-from dalembert.optimize import LeastSquares, Minimiser, Swarm
+from dalembert.optimize import Minimiser, Squares, Swarm
 from dalembert.optimize.minimiser import NAMES as MINIMISERS
 from dalembert.study.catalogue import methods
 from dalembert.study.components import one_of, table_of
 from dalembert.study.events import teller
+from dalembert.study.experiments import posed
 from dalembert.study.numbers import fixed
 from dalembert.study.table import Read, StudyTable, checked
 from dalembert.study.tasks.task import Outcome, Task
@@ -30,14 +31,28 @@ class IdentifyTable(StudyTable):
     """Identify the parameters from the data."""
 
     method: Any = DEFAULT
-    starts: int | None = Field(None, ge=1, description="starts at most; 8 for least squares, 1 for others if not given")
+    starts: int | None = Field(
+        None,
+        ge=1,
+        description="starts at most; 8 for sums of squares, 1 for others if not given",
+    )
     seed: int = Field(0, ge=0, description="of all random numbers")
     polish: bool = Field(False, description="end with least squares from the best point found")
     horizon: Literal["growing", "whole"] = Field(
         "growing", description="'growing' fits ever longer parts of the data, 'whole' all of it from the beginning"
     )
+    spread: Literal["latin-hypercube", "sobol"] = Field(
+        "latin-hypercube", description="how the points that starts are chosen from are spread over the bounds"
+    )
     weights: dict[str, Annotated[float, Read(fixed(None))]] | None = Field(
         None, description="weight of each channel; from deviations if not given"
+    )
+    loss: Literal["linear", "huber", "soft-l1", "cauchy"] = Field(
+        "linear", description="what is summed of the residuals: squares, or less of those that are large"
+    )
+    loss_scale: float | None = Field(None, gt=0, description="weighted residual from which one counts as an outlier")
+    validation: Annotated[float, Field(gt=0, lt=1)] | list[str] | None = Field(
+        None, description="share of the samples at the end, or names of experiments, that are predicted, not fitted"
     )
 
 
@@ -50,7 +65,8 @@ def identify_table() -> type[IdentifyTable]:
         Discriminator(lambda value: "name" if isinstance(value, str) else "table"),
         AfterValidator(_buildable),
     ]
-    name = f"'{DEFAULT}', 'standard-swarm', 'improved-swarm', a minimiser of SciPy, or a table with kind and settings"
+    own = ", ".join(f"'{name}'" for name in methods() if name != "scipy")
+    name = f"{own}, a minimiser of SciPy, or a table with kind and settings"
     fields: dict[str, Any] = {"method": (method, Field(DEFAULT, description=name))}
     return create_model("Identify", __base__=IdentifyTable, **fields)
 
@@ -70,7 +86,7 @@ def settings(method: Any) -> Any:
 def _cost(method: Any, starts: int | None, parameters: int) -> str:
     """A method's name, and about how many simulations it takes."""
     name = type(method).__name__
-    if isinstance(method, LeastSquares):
+    if isinstance(method, Squares):
         one = 10 * (1 + parameters)
         return f"{name}: about {one} simulations a start, sensitivities counted, and at most {starts or 8} starts"
     if isinstance(method, Swarm):
@@ -124,9 +140,10 @@ class Identification(Outcome):
         )
 
     def _motion(self) -> Any:
-        if not self.study.has_system:
+        if not self.study.has_system or self.fit.experiments:
             return None
-        return self.study.motion(float(self.fit.data.coordinate.values[-1]), self.fit.values)
+        own = self.fit.values[: len(self.study.parameters)]  # what follows belongs to sensors
+        return self.study.motion(float(self.fit.data.coordinate.values[-1]), own)
 
 
 class Identify(Task):
@@ -139,10 +156,11 @@ class Identify(Task):
         wrong = []
         if not file.parameters:
             wrong.append("[identify] needs at least one [parameters.NAME] table")
-        if file.data is None:
-            wrong.append("[identify] needs a [data] table")
-        if file.data is not None:
-            wrong += unmatched(file.identify.weights, file.data.columns, "weight", "[identify], weights")
+        if file.data is None and not file.experiments:
+            wrong.append("[identify] needs a [data] table, or [[experiments]]")
+        for table in (file.data, *file.experiments):
+            if table is not None:
+                wrong += unmatched(file.identify.weights, table.channels, "weight", "[identify], weights")
         return [*wrong, *needs_solver(file)]
 
     def plan(self, study: "Study") -> str:
@@ -168,6 +186,7 @@ class Identify(Task):
             weights=None if table.weights is None else [table.weights[channel] for channel in data.channels],
             polish=table.polish,
             horizon=None if table.horizon == "whole" else table.horizon,
+            spread=table.spread,
             on_event=teller(emit, as_record),
         )
         return Identification(study, fit)

@@ -59,7 +59,7 @@ class IdentifySet(Task):
         wrong += [] if file.data else ["[identify_set] needs a [data] table"]
         wrong += unnamed(table.truth, file.parameters, "[identify_set.truth]")
         if file.data is not None and isinstance(table.error, dict):
-            wrong += unmatched(table.error, file.data.columns, "error", "[identify_set], error")
+            wrong += unmatched(table.error, file.data.channels, "error", "[identify_set], error")
         return [*wrong, *needs_solver(file)]
 
     def plan(self, study: "Study") -> str:

@@ -1,0 +1,154 @@
+"""Tables of data: formats, units, gaps, wraps, derivatives and resampling in a study file."""
+
+import numpy as np
+import pytest
+from scipy.io import savemat
+
+from dalembert.errors import InputError
+from dalembert.study.context import Context
+from dalembert.study.data_table import BandsTable
+from dalembert.study.loader import load
+from dalembert.study.runner import plan
+from dalembert.study.tasks import TASKS
+
+STUDY = """
+[parameters]
+rate = {{ lower = 0.5, upper = 3.0 }}
+[model]
+forward = "model.py:spin"
+arguments = {{ end = {end}, count = {count} }}
+[data]
+file = "{file}"
+{more}
+[identify]
+starts = 1
+"""
+MODEL = """
+import numpy as np
+from dalembert.forward import PythonModel
+
+def spin(parameters, end=2.0, count=201):
+    times = np.linspace(0.0, end, count)
+    respond = lambda rate: np.stack([rate * times, rate + 0 * times], axis=1)
+    return PythonModel(respond, parameters, ["crank.angle", "crank.rate"], times)
+"""
+TIMES = np.linspace(0.0, 2.0, 201)
+
+
+@pytest.fixture
+def study(tmp_path):
+    (tmp_path / "model.py").write_text(MODEL)
+    degrees = (np.rad2deg(2.5 * TIMES) + 180) % 360 - 180
+    degrees[20:25] = np.nan
+    savemat(tmp_path / "run.mat", {"run": {"ms": 1000 * TIMES, "deg": degrees}})
+
+    def make(more: str, *, end: float = 2.0, count: int = 201, file: str = "run.mat"):
+        path = tmp_path / "study.toml"
+        path.write_text(STUDY.format(more=more, end=end, count=count, file=file))
+        return load(path)
+
+    return make
+
+
+GIVEN = """
+time = "run.ms"
+columns = { "crank.angle" = "run.deg" }
+units = { "run.ms" = "ms", "run.deg" = "deg" }
+missing = "leave-out"
+wraps = ["crank.angle"]
+"""
+
+
+def test_data_are_read_from_another_format_in_si_with_gaps_and_wraps(study):
+    data = study(GIVEN).data()
+    assert data.channels == ("crank.angle",)
+    assert (data.missing, data.wraps) == ("leave-out", ("crank.angle",))
+    np.testing.assert_allclose(data.coordinate.values, TIMES, atol=1e-15)
+    np.testing.assert_array_equal(np.flatnonzero(~data.present[:, 0]), np.arange(20, 25))
+    np.testing.assert_allclose(data.difference(2.5 * TIMES[:, None])[data.present], 0, atol=1e-12)
+
+
+def test_a_study_with_gaps_and_wraps_runs(study, tmp_path):
+    case = study(GIVEN + 'derivatives = { "crank.rate" = "crank.angle" }')
+    assert plan(case).startswith("identifies rate from 201 samples of crank.angle, crank.rate by LeastSquares")
+
+    outcome = TASKS["identify"].run(case, lambda *_, **__: None)
+    assert outcome.best["values"]["rate"] == pytest.approx(2.5, rel=1e-9)
+
+
+def test_derivatives_have_the_deviation_given_or_that_of_their_error(study):
+    told = 'deviations = { "crank.angle" = "0.1 deg" }\n'
+    automatic = study(GIVEN + told + 'derivatives = { "crank.rate" = "crank.angle" }').data()
+    assert automatic.deviations[0] == pytest.approx(np.deg2rad(0.1))
+    assert 1e-4 < automatic.deviations[1] < 1e-1
+    np.testing.assert_allclose(automatic.values[automatic.present[:, 1], 1], 2.5, atol=1e-9)
+    told = 'deviations = { "crank.angle" = "0.1 deg", "crank.rate" = "3 deg/s" }\n'
+    table = 'derivatives = { "crank.rate" = { of = "crank.angle", window = 9, degree = 2 } }'
+    assert study(GIVEN + told + table).data().deviations[1] == pytest.approx(np.deg2rad(3))
+
+
+@pytest.mark.parametrize(
+    ("more", "times"),
+    [
+        ('between = ["500 ms", 1.0]', TIMES[50:101]),
+        ("every = 40", TIMES[::40]),
+        ("between = [0.5, 1.0]\nevery = 10", TIMES[50:101:10]),
+        ("resample = [0.0, 0.333, 2.0]", np.array([0.0, 0.333, 2.0])),
+        ('resample = { end = "2 s", every = "125 ms" }', np.linspace(0, 2, 17)),
+    ],
+)
+def test_samples_are_chosen_or_interpolated(study, more, times):
+    data = study(GIVEN + more).data()
+    np.testing.assert_allclose(data.coordinate.values, times, atol=1e-15)
+    np.testing.assert_allclose(data.difference(2.5 * times[:, None])[data.present], 0, atol=1e-9)
+
+
+def test_the_settings_of_a_table_are_in_si(study):
+    settings = study(GIVEN + 'resample = { end = "2 s", count = 3 }\nderivatives = { v = "crank.angle" }').settings
+    assert settings["data"]["resample"] == [0.0, 1.0, 2.0]
+    assert settings["data"]["derivatives"] == {"v": {"of": "crank.angle"}}
+    assert settings["data"]["units"] == {"run.ms": "ms", "run.deg": "deg"}
+
+
+@pytest.mark.parametrize(
+    ("more", "sentences"),
+    [
+        (
+            'columns = { "crank.angle" = "run.deg" }\nwraps = ["crank.angel"]',
+            ["study.toml: [data]: wraps: unknown channel 'crank.angel'; did you mean 'crank.angle'?"],
+        ),
+        (
+            'columns = { a = "run.deg" }\nderivatives = { a = "b" }\nevery = 2\nresample = [0.0, 1.0]',
+            [
+                "study.toml: [data]: derivatives: the channel 'a' has a column already; expected another name",
+                "study.toml: [data]: derivatives, 'a': unknown channel 'b'; known: a",
+                "study.toml: [data]: every and resample are both given; expected one of them",
+            ],
+        ),
+        (
+            'columns = { a = "run.deg" }\nmissing = "ignore"',
+            ["study.toml: [data], missing: 'ignore' was given; expected 'refuse' or 'leave-out'"],
+        ),
+        (
+            'columns = { a = "run.deg" }\nformat = "xls"',
+            [
+                "study.toml: [data], format: 'xls' was given; expected 'csv', 'parquet', 'mat', 'uff' or 'netcdf'",
+            ],
+        ),
+    ],
+)
+def test_a_mistake_in_the_table_is_told_with_its_place(study, more, sentences):
+    with pytest.raises(InputError) as error:
+        study(more)
+    assert str(error.value).split("\n") == sentences
+
+
+def test_bands_are_read_in_other_units(tmp_path):
+
+    (tmp_path / "bounds.csv").write_text("ms,low,high\n0,1,2\n10,3,4\n")
+
+    given = {"file": "bounds.csv", "time": "ms", "columns": {"x": ["low", "high"]}}
+    given["units"] = {"ms": "ms", "low": "mm", "high": "mm"}
+    bands = BandsTable.model_validate(given, context=Context(tmp_path)).read()
+    assert bands.coordinate.values.tolist() == [0.0, 0.01]
+    assert bands.upper.tolist() == [[0.002], [0.004]]

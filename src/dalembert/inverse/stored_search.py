@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from dalembert.inverse.events import StartEnd, Step
+from dalembert.inverse.stored_steps import steps_of, stored_steps
 
 
 def stored_search(history: Sequence[Step], starts: Sequence[StartEnd], over: str, size: int) -> dict[str, Any]:
@@ -20,6 +21,7 @@ def stored_search(history: Sequence[Step], starts: Sequence[StartEnd], over: str
         "end_values": (("start", over), np.array([start.end for start in starts]).reshape(-1, size)),
         "end_fitness": ("start", np.array([start.fitness for start in starts], dtype=float)),
         "start_simulations": ("start", np.array([start.simulations for start in starts], dtype=np.int64)),
+        **stored_steps(history),
     }
 
 
@@ -33,14 +35,14 @@ def search_of(
 ) -> tuple[tuple[Step, ...], tuple[StartEnd, ...]]:
     """History and starts of a search over ``samples`` samples."""
     a = arrays
-    history = zip(
-        a["step_start"], a["step_iteration"], a["step_simulations"], a["step_best"], a["step_values"], strict=True
-    )
+    regularised = steps_of(a, len(a["step_start"]))
+    columns = ("step_start", "step_iteration", "step_simulations", "step_best", "step_values")
+    history = zip(*(a[column] for column in columns), regularised, strict=True)
     starts = zip(a["start_values"], a["end_values"], a["end_fitness"], ends, a["start_simulations"], strict=True)
     return (
         tuple(
-            Step(int(start), int(iteration), int(simulations), float(best), values, samples)
-            for start, iteration, simulations, best, values in history
+            Step(int(start), int(iteration), int(simulations), float(best), values, samples, how)
+            for start, iteration, simulations, best, values, how in history
         ),
         tuple(
             StartEnd(start, end, float(fitness), bool(how["success"]), str(how["message"]), int(simulations))

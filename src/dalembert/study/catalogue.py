@@ -76,4 +76,9 @@ def methods() -> dict[str, type]:
     """Methods of identification by the names that a study file gives them."""
     from dalembert import optimize
 
-    return {"least-squares": optimize.LeastSquares, **swarms(), "scipy": optimize.Minimiser}
+    return {
+        "least-squares": optimize.LeastSquares,
+        "response-sensitivity": optimize.ResponseSensitivity,
+        **swarms(),
+        "scipy": optimize.Minimiser,
+    }

@@ -17,6 +17,7 @@ from pydantic import (
 from dalembert.study.catalogue import catalogue
 from dalembert.study.components import buildable, one_of, table_of
 from dalembert.study.data_table import BandsTable, DataTable
+from dalembert.study.experiments import ExperimentTable, SensorTable, wrong_experiments
 from dalembert.study.model_table import ModelTable, model_table
 from dalembert.study.parameters import ParameterTable, check_names, read_constants
 from dalembert.study.table import Name, StudyTable, problem
@@ -48,6 +49,8 @@ class StudyFile(StudyTable):
     solver: Any = None
     data: DataTable | None = None
     bands: BandsTable | None = None
+    experiments: list[ExperimentTable] = Field([], description="several experiments in place of [data]")
+    sensors: dict[str, SensorTable] = Field({}, description="what is not known of the sensors, by channel")
 
     @model_validator(mode="after")
     def _check(self) -> "StudyFile":
@@ -59,7 +62,7 @@ class StudyFile(StudyTable):
             given = f"{names} are given" if names else "no task is given"
             raise problem(f"{given}; a study has one task, one of {', '.join(f'[{name}]' for name in TASKS)}")
         (name,) = self.tasks
-        wrong = TASKS[name].wrong(self)
+        wrong = [*wrong_experiments(self), *TASKS[name].wrong(self)]
         if wrong:
             raise problem(*wrong)
         return self

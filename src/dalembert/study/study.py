@@ -128,6 +128,12 @@ class Study:
             )
         return model
 
+    def varied(self, constants: Mapping[str, float], arguments: Mapping[str, Any]) -> "Study":
+        """The same study with other values of some constants, and other arguments of the model's function."""
+        model = self.file.model.model_copy(update={"arguments": {**self.file.model.arguments, **arguments}})
+        update = {"constants": {**self.file.constants, **constants}, "model": model}
+        return replace(self, file=self.file.model_copy(update=update))
+
     def data(self) -> "Measurements":
         """The measured data."""
         if self.file.data is None:

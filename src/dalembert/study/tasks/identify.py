@@ -13,7 +13,7 @@ from dalembert.optimize.minimiser import NAMES as MINIMISERS
 from dalembert.study.catalogue import methods
 from dalembert.study.components import one_of, table_of
 from dalembert.study.events import teller
-from dalembert.study.experiments import posed
+from dalembert.study.experiments import measured_channels, posed, unknown_names
 from dalembert.study.numbers import fixed
 from dalembert.study.table import Read, StudyTable, checked
 from dalembert.study.tasks.task import Outcome, Task
@@ -158,35 +158,43 @@ class Identify(Task):
             wrong.append("[identify] needs at least one [parameters.NAME] table")
         if file.data is None and not file.experiments:
             wrong.append("[identify] needs a [data] table, or [[experiments]]")
-        for table in (file.data, *file.experiments):
-            if table is not None:
-                wrong += unmatched(file.identify.weights, table.channels, "weight", "[identify], weights")
+        channels = measured_channels(file)
+        if channels:
+            wrong += unmatched(file.identify.weights, channels, "weight", "[identify], weights")
         return [*wrong, *needs_solver(file)]
 
     def plan(self, study: "Study") -> str:
-        data, table = study.data(), study.table
-        study.forward(data.channels, data.coordinate.values).evaluate(study.parameters.start[None]).only()
-        return (
-            f"identifies {', '.join(study.parameters.names)} from {len(data.coordinate.values)} samples of "
-            f"{', '.join(data.channels)} by {_cost(settings(table.method), table.starts, len(study.parameters))}"
-        )
+        from dalembert.inverse.experiments import joint
+
+        table = study.table
+        model, data = posed(study)
+        whole = joint(model)[0] if isinstance(model, list) else model
+        whole.evaluate(whole.parameters.start[None]).only()
+        cost = _cost(settings(table.method), table.starts, len(whole.parameters))
+        return f"identifies {', '.join(whole.parameters.names)} from {_measured(model, data)} by {cost}"
+
+    def unknowns(self, study: "Study") -> tuple[str, ...]:
+        return unknown_names(study)
 
     def run(self, study: "Study", emit: "Emit") -> Outcome:
         from dalembert.inverse import identify
         from dalembert.inverse.events import as_record
 
-        data, table = study.data(), study.table
-
+        table = study.table
+        model, data = posed(study)
         fit = identify(
-            study.forward(data.channels, data.coordinate.values),
+            model,
             data,
             method=settings(table.method),
             starts=table.starts,
             seed=table.seed,
-            weights=None if table.weights is None else [table.weights[channel] for channel in data.channels],
+            weights=_weights(table.weights, model, data),
             polish=table.polish,
             horizon=None if table.horizon == "whole" else table.horizon,
             spread=table.spread,
+            loss=table.loss,
+            loss_scale=table.loss_scale,
+            validation=table.validation,
             on_event=teller(emit, as_record),
         )
         return Identification(study, fit)
@@ -195,3 +203,20 @@ class Identify(Task):
         from dalembert.inverse import Fit
 
         return Identification(study, Fit.load(path))
+
+
+def _measured(model: Any, data: Any) -> str:
+    """What is fitted, in words."""
+    if data is not None:
+        return f"{len(data.coordinate.values)} samples of {', '.join(data.channels)}"
+    each = [f"{item.name}: {_measured(item.model, item.data)}" for item in model]
+    return f"{len(model)} experiments ({'; '.join(each)})"
+
+
+def _weights(given: dict[str, float] | None, model: Any, data: Any) -> Any:
+    """Weights of channels by name, as identify takes them."""
+    if given is None:
+        return None
+    if data is not None:
+        return [given[channel] for channel in data.channels]
+    return {item.name: [given[channel] for channel in item.data.channels] for item in model}

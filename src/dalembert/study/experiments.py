@@ -1,0 +1,154 @@
+"""The tables of several experiments and of sensors, and the models and data that they make."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Annotated, Any
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from dalembert.errors import unknown
+from dalembert.forward import ForwardModel, Sensor, Sensors
+from dalembert.forward.sensors import QUANTITIES
+from dalembert.study.data_table import DataTable
+from dalembert.study.numbers import fixed
+from dalembert.study.table import Name, Read, StudyTable, problem
+
+if TYPE_CHECKING:
+    from dalembert.data import Measurements
+    from dalembert.inverse import Experiment
+    from dalembert.study.study import Study
+
+MOST_SAMPLES = 20_000
+"""Samples of a motion between which sensors interpolate, at most; as many as steps if those are fewer."""
+
+TimeBounds = Annotated[list[Annotated[float, Read(fixed("s"))]], Field(min_length=2, max_length=2)]
+Bounds = Annotated[list[Annotated[float, Read(fixed(None))]], Field(min_length=2, max_length=2)]
+
+
+class SensorTable(StudyTable):
+    """Bounds of what is not known of a channel's sensor."""
+
+    delay: TimeBounds | None = Field(None, description="positive where the reading comes late")
+    gain: Bounds | None = None
+    offset: Bounds | None = Field(None, description="in the channel's unit")
+    at_rest: bool = Field(False, description="whether the channel rests at its first value before the motion begins")
+
+    @model_validator(mode="after")
+    def _check(self) -> "SensorTable":
+        given = {what: getattr(self, what) for what in ("delay", "gain", "offset") if getattr(self, what) is not None}
+        wrong = [
+            f"{what} is between {lower:g} and {upper:g}; expected the lower bound first"
+            for what, (lower, upper) in given.items()
+            if lower >= upper
+        ]
+        if not given:
+            wrong.append("neither delay, gain nor offset is given; expected bounds of at least one")
+        if wrong:
+            raise problem(*wrong)
+        return self
+
+    @property
+    def sensor(self) -> Sensor:
+        """The sensor."""
+        pairs = {what: getattr(self, what) for what in ("delay", "gain", "offset")}
+        return Sensor(**{what: pair and tuple(pair) for what, pair in pairs.items()}, at_rest=self.at_rest)
+
+
+class ExperimentTable(DataTable):
+    """One of several experiments: its data, and what differs from the others."""
+
+    name: Name
+    own: list[str] = Field([], description="parameters that are not shared with the other experiments")
+    constants: dict[str, Annotated[float, Read(fixed(None))]] = Field(
+        {}, description="constants that have another value in this experiment"
+    )
+    arguments: dict[str, Any] = Field({}, description="arguments of the model's function in this experiment")
+
+
+def wrong_experiments(file: Any) -> list[str]:
+    """Sentences about experiments and sensors that do not fit to the rest of the file."""
+    wrong = []
+    names = [table.name for table in file.experiments]
+    repeated = sorted({name for name in names if names.count(name) > 1})
+    if repeated:
+        wrong.append(f"[[experiments]]: {', '.join(repeated)} is given more than once; expected different names")
+    if file.experiments and file.data is not None:
+        wrong.append("[data] and [[experiments]] are both given; expected one of them")
+    wrong += [
+        f"[{table}] belongs to [identify], and the task is [{task}]; leave it out"
+        for task in file.tasks
+        for table in ("experiments", "sensors")
+        if getattr(file, table) and task != "identify"
+    ]
+    measured = measured_channels(file)
+    wrong += [unknown("channel", name, measured, "[sensors]") for name in file.sensors if name not in measured]
+    for table in file.experiments:
+        where = f"[[experiments]] {table.name!r}, constants"
+        wrong += [
+            unknown("constant", name, file.constants, where) for name in table.constants if name not in file.constants
+        ]
+        if table.arguments and not (file.model.function or file.model.forward):
+            wrong.append(f"[[experiments]] {table.name!r}: arguments are for a function, and there is none")
+    return wrong
+
+
+def measured_channels(file: Any) -> tuple[str, ...]:
+    """Channels of the data, or of all experiments, each once."""
+    tables = file.experiments or ([] if file.data is None else [file.data])
+    return tuple(dict.fromkeys(channel for table in tables for channel in table.channels))
+
+
+def unknown_names(study: "Study") -> tuple[str, ...]:
+    """Names of the parameters of the model, of sensors, and of single experiments, in the order of the fit."""
+    file = study.file
+    if not file.experiments:
+        return (*study.parameters.names, *_of_sensors(file, measured_channels(file)))
+    names = {}
+    for table in file.experiments:
+        for name in (*study.parameters.names, *_of_sensors(file, table.channels)):
+            names[f"{table.name}.{name}" if name in table.own else name] = None
+    return tuple(names)
+
+
+def _of_sensors(file: Any, channels: Sequence[str]) -> list[str]:
+    """Names of the parameters of the sensors of some channels."""
+    return [
+        f"{channel} {what}"
+        for channel, table in file.sensors.items()
+        if channel in channels
+        for what in QUANTITIES
+        if getattr(table, what) is not None
+    ]
+
+
+def posed(study: "Study") -> "tuple[ForwardModel | list[Experiment], Measurements | None]":
+    """Model and data of a study, or its experiments and None: the first arguments of ``identify``."""
+    from dalembert.inverse import Experiment
+
+    if not study.file.experiments:
+        data = study.data()
+        return _model(study, data), data
+    experiments = []
+    for table in study.file.experiments:
+        data, variant = table.read(), study.varied(table.constants, table.arguments)
+        experiments.append(Experiment(table.name, _model(variant, data), data, tuple(table.own)))
+    return experiments, None
+
+
+def _model(study: "Study", data: "Measurements") -> ForwardModel:
+    """The model at the samples of data, seen by the sensors that there are."""
+    sensors = {name: table.sensor for name, table in study.file.sensors.items() if name in data.channels}
+    stamps = data.coordinate.values
+    if not sensors:
+        return study.forward(data.channels, stamps)
+    samples = _fine(study, stamps, sensors) if study.has_system else stamps
+    return Sensors(study.forward(data.channels, samples), sensors, stamps)
+
+
+def _fine(study: "Study", stamps: np.ndarray, sensors: dict[str, Sensor]) -> np.ndarray:
+    """Times of the solver's steps until the last reading, every so manyth of them where they are very many."""
+    least = min((sensor.delay[0] for sensor in sensors.values() if isinstance(sensor.delay, tuple)), default=0.0)
+    end = float(stamps[-1]) - min(0.0, least)
+    step = getattr(study.solver, "step", None) or end / 2000
+    apart = step * np.ceil(end / step / MOST_SAMPLES)
+    return apart * np.arange(np.ceil(end / apart - 1e-9) + 1)

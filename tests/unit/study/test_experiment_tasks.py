@@ -1,0 +1,196 @@
+"""Studies of several experiments, of sensors, losses and validation."""
+
+import numpy as np
+import pytest
+
+from dalembert.errors import InputError
+from dalembert.study import load, plan, report_run, run_study
+from dalembert.study.runner import unknowns
+from pages import read_page
+
+DECAY = """
+import numpy as np
+from dalembert.forward import PythonModel
+
+def decay(parameters, end, samples):
+    times = np.linspace(0, end, samples)
+    return PythonModel(lambda size, rate: size * np.exp(-rate * times), parameters, ["x"], times)
+"""
+HEAD = """
+[parameters]
+size = { lower = 0.5, upper = 4.0 }
+rate = { lower = 0.1, upper = "3 1/s" }
+[model]
+forward = "decay.py:decay"
+arguments = { end = 2.0, samples = 21 }
+"""
+TWO = (
+    HEAD
+    + """
+[[experiments]]
+name = "short"
+file = "short.csv"
+columns = { x = "x" }
+own = ["size"]
+[[experiments]]
+name = "long"
+file = "long.csv"
+columns = { x = "x" }
+own = ["size"]
+arguments = { end = 5.0, samples = 41 }
+"""
+)
+TIMES = {"short": np.linspace(0, 2, 21), "long": np.linspace(0, 5, 41)}
+SIZES = {"short": 2.0, "long": 1.5}
+PENDULUM = """
+[constants]
+L = "800 mm"
+begin = "30 deg"
+[parameters]
+drag = { lower = 0.0, upper = 0.5, unit = "N*m*s" }
+[model]
+[[model.body]]
+kind = "RigidBar"
+name = "rod"
+length = "L"
+mass = 1.5
+angle = "-begin"
+[[model.joint]]
+kind = "RevoluteJoint"
+name = "pin"
+a = "ground"
+b = "rod.start"
+viscous = "drag"
+[solver]
+step = "2 ms"
+"""
+
+
+def table(path, times, values):
+    path.write_text("\n".join(["t,x", *(f"{t!r},{x!r}" for t, x in zip(times.tolist(), values.tolist(), strict=True))]))
+
+
+@pytest.fixture
+def write(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "decay.py").write_text(DECAY)
+    for name, times in TIMES.items():
+        table(tmp_path / f"{name}.csv", times, SIZES[name] * np.exp(-0.8 * times))
+
+    def write(text):
+        path = tmp_path / "study.toml"
+        path.write_text(text)
+        return path
+
+    return write
+
+
+def test_experiments_share_parameters_and_have_their_own(write, tmp_path):
+    study = load(write(TWO + "[identify]\nweights = { x = 4.0 }\n"))
+    assert unknowns(study) == ("short.size", "rate", "long.size")
+    assert plan(study).startswith(
+        "identifies short.size, rate, long.size from 2 experiments (short: 21 samples of x; long: 41 samples of x) by "
+        "LeastSquares: about 40 simulations a start"
+    )
+    folder, outcome = run_study(study, tmp_path / "run")
+    assert outcome.best["values"] == pytest.approx({"short.size": 2.0, "rate": 0.8, "long.size": 1.5})
+    assert {path.name for path in (folder.path / "inputs").iterdir()} >= {"short.csv", "long.csv"}
+    page = read_page(report_run(folder))
+    assert "short: x" in page.text
+    assert "long: x" in page.text
+
+
+def test_losses_and_validation_come_from_the_study(write, tmp_path):
+    task = '[identify]\nloss = "cauchy"\nloss_scale = 0.1\nvalidation = ["long"]\n'
+    text = TWO.replace('own = ["size"]\narguments', "arguments") + task
+    with pytest.raises(InputError, match="parameter 'size' belongs to experiments for validation alone"):
+        run_study(load(write(text)), tmp_path / "refused")
+    _, outcome = run_study(load(write(text.replace('own = ["size"]', ""))), tmp_path / "run")
+    assert outcome.best["values"] == pytest.approx({"size": 2.0, "rate": 0.8})
+    assert "Not fitted: the experiment 'long'." in outcome.summary
+    assert "weighted residuals exceed 0.1" in outcome.status
+
+
+def test_a_share_is_kept_for_validation(write, tmp_path):
+    text = HEAD + '[data]\nfile = "short.csv"\ncolumns = { x = "x" }\n[identify]\nvalidation = 0.25\n'
+    _, outcome = run_study(load(write(text)), tmp_path / "run")
+    assert "Not fitted: the last 5 of 21 samples." in outcome.summary
+
+
+def test_sensors_read_a_mechanism_between_the_steps_of_the_solver(write, tmp_path):
+    data = '[data]\nfile = "x.csv"\ncolumns = { "rod.end.x" = "x" }\n'
+    sensors = '[sensors."rod.end.x"]\ndelay = [0, "30 ms"]\ngain = [0.5, 2.0]\nat_rest = true\n'
+    text = PENDULUM + data + sensors + "[identify]\n"
+    stamps = np.arange(0, 60) * 0.025
+    study = load(write(PENDULUM + "[simulate]\nend = 1.5\n"))
+    exact = study.forward(["rod.end.x"], np.arange(0, 1501) * 1e-3).evaluate(np.array([[0.2]])).only()[0, :, 0]
+    late = np.interp(stamps - 0.012, np.arange(0, 1501) * 1e-3, exact)
+    table(tmp_path / "x.csv", stamps, 1.1 * late)
+    study = load(write(text))
+    assert unknowns(study) == ("drag", "rod.end.x delay", "rod.end.x gain")
+    assert plan(study).startswith("identifies drag, rod.end.x delay, rod.end.x gain from 60 samples of rod.end.x by ")
+    folder, outcome = run_study(study, tmp_path / "run")
+    values = {"drag": 0.2, "rod.end.x delay": 0.012, "rod.end.x gain": 1.1}
+    assert outcome.best["values"] == pytest.approx(values, rel=1e-3)
+    assert folder.report.is_file()
+
+
+def test_experiments_may_differ_in_constants(write, tmp_path):
+    times = np.arange(0, 41) * 0.05
+    texts = []
+    for name, begin in (("low", "30 deg"), ("high", "80 deg")):
+        study = load(write(PENDULUM.replace('"30 deg"', f'"{begin}"') + "[simulate]\nend = 2.0\n"))
+        table(
+            tmp_path / f"{name}.csv",
+            times,
+            study.forward(["rod.end.x"], times).evaluate(np.array([[0.2]])).only()[0, :, 0],
+        )
+        constants = f'constants = {{ begin = "{begin}" }}\n' if name == "high" else ""
+        texts.append(
+            f'[[experiments]]\nname = "{name}"\nfile = "{name}.csv"\ncolumns = {{ "rod.end.x" = "x" }}\n{constants}'
+        )
+    _, outcome = run_study(load(write(PENDULUM + "".join(texts) + "[identify]\n")), tmp_path / "run")
+    assert outcome.best["values"] == pytest.approx({"drag": 0.2}, rel=1e-6)
+    assert outcome.best["fitness"] < 1e-15
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        (
+            TWO.replace('"long"', '"short"') + "[identify]\n",
+            "[[experiments]]: short is given more than once; expected different names",
+        ),
+        (
+            TWO + '[data]\nfile = "short.csv"\ncolumns = { x = "x" }\n[identify]\n',
+            "[data] and [[experiments]] are both given; expected one of them",
+        ),
+        (
+            TWO + "[identify_set]\nerror = 0.1\n",
+            "[[experiments]] belongs to [identify], and the task is [identify_set]; leave it out",
+        ),
+        (
+            TWO + "[sensors.y]\ngain = [0.5, 2.0]\n[identify]\n",
+            "[sensors]: unknown channel 'y'; known: x",
+        ),
+        (
+            TWO + "[sensors.x]\ngain = [2.0, 0.5]\n[identify]\n",
+            "gain is between 2 and 0.5; expected the lower bound first",
+        ),
+        (
+            TWO + "[sensors.x]\nat_rest = true\n[identify]\n",
+            "neither delay, gain nor offset is given; expected bounds of at least one",
+        ),
+        (
+            TWO.replace("arguments = { end = 5.0, samples = 41 }", "constants = { begin = 1.0 }") + "[identify]\n",
+            "[[experiments]] 'long', constants: unknown constant 'begin'; known: none",
+        ),
+        (HEAD + "[identify]\n", "[identify] needs a [data] table, or [[experiments]]"),
+        (TWO + "[identify]\nweights = { y = 1.0 }\n", "[identify], weights: no weight is given for channel 'x'"),
+        (TWO + '[identify]\nloss = "hubr"\n', "[identify], loss: 'hubr' was given"),
+    ],
+)
+def test_what_does_not_fit_together_is_told(write, text, sentence):
+    with pytest.raises(InputError) as error:
+        load(write(text))
+    assert sentence in str(error.value)

@@ -26,6 +26,8 @@ def netcdf_columns(path: Path, time: str, names: Iterable[str] | None, missing: 
         from xarray import load_dataset
 
         engine = "h5netcdf" if h5py.is_hdf5(path) else "scipy"
+        if engine == "h5netcdf":
+            h5py.File(path, "r").close()  # what fails here would leave h5netcdf half made
         dataset = load_dataset(path, engine=engine, decode_times=False)
         held = [
             (label, array, unit) for name in dataset.variables for label, array, unit in _parts(dataset, name, time)

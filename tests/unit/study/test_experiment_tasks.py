@@ -94,7 +94,7 @@ def test_experiments_share_parameters_and_have_their_own(write, tmp_path):
     )
     folder, outcome = run_study(study, tmp_path / "run")
     assert outcome.best["values"] == pytest.approx({"short.size": 2.0, "rate": 0.8, "long.size": 1.5})
-    assert {path.name for path in (folder.path / "inputs").iterdir()} >= {"short.csv", "long.csv"}
+    assert {path.name for path in (folder.path / "inputs").iterdir()} == {"0-decay.py", "1-short.csv", "2-long.csv"}
     page = read_page(report_run(folder))
     assert "short: x" in page.text
     assert "long: x" in page.text
@@ -185,7 +185,7 @@ def test_experiments_may_differ_in_constants(write, tmp_path):
             TWO.replace("arguments = { end = 5.0, samples = 41 }", "constants = { begin = 1.0 }") + "[identify]\n",
             "[[experiments]] 'long', constants: unknown constant 'begin'; known: none",
         ),
-        (HEAD + "[identify]\n", "[identify] needs a [data] table, or [[experiments]]"),
+        (HEAD + "[identify]\n", "[identify] needs a [data] table"),
         (TWO + "[identify]\nweights = { y = 1.0 }\n", "[identify], weights: no weight is given for channel 'x'"),
         (TWO + '[identify]\nloss = "hubr"\n', "[identify], loss: 'hubr' was given"),
     ],

@@ -157,7 +157,7 @@ class Identify(Task):
         if not file.parameters:
             wrong.append("[identify] needs at least one [parameters.NAME] table")
         if file.data is None and not file.experiments:
-            wrong.append("[identify] needs a [data] table, or [[experiments]]")
+            wrong.append("[identify] needs a [data] table")
         channels = measured_channels(file)
         if channels:
             wrong += unmatched(file.identify.weights, channels, "weight", "[identify], weights")

@@ -85,9 +85,12 @@ def check(study: StudyFile) -> None:
     """Check a study, and say what it would run and about how many simulations."""
     with _exit_codes():
         from dalembert.study import load, plan
+        from dalembert.study.runner import foreseen
 
         read = load(study)
         typer.echo(f"{study}: in order; it {plan(read)}")
+        for sentence in foreseen(read):
+            typer.echo(sentence)
 
 
 @app.command("list")

@@ -13,11 +13,11 @@ from dalembert.study.numbers import read_number
 from dalembert.study.table import StudyTable, problem
 from dalembert.units import is_quantity, is_si, symbol
 
-_NUMBERS = ("lower", "upper", "start", "scale")
+_NUMBERS = ("lower", "upper", "start", "scale", "deviation")
 
 
 class ParameterTable(StudyTable):
-    """A number that a task varies: its bounds, and optionally a first guess, a typical size and a unit.
+    """A number that a task varies: its bounds, and optionally a first guess, a typical size, a unit, a prior deviation.
 
     Bounds are numbers in SI units, or have their unit with them: ``lower = "100 MPa"``.
     """
@@ -28,6 +28,7 @@ class ParameterTable(StudyTable):
     scale: float | str | None = None
     unit: str | None = None
     log: bool | None = None
+    deviation: float | str | None = None
 
     @model_validator(mode="after")
     def _check(self) -> "ParameterTable":

@@ -72,6 +72,8 @@ class Watch:
                 return f"check by {runs} simulations" + ("" if error is None else f" · wrong by {error:.2g}"), 0, None
             case {"event": "paved", "inside": inside, "boundary": boundary, "waiting": waiting}:
                 return f"{inside} boxes inside, {boundary} on the boundary, {waiting} to look at", 0, None
+            case {"event": "profiled", "parameter": name, "simulations": simulations}:
+                return f"profile of {name} · {simulations} simulations", 0, None
             case {"event": "simulating", "end": end}:
                 return f"simulating to {end:g} s", 0, None
         return "", 0, None

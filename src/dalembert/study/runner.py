@@ -73,6 +73,11 @@ def plan(study: Study) -> str:
     return TASKS[study.task].plan(study)
 
 
+def foreseen(study: Study) -> tuple[str, ...]:
+    """Sentences on what a study would tell, from a look at its first guesses."""
+    return TASKS[study.task].foreseen(study)
+
+
 def unknowns(study: Study) -> tuple[str, ...]:
     """Names of the values that the events of a run tell."""
     return TASKS[study.task].unknowns(study)

@@ -40,14 +40,6 @@ def profile(result: ProfilesLike, name: str, *, title: str = "") -> go.Figure:
     heights = [0.65, 0.35] if several else [1.0]
     figure = make_subplots(rows=len(heights), row_heights=heights, shared_xaxes=True, vertical_spacing=0.06)
     at, deviation, top = curve.values, result.deviations[k], 1.6 * result.threshold
-    figure.add_vrect(
-        x0=curve.lower,
-        x1=curve.upper,
-        fillcolor=faint(LIGHT.series[0], 0.1),
-        line_width=0,
-        row=1,  # pyright: ignore[reportArgumentType]
-        col=1,  # pyright: ignore[reportArgumentType]
-    )
     figure.add_scatter(
         x=at,
         y=curve.excess,
@@ -71,6 +63,14 @@ def profile(result: ProfilesLike, name: str, *, title: str = "") -> go.Figure:
         line={"color": LIGHT.series[1], "width": 1.5, "dash": "dash"},
         row=1,
         col=1,
+    )
+    figure.add_vrect(
+        x0=curve.lower,
+        x1=curve.upper,
+        fillcolor=faint(LIGHT.series[0], 0.1),
+        line_width=0,
+        row=1,  # pyright: ignore[reportArgumentType]
+        col=1,  # pyright: ignore[reportArgumentType]
     )
     others = [other for other in range(len(result.parameters)) if other != k]
     for place, other in enumerate(others):

@@ -6,6 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from dalembert.report import charts
+from dalembert.report.look import plain
 from dalembert.report.needs_telling import PredictionLike
 from dalembert.report.plot import Plot
 from dalembert.report.quantities import by_quantity
@@ -25,9 +26,10 @@ class Predicting(Section):
     def plots(self) -> tuple[Plot, ...]:
         told = self.prediction
         how = "Dark: the true response; light: a new measurement. Each holds sample by sample."
+        groups = [[told.channels[column] for column in group] for group in by_quantity(told.channels)]
         return tuple(
-            Plot(f"prediction-{number}", charts.prediction(told, [told.channels[column] for column in group]), how)
-            for number, group in enumerate(by_quantity(told.channels), 1)
+            Plot(f"prediction-{number}", charts.prediction(told, group, title=plain(", ".join(group))), how)
+            for number, group in enumerate(groups, 1)
         )
 
     @property

@@ -1,5 +1,6 @@
 """The tasks that a study file can ask for, by the names of their tables."""
 
+from dalembert.study.tasks.design import Design
 from dalembert.study.tasks.identify import Identify
 from dalembert.study.tasks.identify_bands import IdentifyBands
 from dalembert.study.tasks.identify_set import IdentifySet
@@ -15,6 +16,7 @@ TASKS: dict[str, Task] = {
     "propagate": Propagate(),
     "identify_bands": IdentifyBands(),
     "identify_set": IdentifySet(),
+    "design": Design(),
 }
 
 __all__ = ["TASKS", "Outcome", "Task"]

@@ -1,6 +1,6 @@
 """Identify: parameters from measured data."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -16,6 +16,7 @@ from dalembert.study.events import teller
 from dalembert.study.experiments import measured_channels, posed, unknown_names
 from dalembert.study.numbers import fixed
 from dalembert.study.table import Read, StudyTable, checked
+from dalembert.study.tasks import telling
 from dalembert.study.tasks.task import Outcome, Task
 from dalembert.study.tasks.wrong import needs_solver, unmatched
 
@@ -54,6 +55,9 @@ class IdentifyTable(StudyTable):
     validation: Annotated[float, Field(gt=0, lt=1)] | list[str] | None = Field(
         None, description="share of the samples at the end, or names of experiments, that are predicted, not fitted"
     )
+    profile: bool = Field(False, description="whether to make the profile likelihood of each parameter too")
+    prediction: bool = Field(False, description="whether to make bands of the response and of new measurements too")
+    level: float = Field(0.95, gt=0, lt=1, description="probability of profiles' intervals and of bands")
 
 
 @cache
@@ -106,6 +110,7 @@ class Identification(Outcome):
 
     study: "Study"
     fit: "Fit"
+    told: dict[str, Any] = field(default_factory=dict)
 
     @property
     def success(self) -> bool:
@@ -117,7 +122,7 @@ class Identification(Outcome):
 
     @property
     def summary(self) -> str:
-        return self.fit.summary()
+        return "\n\n".join([self.fit.summary(), *(one.summary() for one in self.told.values())])
 
     @property
     def best(self) -> dict[str, Any]:
@@ -125,6 +130,7 @@ class Identification(Outcome):
 
     def save(self, path: Path) -> None:
         self.fit.save(path)
+        telling.save(self.told, path)
 
     def report(self, path: Path) -> None:
         from dalembert.report import report
@@ -137,6 +143,7 @@ class Identification(Outcome):
             trajectory=self._motion(),
             notes=study.file.study.description,
             study=study.content.decode(),
+            **self.told,
         )
 
     def _motion(self) -> Any:
@@ -161,6 +168,13 @@ class Identify(Task):
         channels = measured_channels(file)
         if channels:
             wrong += unmatched(file.identify.weights, channels, "weight", "[identify], weights")
+        if file.experiments and file.identify.prediction:
+            wrong.append("[identify], prediction: each experiment has its own; predict() makes them, leave the key out")
+        if file.identify.profile and file.identify.loss != "linear":
+            wrong.append(
+                f"[identify], profile: the minimum of the loss {file.identify.loss!r} is no likelihood; leave one of "
+                "the keys out"
+            )
         return [*wrong, *needs_solver(file)]
 
     def plan(self, study: "Study") -> str:
@@ -172,6 +186,9 @@ class Identify(Task):
         whole.evaluate(whole.parameters.start[None]).only()
         cost = _cost(settings(table.method), table.starts, len(whole.parameters))
         return f"identifies {', '.join(whole.parameters.names)} from {_measured(model, data)} by {cost}"
+
+    def foreseen(self, study: "Study") -> tuple[str, ...]:
+        return telling.foreseen(*posed(study))
 
     def unknowns(self, study: "Study") -> tuple[str, ...]:
         return unknown_names(study)
@@ -197,12 +214,12 @@ class Identify(Task):
             validation=table.validation,
             on_event=teller(emit, as_record),
         )
-        return Identification(study, fit)
+        return Identification(study, fit, telling.beyond(table, model, data, fit, teller(emit, as_record)))
 
     def load(self, study: "Study", path: Path) -> Outcome:
         from dalembert.inverse import Fit
 
-        return Identification(study, Fit.load(path))
+        return Identification(study, Fit.load(path), telling.load(path))
 
 
 def _measured(model: Any, data: Any) -> str:

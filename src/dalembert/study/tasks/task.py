@@ -60,6 +60,10 @@ class Task(ABC):
         """Names of the values that the events of a run tell."""
         return study.parameters.names
 
+    def foreseen(self, study: "Study") -> tuple[str, ...]:
+        """Sentences on what would come out, from a look that costs little."""
+        return ()
+
     @abstractmethod
     def run(self, study: "Study", emit: "Emit") -> Outcome:
         """Do it."""

@@ -1,0 +1,104 @@
+"""Design: which sensors, and for how long, would tell the parameters best."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+import numpy as np
+from pydantic import Discriminator, Field, Tag
+
+from dalembert.forward import ForwardModel
+from dalembert.study.intervals import Number
+from dalembert.study.numbers import samples
+from dalembert.study.table import StudyTable
+from dalembert.study.tasks.result import ResultOutcome
+from dalembert.study.tasks.task import Outcome, Task
+from dalembert.study.tasks.wrong import needs_solver, unnamed
+
+if TYPE_CHECKING:
+    from dalembert.study.events import Emit
+    from dalembert.study.study import Study
+
+Deviations = Annotated[
+    Annotated[dict[str, Number], Tag("channels")] | Annotated[Number, Tag("number")],
+    Discriminator(lambda value: "channels" if isinstance(value, dict) else "number"),
+]
+Sets = Annotated[
+    Annotated[Literal["singles", "pairs", "all"], Tag("name")] | Annotated[list[list[str]], Tag("sets")],
+    Discriminator(lambda value: "name" if isinstance(value, str) else "sets"),
+]
+
+
+class DesignTable(StudyTable):
+    """Rank experiments by how well they would tell the parameters, before anything is measured."""
+
+    times: samples("s") | None = Field(None, description="times of a mechanism's samples: a list, or a range")  # pyright: ignore[reportInvalidTypeForm]
+    channels: list[str] | None = Field(None, min_length=1, description="what could be measured on a mechanism")
+    deviations: Deviations = Field(description="standard deviation of the noise: a number, or one for each channel")
+    sensors: Sets = Field("singles", description="'singles', 'pairs', 'all', or lists of channels")
+    horizons: samples(None) | None = Field(None, description="ends of the measurement; the last sample if not given")  # pyright: ignore[reportInvalidTypeForm]
+    criterion: Literal["D", "E"] = Field("D", description="'D' the mean deviation, 'E' the largest")
+    at: dict[str, Number] = Field({}, description="values of parameters; first guesses where not given")
+
+
+class Design(Task):
+    """The task ``[design]``."""
+
+    def table(self) -> type[StudyTable]:
+        return DesignTable
+
+    def wrong(self, file: Any) -> list[str]:
+        table = file.design
+        wrong = [] if file.parameters else ["[design] needs at least one [parameters.NAME] table"]
+        wrong += unnamed(table.at, file.parameters, "[design.at]")
+        for key in ("times", "channels"):
+            given = getattr(table, key) is not None
+            if file.model.forward is None and not given:
+                wrong.append(f"[design]: the key {key!r} is missing; a mechanism needs it")
+            if file.model.forward is not None and given:
+                wrong.append(f"[design], {key}: a forward model has its own; leave the key out")
+        return [*wrong, *needs_solver(file)]
+
+    def plan(self, study: "Study") -> str:
+        model = _model(study)
+        model.evaluate(_at(study)[None]).only()
+        names = [channel.name for channel in model.channels]
+        return (
+            f"ranks experiments that measure {', '.join(names)} by what they would tell of "
+            f"{', '.join(study.parameters.names)}, from one simulation with {len(study.parameters)} sensitivities"
+        )
+
+    def run(self, study: "Study", emit: "Emit") -> Outcome:
+        from dalembert.inverse import design
+
+        table = study.table
+        designs = design(
+            _model(study),
+            _at(study),
+            deviations=table.deviations,
+            sensors=table.sensors,
+            horizons=table.horizons,
+            criterion=table.criterion,
+        )
+        return _outcome(study, designs)
+
+    def load(self, study: "Study", path: Path) -> Outcome:
+        from dalembert.inverse import Designs
+
+        return _outcome(study, Designs.load(path))
+
+
+def _model(study: "Study") -> ForwardModel:
+    table = study.table
+    return study.forward(table.channels or (), np.array(table.times or ()))
+
+
+def _at(study: "Study") -> np.ndarray:
+    """Where the sensitivities are taken, (parameters,)."""
+    return study.parameters.vector({**study.parameters.mapping(study.parameters.start), **study.table.at})
+
+
+def _outcome(study: "Study", designs: Any) -> Outcome:
+    """Outcome of designs, with the best one's score and the deviations that it foresees."""
+    expected = zip(designs.parameters.names, designs.deviations[0].tolist(), strict=True)
+    values = {"score": float(designs.scores[0])} | {f"deviation of {name}": value for name, value in expected}
+    return ResultOutcome(study, designs, {"values": values})

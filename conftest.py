@@ -20,11 +20,13 @@ def empty_folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 
 
 def check_study(example: Example) -> str | None:
-    """What ``dalembert check`` has to say against a study file; its data file is made up where there is none."""
+    """What ``dalembert check`` has to say against a study file; its data files are made up where there are none."""
     file = Path("study.toml")
     file.write_text(example.parsed)
-    data = tomllib.loads(example.parsed).get("data")
-    if data and not Path(data["file"]).exists():
+    study = tomllib.loads(example.parsed)
+    for data in (study.get("data"), *study.get("experiments", ())):
+        if not data or Path(data["file"]).exists():
+            continue
         columns = [data.get("time", "t"), *data["columns"].values()]
         rows = [",".join(columns), *(",".join([str(time)] * len(columns)) for time in (0.0, 0.5, 1.0))]
         Path(data["file"]).write_text("\n".join(rows))

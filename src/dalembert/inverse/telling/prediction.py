@@ -114,8 +114,9 @@ class Prediction(Result):
         """Widths of the bands as a text table with the status."""
         rows = [("channel", "unit", "widest", "with noise")]
         for k, (name, unit) in enumerate(zip(self.channels, self.units, strict=True)):
-            response, measured = self.upper - self.lower, self.measured_upper - self.measured_lower
-            rows.append((name, unit, f"{response[:, k].max():.4g}", f"{measured[:, k].max():.4g}"))
+            width = np.max(self.upper[:, k] - self.lower[:, k])
+            measured = np.max(self.measured_upper[:, k] - self.measured_lower[:, k])
+            rows.append((name, unit, f"{width:.4g}", "not measured" if np.isnan(measured) else f"{measured:.4g}"))
         return "\n".join([*table(rows), "", self.status])
 
     def to_xarray(self) -> "Dataset":

@@ -97,6 +97,8 @@ def test_figures_show_the_curves_with_their_corners_and_the_steps(told):
     last = traces[f"step {len(best)}"]
     np.testing.assert_array_equal(last.x, best[-1].residual_norms)
     np.testing.assert_array_equal(last.y, best[-1].step_norms)
+    bent = [number for number, step in enumerate(best, 1) if step.chosen > step.weights[0]]
+    assert [name for name, trace in traces.items() if trace.mode == "lines" and trace.showlegend] == [f"step {bent[-1]}"]
     assert traces["taken"].y[0] == pytest.approx(best[0].length, rel=0.05)
     rows = {trace.name: trace for trace in drawn["steps"].data}
     assert list(rows["agreement"].y) == [step.agreement for step in best]

@@ -12,7 +12,7 @@ from dalembert.report.needs import BandFitLike, FitLike, RegularisedStepLike
 def l_curve(fit: FitLike | BandFitLike, *, title: str = "L-curves") -> go.Figure:
     """Length of a step over the residual that it would leave, for all weights, with the weight chosen and that taken.
 
-    One curve a step of the best start, the last one in colour.
+    One curve a step of the best start; in colour the last one that has a corner.
 
     Parameters
     ----------
@@ -26,17 +26,18 @@ def l_curve(fit: FitLike | BandFitLike, *, title: str = "L-curves") -> go.Figure
     """
     steps = accounts(fit)
     figure = go.Figure()
+    bent = [number for number, step in enumerate(steps, 1) if step.chosen > step.weights[0]]
     for number, step in enumerate(steps, 1):
-        last = number == len(steps)
+        told = number == (bent[-1] if bent else len(steps))
         figure.add_scatter(
             x=positive(np.asarray(step.residual_norms, dtype=float)),
             y=positive(np.asarray(step.step_norms, dtype=float)),
             text=[f"μ = {weight:.3g}" for weight in step.weights],
             name=f"step {number}",
             mode="lines",
-            line={"color": LIGHT.series[0] if last else LIGHT.muted, "width": 2.5 if last else 1},
-            opacity=1 if last else 0.6,
-            showlegend=last,
+            line={"color": LIGHT.series[0] if told else LIGHT.muted, "width": 2.5 if told else 1},
+            opacity=1 if told else 0.6,
+            showlegend=told,
         )
     for name, key, marker in (
         ("chosen", "chosen", {"color": LIGHT.series[1], "size": 9}),

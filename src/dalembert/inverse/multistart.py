@@ -132,7 +132,7 @@ def _reproduced(problem: Problem, ends: list[End]) -> bool:
     freedom = problem.compared - len(best.point)
     if at is None or freedom <= 0:
         return False
-    if not random_residuals(problem.residual(at.response), problem.weights.shape, problem.measured):
+    if not random_residuals(problem.residual(at.response), problem.weights.shape, problem.data.present):
         return False
     slopes, variance = problem.slopes(at), best.fitness / freedom
     return any(

@@ -67,11 +67,6 @@ class Problem:
         """Number of parameters of which something is known before the data."""
         return sum(item.deviation is not None for item in self.model.parameters)
 
-    @property
-    def measured(self) -> int:
-        """Number of values that are not missing."""
-        return int(np.count_nonzero(self.data.present))
-
     def first(self, samples: int) -> "Problem":
         """The same problem over the first ``samples`` samples."""
         if samples == self.samples:

@@ -39,11 +39,11 @@ def status(problem: Problem, best: End, response: np.ndarray, floor: NoiseFloor)
         parts.append(f"The response explains {100 * share:.4g} % of the data's variation.")
     if best.fitness <= floor.fitness:
         parts.append(f"The misfit is at the floor that the noise of the data allows (known from {floor.source}).")
-    elif not random_residuals(residual, problem.weights.shape, problem.measured):
+    elif not random_residuals(residual, problem.weights.shape, problem.data.present):
+        together = autocorrelation(residual, problem.weights.shape, problem.data.present)
         parts.append(
-            "The residuals are no mere noise, neighbouring samples correlate by "
-            f"{autocorrelation(residual, problem.weights.shape):.2f}; look whether the model lacks something, "
-            "the bounds leave the true values out, or more starts find a better minimum."
+            f"The residuals are no mere noise, neighbouring samples correlate by {together:.2f}; look whether the "
+            "model lacks something, the bounds leave the true values out, or more starts find a better minimum."
         )
     elif floor.source == "given deviations":
         parts.append(

@@ -92,7 +92,15 @@ def test_rounding_is_seen_through_gaps():
 def test_fewer_values_scatter_more_before_they_are_no_noise():
     residual = np.zeros(400)
     residual[:40] = np.sin(np.arange(40) / 0.9)
-    assert random_residuals(residual, (400, 1), 40) != random_residuals(residual, (400, 1))
+    present = np.arange(400)[:, None] < 40
+    assert random_residuals(residual, (400, 1), present) != random_residuals(residual, (400, 1))
+
+
+def test_neighbours_are_the_values_that_are_there():
+    trend, present = np.repeat(np.sin(np.arange(40) / 5), 2), np.arange(80)[:, None] % 2 == 0
+    residual = np.where(present[:, 0], trend, 0.0)
+    assert random_residuals(residual, (80, 1))
+    assert not random_residuals(residual, (80, 1), present)
 
 
 @pytest.mark.parametrize("noise", [0.0, 0.05], ids=["exact", "noisy"])

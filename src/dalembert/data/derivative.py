@@ -15,6 +15,9 @@ WIDEST = 201
 STIFF = 1.2
 """How much more than noise polynomials may leave."""
 
+LOOKED_AT = 5000
+"""Samples, spread over all, at which windows are compared."""
+
 BLOCK = 1000
 """Samples whose windows are held at once."""
 
@@ -104,15 +107,17 @@ def derivative(
             f"channel {channel!r}: fewer than {window or least} samples beside each other; expected at least as many "
             f"for a derivative by polynomials of degree {degree}; take a smaller window or degree"
         )
+    step = max(1, len(along) // LOOKED_AT)
     if data.deviations is None:
-        deviation = _derivative(along, values, runs, order, least, degree, 0.0).left
+        deviation = _derivative(along, values, runs, order, least, degree, 0.0, step).left
     else:
         deviation = float(data.deviations[column])
     shortest = min(run.stop - run.start for run in runs)
     windows = [window] if window else _windows(least, min(shortest, WIDEST))
-    found = [_derivative(along, values, runs, order, size, degree, deviation) for size in windows]
+    found = [_derivative(along, values, runs, order, size, degree, deviation, step) for size in windows]
     loose = [one for one in found if one.left <= STIFF * max(deviation, found[0].left)]
-    return min(loose, key=lambda one: one.error)
+    best = min(loose, key=lambda one: one.error)
+    return best if step == 1 else _derivative(along, values, runs, order, best.window, degree, deviation)
 
 
 def _check(order: int, window: int | None, degree: int) -> int:
@@ -143,11 +148,13 @@ def _derivative(
     window: int,
     degree: int,
     deviation: float,
+    step: int = 1,
 ) -> Derivative:
-    """The derivative by windows of one size, on runs that are at least as long."""
+    """The derivative by windows of one size, on runs that are at least as long, at every ``step``-th sample."""
     found, gain, finer, finer_gain, left = (np.full(len(along), np.nan) for _ in range(5))
     for run in runs:
-        for at in np.array_split(np.arange(run.start, run.stop), 1 + (run.stop - run.start) // BLOCK):
+        samples = np.arange(run.start, run.stop, step)
+        for at in np.array_split(samples, 1 + len(samples) // BLOCK):
             begin = np.clip(at - window // 2, run.start, run.stop - window)
             near = begin[:, None] + np.arange(window)
             x, around = along[near], values[near]
@@ -158,7 +165,8 @@ def _derivative(
             left[at] = np.sum(rest**2, axis=1) / (window - degree - 1)
     there = np.isfinite(found)
     expected = (deviation * finer_gain[there]) ** 2
-    uncertain = np.sqrt(2 * window * np.sum(expected**2)) / len(expected)  # as a mean of values a window apart
+    apart = max(1.0, window / step)  # values that share noise: what is left of their number in the mean's error
+    uncertain = np.sqrt(2 * apart * np.sum(expected**2)) / len(expected)
     bias = np.sqrt(max(0.0, np.mean(finer[there] ** 2 - expected) + 2 * uncertain))
     return Derivative(found, deviation * gain, float(bias), deviation, float(np.sqrt(np.nanmean(left))), window)
 

@@ -52,6 +52,15 @@ def test_the_error_told_is_no_less_than_there_is_and_not_much_more(rate, noise, 
     assert found.deviation == pytest.approx(noise, rel=0 if known else 0.3)
 
 
+def test_a_long_record_is_looked_at_in_places_and_differentiated_everywhere():
+    times = np.linspace(0, 20, 20_000)
+    x = np.sin(3 * times) + 1e-3 * np.random.default_rng(0).standard_normal(len(times))
+    found = derivative(Measurements.of(times, {"x": x}), "x")
+    wrong = found.values - 3 * np.cos(3 * times)
+    assert 0.25 < np.sqrt(np.mean(wrong**2)) / found.error < 1.2
+    assert found.window > 101
+
+
 def test_a_window_too_wide_for_the_motion_is_told_by_what_it_leaves():
     times = np.linspace(0, 2, 200)
     found = derivative(Measurements.of(times, {"x": np.sin(20 * times)}, 1e-3), "x", window=101)

@@ -128,14 +128,14 @@ class Profiles(Result):
                 found.append(f"The {side} side of {curve.name!r} ends early: {reason}.")
         if all(curve.open):
             found.append(
-                f"{curve.name!r} is not told by the data: anywhere between its bounds other parameters make up for it; "
-                "fix it, or measure what tells it."
+                f"{curve.name!r} is not told by the data: wherever it is between its bounds, they are explained within "
+                "their noise; fix it, or measure what tells it."
             )
         elif any(curve.open):
             side = "lower" if curve.open[0] else "upper"
             found.append(
-                f"{curve.name!r} has no {side} limit from the data: up to its bound {getattr(item, side):.6g} other "
-                "parameters make up for it."
+                f"{curve.name!r} has no {side} limit from the data: up to its bound {getattr(item, side):.6g} they are "
+                "explained within their noise."
             )
         elif not any(curve.broken):
             below, above = value - curve.lower, curve.upper - value

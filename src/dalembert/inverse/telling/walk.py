@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 
 import numpy as np
+from scipy.optimize import brentq
 
 from dalembert.errors import SolveError
 from dalembert.inverse.descent import Memo
@@ -16,8 +17,8 @@ STEP = 0.25
 BEYOND = 1.15
 """√excess, in parts of its threshold, at which a walk has gone far enough."""
 
-EXACT = 1e-4
-"""Accuracy of √excess at an interval's end, in parts of its threshold."""
+EXACT = 1e-6
+"""Accuracy of an interval's end, in parts of its distance from the identified value."""
 
 HALVINGS = 4
 """Of a step that ends where the model fails, before the walk ends."""
@@ -50,8 +51,8 @@ class Side:
 def walked(problem: Problem, at: Linearisation, k: int, side: int, walk: Walk) -> Side:
     """One side of the profile of parameter ``k``: ``side`` −1 goes down, +1 up.
 
-    Each value is chosen so that √excess grows by a quarter of its threshold, judging from the last two; beyond the
-    threshold its crossing is searched by secants. The other parameters begin where the last two values lead them.
+    Each value is chosen so that √excess grows by a quarter of its threshold, judging from the last two; once beyond, the
+    crossing is found by Brent's method. The other parameters begin where the last two values lead them.
     """
     search = problem.search
     origin = search.points(at.vector)
@@ -84,7 +85,9 @@ def walked(problem: Problem, at: Linearisation, k: int, side: int, walk: Walk) -
         way = _way(path, k)
         step = _step(path, k, goal)
     if path[-1][0] >= goal:
-        found.end = float(search.vectors(_crossing(problem, k, path, walk, found))[k])
+        last = path[-1][1].copy()
+        last[k] = _crossing(problem, k, path, walk, found)
+        found.end = float(search.vectors(last)[k])
     elif not found.broken and abs(bound - path[-1][1][k]) <= 1e-9 * width:
         found.end, found.open = float(getattr(problem.model.parameters, "upper" if side > 0 else "lower")[k]), True
     else:
@@ -155,28 +158,30 @@ def _step(path: list[tuple[float, np.ndarray]], k: int, goal: float) -> float:
     return 2 * run if rise <= 0 else min(2 * run, max(wanted * run / rise, run / 4))
 
 
-def _crossing(problem: Problem, k: int, path: list[tuple[float, np.ndarray]], walk: Walk, found: Side) -> np.ndarray:
-    """Search point where √excess passes its threshold, between the last two of the path."""
-    goal = np.sqrt(walk.threshold)
-    low, high = path[-2], path[-1]
-    for _ in range(8):
-        if abs(high[0] - goal) <= EXACT * goal:
-            break
-        part = np.clip((goal - low[0]) / (high[0] - low[0]), 0.05, 0.95)
-        guess = low[1] + part * (high[1] - low[1])
-        here = _least(problem, k, guess, walk)
-        if isinstance(here, str):
-            return guess
-        root = _root(here[0], walk)
-        found.rows.append((here[0], problem.search.vectors(here[1])))
-        found.rows.sort(key=lambda row: abs(row[1][k] - problem.search.vectors(path[0][1])[k]))
-        if abs(root - goal) <= EXACT * goal:
-            return _between((root, here[1]), low, high, goal)
-        low, high = ((root, here[1]), high) if root < goal else (low, (root, here[1]))
-    return _between(high, low, high, goal)
+def _crossing(problem: Problem, k: int, path: list[tuple[float, np.ndarray]], walk: Walk, found: Side) -> float:
+    """Value of search coordinate k where √excess passes its threshold, between the last two points of the path.
 
+    The others begin where those of the points around lie on a line.
+    """
+    goal, known = np.sqrt(walk.threshold), {float(point[k]): (root, point) for root, point in path[-2:]}
 
-def _between(here: tuple[float, np.ndarray], low: tuple, high: tuple, goal: float) -> np.ndarray:
-    """Linear interpolation from ``here`` to the threshold, along the bracket."""
-    slope = (high[1] - low[1]) / (high[0] - low[0])
-    return here[1] + (goal - here[0]) * slope
+    def beyond(value: float) -> float:
+        if value not in known:
+            places = sorted(known)
+            points = np.array([known[place][1] for place in places])
+            guess = np.array([np.interp(value, places, column) for column in points.T])
+            here = _least(problem, k, guess, walk)
+            if isinstance(here, str):
+                raise SolveError(here)
+            known[value] = _root(here[0], walk), here[1]
+            found.rows.append((here[0], problem.search.vectors(here[1])))
+        return known[value][0] - goal
+
+    low, high = (float(point[k]) for _, point in path[-2:])
+    try:
+        end = brentq(beyond, low, high, xtol=EXACT * abs(high - path[0][1][k]))
+    except SolveError as error:
+        found.broken, end = str(error), low
+    origin = problem.search.vectors(path[0][1])[k]
+    found.rows.sort(key=lambda row: abs(row[1][k] - origin))
+    return float(end)  # pyright: ignore[reportArgumentType]

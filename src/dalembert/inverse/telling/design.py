@@ -12,7 +12,7 @@ from dalembert.forward.provenance import provenance
 from dalembert.inverse.estimate import UNSEEN, estimate
 from dalembert.inverse.prior import prior_slopes
 from dalembert.inverse.telling.designs import CRITERIA, Designs
-from dalembert.inverse.telling.sensitivity import at_of, jacobian_at, noise_of
+from dalembert.inverse.telling.sensitivity import at_of, linearised, noise_of
 
 SETS = ("singles", "pairs", "all")
 
@@ -76,7 +76,7 @@ def design(
     along = model.coordinate
     ends = [float(along.values[-1])] if horizons is None else [float(end) for end in horizons]
     counts = [_samples(along.values, end, along.unit) for end in ends]
-    slopes = jacobian_at(model, vector)[:, columns] * parameters.scale / noise[:, None]
+    slopes = linearised(model, vector)[1][:, columns] * parameters.scale / noise[:, None]
     prior = prior_slopes(parameters, parameters.scale)
     rows = []
     for chosen in sets:

@@ -11,7 +11,7 @@ from dalembert.forward import ForwardModel
 from dalembert.inverse.estimate import Identifiability, estimate, foreseen
 from dalembert.inverse.matching import check_samples, columns_of
 from dalembert.inverse.prior import prior_slopes
-from dalembert.inverse.telling.sensitivity import at_of, jacobian_at, noise_of
+from dalembert.inverse.telling.sensitivity import at_of, linearised, noise_of
 
 
 def identifiability(
@@ -71,7 +71,7 @@ def identifiability(
         known = deviations is not None
         _, columns, noise = noise_of(model, 1.0 if deviations is None else deviations, "identifiability")
         weights = np.ones((len(model.coordinate.values), len(columns)))
-    slopes = (np.sqrt(weights) / noise)[:, :, None] * jacobian_at(model, vector)[:, columns] * parameters.scale
+    slopes = (np.sqrt(weights) / noise)[:, :, None] * linearised(model, vector)[1][:, columns] * parameters.scale
     rows = [slopes.reshape(-1, len(vector))] + ([prior_slopes(parameters, parameters.scale)] if known else [])
     told = estimate(np.concatenate(rows), parameters.scale, 1.0 if known else np.nan)
     return Identifiability(

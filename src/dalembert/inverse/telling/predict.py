@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from dalembert.errors import InputError, SolveError, unknown
+from dalembert.errors import InputError, unknown
 from dalembert.forward import ForwardModel
 from dalembert.forward.provenance import provenance
 from dalembert.inverse.confidence import check_level, noise_is_known, quantile, variance
@@ -10,6 +10,7 @@ from dalembert.inverse.estimate import UNSEEN
 from dalembert.inverse.experiments import Experiment
 from dalembert.inverse.fit import Fit
 from dalembert.inverse.telling.prediction import Prediction
+from dalembert.inverse.telling.sensitivity import linearised
 
 
 def predict(model: ForwardModel | Experiment, fit: Fit, level: float = 0.95) -> Prediction:
@@ -62,11 +63,9 @@ def predict(model: ForwardModel | Experiment, fit: Fit, level: float = 0.95) -> 
     else:
         parameters = tuple(model.parameters)
     wiring = _wiring([item.name for item in parameters], fit)
-    response, own = model.linearise(fit.values[wiring])
+    response, own = linearised(model, fit.values[wiring])
     jacobian = np.zeros((*response.shape, len(fit.values)))
     jacobian[:, :, wiring] = own
-    if not (np.all(np.isfinite(response)) and np.all(np.isfinite(jacobian))):
-        raise SolveError("predict: the response at the identified values, or its jacobian, is not finite")
     names = tuple(channel.name for channel in model.channels)
     same = data.coordinate.name == model.coordinate.name and set(names) & set(data.channels)
     return Prediction(

@@ -45,16 +45,23 @@ def at_of(model: ForwardModel, at: Mapping[str, float] | ArrayLike | None) -> np
     return model.parameters.start if at is None else np.asarray(model.parameters.vector(at), dtype=float)
 
 
-def jacobian_at(model: ForwardModel, vector: np.ndarray) -> np.ndarray:
-    """Jacobian (samples, channels, parameters) at a vector (parameters,).
+def linearised(model: ForwardModel, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Response (samples, channels) and jacobian (samples, channels, parameters) at a vector (parameters,).
 
     Raises
     ------
+    InputError
+        For a model that cannot be differentiated at all.
     SolveError
-        Where the simulation fails, or the jacobian is not finite.
+        Where the simulation fails, or is not finite.
     """
-    jacobian = model.linearise(vector)[1]
-    if not np.all(np.isfinite(jacobian)):
-        at = ", ".join(f"{name} = {value:.6g}" for name, value in model.parameters.mapping(vector).items())
-        raise SolveError(f"the sensitivities at {at} are not finite; look at the model there, or look elsewhere")
-    return jacobian
+    at = ", ".join(f"{name} = {value:.6g}" for name, value in model.parameters.mapping(vector).items())
+    try:
+        response, jacobian = model.linearise(vector)
+    except InputError:
+        raise
+    except Exception as error:  # whatever a user's function raises is this vector's failure
+        raise SolveError(f"{error} (at {at}); look at the model there, or look elsewhere") from error
+    if not (np.all(np.isfinite(response)) and np.all(np.isfinite(jacobian))):
+        raise SolveError(f"the response or its jacobian at {at} is not finite; look at the model there, or elsewhere")
+    return response, jacobian

@@ -51,8 +51,8 @@ class Side:
 def walked(problem: Problem, at: Linearisation, k: int, side: int, walk: Walk) -> Side:
     """One side of the profile of parameter ``k``: ``side`` −1 goes down, +1 up.
 
-    Each value is chosen so that √excess grows by a quarter of its threshold, judging from the last two; once beyond, the
-    crossing is found by Brent's method. The other parameters begin where the last two values lead them.
+    Each value is chosen so that √excess grows by a quarter of its threshold, judging from the last two; once beyond,
+    the crossing is found by Brent's method. The other parameters begin where the last two values lead them.
     """
     search = problem.search
     origin = search.points(at.vector)

@@ -1,0 +1,87 @@
+"""Intervals hold the truth as often as they say, in 500 seeded repetitions."""
+
+import numpy as np
+import pytest
+from scipy.stats import chi2
+
+from dalembert.data import Measurements
+from dalembert.forward import PythonModel
+from dalembert.inverse import identify, predict, profile
+
+TOPIC = "What the data can tell"
+SOURCE = "the definition of a confidence interval, 500 repetitions"
+LEVEL, REPETITIONS, NOISE = 0.95, 500, 0.1
+TIMES = np.linspace(0, 2, 21)
+
+LINE = PythonModel(lambda offset, slope: offset + slope * TIMES, {"offset": (-5, 5), "slope": (-5, 5)}, ["x"], TIMES)
+DECAY = PythonModel(
+    lambda rate, height: height * np.exp(-rate * TIMES), {"rate": (0.1, 5.0), "height": (0.1, 3.0)}, ["x"], TIMES
+)
+
+
+def covered(model, truth, *, known):
+    """Share of repetitions in which the truth is held: by intervals of each parameter, by bands sample by sample."""
+    exact = model.evaluate(np.array([truth])).only()[0]
+    hits = {"deviations": np.zeros(2), "profile": np.zeros(2), "bands": 0.0}
+    for seed in range(REPETITIONS):
+        noisy = exact + NOISE * np.random.default_rng(seed).standard_normal(exact.shape)
+        data = Measurements.of(TIMES, {"x": noisy[:, 0]}, deviations=NOISE if known else None)
+        fit = identify(model, data, starts=1, horizon=None, start=truth)
+        profiles = profile(model, data, fit, level=LEVEL)
+        found = {"deviations": fit.intervals(LEVEL), "profile": profiles.intervals}
+        for way, intervals in found.items():
+            hits[way] += [
+                lower <= value <= upper for value, (lower, upper) in zip(truth, intervals.values(), strict=True)
+            ]
+        bands = predict(model, fit, LEVEL)
+        hits["bands"] += np.mean((bands.lower <= exact) & (exact <= bands.upper))
+    return {way: count / REPETITIONS for way, count in hits.items()}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("known", [True, False], ids=["given-noise", "estimated-noise"])
+@pytest.mark.parametrize(
+    ("name", "model", "truth"),
+    [("a straight line", LINE, (1.0, 0.5)), ("a decay", DECAY, (1.0, 1.0))],
+    ids=["linear", "mildly-nonlinear"],
+)
+def test_95_percent_intervals_hold_the_truth_in_93_to_97_percent(record_evidence, name, model, truth, known):
+    found = covered(model, truth, known=known)
+    noise = "given" if known else "estimated"
+    for way, words in (("deviations", "value ∓ quantile × deviation"), ("profile", "profile likelihood")):
+        for parameter, share in zip(model.parameters.names, found[way], strict=True):
+            record_evidence(
+                f"coverage of {words}, {parameter} of {name}, noise {noise}",
+                LEVEL,
+                share,
+                tolerance=0.02,
+                topic=TOPIC,
+                source=SOURCE,
+            )
+    record_evidence(
+        f"coverage of prediction bands, {name}, noise {noise}",
+        LEVEL,
+        found["bands"],
+        tolerance=0.02,
+        topic=TOPIC,
+        source=SOURCE,
+    )
+
+
+def test_profile_likelihood_of_a_linear_case(record_evidence):
+    noisy = LINE.evaluate(np.array([[1.0, 0.5]])).only()[0] + NOISE * np.random.default_rng(0).standard_normal((21, 1))
+    data = Measurements.of(TIMES, {"x": noisy[:, 0]}, deviations=NOISE)
+    found = profile(LINE, data, identify(LINE, data), level=LEVEL).intervals
+    slopes = np.stack([np.ones(21), TIMES], axis=1)
+    covariance = NOISE**2 * np.linalg.inv(slopes.T @ slopes)
+    middle = covariance @ slopes.T @ noisy[:, 0] / NOISE**2
+    radius = np.sqrt(chi2.ppf(LEVEL, 1) * np.diag(covariance))
+    record_evidence(
+        "ends of the 95 % profile likelihood intervals of a straight line",
+        np.stack([middle - radius, middle + radius], axis=1),
+        np.array(list(found.values())),
+        tolerance=1e-7,
+        topic=TOPIC,
+        source="closed form: estimate ∓ quantile × deviation",
+        noisy=True,
+    )

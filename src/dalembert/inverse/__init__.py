@@ -19,7 +19,9 @@ from dalembert.inverse.experiment_fit import ExperimentFit
 from dalembert.inverse.experiments import Experiment
 from dalembert.inverse.fit import Fit
 from dalembert.inverse.identify import identify
+from dalembert.inverse.segments import State
 from dalembert.inverse.sets import ParameterSet, identify_set
+from dalembert.inverse.shooting import shooting
 from dalembert.inverse.telling import Designs, Prediction, Profile, Profiles, design, identifiability, predict, profile
 from dalembert.inverse.validation import Validation
 
@@ -45,6 +47,7 @@ __all__ = [
     "Screened",
     "StartBegan",
     "StartEnd",
+    "State",
     "Step",
     "Validation",
     "as_record",
@@ -55,4 +58,5 @@ __all__ = [
     "identify_set",
     "predict",
     "profile",
+    "shooting",
 ]

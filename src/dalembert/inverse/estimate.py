@@ -88,7 +88,8 @@ def sentences(parameters: Parameters, values: np.ndarray, told: Estimate) -> tup
     for k, item in enumerate(parameters):
         side = "lower" if values[k] - item.lower < 1e-6 * width[k] else "upper"
         bound = getattr(item, side)
-        if abs(values[k] - bound) < 1e-6 * width[k]:
+        seen = not np.isinf(told.deviations[k])  # an unseen one may lie anywhere: its bound is no hint
+        if seen and abs(values[k] - bound) < 1e-6 * width[k]:
             found.append(
                 f"{item.name!r} sits on its {side} bound {bound:.6g}; widen the bound if the true value may lie beyond."
             )

@@ -55,7 +55,8 @@ def identify(
     method : LeastSquares, ResponseSensitivity, ParticleSwarm, ImprovedParticleSwarm, Minimiser or its name
         Least squares with exact sensitivities if not given.
     starts : int, optional
-        Starts at most; 8 for least squares and response sensitivity, 1 for the others if not given.
+        Starts at most, 8 for least squares and response sensitivity and 1 for the others if not given; descents beside
+        the best end, and its polish, come on top.
     seed : int
         All random numbers follow from it.
     start : mapping by name, or array of shape (parameters,), optional

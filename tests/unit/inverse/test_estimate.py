@@ -64,5 +64,11 @@ def test_a_parameter_on_a_bound_and_one_that_is_barely_known_are_named():
     assert sentences(box, np.array([0.0, 0.5]), told)[0].startswith("'stiffness' sits on its lower bound 0;")
 
 
+def test_the_bound_of_a_parameter_that_is_not_told_is_no_hint():
+    box = Parameters.of({"stiffness": (0.0, 3.0), "mass": (0.0, 1.0)})
+    told = estimate(np.diag([0.0, 100.0]), np.ones(2), 1.0)
+    assert not any("sits on" in sentence for sentence in sentences(box, np.array([3.0, 0.5]), told))
+
+
 def test_well_told_parameters_need_no_sentence():
     assert sentences(Parameters.of({"a": (0, 2), "b": (0, 2)}), np.ones(2), estimate(10 * LINE, np.ones(2), 0.01)) == ()

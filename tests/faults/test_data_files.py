@@ -287,6 +287,16 @@ def test_defects_of_bands_in_other_formats_are_told(tmp_path):
     )
 
 
+def test_a_file_that_ends_the_process_of_its_reader_is_told(tmp_path):
+    """One byte of an array's flags changed: SciPy's compiled reader writes where it must not."""
+    path = tmp_path / "a.mat"
+    savemat(path, {"t": [0.0, 1.0, 2.0], "x": [1.0, 2.0, 3.0]})
+    content = bytearray(path.read_bytes())
+    content[144] = 5
+    path.write_bytes(content)
+    assert refused(path) == f"{path}: cannot be read as MAT (it is damaged: the reader broke down over it)"
+
+
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     folder = tmp_path_factory.mktemp("files")

@@ -38,6 +38,8 @@ def bound(difference: float, tolerance: float) -> str:
     >>> bound(6.98e-5, 1e-4), bound(2e-9, 1e-4), bound(2e-4, 1e-3), bound(6e-5, 7e-5)
     ('≤ 0.0001', '< 1e-7', '≤ 0.0002', '≤ 7e-5')
     """
+    if tolerance == 0:
+        return number(difference)
     if difference < tolerance / 1000:
         return f"< {number(tolerance / 1000, 2)}"
     power = 10.0 ** floor(log10(difference))
@@ -48,9 +50,11 @@ def bound(difference: float, tolerance: float) -> str:
 def as_tolerance_allows(value: float, tolerance: float) -> str:
     """``value`` with the digits that the tolerance gives a meaning to.
 
-    >>> as_tolerance_allows(0.98629175114, 1e-6), as_tolerance_allows(3e-17, 1e-9)
-    ('0.986292', '0')
+    >>> as_tolerance_allows(0.98629175114, 1e-6), as_tolerance_allows(3e-17, 1e-9), as_tolerance_allows(12.0, 0.0)
+    ('0.986292', '0', '12')
     """
+    if tolerance == 0:
+        return number(value)
     if abs(value) < tolerance:
         return "0"
     return number(value, min(15, floor(log10(abs(value))) - floor(log10(tolerance)) + 1))

@@ -99,7 +99,7 @@ def test_a_stopped_run_says_so(start, folder, number):
     process = start(2000)
     wait_for(lambda: is_running(folder))
     process.send_signal(number)
-    _, errors = process.communicate(timeout=30)
+    _, errors = process.communicate(timeout=120)
     assert process.returncode == 130
     assert errors.splitlines()[-1] == "stopped; what the run wrote so far is in its folder"
     assert "Traceback" not in errors
@@ -121,7 +121,7 @@ def test_a_full_disk_gives_a_sentence(start, folder):
     """A limit on the size of files stands for a disk without room: the report does not fit."""
     room = 300_000
     process = start(5, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (room, room)))
-    _, errors = process.communicate(timeout=60)
+    _, errors = process.communicate(timeout=120)
     assert process.returncode == 1
     assert "Traceback" not in errors
     assert errors.splitlines()[-1].startswith("File too large")

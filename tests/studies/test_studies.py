@@ -38,6 +38,8 @@ def found(study: Study, outcome: Outcome, row: dict[str, Any]) -> float:
             return (
                 outcome.best["fitness"] if quantity == "fitness" else values[quantity] / values.get(row.get("per"), 1)
             )
+        case "design":
+            return outcome.best["values"][quantity]
         case "identify_bands" if quantity == "simulations":
             return getattr(outcome, "result").simulations  # noqa: B009
         case "identify_bands" | "identify_set":

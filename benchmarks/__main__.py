@@ -15,7 +15,7 @@ def main(chosen: list[str]) -> int:
         return 2
     for name in chosen or NAMES:
         import_module(f"benchmarks.{name}").main()
-    page.main()
+    page.write(NAMES)
     return 0
 
 

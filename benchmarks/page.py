@@ -1,6 +1,7 @@
-"""Writes docs/benchmarks.md from the results that are kept: ``python -m benchmarks.page``."""
+"""Writes docs/benchmarks.md from the results that are kept."""
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
 
 from benchmarks import timing
@@ -16,12 +17,10 @@ What is compared with what, and how fairly, is said in `benchmarks/README.md`; `
 """
 
 
-def page() -> str:
+def page(names: Sequence[str]) -> str:
     """The page in Markdown: a section a benchmark, in the order in which they run."""
-    from benchmarks.__main__ import NAMES
-
-    kept = {name: timing.RESULTS / f"{name}.json" for name in NAMES}
-    return "\n".join([HEAD, *(section(json.loads(path.read_text())) for path in kept.values() if path.is_file())])
+    kept = [timing.RESULTS / f"{name}.json" for name in names]
+    return "\n".join([HEAD, *(section(json.loads(path.read_text())) for path in kept if path.is_file())])
 
 
 def section(kept: dict) -> str:
@@ -35,10 +34,7 @@ def section(kept: dict) -> str:
     return f"## {kept['title']}\n\n{table}\n\n{where}\n"
 
 
-def main() -> None:
-    PAGE.write_text(page())
+def write(names: Sequence[str]) -> None:
+    """Write the page of the benchmarks with these names."""
+    PAGE.write_text(page(names))
     print(f"\n{PAGE}")
-
-
-if __name__ == "__main__":
-    main()

@@ -2,23 +2,22 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from dalembert.data import Measurements
-from dalembert.hooks import hook
 from dalembert.inverse.estimate import Estimate, Identifiability, sentences
 from dalembert.inverse.events import StartEnd, Step
 from dalembert.inverse.experiment_fit import ExperimentFit, experiment_fit
 from dalembert.inverse.experiments import Part
 from dalembert.inverse.validation import Validation
 from dalembert.parameters import Parameters
+from dalembert.results import Result
 
 
 @dataclass(frozen=True, eq=False)
-class Fit:
+class Fit(Result):
     """Identified parameters, how well they are known, and how they were found.
 
     Parameters
@@ -56,6 +55,8 @@ class Fit:
     validation : Validation, optional
         How what was not fitted is predicted.
     """
+
+    FORMAT: ClassVar[str] = "dalembert fit 1"
 
     parameters: Parameters
     values: np.ndarray
@@ -113,35 +114,15 @@ class Fit:
 
         return summary(self)
 
-    def save(self, path: str | Path) -> None:
-        """Write everything to a NetCDF-4 file; :meth:`load` gives back the same bits."""
-        from dalembert.inverse.storage import save
-
-        save(self, path)
-
-    @staticmethod
-    def load(path: str | Path) -> "Fit":
-        """A fit that was saved.
-
-        Raises
-        ------
-        DataError
-            For a file that is not there, or holds no fit.
-        """
-        from dalembert.inverse.storage import load
-
-        return load(path)
-
     def to_xarray(self) -> Any:
         """Everything as an :class:`xarray.Dataset`, with units as attributes."""
         from dalembert.inverse.storage import to_xarray
 
         return to_xarray(self)
 
-    def figures(self) -> dict[str, Any]:
-        """Plotly figures by name."""
-        return hook("figures")(self)
+    @classmethod
+    def from_xarray(cls, dataset: Any) -> "Fit":
+        """The result that :meth:`to_xarray` turned into a dataset."""
+        from dalembert.inverse.storage import from_xarray
 
-    def report(self, path: str | Path) -> Any:
-        """Write an HTML report that opens offline."""
-        return hook("report")(self, path)
+        return from_xarray(dataset)

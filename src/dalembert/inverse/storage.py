@@ -2,10 +2,8 @@
 
 import json
 from dataclasses import asdict
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from dalembert.files import read_dataset, write_dataset
 from dalembert.inverse.fit import Fit
 from dalembert.inverse.stored_data import data_labels, data_of, stored_data
 from dalembert.inverse.stored_parts import parts_of, stored_parts, told_parts
@@ -15,8 +13,6 @@ from dalembert.parameters import Parameter, Parameters
 
 if TYPE_CHECKING:
     from xarray import Dataset
-
-FORMAT = "dalembert fit 1"
 
 
 def to_xarray(fit: Fit) -> "Dataset":
@@ -53,7 +49,7 @@ def to_xarray(fit: Fit) -> "Dataset":
         else {"what": fit.validation.what, "misfit": fit.validation.misfit, "fitted": fit.validation.fitted},
     }
     attributes = {
-        "format": FORMAT,
+        "format": Fit.FORMAT,
         "method": fit.method,
         "status": fit.status,
         "success": int(fit.success),
@@ -62,16 +58,6 @@ def to_xarray(fit: Fit) -> "Dataset":
         "settings": json.dumps(told, sort_keys=True),
     }
     return Dataset(variables, coordinates, attributes)
-
-
-def save(fit: Fit, path: str | Path) -> None:
-    """Write a fit to a NetCDF-4 file, whole or not at all."""
-    write_dataset(path, to_xarray(fit))
-
-
-def load(path: str | Path) -> Fit:
-    """Read a fit from a NetCDF-4 file."""
-    return from_xarray(read_dataset(path, form=FORMAT, expected="a fit written by Fit.save"))
 
 
 def from_xarray(dataset: "Dataset") -> Fit:

@@ -2,14 +2,13 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from dalembert.errors import DalembertError, InputError
 from dalembert.forward import ForwardModel
-from dalembert.hooks import hook
+from dalembert.results import Result
 from dalembert.uncertainty.events import OnEvent
 from dalembert.uncertainty.found import Method
 from dalembert.uncertainty.methods import label, method_of
@@ -37,7 +36,7 @@ class Row:
 
 
 @dataclass(frozen=True, eq=False)
-class Comparison:
+class Comparison(Result):
     """Bounds by several methods over the same box.
 
     Parameters
@@ -48,6 +47,8 @@ class Comparison:
     refused : tuple of (str, str)
         The methods that gave no bounds, and why not.
     """
+
+    FORMAT: ClassVar[str] = "dalembert comparison 1"
 
     results: tuple[Propagation, ...]
     reference: str
@@ -100,32 +101,18 @@ class Comparison:
         notes += [f"{method} gave no bounds: {reason}" for method, reason in self.refused]
         return "\n".join([*table([head, *rows]), "", *notes])
 
-    def save(self, path: str | Path) -> None:
-        """Write all results to one NetCDF-4 file; :meth:`load` gives back the same bits."""
-        from dalembert.uncertainty.storage import save_comparison
+    def to_xarray(self) -> Any:
+        """All results as one :class:`xarray.Dataset` over the dimension ``method``."""
+        from dalembert.uncertainty.storage import compared
 
-        save_comparison(self, path)
+        return compared(self)
 
-    @staticmethod
-    def load(path: str | Path) -> "Comparison":
-        """A comparison that was saved.
+    @classmethod
+    def from_xarray(cls, dataset: Any) -> "Comparison":
+        """The comparison that :meth:`to_xarray` turned into a dataset."""
+        from dalembert.uncertainty.storage import comparison_from
 
-        Raises
-        ------
-        DataError
-            For a file that is not there, or holds no comparison.
-        """
-        from dalembert.uncertainty.storage import load_comparison
-
-        return load_comparison(path)
-
-    def figures(self) -> dict[str, Any]:
-        """Plotly figures by name."""
-        return hook("figures")(self)
-
-    def report(self, path: str | Path) -> Any:
-        """Write an HTML report that opens offline."""
-        return hook("report")(self, path)
+        return comparison_from(dataset)
 
 
 def compare(

@@ -2,18 +2,17 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from dalembert.data import Bands
-from dalembert.hooks import hook
 from dalembert.intervals import Box
+from dalembert.results import Result
 
 
 @dataclass(frozen=True, eq=False)
-class Propagation(Bands):
+class Propagation(Bands, Result):
     """Bounds of a response over a box of parameters, how they were found, and how far they can be trusted.
 
     Parameters
@@ -47,6 +46,8 @@ class Propagation(Bands):
         Versions, seed, hash of the model, method and settings.
     """
 
+    FORMAT: ClassVar[str] = "dalembert propagation 1"
+
     units: tuple[str, ...]
     box: Box
     method: str
@@ -67,35 +68,15 @@ class Propagation(Bands):
 
         return summary(self)
 
-    def save(self, path: str | Path) -> None:
-        """Write everything to a NetCDF-4 file; :meth:`load` gives back the same bits."""
-        from dalembert.uncertainty.storage import save
-
-        save(self, path)
-
-    @staticmethod
-    def load(path: str | Path) -> "Propagation":
-        """A propagation that was saved.
-
-        Raises
-        ------
-        DataError
-            For a file that is not there, or holds no propagation.
-        """
-        from dalembert.uncertainty.storage import load
-
-        return load(path)
-
     def to_xarray(self) -> Any:
         """Everything as an :class:`xarray.Dataset`, with units as attributes."""
         from dalembert.uncertainty.storage import to_xarray
 
         return to_xarray(self)
 
-    def figures(self) -> dict[str, Any]:
-        """Plotly figures by name."""
-        return hook("figures")(self)
+    @classmethod
+    def from_xarray(cls, dataset: Any) -> "Propagation":
+        """The result that :meth:`to_xarray` turned into a dataset."""
+        from dalembert.uncertainty.storage import from_xarray
 
-    def report(self, path: str | Path) -> Any:
-        """Write an HTML report that opens offline."""
-        return hook("report")(self, path)
+        return from_xarray(dataset)

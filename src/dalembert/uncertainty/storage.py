@@ -1,10 +1,8 @@
 """Propagations and comparisons as labelled datasets, and in NetCDF files."""
 
 import json
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from dalembert.files import read_dataset, write_dataset
 from dalembert.forward import Coordinate
 from dalembert.intervals import Box
 from dalembert.uncertainty.comparison import Comparison
@@ -12,9 +10,6 @@ from dalembert.uncertainty.propagation import Propagation
 
 if TYPE_CHECKING:
     from xarray import Dataset
-
-FORMAT = "dalembert propagation 1"
-COMPARISON = "dalembert comparison 1"
 
 
 def to_xarray(result: Propagation) -> "Dataset":
@@ -40,7 +35,7 @@ def to_xarray(result: Propagation) -> "Dataset":
         "coordinate": ("sample", along.values, {"long_name": along.name, "units": along.unit}),
     }
     attributes = {
-        "format": FORMAT,
+        "format": Propagation.FORMAT,
         "method": result.method,
         "kind": result.kind,
         "runs": result.runs,
@@ -78,16 +73,6 @@ def from_xarray(dataset: "Dataset") -> Propagation:
     )
 
 
-def save(result: Propagation, path: str | Path) -> None:
-    """Write a propagation to a NetCDF-4 file, whole or not at all."""
-    write_dataset(path, to_xarray(result))
-
-
-def load(path: str | Path) -> Propagation:
-    """Read a propagation from a NetCDF-4 file."""
-    return from_xarray(read_dataset(path, form=FORMAT, expected="a propagation written by Propagation.save"))
-
-
 def compared(comparison: Comparison) -> "Dataset":
     """Dataset of all results over the dimension ``method``; what a method does not know is NaN."""
     from xarray import concat
@@ -99,20 +84,14 @@ def compared(comparison: Comparison) -> "Dataset":
     )
     told = {"results": own, "refused": comparison.refused}
     return stacked.assign_coords(method=[result.method for result in comparison.results]).assign_attrs(
-        format=COMPARISON,
+        format=Comparison.FORMAT,
         reference=comparison.reference,
         settings=json.dumps(told, sort_keys=True),
     )
 
 
-def save_comparison(comparison: Comparison, path: str | Path) -> None:
-    """Write a comparison to a NetCDF-4 file, whole or not at all."""
-    write_dataset(path, compared(comparison))
-
-
-def load_comparison(path: str | Path) -> Comparison:
-    """Read a comparison from a NetCDF-4 file."""
-    dataset = read_dataset(path, form=COMPARISON, expected="a comparison written by Comparison.save")
+def comparison_from(dataset: "Dataset") -> Comparison:
+    """The comparison that :func:`compared` turned into a dataset."""
     told = json.loads(dataset.attrs["settings"])
     results = tuple(
         from_xarray(dataset.isel(method=place)[own["variables"]].assign_attrs(own["attributes"]))

@@ -47,12 +47,14 @@ def test_the_dataset_is_labelled_by_name_and_unit():
 def test_a_file_that_is_not_there_is_told(tmp_path):
     with pytest.raises(DataError) as error:
         Fit.load(tmp_path / "fit.nc")
-    assert str(error.value) == f"{tmp_path / 'fit.nc'}: there is no such file; expected a fit written by Fit.save"
+    assert str(error.value) == f"{tmp_path / 'fit.nc'}: there is no such file; expected a result written by Fit.save"
 
 
 def test_a_file_of_another_kind_is_told(tmp_path):
     (tmp_path / "fit.nc").write_text("no")
-    with pytest.raises(DataError, match=r"fit.nc: cannot be read as NetCDF \(.*\); expected a fit written by Fit.save"):
+    with pytest.raises(
+        DataError, match=r"fit.nc: cannot be read as NetCDF \(.*\); expected a result written by Fit.save"
+    ):
         Fit.load(tmp_path / "fit.nc")
 
 
@@ -63,7 +65,7 @@ def test_a_dataset_without_a_fit_is_told(tmp_path):
     with pytest.raises(DataError) as error:
         Fit.load(tmp_path / "sweep.nc")
     assert str(error.value) == (
-        f"{tmp_path / 'sweep.nc'}: holds 'sweep 1'; expected 'dalembert fit 1', a fit written by Fit.save"
+        f"{tmp_path / 'sweep.nc'}: holds 'sweep 1'; expected 'dalembert fit 1', a result written by Fit.save"
     )
 
 

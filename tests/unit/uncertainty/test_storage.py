@@ -66,7 +66,7 @@ def test_the_dataset_is_labelled_by_name_and_unit():
 )
 def test_a_file_of_another_kind_is_told(kind, what, tmp_path):
     path = tmp_path / "other.nc"
-    expected = f"a {what} written by {kind.__name__}.save"
+    expected = f"a result written by {kind.__name__}.save"
     with pytest.raises(DataError, match=says(f"{path}: there is no such file; expected {expected}")):
         kind.load(path)
     propagate(LINE, {"offset": 1.0, "slope": 2.0}, "vertex").to_xarray().assign_attrs(format="sweep 1").to_netcdf(

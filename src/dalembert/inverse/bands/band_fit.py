@@ -2,21 +2,20 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from dalembert.data import Bands
-from dalembert.hooks import hook
 from dalembert.intervals import Box
 from dalembert.inverse.estimate import Estimate, Identifiability
 from dalembert.inverse.events import StartEnd, Step
 from dalembert.parameters import Parameters
+from dalembert.results import Result
 
 
 @dataclass(frozen=True, eq=False)
-class BandFit:
+class BandFit(Result):
     """Intervals of parameters whose response fills given bands, how well they are known, and how they were found.
 
     The unknowns are the middles of all parameters, then the radii of those that are intervals.
@@ -66,6 +65,8 @@ class BandFit:
     provenance : mapping
         Versions, seed, hashes of model and data, method and settings.
     """
+
+    FORMAT: ClassVar[str] = "dalembert bandfit 1"
 
     parameters: Parameters
     intervals: tuple[str, ...]
@@ -129,35 +130,15 @@ class BandFit:
 
         return summary(self)
 
-    def save(self, path: str | Path) -> None:
-        """Write everything to a NetCDF-4 file; :meth:`load` gives back the same bits."""
-        from dalembert.inverse.bands.storage import save
-
-        save(self, path)
-
-    @staticmethod
-    def load(path: str | Path) -> "BandFit":
-        """A result that was saved.
-
-        Raises
-        ------
-        DataError
-            For a file that is not there, or holds something else.
-        """
-        from dalembert.inverse.bands.storage import load
-
-        return load(path)
-
     def to_xarray(self) -> Any:
         """Everything as an :class:`xarray.Dataset`, with units as attributes."""
         from dalembert.inverse.bands.storage import to_xarray
 
         return to_xarray(self)
 
-    def figures(self) -> dict[str, Any]:
-        """Plotly figures by name."""
-        return hook("figures")(self)
+    @classmethod
+    def from_xarray(cls, dataset: Any) -> "BandFit":
+        """The result that :meth:`to_xarray` turned into a dataset."""
+        from dalembert.inverse.bands.storage import from_xarray
 
-    def report(self, path: str | Path) -> Any:
-        """Write an HTML report that opens offline."""
-        return hook("report")(self, path)
+        return from_xarray(dataset)

@@ -2,13 +2,11 @@
 
 import json
 from dataclasses import asdict
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from dalembert.data import Bands
-from dalembert.files import read_dataset, write_dataset
 from dalembert.forward import Coordinate
 from dalembert.intervals import Box
 from dalembert.inverse.bands.band_fit import BandFit
@@ -18,7 +16,6 @@ from dalembert.parameters import Parameter, Parameters
 if TYPE_CHECKING:
     from xarray import Dataset
 
-FORMAT = "dalembert bandfit 1"
 
 TABLES = ("weights", "lower", "upper", "error")
 """Fields of shape (samples, channels)."""
@@ -61,7 +58,7 @@ def to_xarray(fit: BandFit) -> "Dataset":
         "provenance": fit.provenance,
     }
     attributes = {
-        "format": FORMAT,
+        "format": BandFit.FORMAT,
         "method": fit.method,
         "status": fit.status,
         "success": int(fit.success),
@@ -71,16 +68,6 @@ def to_xarray(fit: BandFit) -> "Dataset":
         "settings": json.dumps(told, sort_keys=True),
     }
     return Dataset(variables, coordinates, attributes)
-
-
-def save(fit: BandFit, path: str | Path) -> None:
-    """Write a result to a NetCDF-4 file, whole or not at all."""
-    write_dataset(path, to_xarray(fit))
-
-
-def load(path: str | Path) -> BandFit:
-    """Read a result from a NetCDF-4 file."""
-    return from_xarray(read_dataset(path, form=FORMAT, expected="a result written by BandFit.save"))
 
 
 def from_xarray(dataset: "Dataset") -> BandFit:

@@ -2,19 +2,18 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from dalembert.data import Measurements
-from dalembert.hooks import hook
 from dalembert.intervals import Box
 from dalembert.parameters import Parameters
+from dalembert.results import Result
 
 
 @dataclass(frozen=True, eq=False)
-class ParameterSet:
+class ParameterSet(Result):
     """The set ``{p : |R(p) − data| ≤ error everywhere}`` within the parameters' bounds, paved with boxes.
 
     Parameters
@@ -45,6 +44,8 @@ class ParameterSet:
     provenance : mapping
         Versions, seed, hashes of model and data, scheme and settings.
     """
+
+    FORMAT: ClassVar[str] = "dalembert parameterset 1"
 
     parameters: Parameters
     data: Measurements
@@ -87,38 +88,18 @@ class ParameterSet:
 
         return summary(self)
 
-    def save(self, path: str | Path) -> None:
-        """Write everything to a NetCDF-4 file; :meth:`load` gives back the same bits."""
-        from dalembert.inverse.sets.storage import save
-
-        save(self, path)
-
-    @staticmethod
-    def load(path: str | Path) -> "ParameterSet":
-        """A result that was saved.
-
-        Raises
-        ------
-        DataError
-            For a file that is not there, or holds something else.
-        """
-        from dalembert.inverse.sets.storage import load
-
-        return load(path)
-
     def to_xarray(self) -> Any:
         """Everything as an :class:`xarray.Dataset`, with units as attributes."""
         from dalembert.inverse.sets.storage import to_xarray
 
         return to_xarray(self)
 
-    def figures(self) -> dict[str, Any]:
-        """Plotly figures by name."""
-        return hook("figures")(self)
+    @classmethod
+    def from_xarray(cls, dataset: Any) -> "ParameterSet":
+        """The result that :meth:`to_xarray` turned into a dataset."""
+        from dalembert.inverse.sets.storage import from_xarray
 
-    def report(self, path: str | Path) -> Any:
-        """Write an HTML report that opens offline."""
-        return hook("report")(self, path)
+        return from_xarray(dataset)
 
 
 def _in_any(boxes: np.ndarray, point: np.ndarray) -> bool:

@@ -2,12 +2,10 @@
 
 import json
 from dataclasses import asdict
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from dalembert.files import read_dataset, write_dataset
 from dalembert.intervals import Box
 from dalembert.inverse.sets.parameter_set import ParameterSet
 from dalembert.inverse.stored_data import data_labels, data_of, stored_data
@@ -15,8 +13,6 @@ from dalembert.parameters import Parameter, Parameters
 
 if TYPE_CHECKING:
     from xarray import Dataset
-
-FORMAT = "dalembert parameterset 1"
 
 
 def to_xarray(found: ParameterSet) -> "Dataset":
@@ -40,7 +36,7 @@ def to_xarray(found: ParameterSet) -> "Dataset":
     }
     told = {"parameters": [asdict(item) for item in found.parameters], "provenance": found.provenance}
     attributes = {
-        "format": FORMAT,
+        "format": ParameterSet.FORMAT,
         "status": found.status,
         "success": int(found.success),
         "resolution": found.resolution,
@@ -49,16 +45,6 @@ def to_xarray(found: ParameterSet) -> "Dataset":
         "settings": json.dumps(told, sort_keys=True),
     }
     return Dataset(variables, coordinates, attributes)
-
-
-def save(found: ParameterSet, path: str | Path) -> None:
-    """Write a result to a NetCDF-4 file, whole or not at all."""
-    write_dataset(path, to_xarray(found))
-
-
-def load(path: str | Path) -> ParameterSet:
-    """Read a result from a NetCDF-4 file."""
-    return from_xarray(read_dataset(path, form=FORMAT, expected="a result written by ParameterSet.save"))
 
 
 def from_xarray(dataset: "Dataset") -> ParameterSet:

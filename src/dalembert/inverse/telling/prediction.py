@@ -11,7 +11,7 @@ from dalembert.data import Measurements
 from dalembert.forward import Coordinate
 from dalembert.inverse.combinations import listed
 from dalembert.inverse.summary import table
-from dalembert.inverse.telling.result import Result
+from dalembert.results import Result
 
 if TYPE_CHECKING:
     from xarray import Dataset

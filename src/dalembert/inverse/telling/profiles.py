@@ -9,8 +9,8 @@ import numpy as np
 
 from dalembert.inverse.combinations import listed
 from dalembert.inverse.summary import table
-from dalembert.inverse.telling.result import Result
 from dalembert.parameters import Parameter, Parameters
+from dalembert.results import Result
 
 if TYPE_CHECKING:
     from xarray import Dataset

@@ -96,7 +96,8 @@ def test_a_killed_run_says_so(start, folder):
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_stopped_run_says_so(start, folder, number):
-    process = start(2000)
+    # A shell's background job ignores the interrupt, and so would its children.
+    process = start(2000, preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
     wait_for(lambda: is_running(folder))
     process.send_signal(number)
     _, errors = process.communicate(timeout=120)

@@ -7,6 +7,8 @@ our own simulation at the published truth, unrounded. Those of the interval case
 are midpoints and radii, and the fitness is that of the surrogate's bounds on the box that they make.
 """
 
+import json
+import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -53,19 +55,32 @@ INTERVAL = {
 """Published: Guo & Jin 2025, 40 particles, 100 iterations, one value each: fitness of SPSO, of IPSO."""
 
 
-def main() -> list[dict[str, object]]:
-    cases, truths = [], []
-    for name, (study, truth, published) in DETERMINISTIC.items():
-        model = _model("flexible-pendulum", study)
-        data = model.evaluate(np.array([truth])).only().reshape(-1)
-        cases.append(_deterministic(name, model, data, published))
-        truths.append(_simulated(name, model, data, published))
-    for name, (study, table, published) in INTERVAL.items():
-        cases.append(_interval(name, _model("interval-pendulum", study), _given(table), published))
-    rows = [_row(case, method, SEEDS if len(case.lower) < 6 else SEEDS_LONG) for case in cases for method in METHODS]
-    rows += [_row(case, "IPSO as published", SEEDS_SIMULATED) for case in truths]
-    timing.report("swarms", "Fitness after 4,000 evaluations", rows)
+def main(chosen: Sequence[str] = ()) -> list[dict[str, object]]:
+    """All cases, or those whose name contains one of the chosen words; what is kept of the others stays."""
+    rows = _kept()
+    for name in [*DETERMINISTIC, *INTERVAL]:
+        if not chosen or any(word in name for word in chosen):
+            rows = [row for row in rows if not str(row["case"]).startswith(name)] + _rows(name)
+            rows.sort(key=lambda row: str(row["case"]))
+            timing.report("swarms", "Fitness after 4,000 evaluations", rows)
     return rows
+
+
+def _rows(name: str) -> list[dict[str, object]]:
+    if name in INTERVAL:
+        study, table, published = INTERVAL[name]
+        case = _interval(name, _model("interval-pendulum", study), _given(table), published)
+        return [_row(case, method, SEEDS if len(case.lower) < 6 else SEEDS_LONG) for method in METHODS]
+    study, truth, published = DETERMINISTIC[name]
+    model = _model("flexible-pendulum", study)
+    data = model.evaluate(np.array([truth])).only().reshape(-1)
+    rows = [_row(_deterministic(name, model, data, published), method, SEEDS) for method in METHODS]
+    return [*rows, _row(_simulated(name, model, data, published), "IPSO as published", SEEDS_SIMULATED)]
+
+
+def _kept() -> list[dict[str, object]]:
+    path = timing.RESULTS / "swarms.json"
+    return json.loads(path.read_text())["rows"] if path.is_file() else []
 
 
 def _row(case: Case, method: str, seeds: Sequence[int]) -> dict[str, object]:
@@ -137,4 +152,4 @@ def _interval(name: str, model: ForwardModel, given: Bands, published: tuple[flo
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:])

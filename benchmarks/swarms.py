@@ -25,7 +25,6 @@ from dalembert.surrogate.scheme import Scheme
 
 STUDIES = Path(__file__).parents[1] / "studies"
 SEEDS = range(20)
-SEEDS_LONG = range(10)  # with three intervals a run takes ten times as long
 SEEDS_SIMULATED = range(2)
 TIP = ("AB.end.x", "AB.end.y")
 TIMES = np.arange(41) * 0.05
@@ -70,7 +69,7 @@ def _rows(name: str) -> list[dict[str, object]]:
     if name in INTERVAL:
         study, table, published = INTERVAL[name]
         case = _interval(name, _model("interval-pendulum", study), _given(table), published)
-        return [_row(case, method, SEEDS if len(case.lower) < 6 else SEEDS_LONG) for method in METHODS]
+        return [_row(case, method, SEEDS) for method in METHODS]
     study, truth, published = DETERMINISTIC[name]
     model = _model("flexible-pendulum", study)
     data = model.evaluate(np.array([truth])).only().reshape(-1)

@@ -23,7 +23,7 @@ class Regularised:
     Parameters
     ----------
     singular : array, shape (k,)
-        s, largest first.
+        s, largest first, of the directions that A sees.
     parts : array, shape (k,)
         Uᵀ b.
     directions : array, shape (k, parameters)
@@ -54,9 +54,14 @@ class Regularised:
 
     @staticmethod
     def of(matrix: np.ndarray, right: ArrayLike) -> "Regularised":
-        """The problem of a matrix A (values, parameters) and a vector b (values,)."""
+        """The problem of a matrix A (values, parameters) and a vector b (values,).
+
+        Directions that A does not see are left out: their step would be noise over rounding.
+        """
         b = np.asarray(right, dtype=float)
         u, s, v = np.linalg.svd(matrix, full_matrices=False)
+        seen = s >= UNSEEN * s[0]
+        u, s, v = u[:, seen], s[seen], v[seen]
         parts = u.T @ b
         return Regularised(s, parts, v, float(np.linalg.norm(b - u @ parts)), len(b))
 
@@ -83,14 +88,13 @@ class Regularised:
 
     @property
     def least(self) -> float:
-        """Weight that changes no step but those along what A does not see."""
+        """Weight that changes no step: what A sees less than that is left out."""
         return UNSEEN * float(self.singular[0])
 
     @cached_property
     def weights(self) -> np.ndarray:
         """Weights of the L-curve, increasing: from where the smallest seen singular value no longer feels them."""
-        seen = self.singular[self.singular > self.least]
-        low, high = max(1e-5 * float(seen[-1]), self.least), 10 * float(seen[0])
+        low, high = max(1e-5 * float(self.singular[-1]), self.least), 10 * float(self.singular[0])
         return np.geomspace(low, high, 1 + int(np.ceil(PER_DECADE * np.log10(high / low))))
 
     def curvature(self, mu: ArrayLike) -> np.ndarray:
@@ -165,9 +169,8 @@ class Regularised:
 
     @cached_property
     def _full(self) -> np.ndarray:
-        """Parts of the step without any weight, (k,); zero along what A sees by rounding alone."""
-        seen = self.singular > np.finfo(float).eps * self.values * self.singular[0]
-        return np.where(seen, self.parts / np.where(seen, self.singular, 1.0), 0.0)
+        """Parts of the step without any weight, (k,); zero where A is."""
+        return self.parts / self.singular if self.singular[0] > 0 else np.zeros_like(self.parts)
 
     def _kept(self, mu: ArrayLike) -> np.ndarray:
         """f (..., k), the share that each part of the step keeps."""

@@ -136,6 +136,25 @@ def test_a_pair_that_only_noise_tells_apart_does_not_run_away(regularisation):
     assert np.max(np.abs([one.x for one in seen])) < farthest
 
 
+@pytest.mark.parametrize("regularisation", ["l-curve", "gcv", "discrepancy"])
+def test_what_the_response_does_not_see_stays_at_its_start(regularisation):
+    """The response sees a + b alone, its jacobian a − b by rounding: once its step went to a bound."""
+    rng = np.random.default_rng(1)
+    data = np.exp(-0.9 * TIMES) + 1e-2 * rng.standard_normal(20)
+
+    def residual(x):
+        return np.exp(-(x[0] + x[1]) * TIMES) - data
+
+    def jacobian(x):
+        slope = -TIMES * (residual(x) + data)
+        return np.stack([slope, slope], axis=1) + 1e-12 * rng.standard_normal((20, 2))
+
+    found, seen = told(residual, jacobian, [-5, -5], [5, 5], [1.5, 0.2], regularisation=regularisation, noise=1e-2)
+    assert found.success
+    assert found.x[0] + found.x[1] == pytest.approx(0.9, abs=0.05)
+    np.testing.assert_allclose([one.x[0] - one.x[1] for one in seen], 1.3, atol=1e-6)
+
+
 def test_the_solution_of_a_linear_problem_at_a_bound_is_the_constrained_one():
     """Least (x + y − 3)² + (x − y)² with y ≤ 1: x = (3 − y + y)/2 at y = 1."""
     matrix, right = np.array([[1.0, 1.0], [1.0, -1.0]]), np.array([3.0, 0.0])

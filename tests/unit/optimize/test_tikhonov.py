@@ -32,6 +32,16 @@ def test_without_weight_the_step_is_the_least_squares_solution_and_the_shortest_
     np.testing.assert_allclose(Regularised.of(twins, np.full(5, 3.0)).steps(0.0), [1.5, 1.5])
 
 
+def test_a_direction_that_only_rounding_sees_is_left_out_whatever_the_weight():
+    rounding = 1e-12 * np.random.default_rng(3).standard_normal(30)
+    matrix = np.stack([MATRIX[:, 0] + rounding, MATRIX[:, 0] - rounding, MATRIX[:, 1]], axis=1)
+    problem = Regularised.of(matrix, RIGHT)
+    assert np.max(np.abs(problem.steps([0.0, problem.least, problem.corner()]) @ [1, -1, 0])) < 1e-9
+    plain = np.linalg.lstsq(matrix[:, [0, 2]], RIGHT)[0]
+    np.testing.assert_allclose(problem.steps(0.0), [plain[0] / 2, plain[0] / 2, plain[1]], rtol=1e-9)
+    assert problem.outside == pytest.approx(np.linalg.norm(matrix[:, [0, 2]] @ plain - RIGHT))
+
+
 def test_the_curvature_is_that_of_the_curve_by_differences():
     problem, h = Regularised.of(MATRIX, RIGHT), 1e-3
     for mu in (3e-5, 2e-3, 0.4):

@@ -34,13 +34,14 @@ def members(move: np.ndarray, widths: np.ndarray) -> np.ndarray:
 
 
 def moved(names: Sequence[str], move: np.ndarray, widths: np.ndarray) -> str:
-    """A move (parameters,) in words, the largest one by a tenth of its width.
+    """A move (parameters,) in words, the largest one by a tenth of its width, the first one upward.
 
-    >>> moved(["a", "b"], np.array([2.0, -1.0]), np.array([2.0, 5.0]))
+    >>> moved(["a", "b"], np.array([-2.0, 1.0]), np.array([2.0, 5.0]))
     "'a' by +0.2 and 'b' by -0.1"
     """
-    move = move * SHOWN / np.max(np.abs(move) / widths)
-    return listed([f"{names[k]!r} by {move[k]:+.3g}" for k in members(move, widths)])
+    named = members(move, widths)
+    move = move * np.sign(move[named[0]]) * SHOWN / np.max(np.abs(move) / widths)
+    return listed([f"{names[k]!r} by {move[k]:+.3g}" for k in named])
 
 
 def listed(words: Sequence[str]) -> str:

@@ -7,10 +7,11 @@ from typing import Any, ClassVar
 import numpy as np
 
 from dalembert.data import Measurements
-from dalembert.inverse.estimate import Estimate, Identifiability, sentences
+from dalembert.inverse.estimate import Estimate, Identifiability
 from dalembert.inverse.events import StartEnd, Step
 from dalembert.inverse.experiment_fit import ExperimentFit, experiment_fit
 from dalembert.inverse.experiments import Part
+from dalembert.inverse.sentences import sentences
 from dalembert.inverse.validation import Validation
 from dalembert.parameters import Parameters
 from dalembert.results import Result

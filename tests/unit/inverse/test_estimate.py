@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from dalembert.inverse.estimate import estimate, sentences
+from dalembert.inverse.estimate import estimate
+from dalembert.inverse.sentences import sentences
 from dalembert.parameters import Parameters
 
 TIMES = np.linspace(0, 2, 21)
@@ -34,12 +35,19 @@ def test_a_combination_that_the_response_does_not_see_leaves_deviations_infinite
     np.testing.assert_allclose(told.correlation[0, 1], -1, rtol=1e-9)
     box = Parameters.of({"a": (0, 2), "b": (0, 2), "c": (-9, 9)})
     assert sentences(box, np.ones(3), told) == (
-        "'a' is not told by the data: it, or a combination that it is part of, leaves the response as it is; "
-        "fix it, or measure another channel.",
-        "'b' is not told by the data: it, or a combination that it is part of, leaves the response as it is; "
-        "fix it, or measure another channel.",
-        "'a' and 'b' can hardly be told apart (correlation -1.0000); "
-        "fix one of them, or measure what tells them apart.",
+        "'a' and 'b' can only be told in combination: moving 'a' by +0.2 and 'b' by -0.1 together leaves the response "
+        "as it is; fix one of them, or measure what tells them apart.",
+    )
+
+
+def test_a_parameter_that_moves_too_little_to_be_named_with_the_others_is_said_to_be_unseen():
+    told = estimate(np.stack([np.ones(21), 1 + 0.05 * TIMES, TIMES], axis=1), np.ones(3), 1.0)
+    box = Parameters.of(dict.fromkeys("abc", (0, 2)))
+    found = sentences(box, np.ones(3), told)
+    assert "'a' and 'b' can only be told in combination" in found[1]
+    assert found[0] == (
+        "'c' is not told by the data: it, or a combination that it is part of, leaves the response as it is; fix it, "
+        "or measure another channel."
     )
 
 

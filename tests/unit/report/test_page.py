@@ -52,7 +52,6 @@ def test_the_page_says_the_numbers_and_the_advice(whole):
         "identified",
         "0.78531 ± 0.00021",
         "Widen the bounds of theta2.",
-        "theta2 ended on a bound",
         "A note.",
         "5 of 6",
         "least squares, 6 starts",

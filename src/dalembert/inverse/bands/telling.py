@@ -3,7 +3,7 @@
 import numpy as np
 
 from dalembert.inverse.bands.band_fit import BandFit
-from dalembert.inverse.estimate import untold
+from dalembert.inverse.sentences import untold
 from dalembert.parameters import Parameter
 
 NOTHING = 1e-6
@@ -13,9 +13,10 @@ NOTHING = 1e-6
 def sentences(fit: BandFit) -> tuple[str, ...]:
     """Sentences on ends at a bound, on radii that are zero or may be, and on unknowns that the bands do not tell."""
     found = [sentence for k, item in enumerate(fit.parameters) for sentence in _of_one(fit, k, item)]
-    width = fit.parameters.upper - fit.parameters.lower
+    width, scale = fit.parameters.upper - fit.parameters.lower, fit.parameters.scale
     is_interval = np.array([name in fit.intervals for name in fit.parameters.names], dtype=bool)
-    return untold(fit.unknowns, np.concatenate([width, width[is_interval] / 2]), fit.told, found)
+    widths, scales = np.concatenate([width, width[is_interval] / 2]), np.concatenate([scale, scale[is_interval]])
+    return untold(fit.unknowns, widths, scales, fit.told, found)
 
 
 def _of_one(fit: BandFit, k: int, item: Parameter) -> list[str]:

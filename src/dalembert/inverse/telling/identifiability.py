@@ -8,9 +8,10 @@ from numpy.typing import ArrayLike
 from dalembert.data import Measurements
 from dalembert.errors import InputError
 from dalembert.forward import ForwardModel
-from dalembert.inverse.estimate import Identifiability, estimate, foreseen
+from dalembert.inverse.estimate import Identifiability, estimate
 from dalembert.inverse.matching import check_samples, columns_of
 from dalembert.inverse.prior import prior_slopes
+from dalembert.inverse.sentences import foreseen
 from dalembert.inverse.telling.sensitivity import at_of, linearised, noise_of
 
 
@@ -56,8 +57,8 @@ def identifiability(
     >>> times = np.linspace(0, 2, 21)
     >>> box = {"rate": (0.5, 2.0), "height": (0.1, 1.0), "gain": (0.5, 2.0)}
     >>> model = PythonModel(lambda rate, height, gain: gain * height * np.exp(-rate * times), box, ["x"], times)
-    >>> identifiability(model, deviations=1e-3).sentences[-1].partition(";")[0]
-    "'height' and 'gain' can hardly be told apart (correlation -1.0000)"
+    >>> identifiability(model, deviations=1e-3).sentences[0].partition(":")[0]
+    "'height' and 'gain' can only be told in combination"
     """
     if data is not None and deviations is not None:
         raise InputError("identifiability: data and deviations were given; expected one of them")

@@ -20,11 +20,6 @@ class Estimates(Section):
     fit: FitLike
 
     @property
-    def stuck(self) -> list[str]:
-        """Names of the parameters on a bound."""
-        return [name for name, at in zip(self.fit.parameters.names, on_bound(self.fit), strict=True) if at]
-
-    @property
     def table(self) -> Table:
         fit = self.fit
         rows = [

@@ -1,14 +1,13 @@
 """Motion of a system in time."""
 
-from itertools import pairwise
-
 import numpy as np
 
 from dalembert.errors import InputError, SolveError
 from dalembert.multibody.assemble import assembled, refuse_kinks, refuse_redundancy
 from dalembert.multibody.callbacks import in_complex_numbers
 from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha
-from dalembert.multibody.integrators.run import run
+from dalembert.multibody.integrators.integrator import Integrator
+from dalembert.multibody.integrators.run import make_problem
 from dalembert.multibody.system import System
 from dalembert.multibody.trajectory import Trajectory
 
@@ -17,7 +16,7 @@ _ROOM = 20_000_000  # numbers up to which the states of all steps are kept, for 
 
 
 def simulate(
-    system: System, end: float, solver: GeneralizedAlpha | None = None, times: np.ndarray | None = None
+    system: System, end: float, solver: Integrator | None = None, times: np.ndarray | None = None
 ) -> Trajectory:
     """Integrate the motion of a system from time 0.
 
@@ -26,11 +25,11 @@ def simulate(
     system : System
     end : float
         s.
-    solver : GeneralizedAlpha, optional
-        Steps of ``end`` / 1000 if not given.
+    solver : Integrator, optional
+        Generalized-alpha with steps of ``end`` / 1000 if not given.
     times : array, shape (samples,), optional
-        Output times in s, increasing, within [0, end]. Every step if not given; 1001 equal ones if the step is
-        adaptive. Between steps the motion is interpolated (cubic in coordinates and velocities).
+        Output times in s, increasing, within [0, end]. Every step if not given; 1001 equal ones if the
+        solver chooses its steps. Between steps the motion is interpolated (cubic in coordinates and velocities).
 
     Returns
     -------
@@ -62,25 +61,15 @@ def simulate(
         lowered = assembled(system)
         refuse_redundancy(lowered)
         refuse_kinks(lowered, end)
-        steps = output_times(solver, end, lowered.jumps)
+        steps = solver.step_ends(end, lowered.jumps)
+        if steps is None:
+            steps = np.linspace(0.0, end, _ADAPTIVE_OUTPUTS)
         times = steps if times is None else checked(times, end)
         grid = np.union1d(times, steps) if len(steps) * len(lowered.x) < _ROOM else times
-        result = run(lowered, solver, grid, end)
+        (result,) = solver.integrate([lowered], (), make_problem(lowered, grid), end)
     if result.reason:
         raise SolveError(result.reason)
     return Trajectory(system, lowered, solver, result, np.searchsorted(grid, times))
-
-
-def output_times(solver: GeneralizedAlpha, end: float, jumps: tuple[float, ...] = ()) -> np.ndarray:
-    """Every step of a fixed step, shape (samples,)."""
-    if solver.adaptive:
-        return np.linspace(0.0, end, _ADAPTIVE_OUTPUTS)
-    edges = [0.0, *(time for time in jumps if 0 < time < end), end]
-    parts: list[np.ndarray] = [np.zeros(1)]
-    for begin, stop in pairwise(edges):
-        steps = max(1, int(np.ceil((stop - begin) / solver.step - 1e-6)))
-        parts.append(begin + (stop - begin) / steps * np.arange(1, steps + 1))
-    return np.concatenate(parts)
 
 
 def checked(times: np.ndarray, end: float) -> np.ndarray:

@@ -14,8 +14,9 @@ from dalembert.forward import Channel, Coordinate, Responses
 from dalembert.multibody.assemble import assembled, refuse_kinks, refuse_redundancy
 from dalembert.multibody.callbacks import in_complex_numbers
 from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha
+from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.problem import Problem
-from dalembert.multibody.integrators.run import make_problem, run, run_ensemble
+from dalembert.multibody.integrators.run import Run, make_problem
 from dalembert.multibody.kernels.dual import STEP
 from dalembert.multibody.lowering import Lowered
 from dalembert.multibody.observe import Observer, observer
@@ -37,8 +38,8 @@ class TimeResponse:
         Such as ``"AB.end.x"``; see :meth:`Trajectory.channel_names`.
     times : array, shape (samples,)
         s; the motion starts at 0 and ends at the last one.
-    solver : GeneralizedAlpha, optional
-        Steps of a thousandth of the motion if not given.
+    solver : Integrator, optional
+        Generalized-alpha with steps of a thousandth of the motion if not given.
     workers : int, optional
         Threads of an ensemble; as many as there are cores if not given.
 
@@ -62,7 +63,7 @@ class TimeResponse:
     parameters: Parameters
     channel_names: tuple[str, ...]
     times: np.ndarray
-    solver: GeneralizedAlpha
+    solver: Integrator
     workers: int = field(default=1, compare=False)
 
     def __init__(
@@ -71,7 +72,7 @@ class TimeResponse:
         parameters: Parameters | Mapping[str, Parameter | tuple[float, float]],
         channels: Sequence[str],
         times: np.ndarray,
-        solver: GeneralizedAlpha | None = None,
+        solver: Integrator | None = None,
         workers: int | None = None,
     ) -> None:
         times = np.asarray(times, dtype=float)
@@ -134,7 +135,7 @@ class TimeResponse:
                     failures[row] = str(error)
                 except Exception as error:  # the user's builder raised: this sample's failure, not the batch's
                     failures[row] = f"{type(error).__name__}: {error}"
-            runs = run_ensemble([own for _, own in samples], self.solver, self.times, self.times[-1], frame.problem)
+            runs = self._runs([own for _, own in samples])
             for (row, lowered), result in zip(samples, runs, strict=True):
                 failures[row] = result.reason
                 if result.reason is None:
@@ -170,7 +171,7 @@ class TimeResponse:
         with in_complex_numbers(strict=True):
             lowered = self._lower(vector)
             tilted = [self._tilt(vector, column) for column in range(len(vector))]
-            result = run(lowered, self.solver, self.times, self.times[-1], tilted, frame.problem)
+            (result,) = self.solver.integrate([lowered], tilted, frame.problem, self.times[-1])
         if result.reason:
             raise SolveError(result.reason)
         for name, own in zip(self.parameters.names, tilted, strict=True):
@@ -203,6 +204,11 @@ class TimeResponse:
         refuse_kinks(lowered, float(self.times[-1]))
         problem = make_problem(lowered, self.times)
         return _Frame(lowered, problem, observer(system, lowered, self.channel_names))
+
+    def _runs(self, samples: Sequence[Lowered]) -> list[Run]:
+        if not samples:
+            return []
+        return self.solver.integrate(samples, (), self._frame.problem, self.times[-1], logged=False)
 
     def _lower(self, vector: np.ndarray) -> Lowered:
         """Arrays of one sample, in the structure of the first."""

@@ -11,7 +11,7 @@ import xarray as xr
 from dalembert.files import write_dataset
 from dalembert.multibody.drawing import Drawing, draw
 from dalembert.multibody.evaluate import energies, violations
-from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha
+from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.run import Run
 from dalembert.multibody.kernels.motion import Motion
 from dalembert.multibody.lowering import Lowered
@@ -27,7 +27,7 @@ class Trajectory:
     ----------
     system : System
     lowered : Lowered
-    solver : GeneralizedAlpha
+    solver : Integrator
     run : Run
         At the output times and, where there is room, at every step.
     rows : array of int, shape (samples,)
@@ -36,7 +36,7 @@ class Trajectory:
 
     system: System
     lowered: Lowered
-    solver: GeneralizedAlpha
+    solver: Integrator
     run: Run
     rows: np.ndarray
 

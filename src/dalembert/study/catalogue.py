@@ -7,26 +7,22 @@ from typing import Any
 
 from dalembert.study.components import settings_of
 
-ROLES = {"Body": "body", "Joint": "joint", "Load": "load", "Signal": "signal"}
+ROLES = {"Body": "body", "Joint": "joint", "Load": "load", "Signal": "signal", "Integrator": "solver"}
 
 
 @cache
 def catalogue() -> dict[str, tuple[type, ...]]:
     """Public dataclasses of :mod:`dalembert.multibody` by their role: body, joint, load, signal and solver.
 
-    The role is that of the base class: what derives from ``Body`` stands in ``[[model.body]]``. Solvers are what
-    :mod:`dalembert.multibody.integrators` defines.
+    The role is that of the base class: what derives from ``Body`` stands in ``[[model.body]]``.
     """
     from dalembert import multibody
 
-    found: dict[str, list[type]] = {role: [] for role in (*ROLES.values(), "solver")}
+    found: dict[str, list[type]] = {role: [] for role in ROLES.values()}
     for name in dir(multibody):
         kind = getattr(multibody, name)
         if dataclasses.is_dataclass(kind) and isinstance(kind, type) and not inspect.isabstract(kind):
-            roles = [ROLES[base.__name__] for base in kind.__mro__[1:] if base.__name__ in ROLES]
-            if not roles and kind.__module__.startswith("dalembert.multibody.integrators"):
-                roles = ["solver"]
-            for role in roles:
+            for role in (ROLES[base.__name__] for base in kind.__mro__[1:] if base.__name__ in ROLES):
                 found[role].append(kind)
     return {role: tuple(kinds) for role, kinds in found.items()}
 

@@ -1,19 +1,24 @@
 """Generalized-alpha for the index-3 equations, with the derivatives of its discrete solution."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
 from dalembert.errors import InputError, unknown
 from dalembert.multibody.integrators.consistent import accelerate
 from dalembert.multibody.integrators.derivatives import differentiate
+from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.lifting import set_signals
 from dalembert.multibody.integrators.newton import Newton, converge, learn
-from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR, TOO_MANY_STEPS
+from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR, TOO_MANY_STEPS, Log, Problem
+from dalembert.multibody.integrators.run import Run, cut, explain, resting, stacks, starts
 from dalembert.multibody.kernels.compiled import compiled, inlined
 from dalembert.multibody.kernels.linear import storage
 from dalembert.multibody.kernels.model import select, workspace
 from dalembert.multibody.kernels.motion import Motion, clear, coefficients, copy, glance, interpolate, row, still
+from dalembert.multibody.lowering import Lowered
 
 STARTS = ("consistent", "zero")
 _HALVINGS = 8  # of a fixed step that Newton does not converge on
@@ -21,7 +26,7 @@ _UNITS = 1 << _HALVINGS
 
 
 @dataclass(frozen=True)
-class GeneralizedAlpha:
+class GeneralizedAlpha(Integrator):
     """Generalized-alpha integrator for index 3 (Arnold and Bruels 2007), of second order.
 
     Parameters
@@ -71,6 +76,69 @@ class GeneralizedAlpha:
         for name in ("tolerance", "newton_tolerance"):
             if not getattr(self, name) > 0:
                 raise InputError(f"GeneralizedAlpha: {name} is {getattr(self, name)}; expected a positive number")
+
+    @property
+    def fixed_step(self) -> float | None:
+        """The step in s, None if adaptive."""
+        return None if self.adaptive else self.step
+
+    def integrate(
+        self,
+        samples: Sequence[Lowered],
+        tilted: Sequence[Lowered],
+        problem: Problem,
+        end: float,
+        *,
+        logged: bool = True,
+    ) -> list[Run]:
+        """Runs of samples in one compiled loop that leaves the interpreter's lock free; see `Integrator`."""
+        problem = cut(samples, problem, end)
+        states, dstates = starts(samples, tilted)
+        shape = len(problem.times), states.x.shape[1]
+        out, dout = resting(len(samples), *shape), resting(len(tilted), *shape)
+        room = self._most_logged(samples[0], end) if logged else 0
+        log = Log(np.zeros(4, dtype=np.int64), np.zeros(room, dtype=np.int64), np.zeros(room))
+        ends = np.zeros((len(samples), 3))
+        integrate(problem, self._settings(), *stacks(samples, tilted), states, dstates, out, dout, log, ends)
+        taken = min(int(log.counts[0]), room)
+        runs = []
+        for number, (lowered, (status, time, moved)) in enumerate(zip(samples, ends, strict=True)):
+            reason = None if status == DONE else self._explain(lowered, int(status), time, int(moved))
+            own = Motion(out.x[number], out.v[number], out.a[number], out.w[number])
+            iterations, times = log.iterations[:taken].copy(), log.ends[:taken].copy()
+            runs.append(Run(reason, problem.times, own, dout, log.counts, iterations, times))
+        return runs
+
+    def _settings(self) -> "Settings":
+        return Settings(
+            float(self.step),
+            float(self.spectral_radius),
+            self.initial_acceleration == "consistent",
+            bool(self.adaptive),
+            float(self.tolerance),
+            float(self.newton_tolerance),
+            int(self.most_steps),
+        )
+
+    def _most_logged(self, lowered: Lowered, end: float) -> int:
+        ends = self.step_ends(end, lowered.jumps)
+        return 100_000 if ends is None else max(len(ends) + 1, 100_000)
+
+    def _explain(self, lowered: Lowered, status: int, time: float, unknown: int) -> str:
+        cut_down = f"the step of {self.step:g} s was cut down {'' if self.adaptive else 'to 1/256 '}for it"
+        return explain(lowered, status, time, unknown, cut_down, self.most_steps)
+
+
+class Settings(NamedTuple):
+    """What the compiled loop needs of `GeneralizedAlpha`."""
+
+    step: float
+    spectral_radius: float
+    consistent: bool
+    adaptive: bool
+    tolerance: float
+    newton_tolerance: float
+    most_steps: int
 
 
 @compiled

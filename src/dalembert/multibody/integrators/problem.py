@@ -7,18 +7,6 @@ import numpy as np
 DONE, NEWTON_FAILED, SINGULAR, TOO_MANY_STEPS = range(4)
 
 
-class Settings(NamedTuple):
-    """What the compiled loop needs of `GeneralizedAlpha`."""
-
-    step: float
-    spectral_radius: float
-    consistent: bool
-    adaptive: bool
-    tolerance: float
-    newton_tolerance: float
-    most_steps: int
-
-
 class Problem(NamedTuple):
     """What does not change from sample to sample: sizes, scales, where matrix entries go, LAPACK, times.
 

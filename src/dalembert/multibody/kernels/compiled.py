@@ -1,37 +1,15 @@
 """How kernels are compiled: once for a machine, kept on disk, without the interpreter's lock."""
 
-import hashlib
 from collections.abc import Callable
-from contextlib import suppress
-from pathlib import Path
 from typing import Any, TypeVar, cast
 
 from numba import njit
 
+from dalembert.multibody.kernels.stale import forget_stale
+
 _Function = TypeVar("_Function", bound=Callable)
 
-_MULTIBODY = Path(__file__).parent.parent
-
-
-def _forget_stale() -> None:
-    """Remove compiled kernels that were made from other sources.
-
-    Numba looks only at the file of a function itself, not at those of the functions that it calls, so that an edited
-    kernel would live on inside its callers.
-    """
-    sources = sorted([*_MULTIBODY.glob("kernels/*.py"), *_MULTIBODY.glob("integrators/*.py")])
-    digest = hashlib.sha256(b"".join(source.read_bytes() for source in sources)).hexdigest()
-    stamp = _MULTIBODY / "kernels" / "__pycache__" / "sources.sha256"
-    with suppress(OSError):  # a folder that cannot be written holds no cache either
-        if stamp.exists() and stamp.read_text() == digest:
-            return
-        for cached in _MULTIBODY.glob("**/__pycache__/*.nb[ci]"):
-            cached.unlink(missing_ok=True)
-        stamp.parent.mkdir(exist_ok=True)
-        stamp.write_text(digest)
-
-
-_forget_stale()
+forget_stale()
 
 # Of fast-math only the fusing of a product with a sum, which saves a seventh of a residual: results must be the same
 # bits on every run, and NaN must stay visible.

@@ -1,0 +1,60 @@
+"""What an integrator is to those who ask for a motion."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+
+from dalembert.multibody.integrators.problem import Problem
+from dalembert.multibody.integrators.run import Run
+from dalembert.multibody.lowering import Lowered
+
+
+class Integrator(ABC):
+    """A method that integrates the equations of motion, with its settings; a frozen dataclass.
+
+    Every integrator serves :func:`~dalembert.multibody.simulate` and :class:`~dalembert.multibody.TimeResponse` alike:
+    one motion, ensembles, and the derivatives of its own discrete solution.
+    """
+
+    @abstractmethod
+    def integrate(
+        self,
+        samples: Sequence[Lowered],
+        tilted: Sequence[Lowered],
+        problem: Problem,
+        end: float,
+        *,
+        logged: bool = True,
+    ) -> list[Run]:
+        """Runs of samples that share a structure, from 0 to ``end`` (s), with the states at ``problem.times``.
+
+        Parameters
+        ----------
+        samples : sequence of Lowered
+            Each sample fails for itself: its run has the reason.
+        tilted : sequence of Lowered
+            The model along each direction of differentiation (its imaginary parts are the direction times the complex
+            step); only with a single sample.
+        problem : Problem
+        end : float
+        logged : bool
+            Keep what happened at each step.
+        """
+
+    @property
+    def fixed_step(self) -> float | None:
+        """The step in s, None if the method chooses it."""
+        return getattr(self, "step", None)
+
+    def step_ends(self, end: float, jumps: tuple[float, ...] = ()) -> np.ndarray | None:
+        """Ends of the fixed steps in s, 0 included, (samples,); each smooth stretch between jumps is cut evenly."""
+        if self.fixed_step is None:
+            return None
+        edges = [0.0, *(time for time in jumps if 0 < time < end), end]
+        parts: list[np.ndarray] = [np.zeros(1)]
+        for begin, stop in pairwise(edges):
+            steps = max(1, int(np.ceil((stop - begin) / self.fixed_step - 1e-6)))
+            parts.append(begin + (stop - begin) / steps * np.arange(1, steps + 1))
+        return np.concatenate(parts)

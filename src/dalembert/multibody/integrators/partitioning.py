@@ -1,0 +1,218 @@
+"""Coordinates parted into independent ones and those that the constraints make follow (Wehage and Haug 1982)."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from dalembert.multibody.integrators.lifting import lift, set_signals
+from dalembert.multibody.kernels.assembly import constraint_rates, residual, tangent
+from dalembert.multibody.kernels.compiled import compiled, kernel, template
+from dalembert.multibody.kernels.dual import STEP
+from dalembert.multibody.kernels.linear import Factors, Layout, factorise, solve, storage
+from dalembert.multibody.kernels.model import select
+from dalembert.multibody.kernels.motion import row
+from dalembert.multibody.kernels.vector import LANES
+
+POSITION, VELOCITY, ACCELERATION = 1, 2, 3  # how many levels are made to satisfy the constraints
+_DEPENDENT = 1e-9  # pivot, against the first one, of a constraint that follows from the others
+_MOST_ITERATIONS = 20
+_CLOSED = 1e-9  # correction against the scale after which a quadratic iteration is at rounding
+
+
+class Partition(NamedTuple):
+    """Which coordinates depend on which constraints, and the work of solving for them.
+
+    ``columns`` (n,) and ``rows`` (m,): coordinates and constraints in the order of their pivots; the first ``rank[0]``
+    of them are the dependent coordinates and the independent constraints. ``matrix``: the constraint Jacobian in the
+    dense layout of the problem. ``pivots`` (m, n): what elimination leaves. ``dependent``: inverse of the dependent
+    part.
+    """
+
+    columns: np.ndarray
+    rows: np.ndarray
+    rank: np.ndarray
+    matrix: np.ndarray
+    pivots: np.ndarray
+    dependent: Factors
+    gap: np.ndarray
+    second: np.ndarray
+    change: np.ndarray
+
+
+@template
+def _layout(problem, rank):
+    """Layout of a dense matrix of the dependent part."""
+    whole = problem.exact_layout
+    return Layout(whole.kind, rank, whole.reach, -(-rank // LANES) * LANES, whole.order)
+
+
+@compiled
+def room(problem):
+    """Room for a partition; the matrix of the problem must be dense (`Structure.dense`)."""
+    size, n = problem.exact_layout.size, problem.n
+    m = size - n
+    return Partition(
+        np.arange(n), np.arange(m), np.zeros(1, np.int64), np.zeros(problem.exact_layout.lead * size),
+        np.zeros((m, n)), storage(_layout(problem, m)), np.zeros(size + 1), np.zeros(size + 1), np.zeros(size + 1),
+    )  # fmt: skip
+
+
+@kernel
+def linearise(problem, dual, state, dual_work, partition):
+    """The constraint Jacobian of a state; the signals in ``dual_work`` hold the time."""
+    tangent(
+        dual, problem.exact_slots, problem.n, state.x, state.v, state.a, (1.0, 0.0, 0.0), (0.0, 1.0), dual_work,
+        partition.matrix,
+    )  # fmt: skip
+
+
+@kernel
+def choose(problem, partition):
+    """Order coordinates and constraints by complete pivoting of the constraint Jacobian, in units of their scales."""
+    n, lead, a = problem.n, problem.exact_layout.lead, partition.pivots
+    rows, columns = partition.rows, partition.columns
+    m = len(rows)
+    for j in range(n):
+        columns[j] = j
+    for i in range(m):
+        rows[i] = i
+        largest = 0.0
+        for j in range(n):
+            a[i, j] = partition.matrix[j * lead + n + i] * problem.scale[j]
+            largest = max(largest, abs(a[i, j]))
+        for j in range(n):
+            a[i, j] /= largest + 1e-300
+    first = 1.0
+    partition.rank[0] = 0
+    for k in range(min(m, n)):
+        p, q = k, k
+        for i in range(k, m):
+            for j in range(k, n):
+                if abs(a[i, j]) > abs(a[p, q]):
+                    p, q = i, j
+        if k == 0:
+            first = abs(a[p, q])
+        if not abs(a[p, q]) > _DEPENDENT * first:
+            return
+        rows[k], rows[p] = rows[p], rows[k]
+        columns[k], columns[q] = columns[q], columns[k]
+        for j in range(n):
+            a[k, j], a[p, j] = a[p, j], a[k, j]
+        for i in range(m):
+            a[i, k], a[i, q] = a[i, q], a[i, k]
+        for i in range(k + 1, m):
+            factor = a[i, k] / a[k, k]
+            for j in range(k, n):
+                a[i, j] -= factor * a[k, j]
+        partition.rank[0] = k + 1
+
+
+@kernel
+def invert(problem, partition):
+    """Invert the dependent part of the Jacobian; whether it is regular."""
+    rank, lead = partition.rank[0], problem.exact_layout.lead
+    layout = _layout(problem, rank)
+    for j in range(rank):
+        for i in range(rank):
+            entry = partition.matrix[partition.columns[j] * lead + problem.n + partition.rows[i]]
+            partition.dependent.matrix[j * layout.lead + i] = entry
+        for i in range(rank, layout.lead):
+            partition.dependent.matrix[j * layout.lead + i] = 0.0
+    return factorise(layout, partition.dependent)
+
+
+@kernel
+def dependence(problem, partition):
+    """Largest change of a dependent coordinate by an independent one, in units of their scales.
+
+    It grows without bound where the dependent part becomes singular: time to choose others.
+    """
+    rank, lead, scale = partition.rank[0], problem.exact_layout.lead, problem.scale
+    largest = 0.0
+    for k in range(rank, problem.n):
+        own = partition.columns[k]
+        for i in range(rank):
+            partition.gap[i] = partition.matrix[own * lead + problem.n + partition.rows[i]]
+        solve(_layout(problem, rank), partition.dependent, partition.gap, partition.change)
+        for i in range(rank):
+            largest = max(largest, abs(partition.change[i]) * scale[own] / scale[partition.columns[i]])
+    return largest
+
+
+@kernel
+def _fill_gap(model, n, level, x, v, a, work, gap, second):
+    """The constraints, or their first or second rates, into the entries of ``gap`` from n on."""
+    if level == POSITION:
+        residual(model, n, x, v, a, work, 1.0, gap)
+    else:
+        constraint_rates(model, n, x, v, a, work, gap, second)
+    if level == ACCELERATION:
+        for i in range(n, len(gap)):
+            gap[i] = second[i]
+
+
+@kernel
+def _shift(problem, partition, level, state):
+    """Correct the dependent entries of a level by the gaps in ``partition.second``; the largest correction."""
+    n, rank, columns = problem.n, partition.rank[0], partition.columns
+    for i in range(rank):
+        partition.gap[i] = partition.second[n + partition.rows[i]]
+    solve(_layout(problem, rank), partition.dependent, partition.gap, partition.change)
+    largest = 0.0
+    for i in range(rank):
+        moved, c = partition.change[i], columns[i]
+        size = abs(moved) / problem.scale[c]
+        if largest == largest and not size <= largest:  # the first that is not a number stays
+            largest = size
+        if level == POSITION:
+            state.x[c] -= moved
+        elif level == VELOCITY:
+            state.v[c] -= moved
+        else:
+            state.a[c] -= moved
+    return largest
+
+
+@kernel
+def _close(problem, model, dual, state, work, dual_work, partition):
+    """Newton's iteration on the dependent coordinates; whether it arrived."""
+    for _ in range(_MOST_ITERATIONS):
+        linearise(problem, dual, state, dual_work, partition)
+        if not invert(problem, partition):
+            return False
+        _fill_gap(model, problem.n, POSITION, state.x, state.v, state.a, work, partition.second, partition.gap)
+        moved = _shift(problem, partition, POSITION, state)
+        if moved <= _CLOSED:
+            return True
+        if not moved < 1e100:
+            return False
+    return False
+
+
+@compiled
+def settle(problem, model, dual, directions, t, within, levels, state, dstates, work, dual_work, lifted, partition):
+    """Make the dependent entries of a state satisfy the constraints, and those of its derivatives along directions.
+
+    The independent entries stay as they are. ``levels``: `POSITION`, `VELOCITY` or `ACCELERATION`, each with those
+    before it. ``lifted``: complex work (5, N + 1). Whether the constraints could be satisfied.
+    """
+    n = problem.n
+    set_signals(model, t, within, work)
+    set_signals(dual, t, within, dual_work)
+    if not _close(problem, model, dual, state, work, dual_work, partition):
+        return False
+    for level in range(POSITION, levels + 1):
+        for _ in range(1 if level == POSITION else 2):  # linear from the velocities on; once more for rounding
+            _fill_gap(model, n, level, state.x, state.v, state.a, work, partition.second, partition.gap)
+            _shift(problem, partition, level, state)
+    for d in range(len(dstates.x)):
+        tilted, dstate = select(directions, d), row(dstates, d)
+        set_signals(tilted, t, within, dual_work)
+        for level in range(POSITION, levels + 1):
+            for _ in range(2):
+                lift(n, state, dstate, lifted)
+                _fill_gap(tilted, n, level, lifted[0], lifted[1], lifted[2], dual_work, lifted[3], lifted[4])
+                for i in range(n, len(state.x) - 1):
+                    partition.second[i] = lifted[3, i].imag / STEP
+                _shift(problem, partition, level, dstate)
+    return True

@@ -79,7 +79,8 @@ def _local(problem: Problem, method: Squares, point: np.ndarray) -> End:
         found = method.minimise(memo.residual, memo.jacobian, search.lower, search.upper, point, on_iteration=progress)
     except SolveError as error:
         return replace(best, message=f"the sensitivities could not be computed: {error}")
-    message = found.message if np.isfinite(found.fitness) else f"{found.message}: {journal.failures[-1]}"
+    reasons = [] if np.isfinite(found.fitness) else journal.failures[-1:]
+    message = ": ".join([found.message, *reasons])
     at = memo.at
     kept = at if at is not None and np.array_equal(at.vector, search.vectors(found.x)) else None
     return End(found.x, found.fitness, found.success, message, found.stationary, kept)

@@ -31,6 +31,7 @@ class Table:
     name : str
         Of the file that is downloaded.
     caption : str
+        Shown above it; empty for one that is only downloaded.
     columns : sequence of str
     rows : sequence of sequence of Cell
     """

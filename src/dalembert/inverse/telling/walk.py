@@ -137,7 +137,7 @@ def _least(problem: Problem, k: int, guess: np.ndarray, walk: Walk) -> tuple[flo
         fitness, point = end.fitness, whole(end.x)
     if not np.isfinite(fitness):
         reasons = problem.journal.failures[before:]
-        return reasons[0] if reasons else "the response is not finite"
+        return reasons[0] if reasons else "the misfit is not finite"
     return (fitness - walk.best) / walk.variance, point
 
 

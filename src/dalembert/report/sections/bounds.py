@@ -72,7 +72,7 @@ class Bounds(Section):
         """All bounds, for download, unless they are too many for a page."""
         result = self.result
         series = {"lower": result.lower, "upper": result.upper}
-        return samples("bounds", "Lower and upper bounds", result.coordinate, result.channels, series)
+        return samples("bounds", result.coordinate, result.channels, series)
 
 
 def _percent(part: float) -> Cell:

@@ -45,7 +45,7 @@ class Comparison(Section):
     @property
     def samples(self) -> Table | None:
         """All samples, for download, unless they are too many for a page."""
-        return all_samples(self.fit, "responses", "Measured and computed samples")
+        return all_samples(self.fit, "responses")
 
 
 def validation(fit: FitLike) -> str:
@@ -98,8 +98,8 @@ def residual_cells(compared: ResponseLike) -> list[list[Cell]]:
     ]
 
 
-def all_samples(compared: ResponseLike, name: str, caption: str) -> Table | None:
+def all_samples(compared: ResponseLike, name: str) -> Table | None:
     """Measured and computed samples, unless they are too many for a page."""
     data = compared.data
     series = {"measured": data.values, "computed": compared.response}
-    return samples(name, caption, data.coordinate, data.channels, series)
+    return samples(name, data.coordinate, data.channels, series)

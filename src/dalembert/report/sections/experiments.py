@@ -54,7 +54,7 @@ class Experiments(Section):
         found = []
         for number, item in enumerate(self.experiments, start=1):
             file = re.sub(r"[^\w-]", "-", item.name)
-            table = all_samples(item, f"responses-{number}-{file}", f"Measured and computed samples of {item.name}")
+            table = all_samples(item, f"responses-{number}-{file}")
             if table is not None:
                 found.append((f"Download all samples of {item.name} as CSV", table))
         return found

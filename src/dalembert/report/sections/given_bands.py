@@ -66,4 +66,4 @@ class GivenBands(Section):
         series = {}
         for side, found in reproduced(self.fit).items():
             series |= {f"{side} given": getattr(bands, side), f"{side} reproduced": found}
-        return samples("bands", "Given and reproduced bounds", bands.coordinate, bands.channels, series)
+        return samples("bands", bands.coordinate, bands.channels, series)

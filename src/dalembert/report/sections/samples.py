@@ -13,7 +13,7 @@ MOST_ROWS = 5000
 
 
 def samples(
-    name: str, caption: str, along: CoordinateLike, channels: Sequence[str], series: Mapping[str, np.ndarray]
+    name: str, along: CoordinateLike, channels: Sequence[str], series: Mapping[str, np.ndarray]
 ) -> Table | None:
     """Table of series (samples, channels), each with its word; None where they are too many for a page."""
     if max(values.size for values in series.values()) > MOST_ROWS:
@@ -22,4 +22,4 @@ def samples(
     columns += [f"{channel} {word}" for channel in channels for word in series]
     beside = np.stack(list(series.values()), axis=2).reshape(len(along.values), -1)
     rows = [[cell(float(number)) for number in (at, *row)] for at, row in zip(along.values, beside, strict=True)]
-    return Table(name, caption, columns, rows)
+    return Table(name, "", columns, rows)

@@ -1,0 +1,637 @@
+"""Small studies that provoke every figure and every sentence of reports and summaries, with the sentences of each."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import dalembert as da
+from dalembert.data import Bands, Measurements
+from dalembert.forward import PythonModel
+from dalembert.inverse import Experiment, GlobalSurrogate, design, identifiability, predict, profile
+from dalembert.optimize import LeastSquares, Minimiser, ParticleSwarm, ResponseSensitivity
+from dalembert.parameters import Parameter
+from dalembert.study import load, run_study
+from dalembert.study.tasks.telling import foreseen
+from dalembert.surrogate import Adaptive, Tensor, TotalDegree
+from dalembert.uncertainty import Chebyshev, LatinHypercube, MonteCarlo, Optimise, Scan, Taylor, Vertex
+from small_models import DECAY, LINE, TIMES, banded, measured
+
+NOW = np.zeros(1)
+DISC = PythonModel(lambda x, y: np.array([x**2 + y**2]), {"x": (-2.0, 2.0), "y": (-2.0, 2.0)}, ["r"], NOW)
+AT_ZERO = Measurements.of(NOW, {"r": [0.0]})
+SUM = PythonModel(lambda a, b: (a + b) * TIMES, {"a": (0.0, 2.0), "b": (0.0, 2.0)}, ["x"], TIMES)
+SLOPE = PythonModel(lambda a: a * TIMES, {"a": Parameter("a", 0.0, 2.0, start=0.5)}, ["x"], TIMES)
+GHOST = PythonModel(lambda a, ghost: a * TIMES + 0 * ghost, {"a": (0.0, 2.0), "ghost": (0.0, 1.0)}, ["x"], TIMES)
+WAVE = PythonModel(lambda rate: np.cos(rate * TIMES), {"rate": (1.0, 20.0)}, ["x"], TIMES)
+BANDS = banded(DECAY, [1.8, 0.7], [2.2, 0.9], points=2)
+
+
+@dataclass(frozen=True)
+class Case:
+    """What a study gives, the sentences that its report or summary must say, and the figures that it must show.
+
+    ``make`` returns a result, or a result and the options of its report; text alone where there is no report.
+    """
+
+    make: Callable[[], Any]
+    says: tuple[str, ...]
+    shows: tuple[str, ...] = ()
+    options: dict[str, Any] = field(default_factory=dict)
+
+
+def _model(function: Callable, channels: str = "x", **box: Any) -> PythonModel:
+    return PythonModel(function, box, channels.split(), TIMES)
+
+
+def _exact(model: PythonModel, values: list[float], **options: Any) -> Measurements:
+    return measured(model, values, **options)
+
+
+def _experiments(noise: float = 0.02, names: str = "ab") -> list[Experiment]:
+    return [
+        Experiment(name, DECAY, measured(DECAY, [2.0, 0.8], noise, seed, deviations=0.02))
+        for seed, name in enumerate(names)
+    ]
+
+
+def _slope(method: Any, **options: Any) -> Any:
+    """A fit of one slope, whose message at the end is the method's."""
+    return da.identify(SLOPE, _exact(SLOPE, [1.0], noise=0.1), method=method, starts=1, horizon=None, **options)
+
+
+def _fragile(a: float) -> np.ndarray:
+    if np.real(a) > 0.6:
+        raise ArithmeticError("the motion runs away")
+    return a * TIMES
+
+
+FRAGILE = PythonModel(_fragile, {"a": Parameter("a", 0.0, 2.0, start=1.9)}, ["x"], TIMES)
+
+
+def _real_alone(a: Any) -> np.ndarray:
+    """A response whose complex step fails beyond 1.2."""
+    if np.iscomplexobj(a) and np.real(a) > 1.2:
+        raise ArithmeticError("no complex numbers there")
+    return np.exp(a) * TIMES
+
+
+def _unsimulated(method: Any, start: float, starts: int) -> Any:
+    return da.identify(FRAGILE, _exact(FRAGILE, [0.4], noise=0.1), method=method, starts=starts, start=[start])
+
+
+def _jump(rate: Any) -> np.ndarray:
+    return np.exp(-rate * TIMES) + np.where(np.real(rate) > 1.02, 1e200, 0.0)
+
+
+def _broken_profile(function: Callable) -> Any:
+    model = _model(function, rate=(0.5, 2.0))
+    data = Measurements.of(TIMES, {"x": np.exp(-TIMES)}, deviations=0.1)
+    with np.errstate(over="ignore"):
+        return profile(model, data, da.identify(model, data, start=[1.0], starts=1))
+
+
+def _profiled(model: PythonModel, data: Measurements, **options: Any) -> Any:
+    return profile(model, data, da.identify(model, data), **options)
+
+
+def _lopsided() -> Any:
+    times = np.linspace(0, 4, 9)
+    model = PythonModel(lambda rate: np.exp(-rate * times), {"rate": (0.1, 50.0)}, ["x"], times)
+    return _profiled(model, measured(model, [3.0], deviations=0.06))
+
+
+def _no_minimum() -> Any:
+    data = _exact(LINE, [1.0, -0.5], noise=0.1, deviations=0.1)
+    fit = da.identify(LINE, data)
+    return profile(LINE, data, replace(fit, values=fit.values + 3 * fit.deviations))
+
+
+def _blind() -> tuple[Any, Any]:
+    """A fit without sensitivities, and what a model with sensitivities foretells from it."""
+    model = _model(lambda a: float(np.real(a)) * TIMES, a=(0.0, 2.0))
+    fit = da.identify(model, _exact(SLOPE, [1.0]), method=ParticleSwarm(10, 20))
+    return fit, {"prediction": predict(SLOPE, fit)}
+
+
+def _spiked() -> Any:
+    """A spike between the surrogate's runs, on a corner of the inner box that a smooth model has."""
+    corner = da.identify_set(DISC, AT_ZERO, error=1.0, scheme=Tensor(4)).inner.upper
+
+    def spiked(x: float, y: float) -> np.ndarray:
+        return np.array([x**2 + y**2 + np.exp(-(((x - corner[0]) / 1e-6) ** 2) - ((y - corner[1]) / 1e-6) ** 2)])
+
+    return da.identify_set(PythonModel(spiked, DISC.parameters, ["r"], NOW), AT_ZERO, error=1.0, scheme=Tensor(4))
+
+
+def _far(x: float, y: float) -> np.ndarray:
+    if x + y > 2.9:
+        raise RuntimeError("too far")
+    return np.array([x**2 + y**2])
+
+
+def _noisy_bands() -> Bands:
+    noise = 0.01 * np.random.default_rng(2).standard_normal((2, 41))
+    lower, upper = np.sort([BANDS.lower[:, 0] + noise[0], BANDS.upper[:, 0] + noise[1]], axis=0)
+    return Bands.of(TIMES, {"x": (lower, upper)})
+
+
+def _spoilt_bands() -> Bands:
+    upper = BANDS.upper[:, 0].copy()
+    upper[20] += 0.5
+    return Bands.of(TIMES, {"x": (BANDS.lower[:, 0], upper)})
+
+
+def _tired() -> Any:
+    """The surrogate is made of runs on a root grid; at the corners of the answer the model fails."""
+    runs = []
+
+    def tired(size: float, rate: float) -> np.ndarray:
+        runs.append((size, rate))
+        if len(runs) > 4 + 81:
+            raise RuntimeError("enough")
+        return DECAY.function(size, rate)
+
+    model = PythonModel(tired, DECAY.parameters, ["x"], TIMES)
+    return da.identify_bands(model, BANDS, method=GlobalSurrogate(Tensor(8), tolerance=1.0))
+
+
+def _trembling() -> Any:
+    """Bands so wide apart from noise that a radius is hardly told."""
+    noise = 0.05 * np.random.default_rng(1).standard_normal(41)
+    value = DECAY.function(2.0, 0.8)
+    wobble = 0.01 * np.abs(np.random.default_rng(3).standard_normal(41))
+    return da.identify_bands(DECAY, Bands.of(TIMES, {"x": (value + noise - wobble, value + noise + wobble)}))
+
+
+def _study(text: str, model: str) -> Callable[[Path], Any]:
+    def make(folder: Path) -> Any:
+        (folder / "model.py").write_text(model)
+        (folder / "study.toml").write_text(text)
+        return run_study(load(folder / "study.toml"), folder / "run")[1]
+
+    return make
+
+
+SWEEP = """
+[parameters]
+rate = { lower = 0.1, upper = 3.0 }
+[model]
+forward = "model.py:decay"
+[sweep]
+at = 1.0
+channels = ["x"]
+over = { rate = { count = 5 } }
+"""
+DECAYING = """
+import numpy as np
+from dalembert import PythonModel
+TIMES = np.linspace(0.0, 2.0, 21)
+def response(rate):
+    if np.real(rate) > 2.5:
+        raise ValueError("too fast")
+    return np.exp(-rate * TIMES)
+def decay(parameters):
+    return PythonModel(response, parameters, ["x"], TIMES)
+"""
+
+
+def _pendulum(gravity: float = -9.81) -> Any:
+    system = da.System(gravity=(0.0, gravity))
+    bar = system.add(da.RigidBar("bar", length=1.0, mass=1.0, angle=-0.5))
+    system.add(da.RevoluteJoint("pin", system.ground, bar.start))
+    return da.simulate(system, end=0.1, solver=da.GeneralizedAlpha(step=2e-3))
+
+
+def _moved_fit() -> tuple[Any, Any]:
+    model = _model(lambda a: np.stack([a * TIMES, -TIMES], axis=1), "bar.end.x bar.end.y", a=(0.0, 2.0))
+    return da.identify(model, _exact(model, [1.0], noise=0.1)), {"trajectory": _pendulum()}
+
+
+def _all_told() -> tuple[Any, Any]:
+    data = _exact(DECAY, [1.0, 0.8], noise=0.05, deviations=0.05)
+    fit = da.identify(DECAY, data, method=ResponseSensitivity(), starts=3)
+    return fit, {"profiles": profile(DECAY, data, fit), "prediction": predict(DECAY, fit)}
+
+
+CASES: dict[str, Case] = {
+    # ── identification: how it went ─────────────────────────────────────────────────────────────────────────────────
+    "exact data": Case(
+        lambda: da.identify(DECAY, _exact(DECAY, [2.0, 0.8])),
+        ("Converged.", "The misfit is at the floor that the noise of the data allows (known from arithmetic)."),
+        ("parameters", "responses-1", "convergence", "correlation", "singular-values"),
+    ),
+    "rounded data": Case(
+        lambda: da.identify(DECAY, Measurements.of(TIMES, {"x": DECAY.function(2.0, 0.8).round(4)})),
+        ("(known from rounding of the data)",),
+    ),
+    "given deviations": Case(
+        lambda: da.identify(DECAY, _exact(DECAY, [2.0, 0.8], noise=0.02, deviations=0.02)),
+        ("(known from given deviations)", "starts ended with the best fitness."),
+        ("starts",),
+    ),
+    "deviations too small": Case(
+        lambda: da.identify(DECAY, _exact(DECAY, [2.0, 0.8], noise=0.05, deviations=0.02)),
+        ("times what the given deviations allow; look whether they are too small",),
+    ),
+    "noise unknown": Case(
+        lambda: da.identify(DECAY, _exact(DECAY, [2.0, 0.8], noise=0.05)),
+        ("% of the data's variation.", "What remains looks like noise; give the data's deviations"),
+    ),
+    "another model's data": Case(
+        lambda: da.identify(DECAY, Measurements.of(TIMES, {"x": 1 + np.cos(3 * TIMES)})),
+        ("The residuals are no mere noise, neighbouring samples correlate by",),
+    ),
+    "two minima": Case(
+        lambda: da.identify(
+            _model(lambda a: a**2 * TIMES, a=(-3.0, 2.0)),
+            _exact(_model(lambda a: a**2 * TIMES, a=(-3, 2)), [1.5], noise=0.1),
+        ),
+        ("Another minimum, at a =", "explains the data as well"),
+    ),
+    "outliers": Case(
+        lambda: da.identify(DECAY, _exact(DECAY, [2.0, 0.8], noise=0.05, deviations=0.02), loss="cauchy"),
+        ("weighted residuals exceed", "pull less than their squares would."),
+    ),
+    "failing runs": Case(
+        lambda: _unsimulated(None, 1.9, 4),
+        (
+            "simulations failed and were passed over, the first: the motion runs away",
+            "the first point could not be simulated: the motion runs away (at a = 1.9)",
+        ),
+    ),
+    # ── identification: why a start ended ───────────────────────────────────────────────────────────────────────────
+    "few trials": Case(
+        lambda: da.identify(DECAY, _exact(DECAY, [2.0, 0.8]), method=LeastSquares(trials=2), starts=1, horizon=None),
+        ("Not converged: stopped after 2 trial points, not converged; allow more with LeastSquares(trials=...)",),
+    ),
+    "perfect at once": Case(
+        lambda: da.identify(SLOPE, _exact(SLOPE, [0.5]), starts=1), ("converged: the fit is perfect",)
+    ),
+    "nothing changes": Case(
+        lambda: da.identify(
+            _model(lambda a: TIMES + 0 * a, a=(0.0, 1.0)), Measurements.of(TIMES, {"x": TIMES + 1}), starts=1
+        ),
+        ("converged: the residual does not change with the parameters",),
+    ),
+    "less gained": Case(lambda: _slope(LeastSquares()), ("converged: the sum of squares falls no more",)),
+    "no move": Case(
+        lambda: _slope(LeastSquares(tolerance=0.5, gain=1e-15)), ("converged: the parameters move no more",)
+    ),
+    "neither": Case(
+        lambda: _slope(LeastSquares(tolerance=0.9, gain=0.9), start=[1.0]),
+        ("converged: neither parameters nor sum of squares move any more",),
+    ),
+    "no complex step": Case(
+        lambda: da.identify(
+            _model(_real_alone, a=(0.0, 3.0)),
+            Measurements.of(TIMES, {"x": np.exp(2.0) * TIMES}),
+            method=LeastSquares(),
+            start=[0.5],
+            starts=1,
+            horizon=None,
+        ),
+        ("the sensitivities could not be computed: ",),
+    ),
+    "regularised, no move": Case(
+        lambda: _slope(ResponseSensitivity(tolerance=0.1, gain=1e-15), start=[1.0]),
+        ("converged: the parameters move no more",),
+    ),
+    "regularised, less gained": Case(
+        lambda: da.identify(DECAY, _exact(DECAY, [2.0, 0.8], noise=0.05), method=ResponseSensitivity(), starts=1),
+        ("converged: the sum of squares falls no more",),
+    ),
+    "regularised, within the noise": Case(
+        lambda: _slope(ResponseSensitivity("discrepancy", noise=0.1), start=[1.0]),
+        ("converged: what is left is within the noise",),
+    ),
+    "regularised, held": Case(
+        lambda: da.identify(
+            SLOPE, Measurements.of(TIMES, {"x": -TIMES}), method=ResponseSensitivity(), start=[0.0], starts=1
+        ),
+        ("converged: bounds hold all parameters that the residual changes with",),
+    ),
+    "regularised, perfect": Case(
+        lambda: da.identify(SLOPE, _exact(SLOPE, [0.5]), method=ResponseSensitivity(), starts=1),
+        ("converged: the fit is perfect",),
+    ),
+    "regularised, nothing changes": Case(
+        lambda: da.identify(
+            _model(lambda a: TIMES + 0 * a, a=(0.0, 1.0)),
+            Measurements.of(TIMES, {"x": TIMES + 1}),
+            method=ResponseSensitivity(),
+            starts=1,
+        ),
+        ("converged: the residual does not change with the parameters",),
+    ),
+    "regularised, few steps": Case(
+        lambda: da.identify(
+            DECAY, _exact(DECAY, [2.0, 0.8]), method=ResponseSensitivity(iterations=1), starts=1, horizon=None
+        ),
+        ("stopped after 1 steps, not converged; allow more with ResponseSensitivity(iterations=...)",),
+        ("l-curve", "steps"),
+    ),
+    "regularised, few trials": Case(
+        lambda: da.identify(
+            DECAY, _exact(DECAY, [2.0, 0.8]), method=ResponseSensitivity(trials=2), starts=1, horizon=None
+        ),
+        ("stopped after 2 trial points, not converged; allow more with ResponseSensitivity(trials=...)",),
+    ),
+    "regularised, unsimulated": Case(
+        lambda: _unsimulated(ResponseSensitivity(), 1.9, 4), ("the first point could not be simulated",)
+    ),
+    "swarms": Case(
+        lambda: _unsimulated(ParticleSwarm(1, 1), 1.9, 6), ("all 1 iterations done", "every sample of the swarm failed")
+    ),
+    "a minimiser of SciPy": Case(lambda: _unsimulated(Minimiser("Nelder-Mead"), 1.9, 6), ("every sample failed",)),
+    # ── identification: what was kept for validation, and several experiments ───────────────────────────────────────
+    "a share of the samples": Case(
+        lambda: da.identify(DECAY, _exact(DECAY, [2.0, 0.8], noise=0.02), validation=0.5),
+        ("Not fitted: the last 20 of 41 samples. There the weighted residuals are", "times those of the fit."),
+    ),
+    "a share that is predicted badly": Case(
+        lambda: da.identify(
+            DECAY,
+            Measurements.of(
+                TIMES, {"x": DECAY.function(2.0, 0.8) + np.where(TIMES > 2, 0.5, 0.01 * np.sin(9 * TIMES))}
+            ),
+            validation=0.5,
+        ),
+        ("; the model lacks something that shows there, or the data that were fitted tell too little",),
+    ),
+    "a share beside a perfect fit": Case(
+        lambda: da.identify(SLOPE, _exact(SLOPE, [0.5]), starts=1, validation=0.5), ("those of the fit 0.",)
+    ),
+    "several experiments": Case(
+        lambda: da.identify(_experiments(), validation=0.25),
+        ("Not fitted: what comes after", "% of each experiment's time.", "The shaded part was not fitted."),
+        ("experiment-1-1", "experiment-2-1"),
+    ),
+    "an experiment for validation": Case(
+        lambda: da.identify(_experiments(), validation="b"), ("Not fitted: the experiment 'b'.", "(predicted)")
+    ),
+    "experiments for validation": Case(
+        lambda: da.identify(_experiments(names="abc"), validation=["b", "c"]),
+        ("Not fitted: the experiments 'b', 'c'.",),
+    ),
+    # ── identification: what the data tell ──────────────────────────────────────────────────────────────────────────
+    "on its lower bound": Case(
+        lambda: da.identify(SLOPE, Measurements.of(TIMES, {"x": -TIMES})),
+        ("'a' sits on its lower bound 0; widen the bound if the true value may lie beyond.",),
+    ),
+    "on its upper bound": Case(
+        lambda: da.identify(SLOPE, Measurements.of(TIMES, {"x": 3 * TIMES})), ("'a' sits on its upper bound 2;",)
+    ),
+    "unseen": Case(
+        lambda: da.identify(GHOST, _exact(GHOST, [1.0, 0.5], noise=0.1)),
+        ("'ghost' is not told by the data: it, or a combination that it is part of, leaves the response as it is;",),
+    ),
+    "hardly told": Case(
+        lambda: da.identify(SLOPE, _exact(SLOPE, [1.0], noise=9.0, deviations=9.0)),
+        ("'a' is hardly told by the data: its deviation",),
+    ),
+    "a combination that is unseen": Case(
+        lambda: da.identify(SUM, _exact(SUM, [0.5, 1.0], noise=0.1, deviations=0.1)),
+        ("'a' and 'b' can only be told in combination: moving 'a' by +0.2 and 'b' by -0.2 together leaves the ",),
+    ),
+    "a combination within the noise": Case(
+        lambda: da.identify(
+            _model(lambda a, b: (a + b) * TIMES + 1e-3 * b * TIMES**2, a=(0.0, 2.0), b=(0.0, 2.0)),
+            _exact(SUM, [0.5, 1.0], noise=0.1, deviations=0.1),
+        ),
+        ("together changes the response by less than its noise; fix one of them",),
+    ),
+    "a pair": Case(
+        lambda: da.identify(
+            _model(lambda a, b: (a + b) * TIMES + 0.1 * b * TIMES**2, a=(0.0, 2.0), b=(0.0, 2.0)),
+            _exact(SUM, [0.5, 1.0], noise=0.01, deviations=0.01),
+        ),
+        ("'a' and 'b' can hardly be told apart (correlation -0.99",),
+    ),
+    "a prior": Case(
+        lambda: identifiability(
+            PythonModel(
+                LINE.function,
+                {"offset": (-5, 5), "slope": Parameter("slope", -5.0, 5.0, deviation=1e-5)},
+                ["x", "y"],
+                TIMES,
+            ),
+            deviations=0.1,
+        ),
+        ("'slope' is known from its prior alone: its deviation was 1e-05 before the data and is 1e-05 with them;",),
+    ),
+    "two priors": Case(
+        lambda: identifiability(
+            PythonModel(SUM.function, {name: Parameter(name, 0.0, 2.0, deviation=0.1) for name in "ab"}, ["x"], TIMES),
+            deviations=1e-3,
+        ),
+        ("'a' and 'b' are told apart by their priors alone: moving 'a' by +0.1 and 'b' by -0.1 together changes",),
+    ),
+    "no sensitivities": Case(
+        _blind,
+        (
+            "What the data tell could not be computed: the model gave no sensitivities at the identified values.",
+            "No bands: the fit has no deviations, since the model gave no sensitivities.",
+        ),
+    ),
+    "a look before": Case(
+        lambda: "\n".join(foreseen(LINE, _exact(LINE, [1.0, -0.5], deviations=0.1))),
+        ("At the first guesses: The data tell every parameter, and tell them apart.",),
+    ),
+    "a look before, noise unknown": Case(
+        lambda: "\n".join(foreseen(LINE, _exact(LINE, [1.0, -0.5]))),
+        ("How exact the data are is not given, so only what no data of these channels would tell is named;",),
+    ),
+    "a look before that fails": Case(
+        lambda: "\n".join(foreseen(FRAGILE, _exact(FRAGILE, [0.4]))),
+        ("What the data can tell could not be foreseen: the motion runs away",),
+    ),
+    # ── profiles, predictions, designs ──────────────────────────────────────────────────────────────────────────────
+    "profiles and prediction": Case(
+        _all_told,
+        (
+            "95 % intervals of 'size' and 'rate' from profile likelihoods, with noise known from given deviations.",
+            "The 95 % band of the response is at most",
+            "The noise is known from given deviations; the bands hold if the model is right",
+        ),
+        ("profile-1", "profile-2", "prediction-1", "l-curve", "steps"),
+    ),
+    "profiles, noise unknown": Case(
+        lambda: _profiled(DECAY, _exact(DECAY, [1.0, 0.8], noise=0.05)), ("with noise known from the residuals.",)
+    ),
+    "prediction, noise unknown": Case(
+        lambda: predict(DECAY, da.identify(DECAY, _exact(DECAY, [1.0, 0.8], noise=0.05))),
+        ("The noise is known from the residuals;",),
+    ),
+    "open profiles": Case(
+        lambda: _profiled(SUM, _exact(SUM, [0.5, 1.0], noise=0.01, deviations=0.01), names=["a"]),
+        ("'a' has no lower limit from the data: up to its bound 0 they are explained within their noise.",),
+    ),
+    "flat profile": Case(
+        lambda: _profiled(GHOST, _exact(GHOST, [1.0, 0.5], noise=0.1, deviations=0.1), names=["ghost"]),
+        ("'ghost' is not told by the data: wherever it is between its bounds, they are explained within their noise;",),
+    ),
+    "lopsided profile": Case(_lopsided, ("The interval of 'rate' is lopsided,", "the standard deviation")),
+    "profile of no minimum": Case(_no_minimum, ("A better minimum lies near offset =",)),
+    "profile into overflow": Case(
+        lambda: _broken_profile(_jump), ("The upper side of 'rate' ends early: the misfit is not finite.",)
+    ),
+    "profile with few points": Case(
+        lambda: _profiled(DECAY, _exact(DECAY, [1.0, 0.8], noise=0.5, deviations=0.5), points=4),
+        ("ends early: the threshold was not reached in so many points; allow more.",),
+    ),
+    "band without an end": Case(
+        lambda: predict(
+            PythonModel(lambda a, b: np.stack([a * TIMES, (a + b) * TIMES], axis=1), SUM.parameters, ["y", "x"], TIMES),
+            da.identify(SUM, _exact(SUM, [0.5, 1.0], noise=0.1, deviations=0.1)),
+        ),
+        ("The band of 'y' is infinitely wide: it depends on a combination of the parameters that the data did not",),
+    ),
+    "designs": Case(
+        lambda: design(LINE, deviations=0.1, horizons=[1.0, 4.0]),
+        ("Best is", "in parts of the scales.", "times worse.", "This holds near offset ="),
+        ("ranking", "horizons"),
+    ),
+    "designs by the largest deviation": Case(
+        lambda: design(LINE, deviations=0.1, criterion="E"), ("largest deviation",)
+    ),
+    "designs that tell too little": Case(lambda: design(SUM, deviations=0.1), ("No design tells every parameter:",)),
+    "designs of which some tell too little": Case(
+        lambda: design(
+            PythonModel(lambda a, b: np.stack([a * TIMES, (a + b) * TIMES], axis=1), SUM.parameters, ["p", "q"], TIMES),
+            deviations=9.0,
+            sensors=["p", ("p", "q")],
+        ),
+        ("would leave a combination of the parameters unseen.", "Even the best design hardly tells"),
+    ),
+    # ── intervals from bands ────────────────────────────────────────────────────────────────────────────────────────
+    "exact bands": Case(
+        lambda: da.identify_bands(DECAY, BANDS),
+        ("True runs at", "points where the surrogate takes its bounds differ from it by at most"),
+        ("intervals", "residual-bands-1", "convergence"),
+        {"truth": {"size": (1.8, 2.2)}},
+    ),
+    "rounded bands": Case(
+        lambda: da.identify_bands(
+            DECAY, Bands.of(TIMES, {"x": (BANDS.lower[:, 0].round(4), BANDS.upper[:, 0].round(4))})
+        ),
+        ("The given bands are reproduced to the digits that they are rounded to.",),
+    ),
+    "noisy bands": Case(
+        lambda: da.identify_bands(DECAY, _noisy_bands()),
+        ("of their mean width at rms in 'x'; most in the", "What remains looks like noise."),
+    ),
+    "a slip in the bands": Case(
+        lambda: da.identify_bands(DECAY, _spoilt_bands()), ("One bound stands out,", "look whether it is a slip.")
+    ),
+    "bands of another model": Case(
+        lambda: da.identify_bands(DECAY, Bands.of(TIMES, {"x": (np.cos(3 * TIMES) - 0.1, np.cos(3 * TIMES) + 0.1)})),
+        ("No box of these parameters has these bands:",),
+    ),
+    "an interval on its bound": Case(
+        lambda: da.identify_bands(
+            PythonModel(DECAY.function, {"size": (1.9, 4.0), "rate": (0.1, 3.0)}, ["x"], TIMES), BANDS
+        ),
+        ("The lower end of 'size' sits on its bound 1.9;",),
+    ),
+    "a radius of zero": Case(
+        lambda: da.identify_bands(DECAY, banded(DECAY, [2.0, 0.7], [2.0, 0.9])),
+        ("The radius of 'size' is zero: the bands ask for one value of it, not an interval.",),
+    ),
+    "a radius that may be zero": Case(_trembling, ("cannot be told from zero: the bands do not show that it varies.",)),
+    "bands without a check": Case(
+        lambda: da.identify_bands(DECAY, BANDS, method=GlobalSurrogate(Adaptive(1e-6), checks=0)),
+        ("No true run checks the bounds of the surrogate.",),
+    ),
+    "bands with failing runs": Case(
+        _tired, ("simulations failed and were passed over, the first: RuntimeError: enough",)
+    ),
+    # ── sets ────────────────────────────────────────────────────────────────────────────────────────────────────────
+    "a set": Case(
+        lambda: da.identify_set(DISC, AT_ZERO, error=1.0),
+        ("Paved down to the resolution.",),
+        ("paving-1",),
+    ),
+    "an empty set": Case(
+        lambda: da.identify_set(DISC, Measurements.of(NOW, {"r": [10.0]}), error=0.5),
+        ("The set is empty:", "The nearest run, at x = 2, y = 2, differs by 4 times the error in channel 'r'"),
+    ),
+    "a thin set": Case(
+        lambda: da.identify_set(DISC, Measurements.of(NOW, {"r": [1.0]}), error=1e-3),
+        ("Paved, but no box lies wholly in the set:",),
+    ),
+    "too few boxes": Case(
+        lambda: da.identify_set(DISC, AT_ZERO, error=1.0, resolution=1e-3, most_boxes=300),
+        ("The paving ended before its boundary was sharp:",),
+    ),
+    "a set by a coarse surrogate": Case(
+        lambda: da.identify_set(
+            PythonModel(lambda x: np.array([1 / (1 + 25 * x**2)]), {"x": (-1.0, 1.0)}, ["y"], NOW),
+            Measurements.of(NOW, {"y": [1.0]}),
+            error=0.2,
+            scheme=Tensor(2),
+        ),
+        ("The surrogate's error is up to", "times that of the data, and widens the boundary by as much;"),
+    ),
+    "a set whose surrogate is wrong": Case(_spiked, ("True runs at the corners of the inner box leave the error:",)),
+    "a set with failing runs": Case(
+        lambda: da.identify_set(
+            PythonModel(_far, DISC.parameters, ["r"], NOW), AT_ZERO, error=1.0, scheme=TotalDegree(2, oversampling=4)
+        ),
+        ("simulations failed and were passed over, the first: RuntimeError: too far",),
+    ),
+    # ── bounds ──────────────────────────────────────────────────────────────────────────────────────────────────────
+    "bounds by optimisation": Case(
+        lambda: da.propagate(DECAY, {"size": (1.8, 2.2), "rate": (0.7, 0.9)}, Optimise()),
+        ("Every bound is taken by a run of the model, and no run lets expect more.",),
+        ("bands-1",),
+    ),
+    "bounds by too few runs": Case(
+        lambda: da.propagate(WAVE, {"rate": (1.0, 20.0)}, Optimise(most_runs=20)),
+        ("the search ended at most_runs = 20 before it had found all; raise it.",),
+    ),
+    "bounds where runs fail": Case(
+        lambda: da.propagate(FRAGILE, {"a": (0.0, 1.0)}, Scan(11)), ("runs failed and were left out, the first:",)
+    ),
+    **{
+        f"bounds by {type(method).__name__}{number}": Case(
+            lambda method=method: da.propagate(DECAY, {"size": (1.8, 2.2), "rate": (0.7, 0.9)}, method), (sentence,)
+        )
+        for number, (method, sentence) in enumerate(
+            [
+                (Vertex(), "The extremes over the corners of the box:"),
+                (Scan(5), "The extremes over the points of a grid:"),
+                (MonteCarlo(9), "The extremes over random points:"),
+                (LatinHypercube(9), "The extremes over a Latin hypercube:"),
+                (Taylor(), "The response is taken as linear over the box,"),
+                (Chebyshev(), "in place of the model, right within its estimated error."),
+                (Chebyshev(bounds="scan"), "right within its estimated error but for peaks between the points"),
+                (Chebyshev(bounds="bernstein"), "enclosed, and widened by its estimated error."),
+            ]
+        )
+    },
+    "methods compared": Case(
+        lambda: da.compare(DECAY, {"size": (1.8, 2.2), "rate": (0.7, 0.9)}, ["vertex"]),
+        ("Bounds of the same response over the same box, each measured by its distance from optimise.",),
+        ("methods", "differences"),
+    ),
+    "methods of which one gives up": Case(
+        lambda: da.compare(WAVE, {"rate": (1.0, 20.0)}, [Chebyshev(Tensor(4))]),
+        ("did not succeed; the table of methods says why.", "gave no bounds:"),
+    ),
+    # ── motions and sweeps ──────────────────────────────────────────────────────────────────────────────────────────
+    "a motion": Case(
+        _pendulum,
+        ("The energy balance is kept to", "% of the energy that moves; a smaller step lowers it."),
+        ("mechanism", "energies", "violations", "newton"),
+    ),
+    "a motion that rests": Case(lambda: _pendulum(0.0), ("The motion was simulated to its end.",)),
+    "a fit with its motion": Case(_moved_fit, ("Drawn to scale;",), ("mechanism", "energies")),
+    "a sweep": Case(
+        _study(SWEEP, DECAYING),
+        ("one parameter varied at a time: rate.", "1 of them failed, see events.jsonl"),
+        ("sweep-1",),
+    ),
+}

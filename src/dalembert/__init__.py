@@ -28,7 +28,7 @@ _NAMES = {
     "parameters": "Parameter Parameters",
     "intervals": "Box Interval",
     "forward": "Channel Coordinate ForwardModel PythonModel Responses Sensor Sensors",
-    "optimize": "ImprovedParticleSwarm LeastSquares Minimiser ParticleSwarm ResponseSensitivity",
+    "optimize": "Firefly ImprovedParticleSwarm LeastSquares Minimiser ParticleSwarm ResponseSensitivity",
     "surrogate": "Adaptive ChebyshevPolynomial Surrogate Tensor TotalDegree",
     "data": "Bands Measurements derivative read read_bands read_csv read_mat read_netcdf read_parquet read_uff",
     "inverse": """

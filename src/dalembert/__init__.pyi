@@ -78,6 +78,7 @@ from dalembert.multibody import UserForce as UserForce
 from dalembert.multibody import equilibrium as equilibrium
 from dalembert.multibody import modes as modes
 from dalembert.multibody import simulate as simulate
+from dalembert.optimize import Firefly as Firefly
 from dalembert.optimize import ImprovedParticleSwarm as ImprovedParticleSwarm
 from dalembert.optimize import LeastSquares as LeastSquares
 from dalembert.optimize import Minimiser as Minimiser

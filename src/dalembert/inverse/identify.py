@@ -52,7 +52,7 @@ def identify(
         parameters of the same name are shared, except those that an experiment has for its own.
     data : Measurements
         Left out with experiments, which have their own.
-    method : LeastSquares, ResponseSensitivity, ParticleSwarm, ImprovedParticleSwarm, Minimiser or its name
+    method : LeastSquares, ResponseSensitivity, ParticleSwarm, ImprovedParticleSwarm, Firefly, Minimiser or its name
         Least squares with exact sensitivities if not given.
     starts : int, optional
         Starts at most, 8 for least squares and response sensitivity and 1 for the others if not given; descents beside
@@ -204,7 +204,7 @@ def _method(given: Squares | Method | str | None) -> Squares | Method:
     if not hasattr(given, "minimise"):
         raise InputError(
             f"method is {given!r}; expected LeastSquares(), ResponseSensitivity(), ParticleSwarm(), "
-            "ImprovedParticleSwarm(), or a Minimiser or its name"
+            "ImprovedParticleSwarm(), Firefly(), or a Minimiser or its name"
         )
     return given
 

@@ -1,5 +1,6 @@
-"""Minimisers: swarms, least squares, response sensitivity, and SciPy's by name. They know nothing of models or data."""
+"""Minimisers: swarms, fireflies, least squares, response sensitivity, SciPy's by name. They know no models or data."""
 
+from dalembert.optimize.firefly import Firefly
 from dalembert.optimize.improved_particle_swarm import ImprovedParticleSwarm
 from dalembert.optimize.least_squares import LeastSquares
 from dalembert.optimize.minimiser import Minimiser
@@ -11,6 +12,7 @@ from dalembert.optimize.swarm import Swarm, SwarmState
 from dalembert.optimize.tikhonov import Regularised
 
 __all__ = [
+    "Firefly",
     "ImprovedParticleSwarm",
     "LeastSquares",
     "Minimiser",

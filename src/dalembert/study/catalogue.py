@@ -76,5 +76,6 @@ def methods() -> dict[str, type]:
         "least-squares": optimize.LeastSquares,
         "response-sensitivity": optimize.ResponseSensitivity,
         **swarms(),
+        "firefly": optimize.Firefly,
         "scipy": optimize.Minimiser,
     }

@@ -8,7 +8,14 @@ from dalembert.data import Measurements
 from dalembert.errors import InputError, SolveError
 from dalembert.forward import PythonModel
 from dalembert.inverse import as_record, identify
-from dalembert.optimize import ImprovedParticleSwarm, LeastSquares, Minimiser, ParticleSwarm, ResponseSensitivity
+from dalembert.optimize import (
+    Firefly,
+    ImprovedParticleSwarm,
+    LeastSquares,
+    Minimiser,
+    ParticleSwarm,
+    ResponseSensitivity,
+)
 from dalembert.parameters import Parameter
 from small_models import DECAY, LINE, TIMES, line, measured
 
@@ -72,6 +79,7 @@ METHODS = [
     ResponseSensitivity(),
     ParticleSwarm(particles=20, iterations=40),
     ImprovedParticleSwarm(),
+    Firefly(generations=30),
     Minimiser("Nelder-Mead"),
     "L-BFGS-B",
     Minimiser("differential_evolution", {"maxiter": 15, "popsize": 8}),
@@ -278,7 +286,7 @@ def test_parameters_that_cannot_be_told_apart_are_named():
         (
             {"method": 3},
             "method is 3; expected LeastSquares(), ResponseSensitivity(), ParticleSwarm(), ImprovedParticleSwarm(), "
-            "or a Minimiser or its name",
+            "Firefly(), or a Minimiser or its name",
         ),
         (
             {"start": {"size": 9.0, "rate": 1.0}},

@@ -1,0 +1,137 @@
+"""The firefly algorithm with a memory of Zhang and Ding (2021)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from dalembert.errors import InputError
+from dalembert.optimize.minimum import Minimum, Objective, OnIteration, Progress, box, fitness_of
+
+
+@dataclass(frozen=True)
+class Firefly:
+    """Firefly algorithm whose fireflies fly to the brightest one and remember how they flew.
+
+    Every generation tries x ← x + η for each firefly, where η ← α η + β (brightest − x), β = β₀ exp(−γ Rᵛ) and R is the
+    distance from the brightest. A firefly moves only where that lowers its fitness; η changes in any case.
+
+    Parameters
+    ----------
+    fireflies : int
+    absorption : float
+        γ, of the light on its way.
+    attraction : float
+        β₀, at no distance.
+    randomness : float
+        α, in [0, 1), which weighs the memory η. The classical algorithm multiplies random numbers by it; here chance
+        has a part in the first places alone.
+    target : float
+        Fitness below which the search ends.
+    generations : int
+        After which it ends.
+    exponent : float
+        ν, of the distance.
+
+    Notes
+    -----
+    Zhang & Ding, "Firefly algorithm for solving multibody dynamics differential-algebraic equations" (2021); the
+    classical algorithm: Yang 2008. Distances are measured in widths of the box, so that units do not matter, and places
+    are clipped to the box. After the first scatter nothing is random: a place that was refused is not
+    computed again, and the search ends where no firefly has another place to try.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> sphere = lambda points: np.sum((points - 0.3) ** 2, axis=1)
+    >>> found = Firefly().minimise(sphere, [-1, -1], [1, 1], seed=1)
+    >>> found.message, found.x.round(6).tolist()
+    ('the fitness fell below the target of 1e-15', [0.3, 0.3])
+    """
+
+    fireflies: int = 60
+    absorption: float = 1.0
+    attraction: float = 0.7
+    randomness: float = 0.7
+    target: float = 1e-15
+    generations: int = 1000
+    exponent: float = 2.0
+
+    def __post_init__(self) -> None:
+        for name in ("fireflies", "generations"):
+            if getattr(self, name) < 1:
+                raise InputError(f"Firefly: {name} is {getattr(self, name)}; expected at least 1")
+        for name in ("absorption", "target"):
+            if not getattr(self, name) >= 0:
+                raise InputError(f"Firefly: {name} is {getattr(self, name)}; expected no negative number")
+        for name in ("attraction", "exponent"):
+            if not getattr(self, name) > 0:
+                raise InputError(f"Firefly: {name} is {getattr(self, name)}; expected a positive number")
+        if not 0 <= self.randomness < 1:
+            raise InputError(f"Firefly: randomness is {self.randomness}; expected a number from 0 to below 1")
+
+    def minimise(
+        self,
+        objective: Objective,
+        lower: ArrayLike,
+        upper: ArrayLike,
+        seed: int,
+        *,
+        start: ArrayLike | None = None,
+        on_iteration: OnIteration | None = None,
+    ) -> Minimum:
+        """Smallest fitness found in the box.
+
+        Parameters
+        ----------
+        objective : callable
+            Batch (batch, parameters) to fitness (batch,), at most as many as there are fireflies; NaN marks a failed
+            sample.
+        lower, upper : array, shape (parameters,)
+        seed : int
+        start : array, shape (parameters,), optional
+            Where the first firefly begins.
+        on_iteration : callable, optional
+            Called with a :class:`Progress` after each generation.
+        """
+        low, high = box(lower, upper)
+        width = high - low
+        places = low + width * np.random.default_rng(seed).random((self.fireflies, len(low)))
+        if start is not None:
+            places[0] = np.clip(start, low, high)
+        fitness = fitness_of(objective, places)
+        memory, tried = np.zeros_like(places), places
+        evaluations, generation = len(places), 1
+        while True:
+            brightest = int(np.argmin(fitness))
+            best = float(fitness[brightest])
+            if on_iteration is not None:
+                on_iteration(Progress(generation, evaluations, best, places[brightest]))
+            if best < self.target:
+                message = f"the fitness fell below the target of {self.target:g}"
+                break
+            if generation >= self.generations:
+                message = f"all {generation} generations done"
+                break
+            away = places[brightest] - places
+            memory = self.randomness * memory + self._pull(away / width) * away
+            trial = np.clip(places + memory, low, high)
+            fresh = np.any(trial != places, axis=1) & np.any(trial != tried, axis=1)
+            tried = trial
+            generation += 1
+            if not fresh.any():
+                message = f"no firefly moves any more after {generation} generations"
+                break
+            found = np.full(len(places), np.inf)
+            found[fresh] = fitness_of(objective, trial[fresh])
+            evaluations += int(fresh.sum())
+            better = found < fitness
+            places, fitness = np.where(better[:, None], trial, places), np.where(better, found, fitness)
+        success = bool(np.isfinite(best))
+        message = message if success else "every sample failed"
+        return Minimum(places[brightest], best, success, message, generation, evaluations)
+
+    def _pull(self, away: np.ndarray) -> np.ndarray:
+        """β of fireflies that are so far away, in widths of the box: (fireflies, parameters) to (fireflies, 1)."""
+        square = np.sum(away**2, axis=1, keepdims=True)
+        return self.attraction * np.exp(-self.absorption * square ** (self.exponent / 2))

@@ -32,7 +32,7 @@ _NAMES = {
     "surrogate": "Adaptive ChebyshevPolynomial Surrogate Tensor TotalDegree",
     "data": "Bands Measurements derivative read read_bands read_csv read_mat read_netcdf read_parquet read_uff",
     "inverse": """
-        BandFit Designs Experiment Fit GlobalSurrogate Nested ParameterSet Prediction Profiles
+        BandFit Designs Experiment Fit GlobalSurrogate MultipleShooting Nested ParameterSet Prediction Profiles State
         design identifiability identify identify_bands identify_set predict profile
     """,
     "multibody": """

@@ -39,10 +39,12 @@ from dalembert.inverse import Designs as Designs
 from dalembert.inverse import Experiment as Experiment
 from dalembert.inverse import Fit as Fit
 from dalembert.inverse import GlobalSurrogate as GlobalSurrogate
+from dalembert.inverse import MultipleShooting as MultipleShooting
 from dalembert.inverse import Nested as Nested
 from dalembert.inverse import ParameterSet as ParameterSet
 from dalembert.inverse import Prediction as Prediction
 from dalembert.inverse import Profiles as Profiles
+from dalembert.inverse import State as State
 from dalembert.inverse import design as design
 from dalembert.inverse import identifiability as identifiability
 from dalembert.inverse import identify as identify

@@ -19,9 +19,10 @@ from dalembert.inverse.experiment_fit import ExperimentFit
 from dalembert.inverse.experiments import Experiment
 from dalembert.inverse.fit import Fit
 from dalembert.inverse.identify import identify
+from dalembert.inverse.nodes import Nodes
 from dalembert.inverse.segments import State
 from dalembert.inverse.sets import ParameterSet, identify_set
-from dalembert.inverse.shooting import shooting
+from dalembert.inverse.shooting import MultipleShooting
 from dalembert.inverse.telling import Designs, Prediction, Profile, Profiles, design, identifiability, predict, profile
 from dalembert.inverse.validation import Validation
 
@@ -36,7 +37,9 @@ __all__ = [
     "Fit",
     "GlobalSurrogate",
     "Identifiability",
+    "MultipleShooting",
     "Nested",
+    "Nodes",
     "ParameterSet",
     "Paved",
     "Prediction",
@@ -58,5 +61,4 @@ __all__ = [
     "identify_set",
     "predict",
     "profile",
-    "shooting",
 ]

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from dalembert.errors import SolveError
+from dalembert.inverse.nodes import Nodes
 from dalembert.inverse.problem import Linearisation, Problem
 from dalembert.optimize import Progress, Squares
 
@@ -14,7 +15,7 @@ from dalembert.optimize import Progress, Squares
 class End:
     """Where a start ended: a search point (parameters,), its fitness over all samples, and how it was reached.
 
-    At a ``stationary`` end a finer descent would change nothing.
+    At a ``stationary`` end a finer descent would change nothing. Multiple shooting adds the ``nodes`` of its segments.
     """
 
     point: np.ndarray
@@ -23,6 +24,7 @@ class End:
     message: str
     stationary: bool = False
     linearisation: Linearisation | None = None
+    nodes: Nodes | None = None
 
 
 class Memo:

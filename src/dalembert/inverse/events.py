@@ -80,13 +80,16 @@ class Step:
     simulations : int
         Spent so far by the whole identification; a response with its sensitivities counts as 1 + parameters.
     best : float
-        Lowest fitness of this start so far, over its first ``samples`` samples.
+        Lowest fitness of this start so far, over its first ``samples`` samples; of segments that need not meet yet,
+        their misfit.
     values : array, shape (parameters,)
         Where it was found.
     samples : int
         Samples compared; fewer than all while the horizon still grows.
     regularised : RegularisedStep, optional
         How response sensitivity took the step that led there.
+    gap : float, optional
+        Of multiple shooting, the largest gap between two segments, in parts of the states' ranges.
     """
 
     kind: ClassVar[str] = "iteration"
@@ -97,6 +100,7 @@ class Step:
     values: np.ndarray
     samples: int
     regularised: RegularisedStep | None = None
+    gap: float | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,10 +7,12 @@ from typing import Any, ClassVar
 import numpy as np
 
 from dalembert.data import Measurements
+from dalembert.errors import InputError
 from dalembert.inverse.estimate import Estimate, Identifiability
 from dalembert.inverse.events import StartEnd, Step
 from dalembert.inverse.experiment_fit import ExperimentFit, experiment_fit
 from dalembert.inverse.experiments import Part
+from dalembert.inverse.nodes import Nodes
 from dalembert.inverse.sentences import sentences
 from dalembert.inverse.validation import Validation
 from dalembert.parameters import Parameters
@@ -55,6 +57,8 @@ class Fit(Result):
         Where each of several experiments stands in the response; empty for a model with its data.
     validation : Validation, optional
         How what was not fitted is predicted.
+    nodes : Nodes, optional
+        Where the segments of multiple shooting meet.
     """
 
     FORMAT: ClassVar[str] = "dalembert fit 1"
@@ -78,6 +82,7 @@ class Fit(Result):
     provenance: Mapping[str, Any]
     parts: tuple[Part, ...] = ()
     validation: Validation | None = None
+    nodes: Nodes | None = None
 
     @property
     def experiments(self) -> tuple[ExperimentFit, ...]:
@@ -92,6 +97,19 @@ class Fit(Result):
     def estimates(self) -> dict[str, float]:
         """Identified values by name."""
         return self.parameters.mapping(self.values)
+
+    def needs_one_run(self, what: str) -> None:
+        """Refuse ``what`` where the response is that of segments, which one run does not follow.
+
+        Raises
+        ------
+        InputError
+        """
+        if self.nodes is not None and self.nodes.segments > 1:
+            raise InputError(
+                f"{what}: the fit is of {self.nodes.segments} segments that did not merge into one run, which {what} "
+                "would simulate; fit fewer samples"
+            )
 
     def identifiability(self) -> Identifiability:
         """What the data can tell: singular values, combinations, and sentences on what they cannot."""

@@ -1,7 +1,7 @@
 """Parameters from measurements."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,7 +19,9 @@ from dalembert.inverse.loss import loss_of
 from dalembert.inverse.multistart import HORIZONS, multistart
 from dalembert.inverse.noise import noise_floor
 from dalembert.inverse.problem import Linearisation, Problem, pose
+from dalembert.inverse.restarts import check_restart, check_segments
 from dalembert.inverse.runs import Method, polished, runs
+from dalembert.inverse.shooting import MultipleShooting, shots
 from dalembert.inverse.spread import SPREADS
 from dalembert.inverse.status import status
 from dalembert.inverse.validation import split
@@ -41,6 +43,7 @@ def identify(
     loss: str = "linear",
     loss_scale: float | None = None,
     validation: float | str | Sequence[str] | None = None,
+    shooting: MultipleShooting | None = None,
     on_event: OnEvent | None = None,
 ) -> Fit:
     """Parameters p of a model that make its response R(p) agree with measurements: least Σ W (R(p) − data)².
@@ -55,8 +58,8 @@ def identify(
     method : LeastSquares, ResponseSensitivity, ParticleSwarm, ImprovedParticleSwarm, Firefly, Minimiser or its name
         Least squares with exact sensitivities if not given.
     starts : int, optional
-        Starts at most, 8 for least squares and response sensitivity and 1 for the others if not given; descents beside
-        the best end, and its polish, come on top.
+        Starts at most, 8 for least squares and response sensitivity, 3 for multiple shooting and 1 for the others if
+        not given; descents beside the best end, and its polish, come on top.
     seed : int
         All random numbers follow from it.
     start : mapping by name, or array of shape (parameters,), optional
@@ -80,6 +83,8 @@ def identify(
         given, 1.345, 1.287 and 2.385, which cost 5 % of the efficiency where there are no outliers.
     validation : float, or name or names of experiments, optional
         Share of the samples, those at the end, or experiments that are not fitted, but predicted.
+    shooting : MultipleShooting, optional
+        Least squares in segments that must meet, in place of the growing horizon: for chaotic motion.
     on_event : callable, optional
         Called with each event (see :mod:`dalembert.inverse.events`) as it happens.
 
@@ -126,7 +131,9 @@ def identify(
     """
     method = _method(method)
     squares = isinstance(method, Squares)
-    starts = _starts(starts, 8 if squares else 1)
+    if shooting is not None:
+        _check_shooting(method, validation)
+    starts = _starts(starts, 3 if shooting is not None else 8 if squares else 1)
     if horizon not in HORIZONS:
         raise InputError(unknown("horizon", str(horizon), [name for name in HORIZONS if name]))
     if spread not in SPREADS:
@@ -140,7 +147,12 @@ def identify(
     origin = None if start is None else _origin(problem, start)
     floor = noise_floor(problem)
 
-    if isinstance(method, Squares):
+    if shooting is not None and isinstance(method, Squares):
+        first = _origin(problem, model.parameters.start) if origin is None else origin
+        check_segments(model, data, shooting.states, shooting.segments, weighed=weights is not None)
+        check_restart(problem, shooting.states, shooting.segments, problem.search.vectors(first))
+        ends = shots(problem, shooting, method, floor, starts=starts, seed=seed, spread=spread, start=first)
+    elif isinstance(method, Squares):
         first = _origin(problem, model.parameters.start) if origin is None else origin
         ends = multistart(problem, method, floor, starts=starts, seed=seed, horizon=horizon, spread=spread, start=first)
     else:
@@ -151,7 +163,7 @@ def identify(
             f"none of {len(ends)} starts could be simulated; the first failure: {journal.failures[0]}; "
             "look at the model there, or change the bounds or the start"
         )
-    if not best.stationary and (polish or (squares and starts > 1)):
+    if not best.stationary and (polish or (squares and starts > 1 and shooting is None)):
         best = polished(problem, method if isinstance(method, Squares) else LeastSquares(), best)
 
     vector = problem.search.vectors(best.point)
@@ -187,10 +199,11 @@ def identify(
             polish=polish,
             horizon=horizon,
             spread=spread,
-            **_beyond(loss, posed, validation),
+            **_beyond(loss, posed, validation, shooting),
         ),
         parts=parts,
         validation=parted.validation(whole),
+        nodes=best.nodes,
     )
     journal.tell(Finished(fit.success, fit.status, fit.fitness, fit.values, fit.simulations))
     return fit
@@ -271,9 +284,27 @@ def _joined(
     return model, data, weights, ()
 
 
-def _beyond(loss: str, posed: Problem, validation: float | str | Sequence[str] | None) -> dict[str, object]:
+def _check_shooting(method: Squares | Method, validation: object) -> None:
+    if not isinstance(method, Squares):
+        raise InputError(
+            f"shooting: method is {type(method).__name__}; multiple shooting is a way of least squares; leave one out"
+        )
+    if validation is not None:
+        raise InputError(
+            "shooting: validation was given; a motion that forgets its beginning cannot be predicted; leave one out"
+        )
+
+
+def _beyond(
+    loss: str,
+    posed: Problem,
+    validation: float | str | Sequence[str] | None,
+    shooting: MultipleShooting | None,
+) -> dict[str, object]:
     """Settings of the provenance that are not the usual ones."""
     told: dict[str, object] = {}
+    if shooting is not None:
+        told["shooting"] = asdict(shooting)
     if posed.loss is not None:
         told["loss"] = {"name": loss, "scale": posed.loss.scale}
     if validation is not None:

@@ -36,8 +36,15 @@ class Journal:
         self._iteration, self._before = 0, self.simulations
         self.tell(StartBegan(len(self.starts), self.simulations, values))
 
-    def step(self, best: float, values: np.ndarray, samples: int, regularised: RegularisedStep | None = None) -> None:
-        step = Step(len(self.starts), self._iteration, self.simulations, best, values, samples, regularised)
+    def step(
+        self,
+        best: float,
+        values: np.ndarray,
+        samples: int,
+        regularised: RegularisedStep | None = None,
+        gap: float | None = None,
+    ) -> None:
+        step = Step(len(self.starts), self._iteration, self.simulations, best, values, samples, regularised, gap)
         self._iteration += 1
         if samples == self.samples:
             self.history.append(step)

@@ -3,10 +3,12 @@
 import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from dalembert.data import Measurements
+from dalembert.errors import InputError
 from dalembert.forward import Channel, Coordinate, ForwardModel, Responses
 from dalembert.parameters import Parameter, Parameters
 
@@ -21,11 +23,18 @@ class State:
         Channel of the model whose first value the parameter is.
     lower, upper : float
         Bounds that it keeps throughout the motion, in the channel's unit.
+    rate_of : str, optional
+        Measured channel whose rate of change it is, to begin with; for a state that is not measured itself.
     """
 
     channel: str
     lower: float
     upper: float
+    rate_of: str | None = None
+
+    def __post_init__(self) -> None:
+        if not self.lower < self.upper:
+            raise InputError(f"State {self.channel!r}: bounds are ({self.lower}, {self.upper}); expected lower < upper")
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,21 +130,44 @@ class Segments:
         """The first segments of at most so many samples."""
         return replace(self, cuts=self.cuts[: max(2, int(np.searchsorted(self.cuts, samples)))])
 
-    def data(self, data: Measurements, tightness: float) -> Measurements:
-        """Measurements of the segments; gaps are measured as 0, with that part of a state's range as deviation."""
-        values = np.full((len(self.coordinate.values), len(self.channels)), np.nan)
+    def spread(self, table: np.ndarray, empty: float) -> np.ndarray:
+        """A table of the measured channels (samples, measured) as rows of the segments, ``empty`` where none is.
+
+        The sample at which two segments meet belongs to the earlier one.
+        """
+        rows = np.full((len(self.coordinate.values), len(self.channels)), empty)
         width = len(self.measured)
         for number, (begin, end) in enumerate(zip(self.cuts[:-1], self.cuts[1:], strict=True)):
-            values[: end - begin + 1, number * width : (number + 1) * width] = data.values[begin : end + 1]
-        values[self._ends(), self._gaps] = 0.0
-        ranges = [tightness * (state.upper - state.lower) for state in self.states.values()]
-        assert data.deviations is not None  # shooting() asks for them
-        deviations = np.concatenate([np.tile(data.deviations, self.count), np.tile(ranges, self.count - 1)])
-        names = tuple(channel.name for channel in self.channels)
-        wraps = tuple(f"{name} from {cut}" for cut in self.cuts[:-1] for name in data.wraps)
-        return Measurements(self.coordinate, names, values, deviations, "leave-out", wraps)
+            new = 1 if number else 0
+            rows[new : end - begin + 1, number * width : (number + 1) * width] = table[begin + new : end + 1]
+        return rows
+
+    def joined(self, rows: np.ndarray) -> np.ndarray:
+        """Rows of the segments (rows, channels, ...) as samples of the whole motion (samples, measured, ...)."""
+        width = len(self.measured)
+        parts = [
+            rows[(1 if number else 0) : length + 1, number * width : (number + 1) * width]
+            for number, length in enumerate(np.diff(self.cuts))
+        ]
+        return np.concatenate(parts)
+
+    def gaps(self, rows: np.ndarray) -> np.ndarray:
+        """Gaps out of rows of the segments (rows, channels, ...), in parts of the states' ranges: (gaps, ...)."""
+        ranges = np.tile([state.upper - state.lower for state in self.states.values()], self.count - 1)
+        return (rows[self._ends(), self._gaps].T / ranges).T
 
     @property
+    def places_of_gaps(self) -> tuple[np.ndarray, np.ndarray]:
+        """Rows and columns of the gaps, both (gaps,)."""
+        return self._ends(), self._gaps
+
+    def at(self, data: Measurements) -> Measurements:
+        """The measurements as rows of the segments; gaps are not measured."""
+        names = tuple(channel.name for channel in self.channels)
+        wraps = tuple(f"{name} from {cut}" for cut in self.cuts[:-1] for name in data.wraps)
+        return Measurements(self.coordinate, names, self.spread(data.values, np.nan), None, "leave-out", wraps)
+
+    @cached_property
     def _piece(self) -> ForwardModel:
         return self.model.first(len(self.coordinate.values))
 

@@ -16,6 +16,8 @@ def status(problem: Problem, best: End, response: np.ndarray, floor: NoiseFloor)
     if len(ended) > 1:
         there = sum(fitness <= best.fitness * (1 + 1e-3) + floor.fitness * 1e-3 for fitness in ended)
         parts.append(f"{there} of {len(ended)} starts ended with the best fitness.")
+    if best.nodes is not None:
+        parts.append(str(best.nodes))
     alike = rivals(problem, best)
     if alike:
         worse = (alike[0].fitness - best.fitness) / best.fitness

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from dalembert.inverse.fit import Fit
 from dalembert.inverse.stored_data import data_labels, data_of, stored_data
+from dalembert.inverse.stored_nodes import nodes_of, stored_nodes, told_nodes
 from dalembert.inverse.stored_parts import parts_of, stored_parts, told_parts
 from dalembert.inverse.stored_search import search_of, stored_ends, stored_search
 from dalembert.inverse.validation import Validation
@@ -31,6 +32,7 @@ def to_xarray(fit: Fit) -> "Dataset":
         "weights": (("sample", "channel"), fit.weights),
         **stored_search(fit.history, fit.starts, "parameter", len(fit.parameters)),
         **stored_parts(fit.parts, len(fit.response)),
+        **stored_nodes(fit.nodes),
     }
     if fit.validation is not None:
         variables["validation_weights"] = (("sample", "channel"), fit.validation.weights)
@@ -44,6 +46,7 @@ def to_xarray(fit: Fit) -> "Dataset":
         "provenance": fit.provenance,
         "samples": fit.history[-1].samples if fit.history else len(fit.response),
         "parts": told_parts(fit.parts),
+        "nodes": told_nodes(fit.nodes),
         "validation": None
         if fit.validation is None
         else {"what": fit.validation.what, "misfit": fit.validation.misfit, "fitted": fit.validation.fitted},
@@ -86,4 +89,5 @@ def from_xarray(dataset: "Dataset") -> Fit:
         provenance=told["provenance"],
         parts=parts_of(a, told["parts"]),
         validation=None if validation is None else Validation(weights=a["validation_weights"], **validation),
+        nodes=nodes_of(a, told.get("nodes")),
     )

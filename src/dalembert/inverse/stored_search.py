@@ -22,6 +22,7 @@ def stored_search(history: Sequence[Step], starts: Sequence[StartEnd], over: str
         "end_fitness": ("start", np.array([start.fitness for start in starts], dtype=float)),
         "start_simulations": ("start", np.array([start.simulations for start in starts], dtype=np.int64)),
         **stored_steps(history),
+        **_stored_gaps(history),
     }
 
 
@@ -37,15 +38,28 @@ def search_of(
     a = arrays
     regularised = steps_of(a, len(a["step_start"]))
     columns = ("step_start", "step_iteration", "step_simulations", "step_best", "step_values")
-    history = zip(*(a[column] for column in columns), regularised, strict=True)
+    gaps = a.get("step_gap", np.full(len(a["step_start"]), np.nan))
+    history = zip(*(a[column] for column in columns), regularised, gaps, strict=True)
     starts = zip(a["start_values"], a["end_values"], a["end_fitness"], ends, a["start_simulations"], strict=True)
     return (
         tuple(
-            Step(int(start), int(iteration), int(simulations), float(best), values, samples, how)
-            for start, iteration, simulations, best, values, how in history
+            Step(int(start), int(iteration), int(simulations), float(best), values, samples, how, _gap(gap))
+            for start, iteration, simulations, best, values, how, gap in history
         ),
         tuple(
             StartEnd(start, end, float(fitness), bool(how["success"]), str(how["message"]), int(simulations))
             for start, end, fitness, how, simulations in starts
         ),
     )
+
+
+def _stored_gaps(history: Sequence[Step]) -> dict[str, Any]:
+    """Gaps of multiple shooting over ``step``, NaN where a step has none; no variable where none has one."""
+    gaps = [step.gap for step in history]
+    if all(gap is None for gap in gaps):
+        return {}
+    return {"step_gap": ("step", np.array([np.nan if gap is None else gap for gap in gaps]))}
+
+
+def _gap(stored: float) -> float | None:
+    return float(stored) if np.isfinite(stored) else None

@@ -1,13 +1,17 @@
-"""Multiple shooting: segments and their gaps against closed forms, merging, refusals."""
+"""Multiple shooting: segments and their gaps against closed forms, continuity, merging, refusals."""
 
 import numpy as np
 import pytest
 
 from dalembert.data import Measurements
-from dalembert.errors import DataError, InputError
+from dalembert.errors import InputError
 from dalembert.forward import ForwardModel, PythonModel
-from dalembert.inverse import State, shooting
+from dalembert.inverse import Experiment, Fit, MultipleShooting, State, identify, predict, profile
+from dalembert.inverse.continuity import Chain
+from dalembert.inverse.journal import Journal
+from dalembert.inverse.problem import pose
 from dalembert.inverse.segments import Segments
+from dalembert.inverse.shooting import first_guess
 from support import says
 
 TIMES = np.linspace(0, 4, 41)
@@ -56,10 +60,11 @@ def test_segments_of_one_motion_are_that_motion_and_meet():
     np.testing.assert_allclose(response[:, 2], x[21:], atol=1e-12)
     np.testing.assert_allclose(response[:, 3:], 0, atol=1e-12)
     np.testing.assert_array_equal(response[11:, 0], 0)
-    data = PIECES.data(measured(deviations=0.1), tightness=0.01)
+    data = PIECES.at(measured(deviations=0.1))
     assert np.nanmax(np.abs(data.difference(response))) < 1e-12
-    assert np.count_nonzero(data.present) == 11 + 12 + 20 + 4
-    assert data.deviations.tolist() == [0.1] * 3 + [0.04, 0.18] * 2
+    assert np.count_nonzero(data.present) == 41  # a sample at which segments meet counts once
+    np.testing.assert_allclose(PIECES.joined(response)[:, 0], x, atol=1e-12)
+    np.testing.assert_allclose(PIECES.gaps(response), 0, atol=1e-12)
 
 
 def test_a_gap_is_the_end_of_a_segment_less_the_beginning_of_the_next():
@@ -78,33 +83,164 @@ def test_derivatives_are_those_of_differences():
     np.testing.assert_allclose(response, PIECES.evaluate(vector[None]).only()[0], atol=1e-14)
 
 
-def test_merged_segments_end_as_one_run():
-    fit = shooting(SWING, measured(0.01, deviations=0.01), STATES, segments=4, start=[0.5, 0.5, 5.0])
-    assert fit.parameters.names == ("place", "speed", "stiffness")
+def chain(noise=0.01, states=STATES, cuts=(0, 10, 21, 40)):
+    data = measured(noise, deviations=0.01)
+    return Chain(pose(SWING, data, None, Journal(41)), states, np.array(cuts))
+
+
+def test_gaps_are_closed_and_the_misfit_is_that_of_one_run():
+    segments = chain()
+    found = segments.closed(segments.inner.search.points(together() + 0.05))
+    one = identify(SWING, measured(0.01, deviations=0.01), start=TRUE, starts=1)
+    assert found.gap < 1e-8
+    assert found.misfit == pytest.approx(one.fitness, rel=1e-6)
+    np.testing.assert_allclose(segments.inner.search.vectors(found.point)[:3], one.values, rtol=1e-5)
+
+
+def test_segments_that_meet_have_the_jacobian_of_one_run():
+    segments = chain()
+    at = segments.linearised(segments.inner.search.points(together()))
+    response, jacobian = SWING.linearise(TRUE)
+    np.testing.assert_allclose(at.response, response[:, :1], atol=1e-12)
+    np.testing.assert_allclose(at.jacobian, jacobian[:, :1], atol=1e-12)
+
+
+def test_growth_is_that_of_the_state_from_the_beginning_to_the_last_node():
+    segments = chain()
+    begins, gaps, growth = segments.met(segments.inner.search.points(together()))
+    ranges = np.array([4.0, 18.0])
+    exact = SWING.jacobian(TRUE)[21][:, :2] * ranges / ranges[:, None]
+    np.testing.assert_allclose(begins, swing(*TRUE)[[10, 21]].ravel())
+    np.testing.assert_allclose(gaps, 0, atol=1e-12)
+    assert growth == pytest.approx(np.linalg.norm(exact, 2))
+
+
+@pytest.mark.parametrize("segments", [2, 4, 7])
+def test_merged_segments_end_as_one_run(segments):
+    data = measured(0.01, deviations=0.01)
+    fit = identify(SWING, data, shooting=MultipleShooting(STATES, segments), start=[0.5, 0.5, 5.0])
+    one = identify(SWING, data, start=TRUE, starts=1)
     assert fit.success
-    assert np.all(np.abs(fit.values - TRUE) < 4 * fit.deviations)
+    np.testing.assert_allclose(fit.values, one.values, rtol=1e-6)
+    np.testing.assert_allclose(fit.deviations, one.deviations, rtol=1e-4)
+    assert fit.nodes is not None
+    assert fit.nodes.segments == 1
+    assert fit.nodes.gap < 1e-8
+    np.testing.assert_allclose(fit.nodes.ends, fit.nodes.begins, atol=1e-7)
+    assert "and merged into one run." in fit.status
+    gaps = [step.gap for step in fit.history]
+    assert gaps[0] > 0.01
+    assert min(gap for gap in gaps if gap) < 1e-8
+
+
+def test_the_first_guess_is_measured_or_follows_from_the_segment_before():
+    segments, exact = chain(noise=0.0), swing(*TRUE)
+    guess = first_guess(segments, np.array([0.0, -0.5, 9.0]))
+    np.testing.assert_allclose(guess[[0, 3, 5]], exact[[0, 10, 21], 0])
+    np.testing.assert_allclose(guess[4], exact[10, 1])  # the true parameters lead there from the true beginning
+    rate = {**STATES, "speed": State("v", -9.0, 9.0, rate_of="x")}
+    guess = first_guess(chain(noise=0.0, states=rate), np.array([0.0, 3.0, 20.0]))
+    np.testing.assert_allclose(guess[[1, 4, 6]], np.clip(exact[[0, 10, 21], 1], -9, 9), atol=0.3)
+
+
+def test_wrapping_angles_are_taken_near_the_initial_state():
+    turn = 2 * np.pi
+    turning = lambda place, speed: np.stack([place + speed * TIMES, speed + 0 * TIMES], axis=1)  # noqa: E731
+    model = PythonModel(turning, {"place": (0.0, 9.0), "speed": (-3.0, 3.0)}, ["x", "v"], TIMES)
+    exact = turning(7.0, 2.0)[:, 0]
+    wrapped = Measurements.of(TIMES, {"x": (exact + np.pi) % turn - np.pi}, deviations=0.01, wraps=["x"])
+    states = {"place": State("x", -30.0, 30.0), "speed": State("v", -9.0, 9.0)}
+    fit = identify(model, wrapped, shooting=MultipleShooting(states, 4), start=[6.5, 1.0])
+    np.testing.assert_allclose(fit.values, [7.0, 2.0], atol=1e-8)
+
+
+def test_robust_losses_and_gaps_in_the_data_are_kept():
+    exact = swing(*TRUE)[:, 0]
+    exact[[7, 30]] += 2.0
+    exact[[10, 15]] = np.nan  # one of them where segments meet
+    data = Measurements.of(TIMES, {"x": exact}, deviations=0.01, missing="leave-out")
+    fit = identify(SWING, data, shooting=MultipleShooting(STATES, 4), loss="cauchy", start=[0.5, 0.5, 5.0])
+    np.testing.assert_allclose(fit.values, TRUE, atol=1e-3)
+
+
+def test_simulations_of_all_fits_are_counted_as_runs_over_all_samples():
+    calls = 0
+
+    def counted(**values):
+        nonlocal calls
+        calls += 1
+        return swing(**values)
+
+    model = PythonModel(counted, SWING.parameters, ["x", "v"], TIMES)
+    data, told = measured(0.01, deviations=0.01), []
+    fit = identify(model, data, shooting=MultipleShooting(STATES, 4), starts=1, on_event=told.append)
+    assert fit.simulations == told[-1].simulations
+    assert calls / 4 < fit.simulations < calls  # a segment is a call of its own, and a part of a run
 
 
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [
-        ({"segments": 6}, "shooting: segments is 6; expected a power of 2, such as 8, so that they can merge"),
         ({"segments": 32}, "shooting: 41 samples are too few for 32 segments; expected more than two each"),
+        ({"segments": 1}, "MultipleShooting: segments is 1; expected at least 2"),
+        (
+            {"states": {}},
+            "MultipleShooting: no states were given; expected all parameters of the initial state, each with the "
+            "channel that it is later",
+        ),
         (
             {"data": measured()},
-            "shooting: the data have no deviations, which say how closely segments must meet; give them",
+            "shooting: the data have no deviations, which say how a misfit weighs against a gap between segments; "
+            "give them, or weights",
         ),
         (
             {"states": {"plac": State("x", -2, 2)}},
             "shooting, states: unknown parameter 'plac'; did you mean 'place'?",
         ),
         ({"states": {"place": State("y", -2, 2)}}, "shooting, state 'place': unknown channel 'y'; known: v, x"),
+        (
+            {"states": STATES | {"speed": State("v", -9, 9, rate_of="v")}},
+            "shooting, state 'speed', rate_of: unknown channel 'v'; known: x",
+        ),
+        (
+            {"states": {"place": State("v", -2, 2), "speed": STATES["speed"]}},
+            "shooting, state 'place': the motion begins with 'v' at 0.5 where the parameter is 1; expected the same; "
+            "name the channel that begins with the parameter, and give bodies velocities that go together",
+        ),
+        (
+            {"states": {"place": STATES["place"]}},
+            "shooting: a segment that begins with the states at sample 10 does not continue the motion: 'x' differs by "
+            "0.472; expected a model that does not depend on time but through its state, and all of its state in "
+            "states, which are 'place'",
+        ),
+        (
+            {"method": "Nelder-Mead"},
+            "shooting: method is Minimiser; multiple shooting is a way of least squares; leave one out",
+        ),
+        (
+            {"validation": 0.25},
+            "shooting: validation was given; a motion that forgets its beginning cannot be predicted; leave one out",
+        ),
     ],
 )
 def test_what_cannot_be_cut_is_told(change, sentence):
-    given = {"data": measured(deviations=0.1), "states": STATES} | change
-    with pytest.raises((InputError, DataError), match=says(sentence)):
-        shooting(SWING, **given)
+    given = {"data": measured(deviations=0.1), "states": STATES, "segments": 4} | change
+    data, states, segments = given.pop("data"), given.pop("states"), given.pop("segments")
+    with pytest.raises(InputError, match=says(sentence)):
+        identify(SWING, data, shooting=MultipleShooting(states, segments), start=[1.0, 0.5, 9.0], **given)
+
+
+def test_bounds_of_a_state_in_order():
+    with pytest.raises(InputError, match=says("State 'x': bounds are (2, -2); expected lower < upper")):
+        State("x", 2, -2)
+
+
+def test_several_experiments_are_refused():
+    one = Experiment("one", SWING, measured(deviations=0.1))
+    with pytest.raises(
+        InputError, match=says("shooting: several experiments were given; expected one, or leave shooting out")
+    ):
+        identify([one], shooting=MultipleShooting(STATES, 4))
 
 
 def test_uneven_samples_are_told():
@@ -117,4 +253,53 @@ def test_uneven_samples_are_told():
         "beginning; resample the data"
     )
     with pytest.raises(InputError, match=says(sentence)):
-        shooting(model, data, STATES)
+        identify(model, data, shooting=MultipleShooting(STATES, 4))
+
+
+def test_the_nodes_come_back_from_a_file_bit_for_bit(tmp_path):
+    fit = identify(SWING, measured(0.01, deviations=0.01), shooting=MultipleShooting(STATES, 4))
+    fit.save(tmp_path / "fit.nc")
+    back = Fit.load(tmp_path / "fit.nc")
+    for name, value in vars(fit.nodes).items():
+        np.testing.assert_array_equal(getattr(back.nodes, name), value)
+    assert [step.gap for step in back.history] == [step.gap for step in fit.history]
+    assert back.summary() == fit.summary()
+
+
+SHIFT = 3.9
+
+
+def doubling(start, ratio):
+    """The logistic map, which forgets a binary digit of its beginning in each of 100 steps; and a channel to fit."""
+    x = [start]
+    for _ in range(100):
+        x.append(ratio * x[-1] * (1 - x[-1]))
+    return np.array(x)[:, None]
+
+
+@pytest.mark.slow
+def test_what_no_single_run_can_follow_is_fitted_in_segments_and_says_so():
+    steps = np.arange(101.0)
+    model = PythonModel(doubling, {"start": (0.1, 0.9), "ratio": (3.5, 4.0)}, ["x"], steps)
+    noise = 0.001
+    exact = doubling(0.3, SHIFT)[:, 0]
+    data = Measurements.of(steps, {"x": exact + noise * np.random.default_rng(0).standard_normal(101)}, noise)
+    shooting = MultipleShooting({"start": State("x", 0.0, 1.0)}, segments=40)
+    fit = identify(model, data, shooting=shooting, starts=1, start=[0.4, 3.7])
+    assert fit.success
+    assert fit.nodes.segments > 1
+    assert fit.nodes.growth > 1e12
+    assert fit.fitness < 1.5 * 101
+    assert fit.estimates["ratio"] == pytest.approx(SHIFT, abs=1e-4)
+    assert f"the response is that of {fit.nodes.segments} segments" in fit.status
+    assert model.evaluate(fit.values[None]).only()[0, :, 0] != pytest.approx(fit.response[:, 0], abs=0.1)
+    for name, refused in (
+        ("predict", lambda: predict(model, fit)),
+        ("profile", lambda: profile(model, data, fit)),
+    ):
+        sentence = (
+            f"{name}: the fit is of {fit.nodes.segments} segments that did not merge into one run, which {name} would "
+            "simulate; fit fewer samples"
+        )
+        with pytest.raises(InputError, match=says(sentence)):
+            refused()

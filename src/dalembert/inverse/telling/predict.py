@@ -32,7 +32,8 @@ def predict(model: ForwardModel | Experiment, fit: Fit, level: float = 0.95) -> 
     Raises
     ------
     InputError
-        For a model with a parameter that was not identified, or a level that is no probability.
+        For a model with a parameter that was not identified, a fit of segments that did not merge into one run, or a
+        level that is no probability.
     SolveError
         If the simulation fails.
 
@@ -57,6 +58,7 @@ def predict(model: ForwardModel | Experiment, fit: Fit, level: float = 0.95) -> 
     [0.196]
     """
     check_level(level, "predict")
+    fit.needs_one_run("predict")
     data, prefix = fit.data, ""
     if isinstance(model, Experiment):
         parameters, data, prefix, model = model.parameters, model.data, f"{model.name}.", model.model

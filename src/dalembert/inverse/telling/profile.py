@@ -61,7 +61,8 @@ def profile(
     DataError
         For data that do not fit the model.
     InputError
-        For an unknown parameter, too few points, a level that is no probability, a fit with a robust loss.
+        For an unknown parameter, too few points, a level that is no probability, a fit with a robust loss or of
+        segments that did not merge into one run.
     SolveError
         If the response at the identified values cannot be simulated.
 
@@ -88,6 +89,7 @@ def profile(
     True
     """
     check_level(level, "profile")
+    fit.needs_one_run("profile")
     if points < 4:
         raise InputError(f"profile: points is {points}; expected at least 4")
     if "loss" in fit.provenance:

@@ -40,14 +40,14 @@ checks: .venv/test.stamp
 	$(BIN)/lint-imports
 
 test: checks
-	$(BIN)/pytest
+	$(BIN)/pytest -n auto --dist loadfile
 
 verify: checks
-	$(BIN)/pytest -m "$(ALL)" --evidence=$(EVIDENCE)
+	$(BIN)/pytest -n auto --dist loadfile -m "$(ALL)" --evidence=$(EVIDENCE)
 	$(BIN)/python docs/validation.py $(EVIDENCE) --check
 
 validation: .venv/test.stamp
-	$(BIN)/pytest tests -m "$(ALL)" --evidence=$(EVIDENCE)
+	$(BIN)/pytest -n auto --dist loadfile tests -m "$(ALL)" --evidence=$(EVIDENCE)
 	$(BIN)/python docs/validation.py $(EVIDENCE)
 
 docs: .venv/docs.stamp

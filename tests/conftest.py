@@ -9,8 +9,6 @@ import numpy as np
 import pytest
 from numpy.typing import ArrayLike
 
-ROWS = pytest.StashKey[list["Evidence"]]()
-
 
 @dataclass(frozen=True)
 class Evidence:
@@ -77,14 +75,24 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    config.stash[ROWS] = []
+    if config.getoption("--evidence") is not None and not hasattr(config, "workerinput"):
+        config.pluginmanager.register(Collector(config.getoption("--evidence")))
 
 
-def pytest_sessionfinish(session: pytest.Session) -> None:
-    path = session.config.getoption("--evidence")
-    if path is not None:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(json.dumps([asdict(row) for row in session.config.stash[ROWS]], indent=1))
+class Collector:
+    """Gathers the rows from the tests' reports, which come from this process or from several, and writes them."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.rows: list[object] = []
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        if report.when == "teardown":
+            self.rows += [value for name, value in report.user_properties if name == "evidence"]
+
+    def pytest_sessionfinish(self) -> None:
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        self.path.write_text(json.dumps(self.rows, indent=1))
 
 
 @pytest.fixture
@@ -92,6 +100,7 @@ def record_evidence(request: pytest.FixtureRequest) -> Callable[..., None]:
     """Assert and record: ``record_evidence(quantity, published, ours, tolerance=..., topic=..., source=...)``."""
 
     def record(*args: object, **options: object) -> None:
-        request.config.stash[ROWS].append(compare(*args, **options))  # type: ignore[arg-type]
+        row = compare(*args, **options)  # type: ignore[arg-type]
+        request.node.user_properties.append(("evidence", asdict(row)))
 
     return record

@@ -216,6 +216,13 @@ def _all_told() -> tuple[Any, Any]:
     return fit, {"profiles": profile(DECAY, data, fit), "prediction": predict(DECAY, fit)}
 
 
+def _moved_experiments() -> tuple[Any, Any]:
+    experiments = _experiments()
+    fit = da.identify(experiments)
+    told = {item.name: predict(item, fit) for item in experiments}
+    return fit, {"trajectory": {"a": _pendulum()}, "prediction": told}
+
+
 CASES: dict[str, Case] = {
     # ── identification: how it went ─────────────────────────────────────────────────────────────────────────────────
     "exact data": Case(
@@ -629,6 +636,11 @@ CASES: dict[str, Case] = {
     ),
     "a motion that rests": Case(lambda: _pendulum(0.0), ("The motion was simulated to its end.",)),
     "a fit with its motion": Case(_moved_fit, ("Drawn to scale;",), ("mechanism", "energies")),
+    "experiments with their motions": Case(
+        _moved_experiments,
+        ("Not drawn: b.", "a: The 95 % band of the response"),
+        ("mechanism-1", "energies-1", "prediction-1-1", "prediction-2-1"),
+    ),
     "a sweep": Case(
         _study(SWEEP, DECAYING),
         ("one parameter varied at a time: rate.", "1 of them failed, see events.jsonl"),

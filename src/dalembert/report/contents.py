@@ -7,6 +7,7 @@ from dalembert.errors import InputError
 from dalembert.report import charts
 from dalembert.report.charts.correlation import unknowns
 from dalembert.report.charts.methods import reference
+from dalembert.report.each import each
 from dalembert.report.needs import (
     BandFitLike,
     ComparisonLike,
@@ -61,13 +62,13 @@ def contents(
     result: Result,
     *,
     title: str | None = None,
-    trajectory: TrajectoryLike | None = None,
+    trajectory: TrajectoryLike | Mapping[str, TrajectoryLike] | None = None,
     notes: Sequence[str] = (),
     study: str | None = None,
     points: tuple[str, ...] = (),
     truth: Mapping[str, Any] | None = None,
     profiles: ProfilesLike | None = None,
-    prediction: PredictionLike | None = None,
+    prediction: PredictionLike | Mapping[str, PredictionLike] | None = None,
 ) -> list[Section]:
     """Sections of a report in reading order; the first is the headline.
 
@@ -80,9 +81,10 @@ def contents(
     match result:
         case FitLike():
             own = [headline.of_fit(result, title, notes), Estimates(result), _compared(result)]
-            moving = [] if trajectory is None else _motion(trajectory, points, result)
-            checks = [] if trajectory is None else [Diagnostics(trajectory)]
-            sections = [*own, *moving, *_search(result), *_telling(result), *_beyond(profiles, prediction), *checks]
+            moving = each(trajectory)
+            checks = [Diagnostics(moving)] if moving else []
+            after = [*_search(result), *_telling(result), *_beyond(profiles, each(prediction)), *checks]
+            sections = [*own, *_motion(moving, points, result), *after]
         case BandFitLike():
             own = [bound_headlines.of_band_fit(result, title, notes), Intervals(result, known), GivenBands(result)]
             sections = [*own, *_search(result), *_telling(result)]
@@ -96,11 +98,13 @@ def contents(
         case ProfilesLike():
             sections = [telling_headlines.of_profiles(result, title, notes), Profiling(result)]
         case PredictionLike():
-            sections = [telling_headlines.of_prediction(result, title, notes), Predicting(result)]
+            sections = [telling_headlines.of_prediction(result, title, notes), Predicting(each(result))]
         case DesignsLike():
             sections = [telling_headlines.of_designs(result, title, notes), Designing(result)]
         case TrajectoryLike():
-            sections = [headline.of_trajectory(result, title, notes), *_motion(result, points), Diagnostics(result)]
+            moving = each(result)
+            shown = [*_motion(moving, points), Diagnostics(moving)]
+            sections = [headline.of_trajectory(result, title, notes), *shown]
         case SweepLike():
             sections = [headline.of_sweep(result, title, notes), Sweeps(result)]
         case _:
@@ -118,12 +122,12 @@ def _compared(fit: FitLike) -> Section:
     return Experiments(fit, experiments) if experiments else Comparison(fit)
 
 
-def _motion(trajectory: TrajectoryLike, points: tuple[str, ...], fit: FitLike | None = None) -> list[Section]:
-    drawing = trajectory.drawing()
-    measured = {} if fit is None else motion.measured(fit.data.channels, fit.data.values)
-    known = set(trajectory.channel_names)
-    followed = points or tuple(point for point in measured if {f"{point}.x", f"{point}.y"} <= known)
-    return [Motion(drawing, motion.paths(trajectory, drawing, followed), measured)]
+def _motion(moving: Mapping[str, TrajectoryLike], points: tuple[str, ...], fit: FitLike | None = None) -> list[Section]:
+    """The section on the mechanism in motion, beside the measurements of each experiment."""
+    data = {} if fit is None else {"": fit.data, **{item.name: item.data for item in getattr(fit, "experiments", ())}}
+    drawn = {name: motion.motion(trajectory, points, data.get(name)) for name, trajectory in moving.items()}
+    left_out = [] if "" in moving else [name for name in data if name and name not in moving]
+    return [Motion(drawn, left_out)] if drawn else []
 
 
 def _search(fit: FitLike | BandFitLike) -> list[Section]:
@@ -142,7 +146,7 @@ def _telling(fit: FitLike | BandFitLike) -> list[Section]:
     return [Telling(fit, sentences, spectrum)] if len(names) > 1 or sentences else []
 
 
-def _beyond(profiles: ProfilesLike | None, prediction: PredictionLike | None) -> list[Section]:
+def _beyond(profiles: ProfilesLike | None, predictions: Mapping[str, PredictionLike]) -> list[Section]:
     """The sections on profiles and prediction of a fit, where they were made."""
     first: list[Section] = [] if profiles is None else [Profiling(profiles)]
-    return first if prediction is None else [*first, Predicting(prediction)]
+    return [*first, Predicting(predictions)] if predictions else first

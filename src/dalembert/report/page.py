@@ -27,13 +27,13 @@ def report(
     path: str | os.PathLike[str],
     *,
     title: str | None = None,
-    trajectory: TrajectoryLike | None = None,
+    trajectory: TrajectoryLike | Mapping[str, TrajectoryLike] | None = None,
     notes: str | Sequence[str] = (),
     study: str | None = None,
     points: Sequence[str] = (),
     truth: Mapping[str, Any] | None = None,
     profiles: ProfilesLike | None = None,
-    prediction: PredictionLike | None = None,
+    prediction: PredictionLike | Mapping[str, PredictionLike] | None = None,
 ) -> Path:
     """Write an HTML report that opens offline in any browser, in its light or dark, and asks nothing of the network.
 
@@ -43,8 +43,9 @@ def report(
     path : path
         The file is written whole or not at all; its folder is made.
     title : str, optional
-    trajectory : Trajectory, optional
-        Motion at the identified values, drawn with the measured points of a fit.
+    trajectory : Trajectory, or mapping of str to Trajectory, optional
+        Motion at the identified values, drawn with the measured points of a fit; one for each of several experiments,
+        or some of them, by name.
     notes : str or sequence of str
         Paragraphs to stand under the headline; in one text, empty lines part them.
     study : str, optional
@@ -56,8 +57,8 @@ def report(
         bands, a number for a set of parameters.
     profiles : Profiles, optional
         Profile likelihoods of a fit, for a section of its report.
-    prediction : Prediction, optional
-        Bands of a fit's response, for a section of its report.
+    prediction : Prediction, or mapping of str to Prediction, optional
+        Bands of a fit's response, for a section of its report; one for each of several experiments by name.
 
     Returns
     -------

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from dalembert.errors import InputError
+from dalembert.inverse import Prediction
 from dalembert.study import load, plan, report_run, run_study
 from dalembert.study.runner import unknowns
 from pages import read_page
@@ -149,9 +150,34 @@ def test_experiments_may_differ_in_constants(write, tmp_path):
         texts.append(
             f'[[experiments]]\nname = "{name}"\nfile = "{name}.csv"\ncolumns = {{ "rod.end.x" = "x" }}\n{constants}'
         )
-    _, outcome = run_study(load(write(PENDULUM + "".join(texts) + "[identify]\n")), tmp_path / "run")
+    folder, outcome = run_study(load(write(PENDULUM + "".join(texts) + "[identify]\n")), tmp_path / "run")
     assert outcome.best["values"] == pytest.approx({"drag": 0.2}, rel=1e-6)
     assert outcome.best["fitness"] < 1e-15
+    page = read_page(folder.report)
+    drawn = {entries["data-name"] for tag, entries in page.tags if tag == "script" and "data-name" in entries}
+    assert {"mechanism-1", "mechanism-2", "energies-1", "energies-2"} <= drawn
+    rows = page.table("diagnostics")
+    assert {row[0] for row in rows[1:]} == {"low", "high"}
+    assert "Not drawn" not in page.text
+
+
+def test_each_experiment_has_its_prediction(write, tmp_path):
+    folder, outcome = run_study(load(write(TWO + "[identify]\nprediction = true\nlevel = 0.9\n")), tmp_path / "run")
+    told = {name: Prediction.load(folder.path / f"prediction-{name}.nc") for name in ("short", "long")}
+    assert [len(one.coordinate.values) for one in told.values()] == [21, 41]
+    np.testing.assert_allclose(told["long"].response[:, 0], 1.5 * np.exp(-0.8 * TIMES["long"]), rtol=1e-6)
+    assert told["short"].level == 0.9
+    for name, one in told.items():
+        assert f"experiment {name}\n{one.summary()}" in outcome.summary
+    first = folder.report.read_text()
+    page = read_page(folder.report)
+    assert "short: The 90 % band of the response is at most" in page.text
+    assert [row[0] for row in page.table("prediction")] == ["experiment", "short", "long"]
+    drawn = {entries["data-name"] for tag, entries in page.tags if tag == "script" and "data-name" in entries}
+    assert {"prediction-1-1", "prediction-2-1"} <= drawn
+    folder.report.unlink()
+    report_run(folder)
+    assert folder.report.read_text() == first
 
 
 @pytest.mark.parametrize(

@@ -1,13 +1,15 @@
 """The mechanism in motion."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
 from dalembert.report import charts
-from dalembert.report.needs import DrawingLike, TrajectoryLike
+from dalembert.report.each import numbered
+from dalembert.report.look import plain
+from dalembert.report.needs import DrawingLike, MeasurementsLike, TrajectoryLike
 from dalembert.report.plot import Plot
 from dalembert.report.sections.section import Section
 
@@ -15,19 +17,50 @@ MOST_PATHS = 3
 
 
 @dataclass(frozen=True)
+class Moving:
+    """A drawing with the paths of points, and measured positions where there are any, each (samples, 2)."""
+
+    drawing: DrawingLike
+    paths: Mapping[str, np.ndarray]
+    measured: Mapping[str, np.ndarray]
+
+
+@dataclass(frozen=True)
 class Motion(Section):
-    """Animation with the paths of points, and measured positions where there are any."""
+    """An animation, or one for each experiment, some of which may be ``left_out``."""
 
     name: ClassVar[str] = "motion"
     heading: ClassVar[str] = "Mechanism"
-    drawing: DrawingLike
-    paths: Mapping[str, np.ndarray] = field(default_factory=dict)
-    measured: Mapping[str, np.ndarray] = field(default_factory=dict)
+    moving: Mapping[str, Moving]
+    left_out: Sequence[str] = ()
 
     @property
     def plots(self) -> tuple[Plot, ...]:
-        figure = charts.mechanism(self.drawing, paths=self.paths, measured=self.measured)
-        return (Plot("mechanism", figure, "Drawn to scale; faint outlines are poses along the motion."),)
+        how = "Drawn to scale; faint outlines are poses along the motion."
+        return tuple(
+            Plot(
+                place,
+                charts.mechanism(
+                    one.drawing, paths=one.paths, measured=one.measured, title=plain(experiment) or self.heading
+                ),
+                how,
+            )
+            for place, experiment, one in numbered("mechanism", self.moving)
+        )
+
+    @property
+    def sentence(self) -> str:
+        """Which experiments are not drawn; empty if all are."""
+        return f"Not drawn: {', '.join(self.left_out)}." if self.left_out else ""
+
+
+def motion(trajectory: TrajectoryLike, points: tuple[str, ...], data: MeasurementsLike | None) -> Moving:
+    """What is drawn of a trajectory: the paths of points, of the measured ones if none are named."""
+    drawing = trajectory.drawing()
+    crosses = {} if data is None else measured(data.channels, data.values)
+    known = set(trajectory.channel_names)
+    followed = points or tuple(point for point in crosses if {f"{point}.x", f"{point}.y"} <= known)
+    return Moving(drawing, paths(trajectory, drawing, followed), crosses)
 
 
 def paths(trajectory: TrajectoryLike, drawing: DrawingLike, points: tuple[str, ...]) -> dict[str, np.ndarray]:
@@ -44,8 +77,9 @@ def paths(trajectory: TrajectoryLike, drawing: DrawingLike, points: tuple[str, .
     return dict(list(moving.items())[-MOST_PATHS:])
 
 
-def measured(channels: tuple[str, ...], values: np.ndarray) -> dict[str, np.ndarray]:
+def measured(channels: Sequence[str], values: np.ndarray) -> dict[str, np.ndarray]:
     """Positions (samples, 2) of the points of which both coordinates are among the channels."""
+    channels = list(channels)
     return {
         point: values[:, [channels.index(f"{point}.x"), channels.index(f"{point}.y")]]
         for point in dict.fromkeys(channel.rpartition(".")[0] for channel in channels)

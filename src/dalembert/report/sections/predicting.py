@@ -1,11 +1,13 @@
 """A predicted response and its bands."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
 from dalembert.report import charts
+from dalembert.report.each import numbered
 from dalembert.report.look import plain
 from dalembert.report.needs_telling import PredictionLike
 from dalembert.report.plot import Plot
@@ -16,29 +18,38 @@ from dalembert.report.table import Table, cell
 
 @dataclass(frozen=True)
 class Predicting(Section):
-    """Bands in which the true response, and a new measurement, are expected."""
+    """Bands in which the true response, and a new measurement, are expected, of each experiment."""
 
     name: ClassVar[str] = "predicting"
     heading: ClassVar[str] = "Prediction"
-    prediction: PredictionLike
+    predictions: Mapping[str, PredictionLike]
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """The status of each."""
+        return tuple(f"{name}: {told.status}" if name else told.status for name, told in self.predictions.items())
 
     @property
     def plots(self) -> tuple[Plot, ...]:
-        told = self.prediction
         how = "Dark: the true response; light: a new measurement. Each holds sample by sample."
-        groups = [[told.channels[column] for column in group] for group in by_quantity(told.channels)]
-        return tuple(
-            Plot(f"prediction-{number}", charts.prediction(told, group, title=plain(", ".join(group))), how)
-            for number, group in enumerate(groups, 1)
-        )
+        found = []
+        for place, experiment, told in numbered("prediction", self.predictions):
+            lead = f"{plain(experiment)}: " if experiment else ""
+            for number, group in enumerate(by_quantity(told.channels), 1):
+                chosen = [told.channels[column] for column in group]
+                figure = charts.prediction(told, chosen, title=lead + plain(", ".join(chosen)))
+                found.append(Plot(f"{place}-{number}", figure, how))
+        return tuple(found)
 
     @property
     def table(self) -> Table:
-        told = self.prediction
-        half = (told.upper - told.lower) / 2, (told.measured_upper - told.measured_lower) / 2
-        rows = [
-            (cell(name), cell(plain_unit), *(cell(float(np.max(widths[:, k])), digits=3) for widths in half))
-            for k, (name, plain_unit) in enumerate(zip(told.channels, told.units, strict=True))
-        ]
-        columns = ("channel", "unit", "± response at most", "± measurement at most")
-        return Table("prediction", f"Half widths of the {100 * told.level:g} % bands", columns, rows)
+        several = [] if "" in self.predictions else ["experiment"]
+        rows = []
+        for experiment, told in self.predictions.items():
+            half = (told.upper - told.lower) / 2, (told.measured_upper - told.measured_lower) / 2
+            for k, (name, unit) in enumerate(zip(told.channels, told.units, strict=True)):
+                widest = (cell(float(np.max(widths[:, k])), digits=3) for widths in half)
+                rows.append((*(cell(experiment) for _ in several), cell(name), cell(unit), *widest))
+        columns = (*several, "channel", "unit", "± response at most", "± measurement at most")
+        level = next(iter(self.predictions.values())).level
+        return Table("prediction", f"Half widths of the {100 * level:g} % bands", columns, rows)

@@ -5,6 +5,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
+import numpy as np
 from pydantic import AfterValidator, Discriminator, Field, Tag, create_model
 
 from dalembert.errors import InputError, unknown
@@ -26,6 +27,9 @@ if TYPE_CHECKING:
     from dalembert.study.study import Study
 
 DEFAULT = "least-squares"
+
+MOST_MOTIONS = 4
+"""Experiments whose motion the report draws: each drawing adds to the size of its page."""
 
 
 class IdentifyTable(StudyTable):
@@ -122,7 +126,7 @@ class Identification(Outcome):
 
     @property
     def summary(self) -> str:
-        return "\n\n".join([self.fit.summary(), *(one.summary() for one in self.told.values())])
+        return "\n\n".join([self.fit.summary(), *telling.summaries(self.told)])
 
     @property
     def best(self) -> dict[str, Any]:
@@ -147,10 +151,20 @@ class Identification(Outcome):
         )
 
     def _motion(self) -> Any:
-        if not self.study.has_system or self.fit.experiments:
+        """The motion at the identified values; of several experiments the first ones', by name."""
+        study, fit = self.study, self.fit
+        if not study.has_system:
             return None
-        own = self.fit.values[: len(self.study.parameters)]  # what follows belongs to sensors
-        return self.study.motion(float(self.fit.data.coordinate.values[-1]), own)
+        if not fit.experiments:
+            own = fit.values[: len(study.parameters)]  # what follows belongs to sensors
+            return study.motion(float(fit.data.coordinate.values[-1]), own)
+        found = {}
+        for table, item in list(zip(study.file.experiments, fit.experiments, strict=True))[:MOST_MOTIONS]:
+            names = [f"{table.name}.{name}" if name in table.own else name for name in study.parameters.names]
+            variant = study.varied(table.constants, table.arguments)
+            values = np.array([fit.estimates[name] for name in names])
+            found[table.name] = variant.motion(float(item.data.coordinate.values[-1]), values)
+        return found
 
 
 class Identify(Task):
@@ -168,8 +182,6 @@ class Identify(Task):
         channels = measured_channels(file)
         if channels:
             wrong += unmatched(file.identify.weights, channels, "weight", "[identify], weights")
-        if file.experiments and file.identify.prediction:
-            wrong.append("[identify], prediction: each experiment has its own; predict() makes them, leave the key out")
         if file.identify.profile and file.identify.loss != "linear":
             wrong.append(
                 f"[identify], profile: the minimum of the loss {file.identify.loss!r} is no likelihood; leave one of "
@@ -219,7 +231,8 @@ class Identify(Task):
     def load(self, study: "Study", path: Path) -> Outcome:
         from dalembert.inverse import Fit
 
-        return Identification(study, Fit.load(path), telling.load(path))
+        names = [table.name for table in study.file.experiments]
+        return Identification(study, Fit.load(path), telling.load(path, names))
 
 
 def _measured(model: Any, data: Any) -> str:

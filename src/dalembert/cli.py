@@ -82,13 +82,14 @@ def run(
 
 @app.command()
 def check(study: StudyFile) -> None:
-    """Check a study, and say what it would run and about how many simulations."""
+    """Check a study, and say what it would run, about how many simulations and how long."""
     with _exit_codes():
         from dalembert.study import load, plan
-        from dalembert.study.runner import foreseen
+        from dalembert.study.runner import foreseen, takes
 
         read = load(study)
         typer.echo(f"{study}: in order; it {plan(read)}")
+        typer.echo(takes(read))
         for sentence in foreseen(read):
             typer.echo(sentence)
 

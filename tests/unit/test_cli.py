@@ -1,6 +1,7 @@
 """The real command, as a user starts it: what it prints, and its exit codes."""
 
 import json
+import re
 import subprocess
 import sys
 import time
@@ -66,8 +67,11 @@ def test_run_list_report(dalembert, tmp_path):
 def test_check(dalembert):
     checked = dalembert("check", "decay.toml")
     assert checked.returncode == 0
-    assert checked.stdout == (
-        "decay.toml: in order; it sweeps rate (4) at time 0.5 s: 4 simulations, each with 1 sensitivities\n"
+    first, second = checked.stdout.splitlines()
+    assert first == "decay.toml: in order; it sweeps rate (4) at time 0.5 s: 4 simulations, each with 1 sensitivities"
+    number = r"[\d.]+ (ms|s)"
+    assert re.fullmatch(
+        rf"This takes about {number}: 8 simulations of {number} \(4 at once at the first guesses\)\.", second
     )
 
 

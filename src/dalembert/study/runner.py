@@ -8,6 +8,7 @@ from time import perf_counter
 from dalembert import __version__
 from dalembert.errors import DalembertError, InputError, SolveError
 from dalembert.files import write_text
+from dalembert.study.duration import duration
 from dalembert.study.events import Event, EventLog
 from dalembert.study.folder import FAILED, FINISHED, INPUT, INTERRUPTED, RUNNING, RunFolder, new_folder
 from dalembert.study.study import Study
@@ -71,6 +72,11 @@ def run_study(
 def plan(study: Study) -> str:
     """What a study would run, in a sentence; the model is built once, so that it is known to be well posed."""
     return TASKS[study.task].plan(study)
+
+
+def takes(study: Study) -> str:
+    """About how long a study would take, from one timed evaluation, in a sentence."""
+    return duration(TASKS[study.task].effort(study))
 
 
 def foreseen(study: Study) -> tuple[str, ...]:

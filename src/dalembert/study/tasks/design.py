@@ -15,6 +15,7 @@ from dalembert.study.tasks.task import Outcome, Task
 from dalembert.study.tasks.wrong import needs_solver, unnamed
 
 if TYPE_CHECKING:
+    from dalembert.study.duration import Effort
     from dalembert.study.events import Emit
     from dalembert.study.study import Study
 
@@ -66,6 +67,12 @@ class Design(Task):
             f"ranks experiments that measure {', '.join(names)} by what they would tell of "
             f"{', '.join(study.parameters.names)}, from one simulation with {len(study.parameters)} sensitivities"
         )
+
+    def effort(self, study: "Study") -> "Effort":
+        from dalembert.study.duration import evaluated
+
+        count = 1 + len(study.parameters)
+        return evaluated(_model(study), _at(study), count, count)
 
     def run(self, study: "Study", emit: "Emit") -> Outcome:
         from dalembert.inverse import design

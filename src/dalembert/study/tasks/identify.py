@@ -23,6 +23,7 @@ from dalembert.study.tasks.wrong import needs_solver, unmatched
 
 if TYPE_CHECKING:
     from dalembert.inverse import Fit
+    from dalembert.study.duration import Effort
     from dalembert.study.events import Emit
     from dalembert.study.study import Study
 
@@ -101,6 +102,19 @@ def _cost(method: Any, starts: int | None, parameters: int) -> str:
         sizes = f"{starts or 1} x {method.particles} particles x {method.iterations} iterations"
         return f"{name}: {sizes} = {method.particles * method.iterations * (starts or 1)} simulations"
     return f"{name} {getattr(method, 'name', '')}: as many simulations as it asks for"
+
+
+def _expected(method: Any, starts: int | None, parameters: int) -> tuple[int | None, int | None]:
+    """About how many simulations a method takes at least and at most; None where it decides on the way."""
+    from dalembert.inverse.multistart import SCREENED
+
+    if isinstance(method, Swarm):
+        count = method.particles * method.iterations * (starts or 1)
+        return count, count
+    if not isinstance(method, Squares):
+        return None, None
+    one, number = 10 * (1 + parameters), starts or 8
+    return one, one if number == 1 else number * (one + SCREENED * parameters)
 
 
 def _buildable(method: Any) -> Any:
@@ -198,6 +212,16 @@ class Identify(Task):
         whole.evaluate(whole.parameters.start[None]).only()
         cost = _cost(settings(table.method), table.starts, len(whole.parameters))
         return f"identifies {', '.join(whole.parameters.names)} from {_measured(model, data)} by {cost}"
+
+    def effort(self, study: "Study") -> "Effort":
+        from dalembert.inverse.experiments import joint
+        from dalembert.study.duration import TOGETHER, evaluated
+
+        model, _ = posed(study)
+        whole = joint(model)[0] if isinstance(model, list) else model
+        method = settings(study.table.method)
+        least, most = _expected(method, study.table.starts, len(whole.parameters))
+        return evaluated(whole, whole.parameters.start, least, most, TOGETHER if isinstance(method, Swarm) else 1)
 
     def foreseen(self, study: "Study") -> tuple[str, ...]:
         return telling.foreseen(*posed(study))

@@ -16,6 +16,7 @@ from dalembert.study.tasks.task import Outcome, Task
 from dalembert.study.tasks.wrong import needs_solver, unmatched, unnamed
 
 if TYPE_CHECKING:
+    from dalembert.study.duration import Effort
     from dalembert.study.events import Emit
     from dalembert.study.study import Study
 
@@ -69,6 +70,16 @@ class IdentifyBands(Task):
             f"identifies intervals of {', '.join(wide)}{numbers} from the bands of {', '.join(bands.channels)} at "
             f"{len(bands.coordinate.values)} samples by {_cost(_method(study), len(names))}"
         )
+
+    def effort(self, study: "Study") -> "Effort":
+        from dalembert.inverse import Nested
+        from dalembert.study.duration import TOGETHER, evaluated
+
+        bands, method, count = study.bands(), _method(study), None
+        if isinstance(method, Nested):
+            count = method.swarm.particles * method.swarm.iterations * method.scheme.runs(len(study.parameters.names))
+        model = study.forward(bands.channels, bands.coordinate.values)
+        return evaluated(model, study.parameters.start, count, count, TOGETHER)
 
     def unknowns(self, study: "Study") -> tuple[str, ...]:
         """Middles of all parameters, then radii of those that are intervals."""

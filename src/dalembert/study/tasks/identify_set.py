@@ -16,6 +16,7 @@ from dalembert.study.tasks.task import Outcome, Task
 from dalembert.study.tasks.wrong import needs_solver, unmatched, unnamed
 
 if TYPE_CHECKING:
+    from dalembert.study.duration import Effort
     from dalembert.study.events import Emit
     from dalembert.study.study import Study
 
@@ -69,6 +70,13 @@ class IdentifySet(Task):
             f"paves the set of {', '.join(study.parameters.names)} that explain {len(data.coordinate.values)} samples "
             f"of {', '.join(data.channels)} within their errors, on a surrogate of as many simulations as it needs"
         )
+
+    def effort(self, study: "Study") -> "Effort":
+        from dalembert.study.duration import TOGETHER, evaluated
+
+        data = study.data()
+        model = study.forward(data.channels, data.coordinate.values)
+        return evaluated(model, study.parameters.start, None, None, TOGETHER)
 
     def run(self, study: "Study", emit: "Emit") -> Outcome:
         from dalembert.inverse import as_record, identify_set

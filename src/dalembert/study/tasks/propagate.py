@@ -20,6 +20,7 @@ from dalembert.study.tasks.task import Outcome, Task
 from dalembert.study.tasks.wrong import needs_solver, unnamed
 
 if TYPE_CHECKING:
+    from dalembert.study.duration import Effort
     from dalembert.study.events import Emit
     from dalembert.study.study import Study
 
@@ -90,6 +91,16 @@ class Propagate(Task):
         return (
             f"bounds {channels} at {len(model.coordinate.values)} samples over {', '.join(wide)} by {', '.join(costs)}"
         )
+
+    def effort(self, study: "Study") -> "Effort":
+        from dalembert.study.duration import TOGETHER, evaluated
+        from dalembert.uncertainty.methods import label
+        from dalembert.uncertainty.runs import Runs
+
+        model, box = _model(study), _box(study)
+        known = [method.most(Runs(model, box, label(method))) for method in _methods(study)]
+        count = None if None in known else sum(filter(None, known))
+        return evaluated(model, box.middle, count, count, TOGETHER)
 
     def run(self, study: "Study", emit: "Emit") -> Outcome:
         from dalembert.uncertainty import as_record, compare, propagate

@@ -12,8 +12,13 @@ from dalembert.study.table import Read, StudyTable, problem
 from dalembert.study.tasks.task import Outcome, Task
 
 if TYPE_CHECKING:
+    from dalembert.study.duration import Effort
     from dalembert.study.events import Emit
     from dalembert.study.study import Study
+
+
+PARTS = 20
+"""A motion is timed over one of so many parts."""
 
 
 class SimulateTable(StudyTable):
@@ -99,6 +104,13 @@ class Simulate(Task):
     def plan(self, study: "Study") -> str:
         study.system()
         return f"simulates the motion to {study.table.last:g} s: 1 simulation"
+
+    def effort(self, study: "Study") -> "Effort":
+        from dalembert.study.duration import Effort
+
+        part = study.table.last / PARTS
+        study.motion(part)  # what there is to compile is compiled
+        return Effort(lambda: study.motion(part), 1 / PARTS, 1, 1, f"going by the first {part:.3g} s of the motion")
 
     def run(self, study: "Study", emit: "Emit") -> Outcome:
         emit("simulating", end=study.table.last)

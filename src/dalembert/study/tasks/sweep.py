@@ -17,6 +17,7 @@ from dalembert.study.tasks.task import Outcome, Task
 from dalembert.study.tasks.wrong import needs_solver, unnamed
 
 if TYPE_CHECKING:
+    from dalembert.study.duration import Effort
     from dalembert.study.events import Emit
     from dalembert.study.study import Study
 
@@ -140,6 +141,13 @@ class SweepTask(Task):
         each = f", each with {len(study.parameters)} sensitivities" if study.table.sensitivities else ""
         along = ", ".join(f"{name} ({number})" for name, number in values.items())
         return f"sweeps {along} at {_instant(model, study.table.at)}: {count} simulations{each}"
+
+    def effort(self, study: "Study") -> "Effort":
+        from dalembert.study.duration import TOGETHER, evaluated
+
+        count = sum(len(_values(study, name)) for name in study.table.over)
+        count *= 1 + len(study.parameters) if study.table.sensitivities else 1
+        return evaluated(_model(study), study.parameters.start, count, count, TOGETHER)
 
     def run(self, study: "Study", emit: "Emit") -> Outcome:
         model = _model(study)

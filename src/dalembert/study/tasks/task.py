@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 from dalembert.study.table import StudyTable
 
 if TYPE_CHECKING:
+    from dalembert.study.duration import Effort
     from dalembert.study.events import Emit
     from dalembert.study.study import Study
 
@@ -55,6 +56,10 @@ class Task(ABC):
     @abstractmethod
     def plan(self, study: "Study") -> str:
         """What would run, and about how many simulations, in a sentence; raises what running would raise at once."""
+
+    @abstractmethod
+    def effort(self, study: "Study") -> "Effort":
+        """What the study spends its time with."""
 
     def unknowns(self, study: "Study") -> tuple[str, ...]:
         """Names of the values that the events of a run tell."""

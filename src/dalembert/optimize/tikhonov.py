@@ -12,6 +12,9 @@ from scipy.optimize import brentq, minimize_scalar
 UNSEEN = 1e-10
 """Weights go down to this fraction of the largest singular value; a smaller singular value is zero to a simulation."""
 
+DEARER = 1.4
+"""ϱ of cross-validation: what each unknown costs, in values."""
+
 PER_DECADE = 12
 """Weights looked at a decade."""
 
@@ -128,16 +131,20 @@ class Regularised:
         return self._refined(lambda mu: -float(self.curvature(mu)), inner)
 
     def gcv(self) -> float:
-        """Weight of least generalised cross-validation ‖A d − b‖² / (values − Σ f)².
+        """Weight of least generalised cross-validation ‖A d − b‖² / (values − ϱ Σ f)².
+
+        With ϱ = 1, as it was published first, few values often leave a weight that is far too small.
 
         Infinite where no step at all scores best: b is noise then. :attr:`least` where no value is left over to
         validate by, or no weight scores best.
 
-        Source: Golub, Heath & Wahba, Technometrics 21 (1979).
+        Source: Golub, Heath & Wahba, Technometrics 21 (1979); ϱ: Kim & Gu, Journal of the Royal Statistical Society B
+        66 (2004).
         """
 
         def score(mu: ArrayLike) -> np.ndarray:
-            return (self.residual_norms(mu) / (self.values - np.sum(self._kept(mu), axis=-1))) ** 2
+            left = self.values - DEARER * np.sum(self._kept(mu), axis=-1)
+            return (self.residual_norms(mu) / np.maximum(left, 1e-3 * self.values)) ** 2
 
         last = len(self.weights) - 1
         best = int(np.argmin(score(self.weights))) if self.values > len(self.singular) else 0

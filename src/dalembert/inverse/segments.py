@@ -34,7 +34,9 @@ class State:
 
     def __post_init__(self) -> None:
         if not self.lower < self.upper:
-            raise InputError(f"State {self.channel!r}: bounds are ({self.lower}, {self.upper}); expected lower < upper")
+            raise InputError(
+                f"State {self.channel!r}: bounds are ({self.lower:g}, {self.upper:g}); expected lower < upper"
+            )
 
 
 @dataclass(frozen=True, eq=False)

@@ -36,6 +36,7 @@ from dalembert.report.sections import (
     Provenance,
     Search,
     Section,
+    Shooting,
     Sweeps,
     Telling,
     bound_headlines,
@@ -83,7 +84,8 @@ def contents(
             own = [headline.of_fit(result, title, notes), Estimates(result), _compared(result)]
             moving = each(trajectory)
             checks = [Diagnostics(moving)] if moving else []
-            after = [*_search(result), *_telling(result), *_beyond(profiles, each(prediction)), *checks]
+            told = [*_telling(result), *_beyond(profiles, each(prediction))]
+            after = [*_search(result), *_shooting(result), *told, *checks]
             sections = [*own, *_motion(moving, points, result), *after]
         case BandFitLike():
             own = [bound_headlines.of_band_fit(result, title, notes), Intervals(result, known), GivenBands(result)]
@@ -132,6 +134,12 @@ def _motion(moving: Mapping[str, TrajectoryLike], points: tuple[str, ...], fit: 
 
 def _search(fit: FitLike | BandFitLike) -> list[Section]:
     return [Search(fit)] if fit.history else []
+
+
+def _shooting(fit: FitLike) -> list[Section]:
+    """The section on segments, where the fit is of multiple shooting."""
+    nodes = getattr(fit, "nodes", None)
+    return [] if nodes is None else [Shooting(fit, nodes)]
 
 
 def _telling(fit: FitLike | BandFitLike) -> list[Section]:

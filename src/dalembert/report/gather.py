@@ -20,7 +20,7 @@ def figures(result: Result, **options: Any) -> dict[str, go.Figure]:
     -------
     dict of str to plotly.graph_objects.Figure
         For a fit ``"parameters"``, ``"responses-1"``, ``"convergence"``, ``"correlation"`` …, from response
-        sensitivity ``"l-curve"`` and ``"steps"`` too, for a trajectory
+        sensitivity ``"l-curve"`` and ``"steps"``, from multiple shooting ``"gaps"`` too, for a trajectory
         ``"mechanism"``, ``"energies"``, ``"violations"``, ``"newton"``, for bounds ``"bands-1"`` …, for methods
         compared ``"methods"`` and ``"differences"`` too, for intervals from bands ``"intervals"``,
         ``"residual-bands-1"`` …, for a set ``"paving-1"`` …, for a sweep ``"sweep-1"`` …, for profiles

@@ -75,10 +75,26 @@ class RegularisedStepLike(Protocol):
     def step_norms(self) -> np.ndarray: ...
 
 
+class NodesLike(Protocol):
+    """Where segments of multiple shooting meet: at ``samples`` (nodes,), in states (nodes, states)."""
+
+    @property
+    def states(self) -> tuple[str, ...]: ...
+    @property
+    def samples(self) -> np.ndarray: ...
+    @property
+    def ends(self) -> np.ndarray: ...
+    @property
+    def begins(self) -> np.ndarray: ...
+    @property
+    def growth(self) -> float: ...
+
+
 class StepLike(Protocol):
     """One iteration of one start: its best fitness after so many simulations.
 
-    ``regularised``, where there is one, is a :class:`RegularisedStepLike`.
+    ``regularised``, where there is one, is a :class:`RegularisedStepLike`; ``gap``, where there is one, the largest
+    between segments.
     """
 
     @property

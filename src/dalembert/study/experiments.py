@@ -127,7 +127,12 @@ def posed(study: "Study") -> "tuple[ForwardModel | list[Experiment], Measurement
 
     if not study.file.experiments:
         data = study.data()
-        return _model(study, data), data
+        shooting = getattr(study.table, "shooting", None)
+        if shooting is None:
+            return _model(study, data), data
+        later = (state.channel for state in shooting.states.values())
+        channels = tuple(dict.fromkeys((*data.channels, *later)))
+        return study.forward(channels, data.coordinate.values), data
     experiments = []
     for table in study.file.experiments:
         data, variant = table.read(), study.varied(table.constants, table.arguments)

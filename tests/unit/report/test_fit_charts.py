@@ -1,7 +1,11 @@
+from functools import partial
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from dalembert.errors import InputError
+from dalembert.inverse import StartEnd, Step
 from dalembert.parameters import Parameter, Parameters
 from dalembert.report import charts
 from dalembert.report.charts.singular_values import combination
@@ -130,3 +134,19 @@ def test_singular_values_stand_beside_their_combinations():
 
 def test_small_parts_of_a_combination_are_left_out():
     assert combination(np.array([0.01, 1.0]), ["a", "b"]) == "1.00 b"
+
+
+def test_gaps_of_the_best_start_stand_over_its_misfit():
+    step = partial(Step, values=np.zeros(2), samples=9)
+    ends = [StartEnd(np.zeros(2), np.zeros(2), fitness, True, "", 9) for fitness in (5.0, 1.0)]
+    history = [
+        step(0, 0, 3, 9.0, gap=0.5),
+        step(1, 0, 6, 8.0, gap=0.1),
+        step(1, 1, 9, 2.0, gap=0.0),
+        step(1, 2, 12, 1.0),
+    ]
+    figure = charts.gaps(SimpleNamespace(history=history, starts=ends))
+    drawn = {trace.name: trace for trace in figure.data}
+    np.testing.assert_array_equal(drawn["largest gap"].y, [0.1, np.nan])
+    np.testing.assert_array_equal(drawn["misfit"].y, [8.0, 2.0])
+    assert figure.layout.yaxis.title.text == "gap (part of the range)"

@@ -5,6 +5,7 @@ from dalembert.report.charts.convergence import convergence
 from dalembert.report.charts.correlation import correlation
 from dalembert.report.charts.designs import horizons, ranking
 from dalembert.report.charts.energies import energies
+from dalembert.report.charts.gaps import gaps
 from dalembert.report.charts.intervals import intervals
 from dalembert.report.charts.l_curve import l_curve
 from dalembert.report.charts.mechanism import mechanism
@@ -28,6 +29,7 @@ __all__ = [
     "correlation",
     "differences",
     "energies",
+    "gaps",
     "horizons",
     "intervals",
     "l_curve",

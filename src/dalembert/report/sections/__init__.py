@@ -17,6 +17,7 @@ from dalembert.report.sections.profiling import Profiling
 from dalembert.report.sections.provenance import Provenance
 from dalembert.report.sections.search import Search
 from dalembert.report.sections.section import Section
+from dalembert.report.sections.shooting import Shooting
 from dalembert.report.sections.sweeps import Sweeps
 from dalembert.report.sections.telling import Telling
 
@@ -38,6 +39,7 @@ __all__ = [
     "Provenance",
     "Search",
     "Section",
+    "Shooting",
     "Sweeps",
     "Telling",
 ]

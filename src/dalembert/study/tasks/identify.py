@@ -18,8 +18,9 @@ from dalembert.study.experiments import measured_channels, posed, unknown_names
 from dalembert.study.numbers import fixed
 from dalembert.study.table import Read, StudyTable, checked
 from dalembert.study.tasks import telling
+from dalembert.study.tasks.shooting import ShootingTable
 from dalembert.study.tasks.task import Outcome, Task
-from dalembert.study.tasks.wrong import needs_solver, unmatched
+from dalembert.study.tasks.wrong import needs_solver, unmatched, unnamed
 
 if TYPE_CHECKING:
     from dalembert.inverse import Fit
@@ -60,6 +61,9 @@ class IdentifyTable(StudyTable):
     validation: Annotated[float, Field(gt=0, lt=1)] | list[str] | None = Field(
         None, description="share of the samples at the end, or names of experiments, that are predicted, not fitted"
     )
+    shooting: ShootingTable | None = Field(
+        None, description="segments that must meet, in place of the growing horizon: for chaotic motion"
+    )
     profile: bool = Field(False, description="whether to make the profile likelihood of each parameter too")
     prediction: bool = Field(False, description="whether to make bands of the response and of new measurements too")
     level: float = Field(0.95, gt=0, lt=1, description="probability of profiles' intervals and of bands")
@@ -92,9 +96,15 @@ def settings(method: Any) -> Any:
     return Minimiser(method)
 
 
-def _cost(method: Any, starts: int | None, parameters: int) -> str:
+def _cost(method: Any, starts: int | None, parameters: int, shooting: ShootingTable | None) -> str:
     """A method's name, and about how many simulations it takes."""
     name = type(method).__name__
+    if shooting is not None:
+        one, most = 80 * (1 + parameters), starts or 3
+        return (
+            f"{name} in {shooting.segments} segments that must meet: about {one} simulations a start, sensitivities "
+            f"counted, and at most {most} starts"
+        )
     if isinstance(method, Squares):
         one = 10 * (1 + parameters)
         return f"{name}: about {one} simulations a start, sensitivities counted, and at most {starts or 8} starts"
@@ -201,7 +211,7 @@ class Identify(Task):
                 f"[identify], profile: the minimum of the loss {file.identify.loss!r} is no likelihood; leave one of "
                 "the keys out"
             )
-        return [*wrong, *needs_solver(file)]
+        return [*wrong, *_wrong_shooting(file), *needs_solver(file)]
 
     def plan(self, study: "Study") -> str:
         from dalembert.inverse.experiments import joint
@@ -210,7 +220,7 @@ class Identify(Task):
         model, data = posed(study)
         whole = joint(model)[0] if isinstance(model, list) else model
         whole.evaluate(whole.parameters.start[None]).only()
-        cost = _cost(settings(table.method), table.starts, len(whole.parameters))
+        cost = _cost(settings(table.method), table.starts, len(whole.parameters), table.shooting)
         return f"identifies {', '.join(whole.parameters.names)} from {_measured(model, data)} by {cost}"
 
     def effort(self, study: "Study") -> "Effort":
@@ -248,6 +258,7 @@ class Identify(Task):
             loss=table.loss,
             loss_scale=table.loss_scale,
             validation=table.validation,
+            shooting=None if table.shooting is None else table.shooting.settings(),
             on_event=teller(emit, as_record),
         )
         return Identification(study, fit, telling.beyond(table, model, data, fit, teller(emit, as_record)))
@@ -257,6 +268,21 @@ class Identify(Task):
 
         names = [table.name for table in study.file.experiments]
         return Identification(study, Fit.load(path), telling.load(path, names))
+
+
+def _wrong_shooting(file: Any) -> list[str]:
+    """Sentences about multiple shooting where it cannot be."""
+    table = file.identify
+    if table.shooting is None:
+        return []
+    wrong = unnamed(table.shooting.states, file.parameters, "[identify.shooting], states")
+    for key, given in (("[[experiments]]", file.experiments), ("[sensors]", file.sensors)):
+        wrong += [f"[identify.shooting] cannot be used with {key}; leave one of them out"] if given else []
+    if table.validation is not None:
+        wrong.append("[identify.shooting] cannot be used with validation; leave one of the keys out")
+    if not isinstance(settings(table.method), Squares):
+        wrong.append("[identify.shooting] is a way of least squares; leave it or the method out")
+    return wrong
 
 
 def _measured(model: Any, data: Any) -> str:

@@ -628,6 +628,20 @@ CASES: dict[str, Case] = {
         lambda: da.compare(WAVE, {"rate": (1.0, 20.0)}, [Chebyshev(Tensor(4))]),
         ("did not succeed; the table of methods says why.", "gave no bounds:"),
     ),
+    # ── multiple shooting ───────────────────────────────────────────────────────────────────────────────────────────
+    "segments that must meet": Case(
+        lambda: da.identify(
+            DECAY,
+            measured(DECAY, [2.0, 0.8], noise=0.01, deviations=0.01),
+            shooting=da.MultipleShooting({"size": da.State("x", 0.0, 5.0)}, 4),
+        ),
+        (
+            "The 4 segments meet within",
+            "and merged into one run.",
+            "By the last of these states a small change of the initial state has grown",
+        ),
+        ("gaps",),
+    ),
     # ── motions and sweeps ──────────────────────────────────────────────────────────────────────────────────────────
     "a motion": Case(
         _pendulum,

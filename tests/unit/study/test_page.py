@@ -22,6 +22,8 @@ TABLES = {
     "SensorTable": [r'sensors\."AB.end.x"'],
     "SimulateTable": ["simulate"],
     "Identify": ["identify"],
+    "ShootingTable": ["identify"],
+    "StateTable": ["identify"],
     "SweepTable": ["sweep"],
     "BoundsTable": ["sweep"],
     "Propagate": ["propagate"],

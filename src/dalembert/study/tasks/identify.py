@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from dalembert.study.study import Study
 
 DEFAULT = "least-squares"
+STEPS_IN_SEGMENTS = 80  # of multiple shooting from one start, about: 57 to 105 in studies/chaotic-pendulum
 
 MOST_MOTIONS = 4
 """Experiments whose motion the report draws: each drawing adds to the size of its page."""
@@ -100,7 +101,7 @@ def _cost(method: Any, starts: int | None, parameters: int, shooting: ShootingTa
     """A method's name, and about how many simulations it takes."""
     name = type(method).__name__
     if shooting is not None:
-        one, most = 80 * (1 + parameters), starts or 3
+        one, most = STEPS_IN_SEGMENTS * (1 + parameters), starts or 3
         return (
             f"{name} in {shooting.segments} segments that must meet: about {one} simulations a start, sensitivities "
             f"counted, and at most {most} starts"
@@ -114,7 +115,9 @@ def _cost(method: Any, starts: int | None, parameters: int, shooting: ShootingTa
     return f"{name} {getattr(method, 'name', '')}: as many simulations as it asks for"
 
 
-def _expected(method: Any, starts: int | None, parameters: int) -> tuple[int | None, int | None]:
+def _expected(
+    method: Any, starts: int | None, parameters: int, shooting: ShootingTable | None
+) -> tuple[int | None, int | None]:
     """About how many simulations a method takes at least and at most; None where it decides on the way."""
     from dalembert.inverse.multistart import SCREENED
 
@@ -123,6 +126,9 @@ def _expected(method: Any, starts: int | None, parameters: int) -> tuple[int | N
         return count, count
     if not isinstance(method, Squares):
         return None, None
+    if shooting is not None:
+        one = STEPS_IN_SEGMENTS * (1 + parameters)
+        return one, (starts or 3) * one
     one, number = 10 * (1 + parameters), starts or 8
     return one, one if number == 1 else number * (one + SCREENED * parameters)
 
@@ -230,7 +236,7 @@ class Identify(Task):
         model, _ = posed(study)
         whole = joint(model)[0] if isinstance(model, list) else model
         method = settings(study.table.method)
-        least, most = _expected(method, study.table.starts, len(whole.parameters))
+        least, most = _expected(method, study.table.starts, len(whole.parameters), study.table.shooting)
         return evaluated(whole, whole.parameters.start, least, most, TOGETHER if isinstance(method, Swarm) else 1)
 
     def foreseen(self, study: "Study") -> tuple[str, ...]:

@@ -481,6 +481,13 @@ CASES: dict[str, Case] = {
         ("'ghost' is not told by the data: wherever it is between its bounds, they are explained within their noise;",),
     ),
     "lopsided profile": Case(_lopsided, ("The interval of 'rate' is lopsided,", "the standard deviation")),
+    "profile in two pieces": Case(
+        lambda: _profiled(
+            _model(lambda a: a**2 * TIMES, a=(-3.0, 2.0)),
+            _exact(_model(lambda a: a**2 * TIMES, a=(-3.0, 2.0)), [1.5], noise=0.1, deviations=0.1),
+        ),
+        ("Beside its interval the data do not contradict 'a' from",),
+    ),
     "profile of no minimum": Case(_no_minimum, ("A better minimum lies near offset =",)),
     "profile into overflow": Case(
         lambda: _broken_profile(_jump), ("The upper side of 'rate' ends early: the misfit is not finite.",)

@@ -38,8 +38,8 @@ def neighbours(problem: Problem, end: End) -> np.ndarray:
         return np.empty((0, len(end.point)))
     fitness = np.split(problem.fitness(np.concatenate(rays)), np.cumsum([len(ray) for ray in rays])[:-1])
     hopeful = end.fitness + WORSE * variance
-    dips = [(f[k], tuple(ray[k])) for ray, f in zip(rays, fitness, strict=True) for k in _dips(f) if f[k] < hopeful]
-    return np.array([point for _, point in sorted(dips)]).reshape(-1, len(end.point))
+    found = [(f[k], tuple(ray[k])) for ray, f in zip(rays, fitness, strict=True) for k in dips(f) if f[k] < hopeful]
+    return np.array([point for _, point in sorted(found)]).reshape(-1, len(end.point))
 
 
 def _distances(problem: Problem, point: np.ndarray, way: np.ndarray, first: float) -> np.ndarray:
@@ -50,7 +50,7 @@ def _distances(problem: Problem, point: np.ndarray, way: np.ndarray, first: floa
     return distances[distances <= np.min(walls)]
 
 
-def _dips(fitness: np.ndarray) -> np.ndarray:
+def dips(fitness: np.ndarray) -> np.ndarray:
     """Numbers of the local minima of fitness (points,) along a ray, its ends left out."""
     finite = np.where(np.isfinite(fitness), fitness, np.inf)
     inside = finite[1:-1]

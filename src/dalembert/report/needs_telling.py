@@ -12,7 +12,8 @@ from dalembert.report.needs import BandsLike, MeasurementsLike
 class ProfileLike(Protocol):
     """Excess misfit (points,) for values (points,) of a parameter; where the others are, (points, parameters).
 
-    ``open`` says on which side the interval ends at a bound, and not where the misfit passes the threshold.
+    ``open`` says on which side the interval ends at a bound, and not where the misfit passes the threshold;
+    ``elsewhere`` are further intervals.
     """
 
     @property
@@ -29,6 +30,8 @@ class ProfileLike(Protocol):
     def upper(self) -> float: ...
     @property
     def open(self) -> tuple[bool, bool]: ...
+    @property
+    def elsewhere(self) -> tuple[tuple[float, float], ...]: ...
 
 
 @runtime_checkable

@@ -1,6 +1,7 @@
 """Profile likelihood: how much worse the data are explained with one parameter held elsewhere."""
 
 from collections.abc import Collection, Iterable, Sequence
+from dataclasses import replace
 
 import numpy as np
 from scipy.stats import chi2, f
@@ -15,6 +16,7 @@ from dalembert.inverse.experiments import Experiment, joint
 from dalembert.inverse.fit import Fit
 from dalembert.inverse.journal import Journal
 from dalembert.inverse.problem import Problem, pose
+from dalembert.inverse.telling.elsewhere import elsewhere
 from dalembert.inverse.telling.profiles import Profile, Profiles
 from dalembert.inverse.telling.walk import Walk, walked
 from dalembert.optimize import LeastSquares
@@ -72,7 +74,8 @@ def profile(
     interval is where (g − g_fit)/s² stays below the quantile of chi-square with one degree of freedom; where the noise
     s² is estimated from the residuals, that of F(1, freedom). For a linear response it is the value ∓ quantile ×
     deviation; where the response bends, or other parameters make up for the change, only the profile is right. A side
-    ends at the first crossing, or open at the parameter's bound.
+    ends at the first crossing, or open at the parameter's bound. A scan of the parameter between its bounds, one batch,
+    then looks for further intervals beyond, which are told beside.
 
     Source: Raue et al., Bioinformatics 25 (2009), 1923-1929; Bates and Watts, Nonlinear Regression Analysis, 1988.
 
@@ -111,11 +114,10 @@ def profile(
     threshold = float(chi2.ppf(level, 1) if known else f.ppf(level, 1, freedom(fit)))
     curves = []
     for k in (fit.parameters.names.index(name) for name in chosen):
-        sides = [
-            walked(problem, at, k, side, Walk(best, noise, threshold, points, LeastSquares(trials=30)))
-            for side in (-1, 1)
-        ]
-        curves.append(_curve(fit, k, sides))
+        walk = Walk(best, noise, threshold, points, LeastSquares(trials=30))
+        curve = _curve(fit, k, [walked(problem, at, k, side, walk) for side in (-1, 1)])
+        further = elsewhere(problem, values, k, (curve.lower, curve.upper), walk)
+        curves.append(replace(curve, elsewhere=further))
     return Profiles(
         parameters=fit.parameters,
         values=values,

@@ -41,6 +41,8 @@ class Profile:
         Whether the misfit stays below the threshold up to the bound, on the lower and on the upper side.
     broken : tuple of str
         Why a side ends before threshold and bound, "" where it does not.
+    elsewhere : tuple of (float, float)
+        Further intervals, apart from this one, that the data do not contradict either.
     """
 
     name: str
@@ -51,6 +53,7 @@ class Profile:
     upper: float
     open: tuple[bool, bool]
     broken: tuple[str, str] = ("", "")
+    elsewhere: tuple[tuple[float, float], ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,6 +147,12 @@ class Profiles(Result):
                     f"The interval of {curve.name!r} is lopsided, {below:.3g} below and {above:.3g} above its value: "
                     f"the standard deviation {self.deviations[k]:.3g} misleads."
                 )
+        if curve.elsewhere:
+            parts = listed([f"{lower:.6g} to {upper:.6g}" for lower, upper in curve.elsewhere])
+            found.append(
+                f"Beside its interval the data do not contradict {curve.name!r} from {parts} either; measure what "
+                "tells these minima apart, or narrow the bounds."
+            )
         return found
 
     @property
@@ -177,6 +186,7 @@ class Profiles(Result):
             "parameters": [asdict(item) for item in self.parameters],
             "known": self.known,
             "broken": [curve.broken for curve in self.curves],
+            "elsewhere": [curve.elsewhere for curve in self.curves],
             "provenance": self.provenance,
         }
         return Dataset(
@@ -223,6 +233,7 @@ class Profiles(Result):
                 upper=float(a["upper"][n]),
                 open=(bool(a["open"][n, 0]), bool(a["open"][n, 1])),
                 broken=(told["broken"][n][0], told["broken"][n][1]),
+                elsewhere=tuple((lower, upper) for lower, upper in told.get("elsewhere", [()] * (n + 1))[n]),
             )
             for n, name in enumerate(a["profile"])
         )

@@ -48,8 +48,8 @@ class Side:
     broken: str = ""
 
 
-def walked(problem: Problem, at: Linearisation, k: int, side: int, walk: Walk) -> Side:
-    """One side of the profile of parameter ``k``: ``side`` −1 goes down, +1 up.
+def walked(problem: Problem, at: Linearisation, k: int, side: int, walk: Walk, excess: float = 0.0) -> Side:
+    """One side of the profile of parameter ``k``: ``side`` −1 goes down, +1 up, from a minimum with this excess.
 
     Each value is chosen so that √excess grows by a quarter of its threshold, judging from the last two; once beyond,
     the crossing is found by Brent's method. The other parameters begin where the last two values lead them.
@@ -60,7 +60,7 @@ def walked(problem: Problem, at: Linearisation, k: int, side: int, walk: Walk) -
     width = search.upper[k] - search.lower[k]
     goal = np.sqrt(walk.threshold)
     found = Side()
-    path = [(0.0, origin)]  # √excess and search point, outward
+    path = [(_root(excess), origin)]  # √excess and search point, outward
     step, way = _first(problem, at, k, walk)
     step, failed = step * STEP * goal, ""
     while abs(bound - path[-1][1][k]) > 1e-9 * width:
@@ -78,7 +78,7 @@ def walked(problem: Problem, at: Linearisation, k: int, side: int, walk: Walk) -
         else:
             found.broken = failed
             break
-        root = _root(here[0], walk)
+        root = _root(here[0])
         path.append((root, here[1]))
         found.rows.append((here[0], search.vectors(here[1])))
         problem.journal.tell(Profiled(problem.model.parameters.names[k], here[0], problem.journal.simulations))
@@ -141,7 +141,7 @@ def _least(problem: Problem, k: int, guess: np.ndarray, walk: Walk) -> tuple[flo
     return (fitness - walk.best) / walk.variance, point
 
 
-def _root(excess: float, walk: Walk) -> float:
+def _root(excess: float) -> float:
     return float(np.sqrt(max(excess, 0.0)))
 
 
@@ -173,7 +173,7 @@ def _crossing(problem: Problem, k: int, path: list[tuple[float, np.ndarray]], wa
             here = _least(problem, k, guess, walk)
             if isinstance(here, str):
                 raise SolveError(here)
-            known[value] = _root(here[0], walk), here[1]
+            known[value] = _root(here[0]), here[1]
             found.rows.append((here[0], problem.search.vectors(here[1])))
         return known[value][0] - goal
 

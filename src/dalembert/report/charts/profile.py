@@ -72,6 +72,17 @@ def profile(result: ProfilesLike, name: str, *, title: str = "") -> go.Figure:
         row=1,  # pyright: ignore[reportArgumentType]
         col=1,  # pyright: ignore[reportArgumentType]
     )
+    for number, (lower, upper) in enumerate(curve.elsewhere):
+        figure.add_scatter(
+            x=[lower, upper],
+            y=[result.threshold] * 2,
+            name="not contradicted either",
+            showlegend=number == 0,
+            mode="lines",
+            line={"color": LIGHT.series[0], "width": 5},
+            row=1,
+            col=1,
+        )
     others = [other for other in range(len(result.parameters)) if other != k]
     for place, other in enumerate(others):
         spread = result.deviations[other]

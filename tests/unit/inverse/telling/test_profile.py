@@ -98,6 +98,29 @@ def test_a_side_without_a_limit_is_told():
     assert "50 (bound)" in told.summary()
 
 
+def test_further_intervals_are_told_and_mirror_the_first():
+    square = PythonModel(lambda a, b: b + a**2 * TIMES, {"a": (-3.0, 2.0), "b": (-1.0, 1.0)}, ["x"], TIMES)
+    data = measured(square, [1.5, 0.2], noise=0.1, deviations=0.1)
+    told = profile(square, data, identify(square, data))
+    ((lower, upper),) = told["a"].elsewhere
+    np.testing.assert_allclose((-upper, -lower), told.intervals["a"], rtol=1e-5)
+    assert told["b"].elsewhere == ()
+    assert "Beside its interval the data do not contradict 'a' from" in told.status
+    assert told.success
+    names = [trace.name for trace in told.figures()["profile-1"].data]
+    assert "not contradicted either" in names
+
+
+def test_further_intervals_come_back_from_a_file(tmp_path):
+    square = PythonModel(lambda a: a**2 * TIMES, {"a": (-3.0, 2.0)}, ["x"], TIMES)
+    data = measured(square, [1.5], noise=0.1, deviations=0.1)
+    told = profile(square, data, identify(square, data))
+    told.save(tmp_path / "profiles.nc")
+    back = Profiles.load(tmp_path / "profiles.nc")
+    assert back["a"].elsewhere == told["a"].elsewhere != ()
+    assert back.status == told.status
+
+
 def test_a_lopsided_interval_is_told():
     times = np.linspace(0, 4, 9)
     model = PythonModel(lambda rate: np.exp(-rate * times), {"rate": (0.1, 50.0)}, ["x"], times)

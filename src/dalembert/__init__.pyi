@@ -7,6 +7,7 @@ from dalembert import multibody as multibody
 from dalembert import optimize as optimize
 from dalembert import parameters as parameters
 from dalembert import report as report
+from dalembert import structure as structure
 from dalembert import study as study
 from dalembert import surrogate as surrogate
 from dalembert import uncertainty as uncertainty
@@ -88,6 +89,9 @@ from dalembert.optimize import ParticleSwarm as ParticleSwarm
 from dalembert.optimize import ResponseSensitivity as ResponseSensitivity
 from dalembert.parameters import Parameter as Parameter
 from dalembert.parameters import Parameters as Parameters
+from dalembert.structure import Dofs as Dofs
+from dalembert.structure import Structure as Structure
+from dalembert.structure import lumped as lumped
 from dalembert.surrogate import Adaptive as Adaptive
 from dalembert.surrogate import ChebyshevPolynomial as ChebyshevPolynomial
 from dalembert.surrogate import Surrogate as Surrogate

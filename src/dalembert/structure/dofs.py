@@ -1,0 +1,88 @@
+"""Names of degrees of freedom."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+
+from dalembert.errors import InputError, unknown
+
+DIRECTIONS = ("x", "y", "z", "rx", "ry", "rz")
+
+
+@dataclass(frozen=True)
+class Dofs:
+    """Degrees of freedom by name, ``NODE.DIRECTION``; directions are x, y, z, rx, ry and rz.
+
+    Parameters
+    ----------
+    names : tuple of str
+        In the order of the rows of the matrices.
+
+    Raises
+    ------
+    InputError
+        For a name that is not of this form, or that comes twice.
+
+    Examples
+    --------
+    >>> dofs = Dofs(("a.x", "a.y", "b.x"))
+    >>> dofs.index("a.y"), dofs.index("b")
+    (1, 2)
+    """
+
+    names: tuple[str, ...]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "names", tuple(self.names))
+        for name in self.names:
+            if name.rpartition(".")[2] not in DIRECTIONS or not name.rpartition(".")[0]:
+                raise InputError(
+                    f"Dofs: a degree of freedom is called {name!r}; expected NODE.DIRECTION with one of the directions "
+                    f"{', '.join(DIRECTIONS)}, such as 'A.x'"
+                )
+        if len(self._places) < len(self.names):
+            twice = next(name for name in self.names if self.names.count(name) > 1)
+            raise InputError(f"Dofs: the name {twice!r} is given twice; expected a name for each degree of freedom")
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def index(self, name: str) -> int:
+        """Row of a degree of freedom; a node that has only one may be named alone.
+
+        Raises
+        ------
+        InputError
+            For an unknown name, with the nearest ones.
+        """
+        if name in self._places:
+            return self._places[name]
+        own = self._of_node.get(name, [])
+        if len(own) == 1:
+            return own[0]
+        if own:
+            raise InputError(
+                f"the node {name!r} has the degrees of freedom {', '.join(self.names[row] for row in own)}; name one"
+            )
+        raise InputError(unknown("degree of freedom", name, self.names))
+
+    def rows(self, names: Iterable[str]) -> list[int]:
+        """Rows of several degrees of freedom; a node alone stands for all of its own.
+
+        Raises
+        ------
+        InputError
+            For an unknown name, with the nearest ones.
+        """
+        return [row for name in names for row in self._of_node.get(name) or [self.index(name)]]
+
+    @cached_property
+    def _places(self) -> dict[str, int]:
+        return {name: row for row, name in enumerate(self.names)}
+
+    @cached_property
+    def _of_node(self) -> dict[str, list[int]]:
+        own: dict[str, list[int]] = {}
+        for row, name in enumerate(self.names):
+            own.setdefault(name.rpartition(".")[0], []).append(row)
+        return own

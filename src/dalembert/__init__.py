@@ -42,6 +42,7 @@ _NAMES = {
         RevoluteJoint PrismaticJoint FixedJoint DistanceJoint PrescribedMotion
         Force Torque Spring TorsionSpring UserForce
         Step Harmonic Polynomial Table Custom
+        Collocation GaussNewton
         GeneralizedAlpha TimeResponse Trajectory simulate equilibrium modes
     """,
     "uncertainty": """

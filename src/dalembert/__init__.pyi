@@ -55,10 +55,12 @@ from dalembert.inverse import predict as predict
 from dalembert.inverse import profile as profile
 from dalembert.multibody import AncfBeam as AncfBeam
 from dalembert.multibody import AncfCable as AncfCable
+from dalembert.multibody import Collocation as Collocation
 from dalembert.multibody import Custom as Custom
 from dalembert.multibody import DistanceJoint as DistanceJoint
 from dalembert.multibody import FixedJoint as FixedJoint
 from dalembert.multibody import Force as Force
+from dalembert.multibody import GaussNewton as GaussNewton
 from dalembert.multibody import GeneralizedAlpha as GeneralizedAlpha
 from dalembert.multibody import Harmonic as Harmonic
 from dalembert.multibody import Point as Point

@@ -3,6 +3,7 @@
 from dalembert.multibody.beams import AncfBeam, AncfCable
 from dalembert.multibody.bodies import PointMass, RigidBar, RigidBody
 from dalembert.multibody.drawing import Drawing
+from dalembert.multibody.integrators.collocation import Collocation, GaussNewton
 from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha
 from dalembert.multibody.joints import DistanceJoint, FixedJoint, PrescribedMotion, PrismaticJoint, RevoluteJoint
 from dalembert.multibody.loads import Force, Spring, Torque, TorsionSpring, UserForce
@@ -17,6 +18,7 @@ from dalembert.multibody.trajectory import Trajectory
 __all__ = [
     "AncfBeam",
     "AncfCable",
+    "Collocation",
     "Constant",
     "Custom",
     "DistanceJoint",
@@ -24,6 +26,7 @@ __all__ = [
     "Equilibrium",
     "FixedJoint",
     "Force",
+    "GaussNewton",
     "GeneralizedAlpha",
     "Ground",
     "GroundPoint",

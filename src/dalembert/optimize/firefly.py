@@ -32,6 +32,8 @@ class Firefly:
         After which it ends.
     exponent : float
         ν, of the distance.
+    resolution : float
+        Share of the box's width below which two places count as one; 0 tells apart all that numbers can.
 
     Notes
     -----
@@ -56,12 +58,13 @@ class Firefly:
     target: float = 1e-15
     generations: int = 1000
     exponent: float = 2.0
+    resolution: float = 1e-10
 
     def __post_init__(self) -> None:
         for name in ("fireflies", "generations"):
             if getattr(self, name) < 1:
                 raise InputError(f"Firefly: {name} is {getattr(self, name)}; expected at least 1")
-        for name in ("absorption", "target"):
+        for name in ("absorption", "target", "resolution"):
             if not getattr(self, name) >= 0:
                 raise InputError(f"Firefly: {name} is {getattr(self, name)}; expected no negative number")
         for name in ("attraction", "exponent"):
@@ -116,8 +119,8 @@ class Firefly:
             away = places[brightest] - places
             memory = self.randomness * memory + self._pull(away / width) * away
             trial = np.clip(places + memory, low, high)
-            fresh = np.any(trial != places, axis=1) & np.any(trial != tried, axis=1)
-            tried = trial
+            fresh = self._apart(trial, places, width) & self._apart(trial, tried, width)
+            tried = np.where(fresh[:, None], trial, tried)
             generation += 1
             if not fresh.any():
                 message = f"no firefly moves any more after {generation} generations"
@@ -130,6 +133,10 @@ class Firefly:
         success = bool(np.isfinite(best))
         message = message if success else "every sample failed"
         return Minimum(places[brightest], best, success, message, generation, evaluations)
+
+    def _apart(self, one: np.ndarray, other: np.ndarray, width: np.ndarray) -> np.ndarray:
+        """Which places (fireflies, parameters) are not the same, (fireflies,)."""
+        return np.any(np.abs(one - other) > self.resolution * width, axis=1)
 
     def _pull(self, away: np.ndarray) -> np.ndarray:
         """β of fireflies that are so far away, in widths of the box: (fireflies, parameters) to (fireflies, 1)."""

@@ -90,7 +90,7 @@ def _built(table: KindTable, values: Values, placed: Values, system: Any, where:
     arguments = {
         key: _resolved(given, values, placed, system, f"{where}, {key}") for key, given in table.given().items()
     }
-    return table.target(**arguments)
+    return table.target_type(**arguments)
 
 
 def _resolved(given: Any, values: Values, placed: Values, system: Any, where: str) -> Any:

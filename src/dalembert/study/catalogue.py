@@ -60,11 +60,20 @@ def band_methods() -> dict[str, type]:
 
 
 @cache
+def step_minimisers() -> dict[str, type]:
+    """Minimisers of a collocation step, by the names that a study file gives them."""
+    from dalembert import multibody
+
+    return {"gauss-newton": multibody.GaussNewton, **methods()}
+
+
+@cache
 def parts() -> dict[str, Any]:
     """Keys for settings that are chosen among several kinds themselves, by the names of their types."""
     scheme, swarm = settings_of(schemes()), settings_of(swarms())
     only = settings_of({"total-degree": schemes()["total-degree"]})
-    return {"Scheme": scheme, "TotalDegree": only, "ParticleSwarm": swarm}
+    step = settings_of(step_minimisers())
+    return {"Scheme": scheme, "TotalDegree": only, "ParticleSwarm": swarm, "GaussNewton": step}
 
 
 @cache

@@ -28,7 +28,7 @@ _NONE = type(None)
 class KindTable(StudyTable):
     """A table made from a dataclass, and the dataclass that it is for."""
 
-    target: ClassVar[type]
+    target_type: ClassVar[type]  # no dataclass has an argument of this name
 
     def given(self) -> dict[str, Any]:
         """The arguments that the study file gives; the dataclass has defaults for the others."""
@@ -37,7 +37,7 @@ class KindTable(StudyTable):
 
     def settings(self) -> Any:
         """The dataclass itself, where no number depends on parameters."""
-        return checked(lambda: self.target(**{name: _settled(value) for name, value in self.given().items()}))
+        return checked(lambda: self.target_type(**{name: _settled(value) for name, value in self.given().items()}))
 
 
 def table_of(
@@ -74,7 +74,7 @@ def table_of(
         key = _key(name, _bare(hints[name]), numeric, signal, parts or {})
         keys[FORM if name == "kind" else name] = (key, _default(argument))
     table = create_model(kind, __base__=KindTable, __doc__=(target.__doc__ or kind).strip().split("\n")[0], **keys)
-    table.target = target
+    table.target_type = target
     return table
 
 

@@ -14,7 +14,7 @@ from pydantic import (
     model_validator,
 )
 
-from dalembert.study.catalogue import catalogue
+from dalembert.study.catalogue import catalogue, parts
 from dalembert.study.components import buildable, one_of, table_of
 from dalembert.study.data_table import BandsTable, DataTable
 from dalembert.study.experiments import ExperimentTable, SensorTable, wrong_experiments
@@ -76,9 +76,11 @@ class StudyFile(StudyTable):
 @cache
 def study_file() -> type[StudyFile]:
     """The study file with all the kinds that there are."""
-    solver = one_of(
-        [table_of(target, default=target.__name__ == SOLVER, varying=False) for target in catalogue()["solver"]], SOLVER
-    )
+    tables = [
+        table_of(target, default=target.__name__ == SOLVER, varying=False, parts=parts())
+        for target in catalogue()["solver"]
+    ]
+    solver = one_of(tables, SOLVER)
     fields: dict[str, Any] = {name: (task.table() | None, None) for name, task in TASKS.items()}
     checked_solver: Any = Annotated[solver, AfterValidator(buildable)]
     fields |= {"model": (model_table(), ...), "solver": (checked_solver | None, None)}

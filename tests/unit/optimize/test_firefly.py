@@ -62,7 +62,7 @@ def test_the_move_is_the_published_formula():
 
 def test_what_was_refused_is_not_computed_again_and_changes_nothing():
     """A search of whole generations, written out, finds the same place with more evaluations."""
-    found = Firefly().minimise(raised, LOWER, UPPER, seed=3)
+    found = Firefly(resolution=0.0).minimise(raised, LOWER, UPPER, seed=3)
     places = LOWER + (UPPER - LOWER) * np.random.default_rng(3).random((60, 2))
     fitness, memory = raised(places), np.zeros((60, 2))
     for _ in range(999):
@@ -76,6 +76,9 @@ def test_what_was_refused_is_not_computed_again_and_changes_nothing():
     np.testing.assert_array_equal(found.x, places[np.argmin(fitness)])
     assert found.message == f"no firefly moves any more after {found.iterations} generations"
     assert found.evaluations < 60 * found.iterations < 60 * 1000
+    coarse = Firefly().minimise(raised, LOWER, UPPER, seed=3)
+    assert coarse.evaluations < 0.8 * found.evaluations
+    np.testing.assert_allclose(coarse.x, found.x, atol=1e-8)
 
 
 def test_it_ends_below_its_target_or_after_its_generations():

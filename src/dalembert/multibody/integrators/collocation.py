@@ -1,0 +1,198 @@
+"""Time steps as minimisations: what a polynomial leaves of the equations of motion is made as small as it can be."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from dalembert.errors import InputError
+from dalembert.multibody.integrators.collocation_descent import march, respond
+from dalembert.multibody.integrators.collocation_rule import make_rule
+from dalembert.multibody.integrators.collocation_search import Search
+from dalembert.multibody.integrators.collocation_step import Schedule, begin, finish, prepare
+from dalembert.multibody.integrators.integrator import Integrator
+from dalembert.multibody.integrators.problem import DONE, SINGULAR, Log, Problem
+from dalembert.multibody.integrators.run import Run, cut, explain, resting, stack, starts
+from dalembert.multibody.kernels.motion import Motion
+from dalembert.multibody.lowering import Lowered
+from dalembert.optimize import Firefly, LeastSquares, Minimiser, ResponseSensitivity, Squares, Swarm
+
+
+@dataclass(frozen=True)
+class GaussNewton:
+    """Gauss and Newton's iterations with exact derivatives, compiled; for :class:`Collocation`.
+
+    Parameters
+    ----------
+    iterations : int
+        At most, a step; fewer where rounding is reached before.
+    """
+
+    iterations: int = 3
+
+    def __post_init__(self) -> None:
+        if self.iterations < 1:
+            raise InputError(f"GaussNewton: iterations is {self.iterations}; expected at least 1")
+
+
+@dataclass(frozen=True)
+class Collocation(Integrator):
+    """Integrator whose steps are minimisations, with all constraints exact.
+
+    On a step the independent coordinates are polynomials with the position and velocity that the last one left; the
+    dependent coordinates follow from the constraints and their first two rates, to rounding. The accelerations that
+    the polynomials leave free minimise
+
+        sum over Gauss points s of A_s f_s^T f_s,    f = [a; lambda] - [M J^T; J 0]^-1 [Q; -J' v]
+
+    where the multipliers are those of the equations, so that f is the gap of the accelerations, in m/s^2 and rad/s^2.
+
+    Parameters
+    ----------
+    step : float
+        s.
+    minimiser : GaussNewton, Firefly, or any minimiser of dalembert.optimize
+        What finds the minimum. Swarms and fireflies search a box around the explicit prediction.
+    degree : int
+        Of the polynomials, at least 2; 2 is the three-point Lagrange polynomial.
+    gauss_points : int
+        At least degree - 1. With just that many nothing remains, and the method is of order 2 (degree - 1): collocation
+        at Gauss points. With more, as published (2 and 2), it is of the order of its polynomial, degree.
+    seed : int
+        Of the random numbers of swarms and fireflies.
+
+    Notes
+    -----
+    Zhang & Ding, "Firefly algorithm for solving multibody dynamics differential-algebraic equations" (2021).
+    Between steps the motion is the polynomial with the constraints solved again, so output times need no steps.
+    Derivatives are those of the minimum, so the minimiser must find it: Gauss and Newton's or least squares do. All
+    matrices are dense: meant for up to some dozens of coordinates.
+
+    Examples
+    --------
+    >>> Collocation(step=0.01).minimiser
+    GaussNewton(iterations=3)
+    >>> Collocation(step=0.01, degree=3, gauss_points=1)
+    Traceback (most recent call last):
+    dalembert.errors.InputError: Collocation: gauss_points is 1; expected at least degree - 1 = 2
+    """
+
+    step: float = field(metadata={"unit": "s"})
+    minimiser: GaussNewton | Firefly | LeastSquares | ResponseSensitivity | Swarm | Minimiser = GaussNewton()
+    degree: int = 2
+    gauss_points: int = 2
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        if not (np.isfinite(self.step) and self.step > 0):
+            raise InputError(f"Collocation: step is {self.step}; expected a positive number of seconds")
+        if self.degree < 2:
+            raise InputError(f"Collocation: degree is {self.degree}; expected at least 2")
+        if self.gauss_points < self.degree - 1:
+            raise InputError(
+                f"Collocation: gauss_points is {self.gauss_points}; expected at least degree - 1 = {self.degree - 1}"
+            )
+        if not isinstance(self.minimiser, GaussNewton | Firefly | Squares | Swarm | Minimiser):
+            raise InputError(
+                f"Collocation: minimiser is {self.minimiser!r}; expected GaussNewton(), Firefly(), LeastSquares() or "
+                "another minimiser of dalembert.optimize"
+            )
+
+    def integrate(
+        self,
+        samples: Sequence[Lowered],
+        tilted: Sequence[Lowered],
+        problem: Problem,
+        end: float,
+        *,
+        logged: bool = True,
+    ) -> list[Run]:
+        """Runs of samples, one after the other; see `Integrator`.
+
+        Raises
+        ------
+        InputError
+            For derivatives with a minimiser that only comes near the minimum.
+        """
+        if tilted and not isinstance(self.minimiser, GaussNewton | Squares):
+            raise InputError(
+                f"Collocation: a step by {type(self.minimiser).__name__} has no exact derivatives, because the search "
+                "ends near the minimum, not at it; take GaussNewton() or LeastSquares()"
+            )
+        slots, layout = samples[0].structure.dense
+        problem = cut(samples, problem._replace(exact_slots=slots, exact_layout=layout), end)
+        states, dstates = starts(samples, tilted)
+        runs = []
+        for number, lowered in enumerate(samples):
+            edges = problem.edges[number, : problem.stretches[number] + 1]
+            start = Motion(*(array[number] for array in states))
+            runs.append(
+                self._run(lowered, tilted, problem, self.schedule(edges, problem.times), start, dstates, logged)
+            )
+        return runs
+
+    def schedule(self, edges: np.ndarray, times: np.ndarray) -> Schedule:
+        """Steps between the edges of the smooth stretches of a motion."""
+        grid = self.step_ends(float(edges[-1]), tuple(edges[1:-1]))
+        assert grid is not None
+        begins, ends = grid[:-1], grid[1:]
+        stretch = np.searchsorted(edges, (begins + ends) / 2) - 1
+        reached = np.searchsorted(times, ends + 1e-9 * (ends - begins), side="right")
+        opens = np.diff(stretch, prepend=-1) > 0
+        return Schedule(begins, ends, (edges[stretch] + edges[stretch + 1]) / 2, opens, np.append(0, reached))
+
+    def _run(
+        self,
+        lowered: Lowered,
+        tilted: Sequence[Lowered],
+        problem: Problem,
+        schedule: Schedule,
+        start: Motion,
+        dstart: Motion,
+        logged: bool,
+    ) -> Run:
+        rule = make_rule(self.degree, self.gauss_points)
+        model, dual, width = lowered.real, lowered.dual, len(start.x)
+        walk = prepare(problem, rule, model, dual, len(tilted))
+        for own, given in zip((*walk.old, *walk.dold), (*start, *dstart), strict=True):
+            own[:] = given
+        along = stack([entry.dual for entry in tilted], dual)
+        directions = stack([*[dual] * len(walk.c), *(entry.dual for entry in tilted)], dual)
+        shape = len(problem.times), width
+        out, dout = resting(*shape), resting(len(tilted), *shape)
+        room = len(schedule.begins) if logged else 0
+        log = Log(np.zeros(4, dtype=np.int64), np.zeros(room, dtype=np.int64), np.zeros(room))
+        if isinstance(self.minimiser, GaussNewton):
+            status, time, worst = march(
+                problem, rule, self.minimiser.iterations, model, dual, directions, along, schedule, walk, out, dout, log
+            )
+        else:
+            search = Search(self.minimiser, self.seed, problem, rule, model, dual, directions, schedule, walk)
+            status, time, worst = _search(search, along, out, dout, log)
+        reason = None
+        if status != DONE:
+            reason = explain(lowered, int(status), float(time), int(worst), f"the step is {self.step:g} s")
+        taken = min(int(log.counts[0]), room)
+        return Run(reason, problem.times, out, dout, log.counts, log.iterations[:taken], log.ends[:taken])
+
+
+def _search(search: Search, along: object, out: Motion, dout: Motion, log: Log) -> tuple[int, float, int]:
+    """All steps by a minimiser of the package: status, time reached, the coordinate to blame."""
+    problem, rule, model, dual = search.problem, search.rule, search.model, search.dual
+    schedule, walk = search.schedule, search.walk
+    for number, t in enumerate(schedule.begins):
+        taken, worst = 0, 0
+        status = begin(problem, rule, model, dual, along, schedule, number, walk)
+        if status == DONE:
+            status, taken, worst = search(number)
+        if status == DONE and len(walk.dc):
+            regular = respond(problem, rule, model, dual, search.directions, schedule, number, walk)
+            status = DONE if regular else SINGULAR
+        if status == DONE:
+            status = finish(problem, rule, model, dual, along, schedule, number, walk, out, dout)
+        if status != DONE:
+            return status, t, worst
+        log.counts[:2] += 1, taken
+        if number < len(log.iterations):
+            log.iterations[number], log.ends[number] = taken, schedule.ends[number]
+    return DONE, schedule.ends[-1], 0

@@ -80,9 +80,11 @@ from dalembert.multibody import Torque as Torque
 from dalembert.multibody import TorsionSpring as TorsionSpring
 from dalembert.multibody import Trajectory as Trajectory
 from dalembert.multibody import UserForce as UserForce
+from dalembert.multibody import WorkPrecision as WorkPrecision
 from dalembert.multibody import equilibrium as equilibrium
 from dalembert.multibody import modes as modes
 from dalembert.multibody import simulate as simulate
+from dalembert.multibody import work_precision as work_precision
 from dalembert.optimize import Firefly as Firefly
 from dalembert.optimize import ImprovedParticleSwarm as ImprovedParticleSwarm
 from dalembert.optimize import LeastSquares as LeastSquares

@@ -14,6 +14,7 @@ from dalembert.multibody.statics import Equilibrium, Modes, equilibrium, modes
 from dalembert.multibody.system import System
 from dalembert.multibody.time_response import TimeResponse
 from dalembert.multibody.trajectory import Trajectory
+from dalembert.multibody.work_precision import WorkPrecision, work_precision
 
 __all__ = [
     "AncfBeam",
@@ -49,7 +50,9 @@ __all__ = [
     "TorsionSpring",
     "Trajectory",
     "UserForce",
+    "WorkPrecision",
     "equilibrium",
     "modes",
     "simulate",
+    "work_precision",
 ]

@@ -17,6 +17,7 @@ from dalembert.report.needs import (
     SweepLike,
     TrajectoryLike,
 )
+from dalembert.report.needs_integrators import WorkPrecisionLike
 from dalembert.report.needs_telling import DesignsLike, PredictionLike, ProfilesLike
 from dalembert.report.plot import Plot
 from dalembert.report.sections import (
@@ -28,6 +29,7 @@ from dalembert.report.sections import (
     Estimates,
     Experiments,
     GivenBands,
+    Integrators,
     Intervals,
     Methods,
     Motion,
@@ -56,6 +58,7 @@ Result = (
     | ProfilesLike
     | PredictionLike
     | DesignsLike
+    | WorkPrecisionLike
 )
 
 
@@ -103,6 +106,8 @@ def contents(
             sections = [telling_headlines.of_prediction(result, title, notes), Predicting(each(result))]
         case DesignsLike():
             sections = [telling_headlines.of_designs(result, title, notes), Designing(result)]
+        case WorkPrecisionLike():
+            sections = [headline.of_work_precision(result, title, notes), Integrators(result)]
         case TrajectoryLike():
             moving = each(result)
             shown = [*_motion(moving, points), Diagnostics(moving)]

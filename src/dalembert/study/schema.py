@@ -5,7 +5,6 @@ from functools import cache
 from typing import Annotated, Any
 
 from pydantic import (
-    AfterValidator,
     BeforeValidator,
     Field,
     PlainValidator,
@@ -14,16 +13,13 @@ from pydantic import (
     model_validator,
 )
 
-from dalembert.study.catalogue import catalogue, parts
-from dalembert.study.components import buildable, one_of, table_of
 from dalembert.study.data_table import BandsTable, DataTable
 from dalembert.study.experiments import ExperimentTable, SensorTable, wrong_experiments
 from dalembert.study.model_table import ModelTable, model_table
 from dalembert.study.parameters import ParameterTable, check_names, read_constants
+from dalembert.study.solvers import solver
 from dalembert.study.table import Name, StudyTable, problem
 from dalembert.study.tasks import TASKS
-
-SOLVER = "GeneralizedAlpha"  # where [solver] names no kind
 
 
 class About(StudyTable):
@@ -76,14 +72,8 @@ class StudyFile(StudyTable):
 @cache
 def study_file() -> type[StudyFile]:
     """The study file with all the kinds that there are."""
-    tables = [
-        table_of(target, default=target.__name__ == SOLVER, varying=False, parts=parts())
-        for target in catalogue()["solver"]
-    ]
-    solver = one_of(tables, SOLVER)
     fields: dict[str, Any] = {name: (task.table() | None, None) for name, task in TASKS.items()}
-    checked_solver: Any = Annotated[solver, AfterValidator(buildable)]
-    fields |= {"model": (model_table(), ...), "solver": (checked_solver | None, None)}
+    fields |= {"model": (model_table(), ...), "solver": (solver() | None, None)}
     return create_model("Study", __base__=StudyFile, __doc__=StudyFile.__doc__, **fields)
 
 

@@ -2,7 +2,9 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
+from dataclasses import fields
 from itertools import pairwise
+from typing import Any, cast
 
 import numpy as np
 
@@ -42,6 +44,12 @@ class Integrator(ABC):
         logged : bool
             Keep what happened at each step.
         """
+
+    def __str__(self) -> str:
+        """The settings that are not the usual ones: ``GeneralizedAlpha(step=0.001)``."""
+        given = ((item, getattr(self, item.name)) for item in fields(cast(Any, self)))
+        told = (f"{item.name}={value!r}" for item, value in given if value != item.default)
+        return f"{type(self).__name__}({', '.join(told)})"
 
     @property
     def fixed_step(self) -> float | None:

@@ -22,6 +22,7 @@ from dalembert.report.charts.starts import starts
 from dalembert.report.charts.steps import steps
 from dalembert.report.charts.sweep import sweep
 from dalembert.report.charts.violations import violations
+from dalembert.report.charts.work_precision import work_precision
 
 __all__ = [
     "bands",
@@ -48,4 +49,5 @@ __all__ = [
     "steps",
     "sweep",
     "violations",
+    "work_precision",
 ]

@@ -9,6 +9,7 @@ from dalembert.report.sections.estimates import Estimates
 from dalembert.report.sections.experiments import Experiments
 from dalembert.report.sections.given_bands import GivenBands
 from dalembert.report.sections.headline import Headline
+from dalembert.report.sections.integrators import Integrators
 from dalembert.report.sections.intervals import Intervals
 from dalembert.report.sections.methods import Methods
 from dalembert.report.sections.motion import Motion
@@ -31,6 +32,7 @@ __all__ = [
     "Experiments",
     "GivenBands",
     "Headline",
+    "Integrators",
     "Intervals",
     "Methods",
     "Motion",

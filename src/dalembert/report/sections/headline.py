@@ -8,10 +8,13 @@ import numpy as np
 
 from dalembert.report.digits import counted, shown, with_deviation
 from dalembert.report.needs import FitLike, SweepLike, TrajectoryLike
+from dalembert.report.needs_integrators import WorkPrecisionLike
 from dalembert.report.quantities import labelled
 from dalembert.report.sections.section import Section
 
 MOST_VALUES = 4
+ERRORS = (1e-4, 1e-8)
+"""Errors that the fastest integrator is named for."""
 
 
 @dataclass(frozen=True)
@@ -72,6 +75,18 @@ def of_trajectory(trajectory: TrajectoryLike, title: str | None, notes: Sequence
         else "The motion was simulated to its end."
     )
     return Headline(title or "Simulated motion", "simulated", True, status, facts, notes)
+
+
+def of_work_precision(found: WorkPrecisionLike, title: str | None, notes: Sequence[str]) -> Headline:
+    """Headline of integrators compared."""
+    facts = [
+        Fact("simulated", shown(found.end) + " s"),
+        Fact("integrators", counted(len(found.methods))),
+        Fact("runs", counted(len(found.rows))),
+        *(Fact(f"fastest to {error:.0e}", row.method) for error in ERRORS if (row := found.fastest(error))),
+    ]
+    verdict = "compared" if found.success else "not compared"
+    return Headline(title or "Work and precision", verdict, found.success, found.status, facts, notes)
 
 
 def of_sweep(sweep: SweepLike, title: str | None, notes: Sequence[str]) -> Headline:

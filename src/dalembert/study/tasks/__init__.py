@@ -1,5 +1,6 @@
 """The tasks that a study file can ask for, by the names of their tables."""
 
+from dalembert.study.tasks.compare_integrators import CompareIntegrators
 from dalembert.study.tasks.design import Design
 from dalembert.study.tasks.identify import Identify
 from dalembert.study.tasks.identify_bands import IdentifyBands
@@ -17,6 +18,7 @@ TASKS: dict[str, Task] = {
     "identify_bands": IdentifyBands(),
     "identify_set": IdentifySet(),
     "design": Design(),
+    "work_precision": CompareIntegrators(),
 }
 
 __all__ = ["TASKS", "Outcome", "Task"]

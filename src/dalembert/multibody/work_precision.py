@@ -1,0 +1,263 @@
+"""Integrators compared on one motion: error against run time."""
+
+import json
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from dalembert.errors import DalembertError, InputError
+from dalembert.multibody.integrators.integrator import Integrator
+from dalembert.multibody.simulate import simulate
+from dalembert.multibody.system import System
+from dalembert.multibody.trajectory import Trajectory
+from dalembert.results import Result
+
+OnRow = Callable[["Row"], None]
+
+
+@dataclass(frozen=True)
+class Row:
+    """One run of one integrator.
+
+    Parameters
+    ----------
+    method : str
+        Name of the integrator's series.
+    settings : str
+        The integrator with its settings.
+    error : float
+        Largest distance of any channel from the reference at any output time, relative to the channel's range.
+    seconds : float
+        Run time, the smallest of the repetitions.
+    steps : int
+    position, velocity, acceleration : float
+        Largest constraint violations (m or rad, and per s and s^2).
+    energy : float
+        Largest energy imbalance relative to the range of the kinetic energy; NaN where nothing moves.
+    failure : str
+        Why the run ended early; empty if it did not.
+    """
+
+    method: str
+    settings: str
+    error: float = np.nan
+    seconds: float = np.nan
+    steps: int = 0
+    position: float = np.nan
+    velocity: float = np.nan
+    acceleration: float = np.nan
+    energy: float = np.nan
+    failure: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class WorkPrecision(Result):
+    """Errors and run times of integrators on one motion, as :func:`work_precision` returns them.
+
+    Parameters
+    ----------
+    channels : tuple of str
+    end : float
+        s.
+    reference : str
+        The integrator that the errors are measured against, with its settings.
+    apart : float
+        Distance of the reference from a run of the reference with other settings, in the same measure as the errors:
+        an error near it says nothing.
+    rows : tuple of Row
+    """
+
+    FORMAT: ClassVar[str] = "dalembert work and precision 1"
+
+    channels: tuple[str, ...]
+    end: float
+    reference: str
+    apart: float
+    rows: tuple[Row, ...]
+
+    @property
+    def methods(self) -> tuple[str, ...]:
+        """Names of the series, in their order."""
+        return tuple(dict.fromkeys(row.method for row in self.rows))
+
+    @property
+    def success(self) -> bool:
+        """Whether any integrator came to the end of the motion."""
+        return any(not row.failure for row in self.rows)
+
+    @property
+    def status(self) -> str:
+        """What is compared and how far it can be trusted, in a sentence."""
+        failed = [row.settings for row in self.rows if row.failure]
+        told = f"; {len(failed)} of {len(self.rows)} runs ended early, see the table" if failed else ""
+        return (
+            f"{len(self.rows)} runs of {len(self.methods)} integrators to {self.end:g} s beside {self.reference}, "
+            f"which is itself known to about {self.apart:.1e}{told}"
+        )
+
+    def fastest(self, error: float) -> Row | None:
+        """The fastest run whose error is at most ``error``; None if there is none."""
+        good = [row for row in self.rows if row.error <= error]
+        return min(good, key=lambda row: row.seconds, default=None)
+
+    def summary(self) -> str:
+        """The runs as a text table."""
+        width = max((len(row.settings) for row in self.rows), default=0)
+        lines = [f"{'integrator':{width}}     error  run time/s    steps  position  velocity  energy"]
+        for row in self.rows:
+            told = (
+                row.failure
+                or f"{row.error:9.1e} {row.seconds:11.4f} {row.steps:8d} {row.position:9.1e} {row.velocity:9.1e} "
+                f"{row.energy:7.0e}"
+            )
+            lines.append(f"{row.settings:{width}} {told}")
+        return "\n".join([*lines, "", self.status])
+
+    def to_xarray(self) -> Any:
+        """The rows as an :class:`xarray.Dataset` over the dimension ``run``."""
+        from xarray import Dataset
+
+        rows = [asdict(row) for row in self.rows]
+        told = {"channels": self.channels, "reference": self.reference}
+        return Dataset(
+            {name: ("run", [row[name] for row in rows]) for name in Row.__dataclass_fields__},
+            attrs={
+                "format": self.FORMAT,
+                "end": self.end,
+                "apart": self.apart,
+                "settings": json.dumps(told, sort_keys=True),
+            },
+        )
+
+    @classmethod
+    def from_xarray(cls, dataset: Any) -> "WorkPrecision":
+        """The comparison that :meth:`to_xarray` turned into a dataset."""
+        told = json.loads(dataset.attrs["settings"])
+        columns = {name: dataset[name].values.tolist() for name in Row.__dataclass_fields__}
+        rows = tuple(Row(**dict(zip(columns, values, strict=True))) for values in zip(*columns.values(), strict=True))
+        end, apart = float(dataset.attrs["end"]), float(dataset.attrs["apart"])
+        return cls(tuple(told["channels"]), end, told["reference"], apart, rows)
+
+
+def work_precision(
+    system: System,
+    end: float,
+    channels: Sequence[str],
+    solvers: Mapping[str, Sequence[Integrator]],
+    *,
+    reference: Sequence[Integrator],
+    samples: int = 41,
+    repeats: int = 3,
+    on_row: OnRow | None = None,
+) -> WorkPrecision:
+    """Errors and run times of integrators on one motion.
+
+    Parameters
+    ----------
+    system : System
+    end : float
+        s.
+    channels : sequence of str
+        What the errors are measured on.
+    solvers : mapping of str to sequence of Integrator
+        Series of integrators by name, such as one method at several steps or tolerances.
+    reference : two integrators
+        The first gives the motion that errors are measured from, the second says how well it is known; choose two
+        different methods, or settings, that are both finer than what is compared.
+    samples : int
+        Output times, evenly from 0 to ``end``.
+    repeats : int
+        Runs of each, after one that is not timed (it may compile); the fastest counts, because other load on the
+        machine only ever adds.
+    on_row : callable, optional
+        Is called with each `Row` when it is there.
+
+    Returns
+    -------
+    WorkPrecision
+
+    Raises
+    ------
+    InputError
+        For a reference that is not two integrators, or no series.
+    SolveError
+        Where a reference ends early. An integrator that is compared and ends early has a row that says why.
+
+    Examples
+    --------
+    >>> from dalembert.multibody import DistanceJoint, GeneralizedAlpha, PointMass, System, work_precision
+    >>> system = System()
+    >>> bob = system.add(PointMass("bob", mass=1.0, position=(-1.0, 0.0)))
+    >>> rod = system.add(DistanceJoint("rod", system.ground.point(0.0, 0.0), bob.centre))
+    >>> fine = [GeneralizedAlpha(step=1e-4), GeneralizedAlpha(step=2e-4)]
+    >>> series = {"generalized-alpha": [GeneralizedAlpha(step=1e-2), GeneralizedAlpha(step=1e-3)]}
+    >>> found = work_precision(system, 0.5, ["bob.centre.x"], series, reference=fine)
+    >>> errors = [row.error for row in found.rows]
+    >>> errors[1] < 0.02 * errors[0]  # second order
+    True
+    """
+    if len(reference) != 2:
+        raise InputError(
+            f"work_precision: {len(reference)} references were given; expected two, the second of which says how well "
+            "the first is known"
+        )
+    if not any(solvers.values()):
+        raise InputError("work_precision: no integrators were given; expected at least one series of them")
+    times = np.linspace(0.0, end, samples)
+    known, beside = (simulate(system, end, solver, times).channels(channels) for solver in reference)
+    rows = []
+    for method, series in solvers.items():
+        for solver in series:
+            rows.append(_row(method, solver, system, end, times, tuple(channels), known, repeats))
+            if on_row:
+                on_row(rows[-1])
+    return WorkPrecision(tuple(channels), float(end), str(reference[0]), _distance(beside, known), tuple(rows))
+
+
+def _row(
+    method: str,
+    solver: Integrator,
+    system: System,
+    end: float,
+    times: np.ndarray,
+    channels: tuple[str, ...],
+    known: np.ndarray,
+    repeats: int,
+) -> Row:
+    try:
+        motion = simulate(system, end, solver, times)
+        seconds = min(_seconds(system, end, solver, times) for _ in range(repeats))
+    except DalembertError as error:  # it ended early, or is not made for this mechanism
+        return Row(method, str(solver), failure=str(error))
+    worst = {level: float(np.max(values)) for level, values in motion.violations.items()}
+    return Row(
+        method,
+        str(solver),
+        _distance(motion.channels(channels), known),
+        seconds,
+        int(motion.run.counts[0]),
+        worst["position"],
+        worst["velocity"],
+        worst["acceleration"],
+        _imbalance(motion),
+    )
+
+
+def _seconds(system: System, end: float, solver: Integrator, times: np.ndarray) -> float:
+    began = time.perf_counter()
+    simulate(system, end, solver, times)
+    return time.perf_counter() - began
+
+
+def _distance(values: np.ndarray, known: np.ndarray) -> float:
+    """Largest distance of any channel, relative to its range; 1 is taken where a channel does not move."""
+    span = np.ptp(known, axis=0)
+    return float(np.max(np.abs(values - known) / np.where(span > 0, span, 1.0)))
+
+
+def _imbalance(motion: Trajectory) -> float:
+    kinetic = float(np.ptp(motion.energies["kinetic"]))
+    return float(np.max(np.abs(motion.energies["balance"]))) / kinetic if kinetic > 0 else np.nan

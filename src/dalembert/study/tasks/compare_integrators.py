@@ -1,0 +1,124 @@
+"""Work and precision: integrators compared on the study's mechanism."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+from pydantic import Field, create_model
+
+from dalembert.study.numbers import MOST, fixed
+from dalembert.study.solvers import solver
+from dalembert.study.table import Read, StudyTable, problem
+from dalembert.study.tasks.result import ResultOutcome
+from dalembert.study.tasks.task import Outcome, Task
+
+if TYPE_CHECKING:
+    from dalembert.study.events import Emit
+    from dalembert.study.study import Study
+
+
+class SeriesTable(StudyTable):
+    """One integrator at several settings."""
+
+    name: str | None = Field(None, description="of the line in the figure; the integrator's kind if not given")
+    solver: Any
+    over: dict[str, list[float]] = Field(
+        min_length=1, max_length=1, description="values of one setting: { step = [0.01, 0.005] }"
+    )
+
+    def integrators(self) -> list[Any]:
+        """The integrator with each value of the setting."""
+        ((setting, values),) = self.over.items()
+        first = self.solver.settings()
+        if setting not in type(first).__dataclass_fields__:
+            raise problem(f"over: a {type(first).__name__} has no setting {setting!r}")
+        return [replace(first, **{setting: value}) for value in values]
+
+    @property
+    def label(self) -> str:
+        """The name in figure and table."""
+        return self.name or type(self.solver.settings()).__name__
+
+
+class WorkPrecisionTable(StudyTable):
+    """Compare integrators on the mechanism's motion at the first guesses: error against run time."""
+
+    end: Annotated[float, Read(fixed("s"))] = Field(gt=0)
+    channels: list[str] = Field(min_length=1, description="what errors are measured on: 'AB.end.x'")
+    samples: int = Field(41, ge=2, le=MOST, description="output times, evenly from 0 to end")
+    repeats: int = Field(3, ge=1, le=1000, description="timed runs of each; the fastest counts")
+
+
+class CompareIntegrators(Task):
+    """The task ``[work_precision]``."""
+
+    def table(self) -> type[StudyTable]:
+        series = create_model("Series", __base__=SeriesTable, __doc__=SeriesTable.__doc__, solver=(solver(), ...))
+        references = Field(
+            min_length=2, max_length=2, description="two fine ones: the second says how good the first is"
+        )
+        fields: dict[str, Any] = {
+            "series": (list[series], Field(min_length=1)),
+            "reference": (list[solver()], references),  # pyright: ignore[reportInvalidTypeForm]
+        }
+        doc = WorkPrecisionTable.__doc__
+        return create_model("WorkPrecision", __base__=WorkPrecisionTable, __doc__=doc, **fields)
+
+    def wrong(self, file: Any) -> list[str]:
+        labels = [series.label for series in file.work_precision.series]
+        wrong = [
+            f"[[work_precision.series]]: {label!r} names {labels.count(label)} series; give each a name"
+            for label in sorted(set(labels))
+            if labels.count(label) > 1
+        ]
+        if file.model.forward is not None:
+            wrong.append("[work_precision] needs a mechanism; a forward model has no steps")
+        return wrong
+
+    def plan(self, study: "Study") -> str:
+        study.system()
+        table = study.table
+        count = sum(len(series.integrators()) for series in table.series)
+        return (
+            f"compares {len(table.series)} integrators in {count} settings over {table.end:g} s: "
+            f"{count * (table.repeats + 1) + 2} simulations"
+        )
+
+    def unknowns(self, study: "Study") -> tuple[str, ...]:
+        return ()
+
+    def run(self, study: "Study", emit: "Emit") -> Outcome:
+        from dalembert.multibody import work_precision
+
+        table = study.table
+        solvers = {series.label: series.integrators() for series in table.series}
+        total = sum(map(len, solvers.values()))
+        done = 0
+
+        def on_row(row: Any) -> None:
+            nonlocal done
+            done += 1
+            emit("compared", solver=row.settings, error=row.error, seconds=row.seconds, done=done, total=total)
+
+        found = work_precision(
+            study.system(),
+            table.end,
+            table.channels,
+            solvers,
+            reference=[one.settings() for one in table.reference],
+            samples=table.samples,
+            repeats=table.repeats,
+            on_row=on_row,
+        )
+        return _outcome(study, found)
+
+    def load(self, study: "Study", path: Path) -> Outcome:
+        from dalembert.multibody import WorkPrecision
+
+        return _outcome(study, WorkPrecision.load(path))
+
+
+def _outcome(study: "Study", found: Any) -> Outcome:
+    """Outcome of a comparison, with the smallest error."""
+    errors = [row.error for row in found.rows if not row.failure]
+    return ResultOutcome(study, found, {"values": {"smallest error": min(errors)}} if errors else {})

@@ -46,6 +46,17 @@ def _model(function: Callable, channels: str = "x", **box: Any) -> PythonModel:
     return PythonModel(function, box, channels.split(), TIMES)
 
 
+def _integrators(fine: float, **early: int) -> Any:
+    system = da.System(gravity=(0.0, -9.81))
+    bar = system.add(da.RigidBar("bar", length=1.0, mass=1.0))
+    system.add(da.RevoluteJoint("pin", system.ground, bar.start))
+    series = {"fixed": [da.GeneralizedAlpha(step=step) for step in (0.02, 0.01)]}
+    if early:
+        series["adaptive"] = [da.GeneralizedAlpha(step=0.01, adaptive=True, **early)]
+    references = [da.GeneralizedAlpha(step=fine), da.GeneralizedAlpha(step=2 * fine)]
+    return da.work_precision(system, 1.0, ["bar.end.x"], series, reference=references, repeats=1)
+
+
 def _exact(model: PythonModel, values: list[float], **options: Any) -> Measurements:
     return measured(model, values, **options)
 
@@ -454,6 +465,25 @@ CASES: dict[str, Case] = {
     "a look before that fails": Case(
         lambda: "\n".join(foreseen(FRAGILE, _exact(FRAGILE, [0.4]))),
         ("What the data can tell could not be foreseen: the motion runs away",),
+    ),
+    # ── integrators ──
+    "integrators": Case(
+        lambda: _integrators(1e-4),
+        (
+            "2 runs of 1 integrators to 1 s beside GeneralizedAlpha(step=0.0001), which is itself known to about",
+            "compared",
+        ),
+        ("work-precision",),
+    ),
+    "integrators of which some end early": Case(
+        lambda: _integrators(1e-4, most_steps=2),
+        ("1 of 3 runs ended early, see the table", "reached most_steps = 2"),
+    ),
+    "integrators beside a reference that is exact": Case(
+        lambda: replace(_integrators(1e-4), apart=0.0), ("beside a second one it is known to rounding",)
+    ),
+    "integrators that all end early": Case(
+        lambda: replace(found := _integrators(1e-4, most_steps=2), rows=found.rows[-1:]), ("not compared",)
     ),
     # ── profiles, predictions, designs ──────────────────────────────────────────────────────────────────────────────
     "profiles and prediction": Case(

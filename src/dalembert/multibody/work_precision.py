@@ -200,9 +200,9 @@ def work_precision(
     True
     """
     if len(reference) != 2:
+        given = "1 reference was" if len(reference) == 1 else f"{len(reference)} references were"
         raise InputError(
-            f"work_precision: {len(reference)} references were given; expected two, the second of which says how well "
-            "the first is known"
+            f"work_precision: {given} given; expected two, the second of which says how well the first is known"
         )
     if not any(solvers.values()):
         raise InputError("work_precision: no integrators were given; expected at least one series of them")

@@ -30,6 +30,8 @@ TABLES = {
     "IdentifyBands": ["identify_bands"],
     "IdentifySet": ["identify_set"],
     "DesignTable": ["design"],
+    "WorkPrecision": ["work_precision"],
+    "Series": ["work_precision"],
     "dalembert__study__numbers__Grid__1": ["Numbers"],
     "dalembert__study__numbers__Grid__2": ["Numbers"],
 }

@@ -4,15 +4,18 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-from pydantic import Field, create_model
+import numpy as np
+from pydantic import Field, create_model, model_validator
 
 from dalembert.study.numbers import MOST, fixed
 from dalembert.study.solvers import solver
-from dalembert.study.table import Read, StudyTable, problem
+from dalembert.study.table import Read, StudyTable, checked, problem
 from dalembert.study.tasks.result import ResultOutcome
+from dalembert.study.tasks.simulate import PARTS
 from dalembert.study.tasks.task import Outcome, Task
 
 if TYPE_CHECKING:
+    from dalembert.study.duration import Effort
     from dalembert.study.events import Emit
     from dalembert.study.study import Study
 
@@ -25,6 +28,11 @@ class SeriesTable(StudyTable):
     over: dict[str, list[float]] = Field(
         min_length=1, max_length=1, description="values of one setting: { step = [0.01, 0.005] }"
     )
+
+    @model_validator(mode="after")
+    def _check(self) -> "SeriesTable":
+        checked(self.integrators)
+        return self
 
     def integrators(self) -> list[Any]:
         """The integrator with each value of the setting."""
@@ -79,10 +87,24 @@ class CompareIntegrators(Task):
         study.system()
         table = study.table
         count = sum(len(series.integrators()) for series in table.series)
-        return (
-            f"compares {len(table.series)} integrators in {count} settings over {table.end:g} s: "
-            f"{count * (table.repeats + 1) + 2} simulations"
-        )
+        told = f"compares {len(table.series)} integrators in {count} settings over {table.end:g} s"
+        return f"{told}: {_simulations(table)} simulations"
+
+    def effort(self, study: "Study") -> "Effort":
+        from dalembert.multibody import simulate
+        from dalembert.study.duration import Effort
+
+        table, part, system = study.table, study.table.end / PARTS, study.system()
+        solvers = [one.settings() for one in table.reference]
+        solvers += [one for series in table.series for one in series.integrators()]
+
+        def once() -> None:
+            for one in solvers:
+                simulate(system, part, one, np.array([part]))
+
+        once()  # what there is to compile is compiled
+        count, source = _simulations(table), f"going by the first {part:.3g} s of the motion with each integrator"
+        return Effort(once, len(solvers) / PARTS, count, count, source)
 
     def unknowns(self, study: "Study") -> tuple[str, ...]:
         return ()
@@ -116,6 +138,11 @@ class CompareIntegrators(Task):
         from dalembert.multibody import WorkPrecision
 
         return _outcome(study, WorkPrecision.load(path))
+
+
+def _simulations(table: Any) -> int:
+    """Timed runs, one more of each that is not, and the references."""
+    return sum(len(series.integrators()) for series in table.series) * (table.repeats + 1) + len(table.reference)
 
 
 def _outcome(study: "Study", found: Any) -> Outcome:

@@ -43,7 +43,7 @@ _NAMES = {
         Force Torque Spring TorsionSpring UserForce
         Step Harmonic Polynomial Table Custom
         Collocation GaussNewton
-        GeneralizedAlpha TimeResponse Trajectory WorkPrecision simulate equilibrium modes work_precision
+        GeneralizedAlpha Radau5 TimeResponse Trajectory WorkPrecision simulate equilibrium modes work_precision
     """,
     "uncertainty": """
         Comparison Propagation compare propagate

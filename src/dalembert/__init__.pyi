@@ -68,6 +68,7 @@ from dalembert.multibody import PointMass as PointMass
 from dalembert.multibody import Polynomial as Polynomial
 from dalembert.multibody import PrescribedMotion as PrescribedMotion
 from dalembert.multibody import PrismaticJoint as PrismaticJoint
+from dalembert.multibody import Radau5 as Radau5
 from dalembert.multibody import RevoluteJoint as RevoluteJoint
 from dalembert.multibody import RigidBar as RigidBar
 from dalembert.multibody import RigidBody as RigidBody

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import dalembert as da
+from rigid_mechanisms import n_four_bar, two_link_arm
 
 TOPIC = "Rigid mechanisms"
 
@@ -33,26 +34,6 @@ def test_simple_pendulum(reference, record_evidence) -> None:
         )
 
 
-def n_four_bar(model: dict, windows: int) -> da.System:
-    """N windows: uprights U0 ... UN on the ground, rods C1 ... CN across their upper ends."""
-    length, mass, angle = model["length"], model["mass"], model["angle"]
-    spin = -model["velocity"] / length
-    system = da.System(gravity=(0.0, -model["gravity"]))
-    before = None
-    for number in range(windows + 1):
-        foot = system.ground.point(number * length, 0.0)
-        upright = system.add(da.RigidBar(f"U{number}", length, mass, angle=angle, start=foot, angular_velocity=spin))
-        system.add(da.RevoluteJoint(f"foot{number}", foot, upright.start))
-        if before is not None:
-            across = system.add(
-                da.RigidBar(f"C{number}", length, mass, start=before.end, velocity=(model["velocity"], 0.0))
-            )
-            system.add(da.RevoluteJoint(f"left{number}", before.end, across.start))
-            system.add(da.RevoluteJoint(f"right{number}", upright.end, across.end))
-        before = upright
-    return system
-
-
 @pytest.mark.parametrize(
     ("case", "step"), [(0, 8e-5), (1, 8e-5), pytest.param(2, 1e-4, marks=pytest.mark.slow)], ids=["N=1", "N=2", "N=40"]
 )
@@ -77,16 +58,6 @@ def test_n_four_bar(reference, record_evidence, case: int, step: float) -> None:
         topic=TOPIC,
         source=data["source"],
     )
-
-
-def two_link_arm(model: dict) -> da.System:
-    system = da.System(gravity=(0.0, -model["gravity"]))
-    upper, lower = zip(model["length"], model["mass"], model["angle"], strict=True)
-    first = system.add(da.RigidBar("upper", upper[0], upper[1], angle=upper[2]))
-    second = system.add(da.RigidBar("lower", lower[0], lower[1], angle=lower[2], start=first.end))
-    system.add(da.RevoluteJoint("O", system.ground, first.start))
-    system.add(da.RevoluteJoint("A", first.end, second.start))
-    return system
 
 
 def test_two_link_arm(reference, record_evidence) -> None:

@@ -5,6 +5,7 @@ from dalembert.multibody.bodies import PointMass, RigidBar, RigidBody
 from dalembert.multibody.drawing import Drawing
 from dalembert.multibody.integrators.collocation import Collocation, GaussNewton
 from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha
+from dalembert.multibody.integrators.radau5 import Radau5
 from dalembert.multibody.joints import DistanceJoint, FixedJoint, PrescribedMotion, PrismaticJoint, RevoluteJoint
 from dalembert.multibody.loads import Force, Spring, Torque, TorsionSpring, UserForce
 from dalembert.multibody.points import Ground, GroundPoint, Point
@@ -38,6 +39,7 @@ __all__ = [
     "Polynomial",
     "PrescribedMotion",
     "PrismaticJoint",
+    "Radau5",
     "RevoluteJoint",
     "RigidBar",
     "RigidBody",

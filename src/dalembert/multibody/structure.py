@@ -75,6 +75,16 @@ class Structure:
         return self._slots(np.arange(len(rows))), rows, columns
 
     @cached_property
+    def entries(self) -> tuple[Slots, np.ndarray, np.ndarray]:
+        """Slots of a list of the matrix's entries, each once, with their rows and columns."""
+        rows, columns = self._couplings
+        inside = (rows < self.size) & (columns < self.size)
+        numbers, own = np.unique(rows[inside] * self.size + columns[inside], return_inverse=True)
+        places = np.zeros(len(rows), dtype=np.int64)  # nothing is written for absent slots
+        places[inside] = own
+        return self._slots(places), numbers // self.size, numbers % self.size
+
+    @cached_property
     def dense(self) -> tuple[Slots, Layout]:
         """Slots and layout of a dense matrix by columns."""
         rows, columns = self._couplings

@@ -17,6 +17,7 @@ from dalembert.multibody.loads import Load
 from dalembert.multibody.signals import Signal
 from dalembert.parameters import Parameter
 from mechanisms import SECTION
+from slopes import errors
 
 #: Arguments that are no numbers.
 OTHERS = {
@@ -213,26 +214,6 @@ def response(build: Callable[..., mb.System], fields: dict) -> mb.TimeResponse:
     names = [f"{body.name}.{body.point_names[-1]}.{entry}" for body in system.bodies for entry in ("x", "vy", "ax")]
     names += ["system.total_energy", *(f"{joint.name}.force_x" for joint in system.joints)]
     return mb.TimeResponse(builder, parameters, names, TIMES, SOLVER)
-
-
-def errors(model: mb.TimeResponse) -> tuple[dict[str, float], dict[str, float]]:
-    """Largest error of each parameter's derivative and its largest size, against the responses' sizes.
-
-    The differences are central ones of three steps, extrapolated to the sixth order.
-    """
-    vector = model.parameters.start
-    h = 1e-2 * np.diag(np.abs(vector))
-    moved = model.evaluate(np.concatenate([vector + k * h for k in (1, -1, 2, -2, 4, -4)])).only()
-    moved = moved.reshape(3, 2, len(vector), *moved.shape[1:])
-    one, two, four = ((moved[i, 0] - moved[i, 1]) / (2**i * 2e-2) for i in range(3))
-    slopes = (64 * one - 20 * two + four) / 45
-    values, jacobian = model.linearise(vector)
-    exact = np.moveaxis(jacobian * np.abs(vector), 2, 0)
-    size = np.abs(values).max(axis=0) + 1e-3
-    given = np.abs(exact - slopes).max(axis=1) / (np.abs(slopes).max(axis=1) + 0.1 * size)
-    share = np.abs(slopes).max(axis=1) / size
-    names = model.parameters.names
-    return dict(zip(names, given.max(axis=1), strict=True)), dict(zip(names, share.max(axis=1), strict=True))
 
 
 compared = cache(lambda kind: errors(response(*SCENES[kind])))

@@ -1,0 +1,158 @@
+"""States moved onto the constraints, level by level, with one factorised [M, J^T; J, 0] that may be a little old.
+
+Coordinates and velocities are moved by the smallest amount in the metric of the mass: M w + J^T m = 0. Accelerations
+and multipliers follow from the equations of motion. Newton's iteration corrects what the factorisation does not know,
+for derivatives, too: they are iterated after the state, with the same factorisation.
+"""
+
+import numpy as np
+
+from dalembert.multibody.integrators.lifting import lift
+from dalembert.multibody.integrators.matrices import add_product
+from dalembert.multibody.kernels import joints
+from dalembert.multibody.kernels.assembly import constraint_rates, residual
+from dalembert.multibody.kernels.compiled import compiled, inlined, kernel
+from dalembert.multibody.kernels.dual import STEP
+from dalembert.multibody.kernels.linear import solve
+
+# Levels from which a state is settled; not literals, for each of which there would be a compilation.
+COORDINATES, VELOCITIES, ACCELERATIONS = np.int64(0), np.int64(1), np.int64(2)
+_MOST_ITERATIONS = 25
+_ROUNDING = 2e-16  # of the largest entry, below which an error is left
+
+
+@inlined
+def weigh(model, n, pattern, matrices, x, w, work, f):
+    """Fill ``f`` (N + 1,): M w + J^T m in its first n entries, for w = (w, m), and the constraints behind them."""
+    for i in range(len(f)):
+        f[i] = 0.0
+    add_product(n, pattern, matrices.mass, w, 1.0, f)
+    block = model.joints
+    for e in range(len(block.index)):
+        for i in range(joints.WIDTH):
+            g = block.index[e, i]
+            work.x[i] = x[g] if i < joints.MULTIPLIERS else w[g]
+        joints.residual(work.x, work.v, work.a, work.signals, model.callbacks, block.data, block.meta, e, work.r)
+        for i in range(joints.WIDTH):
+            f[block.index[e, i]] += work.r[i]
+    f[len(f) - 1] = 0.0
+
+
+@kernel
+def weigh_along(model, n, x, w, work, buffers, f):
+    """The same in complex numbers: what inertia and constraint forces change in the residual of the system at rest."""
+    still, at = buffers[0], buffers[1]
+    for i in range(len(f)):
+        still[i] = 0.0
+        at[i] = x[i] if i < n else w[i]
+    residual(model, n, at, still, w, work, 1.0, f)
+    for i in range(n, len(f)):
+        at[i] = 0.0
+    residual(model, n, at, still, still, work, 1.0, buffers[2])
+    for i in range(n):
+        f[i] -= buffers[2, i]
+
+
+@kernel
+def _move(n, level, answer, state, moved):
+    """Take a correction off a state, and off the move of its level so far."""
+    for i in range(len(state.x) - 1):
+        if level < 2:
+            moved[level, i] -= answer[i]
+        if i < n:
+            if level == 0:
+                state.x[i] -= answer[i]
+            elif level == 1:
+                state.v[i] -= answer[i]
+            else:
+                state.a[i] -= answer[i]
+        elif level == 2:
+            state.x[i] -= answer[i]
+
+
+@kernel
+def _sizes(n, level, answer, state):
+    """Largest correction, and largest entry of what it corrects."""
+    norm, size = 0.0, 1e-300
+    for i in range(n):
+        value = state.x[i] if level == 0 else (state.v[i] if level == 1 else state.a[i])
+        size = max(size, abs(value))
+        gap = abs(answer[i])
+        if norm == norm and not gap <= norm:  # the first that is not a number stays
+            norm = gap
+    return norm, size
+
+
+@kernel
+def _finished(iteration, norm, before, size):
+    """Whether what remains is rounding, by the contraction seen."""
+    if norm <= _ROUNDING * size:
+        return True
+    if iteration == 0:
+        return False
+    if norm >= 0.5 * before:
+        return iteration > 1 and norm <= 1e-9 * size
+    return norm * norm <= (before - norm) * _ROUNDING * size
+
+
+@compiled
+def settle(problem, pattern, matrices, model, state, moved, work, first):
+    """Accelerations and multipliers of a state; if ``first`` says so, coordinates and velocities are moved before.
+
+    The signals in ``work`` hold the time. ``moved`` (2, N + 1) are the moves of coordinates and velocities with their
+    multipliers. Answers whether the iteration converged.
+    """
+    n, last = problem.n, len(state.x) - 1
+    f, rate, second, answer = np.zeros(last + 1), np.zeros(last + 1), np.zeros(last + 1), np.zeros(last + 1)
+    moved[:] = 0.0
+    for level in range(first if last > n else ACCELERATIONS, 3):
+        before, done = 0.0, False
+        for iteration in range(_MOST_ITERATIONS):
+            if level < 2:
+                weigh(model, n, pattern, matrices, state.x, moved[level], work, f)
+            else:
+                residual(model, n, state.x, state.v, state.a, work, 1.0, f)
+            if level > 0:
+                constraint_rates(model, n, state.x, state.v, state.a, work, rate, second)
+                for i in range(n, last):
+                    f[i] = rate[i] if level == 1 else second[i]
+            solve(pattern.layout, matrices.rigid, f, answer)
+            _move(n, level, answer, state, moved)
+            norm, size = _sizes(n, level, answer, state)
+            done = _finished(iteration, norm, before, size)
+            if done or not norm < 1e100:
+                break
+            before = norm
+        if not done and not before <= 1e-9 * size:
+            return False
+    return True
+
+
+@compiled
+def settle_along(problem, pattern, matrices, tilted, state, dstate, moved, work, lifted, first):
+    """Derivative of a settled state along a direction, from that of the state before; signals in ``work``."""
+    n, last = problem.n, len(state.x) - 1
+    dmoved, answer, imaginary = np.zeros((2, last + 1)), np.zeros(last + 1), np.zeros(last + 1)
+    shift, f, rate, second = lifted[3], lifted[4], lifted[5], lifted[6]
+    for level in range(first if last > n else ACCELERATIONS, 3):
+        before = 0.0
+        for iteration in range(_MOST_ITERATIONS):
+            lift(n, state, dstate, lifted)
+            if level < 2:
+                for i in range(last + 1):
+                    shift[i] = complex(moved[level, i], STEP * dmoved[level, i])
+                weigh_along(tilted, n, lifted[0], shift, work, lifted[7:], f)
+            else:
+                residual(tilted, n, lifted[0], lifted[1], lifted[2], work, 1.0, f)
+            if level > 0:
+                constraint_rates(tilted, n, lifted[0], lifted[1], lifted[2], work, rate, second)
+                for i in range(n, last):
+                    f[i] = rate[i] if level == 1 else second[i]
+            for i in range(last + 1):
+                imaginary[i] = f[i].imag / STEP
+            solve(pattern.layout, matrices.rigid, imaginary, answer)
+            _move(n, level, answer, dstate, dmoved)
+            norm, size = _sizes(n, level, answer, dstate)
+            if _finished(iteration, norm, before, size) or not norm < 1e100:
+                break
+            before = norm

@@ -1,0 +1,83 @@
+"""Radau IIA: settings, derivatives of its discrete solution, batches, jumps of loads."""
+
+import numpy as np
+import pytest
+
+import dalembert.multibody as mb
+from dalembert.errors import InputError
+from mechanisms import SECTION
+from slopes import errors
+from support import says
+
+TIMES = np.array([0.0, 0.02, 0.05, 0.08])
+CHANNELS = ("rope.end.x", "rope.end.ay", "pin.force_x", "system.total_energy")
+BOUNDS = {
+    "stiffness": (2e5, 6e5),
+    "rate": (0.5, 2.0),
+    "friction": (0.2, 0.6),
+    "force": (10.0, 50.0),
+    "mass": (1.0, 3.0),
+}
+
+
+def rope(stiffness: float, rate: float, friction: float, force: float, mass: float) -> mb.System:
+    """A bar in a pin with friction, with a soft damped cable at its end and a force for some time."""
+    system = mb.System()
+    bar = system.add(mb.RigidBar("bar", 1.0, mass, angle=0.2, angular_velocity=rate))
+    soft = system.add(mb.AncfCable("rope", 1.0, 2, stiffness, density=1000.0, **SECTION, start=bar.end, damping=0.01))
+    pin = {"viscous": 0.4, "friction_coefficient": friction, "pin_radius": 0.1, "slip_rate": 0.8}
+    system.add(mb.RevoluteJoint("pin", system.ground, bar.start, **pin))
+    system.add(mb.RevoluteJoint("knot", bar.end, soft.start))
+    system.add(mb.Force("push", soft.end, x=mb.Step(force, 0.013, 0.06)))
+    return system
+
+
+def response(solver: mb.Radau5, workers: int = 1) -> mb.TimeResponse:
+    return mb.TimeResponse(rope, BOUNDS, CHANNELS, TIMES, solver, workers)
+
+
+@pytest.mark.parametrize(
+    ("settings", "sentence"),
+    [
+        ({"step": 0.0}, "Radau5: step is 0.0; expected a positive number of seconds, or none"),
+        ({"tolerance": -1.0}, "Radau5: tolerance is -1.0; expected a positive number"),
+    ],
+)
+def test_settings_that_cannot_be_meant(settings: dict, sentence: str) -> None:
+    with pytest.raises(InputError, match=says(sentence)):
+        mb.Radau5(**settings)
+
+
+def test_derivatives_are_slopes_of_its_own_motion() -> None:
+    """Outputs lie on the steps and between them."""
+    error, size = errors(response(mb.Radau5(step=8e-3)))
+    assert min(size.values()) > 1e-5
+    assert max(error.values()) < 1e-6
+
+
+def test_a_batch_has_the_bits_of_single_runs() -> None:
+    model = response(mb.Radau5(tolerance=1e-5), 2)
+    vectors = np.array([[2e5, 1.0, 0.3, 20.0, 2.0], [5e5, 0.6, 0.5, 40.0, 1.2], [4e5, 1.5, 0.4, 15.0, 3.0]])
+    together = model.evaluate(vectors)
+    assert together.failures == (None,) * 3
+    for vector, values in zip(vectors, together.values, strict=True):
+        np.testing.assert_array_equal(model.evaluate(vector).only()[0], values)
+
+
+def test_a_step_ends_where_a_load_jumps() -> None:
+    """A mass under a force that is switched on and off: a parabola, then a line."""
+    system = mb.System(gravity=(0.0, 0.0))
+    mass = system.add(mb.PointMass("mass", 2.0, (0.0, 0.0)))
+    system.add(mb.Force("push", mass.centre, x=mb.Step(6.0, 0.31, 0.73)))
+    times = np.array([0.2, 0.31, 0.5, 0.73, 1.0])
+    values = mb.simulate(system, 1.0, mb.Radau5(), times).channels(["mass.centre.x", "mass.centre.vx"])
+    speed = 3.0 * np.clip(times - 0.31, 0.0, 0.42)
+    place = 1.5 * np.clip(times - 0.31, 0.0, 0.42) ** 2 + 3.0 * 0.42 * np.clip(times - 0.73, 0.0, None)
+    np.testing.assert_allclose(values, np.column_stack([place, speed]), atol=1e-13)
+
+
+def test_a_run_that_takes_too_many_steps_says_so() -> None:
+    model = response(mb.Radau5(most_steps=3))
+    (reason,) = model.evaluate(model.parameters.start).failures
+    assert reason is not None
+    assert reason.startswith("the adaptive step reached most_steps = 3 at t = ")

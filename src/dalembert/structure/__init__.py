@@ -1,7 +1,10 @@
 """Structures as matrices: mass, stiffness and damping with named degrees of freedom."""
 
+from dalembert.structure.damping import Modal, Rayleigh
 from dalembert.structure.dofs import Dofs
+from dalembert.structure.eigenmodes import EigenModes, eigenmodes, similarity
 from dalembert.structure.lumped import lumped
+from dalembert.structure.nodes import Nodes
 from dalembert.structure.structure import Structure
 
-__all__ = ["Dofs", "Structure", "lumped"]
+__all__ = ["Dofs", "EigenModes", "Modal", "Nodes", "Rayleigh", "Structure", "eigenmodes", "lumped", "similarity"]

@@ -6,12 +6,16 @@ from functools import cached_property
 
 from dalembert.errors import InputError, unknown
 
-DIRECTIONS = ("x", "y", "z", "rx", "ry", "rz")
+DIRECTIONS = ("x", "y", "z", "rx", "ry", "rz", "rxy", "q")
+"""Displacements, rotations, the twist ∂²w/∂x∂y of a plate, and a modal coordinate."""
 
 
 @dataclass(frozen=True)
 class Dofs:
-    """Degrees of freedom by name, ``NODE.DIRECTION``; directions are x, y, z, rx, ry and rz.
+    """Degrees of freedom by name, ``NODE.DIRECTION``.
+
+    Directions are x, y and z (m), rx, ry and rz (rad), rxy for the twist ∂²w/∂x∂y of a plate (1/m) and q for the
+    coordinate of a mode.
 
     Parameters
     ----------

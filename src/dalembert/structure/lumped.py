@@ -33,17 +33,19 @@ def lumped(masses: Mapping[str, float], springs: Sequence[Spring]) -> Structure:
     ([[4.0, -1.0], [-1.0, 1.0]], ('a.x', 'b.x'))
     """
     names = list(masses)
+    places = {name: place for place, name in enumerate(names)}
     kind = np.result_type(float, *masses.values(), *(value for *_, k, c in springs for value in (k, c)))
     stiffness, damping = np.zeros((2, len(names), len(names)), dtype=kind)
     for number, (first, second, k, c) in enumerate(springs):
-        row = np.zeros(len(names))
+        row: dict[int, float] = {}
         for end, sign in ((first, 1.0), (second, -1.0)):
             if end is None:
                 continue
             if end not in masses:
                 raise InputError(unknown("mass", end, names, f"lumped: spring {number + 1}"))
-            row[names.index(end)] += sign
-        stiffness += k * np.outer(row, row)
-        damping += c * np.outer(row, row)
+            row[places[end]] = row.get(places[end], 0.0) + sign
+        block, signs = np.ix_(list(row), list(row)), list(row.values())
+        stiffness[block] += k * np.outer(signs, signs)
+        damping[block] += c * np.outer(signs, signs)
     mass = np.diag(np.array(list(masses.values()), dtype=kind))
     return Structure(mass, stiffness, Dofs(tuple(f"{name}.x" for name in names)), damping)

@@ -1,14 +1,18 @@
-"""A linear structure: its matrices and the names of their rows."""
+"""A linear structure: its matrices, the names of their rows, and where its nodes are."""
+
+from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from scipy.sparse import issparse
 
 from dalembert.errors import InputError
+from dalembert.structure.damping import Modal, Rayleigh
 from dalembert.structure.dofs import Dofs
+from dalembert.structure.nodes import Nodes
 
 Matrix = Any
 """A NumPy array or a SciPy sparse array, (n, n), real, or complex with a complex step as its imaginary part."""
@@ -29,6 +33,8 @@ class Structure:
         Names of the n rows.
     damping : array or sparse array, shape (n, n), optional
         N s/m; none if not given.
+    nodes : Nodes, optional
+        Where the nodes are, and their sets.
 
     Raises
     ------
@@ -47,6 +53,7 @@ class Structure:
     stiffness: Matrix
     dofs: Dofs
     damping: Matrix | None = None
+    nodes: Nodes | None = None
 
     def __post_init__(self) -> None:
         for name in ("mass", "stiffness", "damping"):
@@ -76,20 +83,56 @@ class Structure:
         """Number of degrees of freedom."""
         return len(self.dofs)
 
-    def fixed(self, held: str | Sequence[str]) -> "Structure":
+    def rows(self, names: str | Sequence[str]) -> list[int]:
+        """Rows of degrees of freedom, of all those of nodes, or of all those of sets of nodes.
+
+        Raises
+        ------
+        InputError
+            For an unknown name, with the nearest ones.
+        """
+        sets = self.nodes.sets if self.nodes else {}
+        names = [names] if isinstance(names, str) else names
+        single = [name for given in names for name in sets.get(given, (given,))]
+        return list(dict.fromkeys(self.dofs.rows(single)))
+
+    def fixed(self, held: str | Sequence[str]) -> Structure:
         """The structure with some of its degrees of freedom clamped: their rows and columns are taken out.
 
         Parameters
         ----------
         held : str or sequence of str
-            Degrees of freedom, or nodes for all of theirs.
+            Degrees of freedom, nodes for all of theirs, or sets of nodes.
         """
-        out = set(self.dofs.rows([held] if isinstance(held, str) else held))
-        kept = [row for row in range(self.size) if row not in out]
-        block = np.ix_(kept, kept)
-        return Structure(
-            self.mass[block],
-            self.stiffness[block],
-            Dofs(tuple(self.dofs.names[row] for row in kept)),
-            None if self.damping is None else self.damping[block],
+        out = np.ones(self.size, dtype=bool)
+        out[self.rows(held)] = False
+        kept = np.flatnonzero(out)
+        return replace(
+            self,
+            mass=block(self.mass, kept),
+            stiffness=block(self.stiffness, kept),
+            dofs=Dofs(tuple(self.dofs.names[row] for row in kept)),
+            damping=None if self.damping is None else block(self.damping, kept),
         )
+
+    def with_damping(self, damping: Rayleigh | Modal | Matrix) -> Structure:
+        """The structure with another damping in place of its own.
+
+        Parameters
+        ----------
+        damping : Rayleigh, Modal, or array or sparse array of shape (n, n)
+
+        Examples
+        --------
+        >>> bob = Structure(np.array([[2.0]]), np.array([[8.0]]), Dofs(("bob.x",)))
+        >>> bob.with_damping(Modal(0.01)).damping.round(12).tolist()  # 2 · 0.01 · sqrt(2 · 8)
+        [[0.08]]
+        """
+        matrix = damping.matrix(self.mass, self.stiffness) if isinstance(damping, (Rayleigh, Modal)) else damping
+        return replace(self, damping=matrix)
+
+
+def block(matrix: Matrix, rows: np.ndarray, columns: np.ndarray | None = None) -> Matrix:
+    """Some rows and columns (the same ones if not given) of a dense or sparse matrix."""
+    columns = rows if columns is None else columns
+    return matrix.tocsc()[:, columns].tocsr()[rows].tocsc() if issparse(matrix) else matrix[np.ix_(rows, columns)]

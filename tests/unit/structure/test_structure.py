@@ -27,9 +27,9 @@ def test_an_unknown_name_lists_near_ones() -> None:
     ("names", "sentence"),
     [
         (
-            ("a.q",),
-            "Dofs: a degree of freedom is called 'a.q'; expected NODE.DIRECTION with one of the directions "
-            "x, y, z, rx, ry, rz, such as 'A.x'",
+            ("a.w",),
+            "Dofs: a degree of freedom is called 'a.w'; expected NODE.DIRECTION with one of the directions "
+            "x, y, z, rx, ry, rz, rxy, q, such as 'A.x'",
         ),
         (
             ("a.x", "a.x"),

@@ -1,0 +1,53 @@
+"""Linear systems with the matrices of a structure."""
+
+import warnings
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from scipy.linalg import LinAlgWarning, lu_factor, lu_solve
+from scipy.sparse import issparse
+from scipy.sparse.linalg import splu
+
+from dalembert.errors import SolveError
+
+SINGULAR = 1e-13
+"""Ratio of the smallest to the largest pivot below which a matrix counts as singular."""
+
+
+def factorise(matrix: Any, what: str, advice: str = "; clamp it") -> Callable[[np.ndarray], np.ndarray]:
+    """The solution of ``matrix @ x = b`` as a function of b, of shape (n,) or (n, columns).
+
+    Parameters
+    ----------
+    matrix : array or sparse array, shape (n, n)
+        Symmetric: rows and columns are reordered together to keep the factors sparse.
+    what : str
+        Its name in the error.
+    advice : str
+        End of the sentence of the error.
+
+    Raises
+    ------
+    SolveError
+        For a singular matrix.
+    """
+    singular = f"{what} is singular: the structure, or a part of it, moves without being held{advice}"
+    if not issparse(matrix):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", LinAlgWarning)
+            factors = lu_factor(matrix)
+        _refuse_singular(np.diag(factors[0]), singular)
+        return lambda b: lu_solve(factors, b)
+    try:
+        lu = splu(matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    except RuntimeError:
+        raise SolveError(singular) from None
+    _refuse_singular(lu.U.diagonal(), singular)
+    return lu.solve
+
+
+def _refuse_singular(pivots: np.ndarray, sentence: str) -> None:
+    sizes = np.abs(pivots)
+    if sizes.size and sizes.min() <= SINGULAR * sizes.max():
+        raise SolveError(sentence)

@@ -42,8 +42,9 @@ _NAMES = {
         RevoluteJoint PrismaticJoint FixedJoint DistanceJoint PrescribedMotion
         Force Torque Spring TorsionSpring UserForce
         Step Harmonic Polynomial Table Custom
-        Collocation GaussNewton
-        GeneralizedAlpha Radau5 TimeResponse Trajectory WorkPrecision simulate equilibrium modes work_precision
+        Collocation GaussNewton Augmented Baumgarte Projection Partitioning
+        GeneralizedAlpha RungeKutta4 OdeSolver Radau5 TimeResponse Trajectory WorkPrecision simulate equilibrium modes
+        work_precision
     """,
     "uncertainty": """
         Comparison Propagation compare propagate

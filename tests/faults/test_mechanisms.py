@@ -87,7 +87,8 @@ MECHANISMS = {
         redundant,
         "the constraints are redundant: 5 were given, 3 are independent at the start; those of 'pin' follow from the "
         "others. Take a joint out or replace one by a joint that holds less (a revolute joint instead of a fixed one), "
-        "or start from a position that is not singular",
+        "or start from a position that is not singular; RungeKutta4 and OdeSolver take redundant constraints as they "
+        "are",
     ),
     "a driving velocity against a joint": (
         contradictory,

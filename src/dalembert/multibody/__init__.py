@@ -5,7 +5,10 @@ from dalembert.multibody.bodies import PointMass, RigidBar, RigidBody
 from dalembert.multibody.drawing import Drawing
 from dalembert.multibody.integrators.collocation import Collocation, GaussNewton
 from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha
+from dalembert.multibody.integrators.ode_solver import OdeSolver
 from dalembert.multibody.integrators.radau5 import Radau5
+from dalembert.multibody.integrators.runge_kutta import RungeKutta4
+from dalembert.multibody.integrators.stabilisation import Augmented, Baumgarte, Partitioning, Projection
 from dalembert.multibody.joints import DistanceJoint, FixedJoint, PrescribedMotion, PrismaticJoint, RevoluteJoint
 from dalembert.multibody.loads import Force, Spring, Torque, TorsionSpring, UserForce
 from dalembert.multibody.points import Ground, GroundPoint, Point
@@ -20,6 +23,8 @@ from dalembert.multibody.work_precision import WorkPrecision, work_precision
 __all__ = [
     "AncfBeam",
     "AncfCable",
+    "Augmented",
+    "Baumgarte",
     "Collocation",
     "Constant",
     "Custom",
@@ -34,15 +39,19 @@ __all__ = [
     "GroundPoint",
     "Harmonic",
     "Modes",
+    "OdeSolver",
+    "Partitioning",
     "Point",
     "PointMass",
     "Polynomial",
     "PrescribedMotion",
     "PrismaticJoint",
+    "Projection",
     "Radau5",
     "RevoluteJoint",
     "RigidBar",
     "RigidBody",
+    "RungeKutta4",
     "Spring",
     "Step",
     "System",

@@ -7,7 +7,7 @@ the complex step, so the derivatives are those of the positions that are found, 
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import cast
+from typing import NamedTuple, cast
 
 import numpy as np
 from scipy.linalg import qr
@@ -79,6 +79,29 @@ def refuse_kinks(lowered: Lowered, end: float) -> None:
             )
 
 
+class Redundancy(NamedTuple):
+    """How many constraints there are, how many of them are independent at the start, and joints of the others."""
+
+    count: int
+    rank: int
+    joints: tuple[str, ...]
+
+
+def redundancy(lowered: Lowered) -> Redundancy:
+    """Which constraints follow from the others at the start."""
+    structure = lowered.structure
+    if structure.size == structure.n:
+        return Redundancy(0, 0, ())
+    jacobian = constraint_jacobian(lowered, np.real(lowered.x))
+    dense = jacobian[:, np.unique(jacobian.indices)].toarray()
+    dense /= np.linalg.norm(dense, axis=1, keepdims=True) + 1e-300
+    decomposed = qr(dense.T, mode="economic", pivoting=True)
+    _, triangle, order = cast(tuple[np.ndarray, np.ndarray, np.ndarray], decomposed)
+    rank = int(np.sum(np.abs(np.diag(triangle)) > 1e-9))
+    names = sorted({structure.owners[structure.n + row] for row in order[rank:]})
+    return Redundancy(len(order), rank, tuple(names))
+
+
 def refuse_redundancy(lowered: Lowered) -> None:
     """Raise where a constraint follows from the others.
 
@@ -87,22 +110,13 @@ def refuse_redundancy(lowered: Lowered) -> None:
     ModelError
         With the joints whose constraints are redundant.
     """
-    structure = lowered.structure
-    if structure.size == structure.n:
-        return
-    jacobian = constraint_jacobian(lowered, np.real(lowered.x))
-    dense = jacobian[:, np.unique(jacobian.indices)].toarray()
-    dense /= np.linalg.norm(dense, axis=1, keepdims=True) + 1e-300
-    decomposed = qr(dense.T, mode="economic", pivoting=True)
-    _, triangle, order = cast(tuple[np.ndarray, np.ndarray, np.ndarray], decomposed)
-    rank = int(np.sum(np.abs(np.diag(triangle)) > 1e-9))
-    if rank < len(order):
-        names = sorted({structure.owners[structure.n + row] for row in order[rank:]})
+    count, rank, names = redundancy(lowered)
+    if rank < count:
         raise ModelError(
-            f"the constraints are redundant: {len(order)} were given, {rank} are independent at the start; "
+            f"the constraints are redundant: {count} were given, {rank} are independent at the start; "
             f"those of {', '.join(map(repr, names))} follow from the others. Take a joint out or replace one by a "
             "joint that holds less (a revolute joint instead of a fixed one), or start from a position that is not "
-            "singular"
+            "singular; RungeKutta4 and OdeSolver take redundant constraints as they are"
         )
 
 

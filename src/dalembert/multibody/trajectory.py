@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from dalembert.files import write_dataset
+from dalembert.multibody.assemble import redundancy
 from dalembert.multibody.drawing import Drawing, draw
 from dalembert.multibody.evaluate import energies, violations
 from dalembert.multibody.integrators.integrator import Integrator
@@ -138,6 +139,11 @@ class Trajectory:
         steps, iterations, factorisations, rejected = self.run.counts
         worst = {name: np.max(np.abs(value)) for name, value in self.violations.items()}
         kinetic = np.ptp(self.energies["kinetic"])
+        constraints = redundancy(self.lowered)
+        redundant = (
+            f"redundancy: {constraints.count} constraints, {constraints.rank} of them independent at the start; joint "
+            f"forces of least norm (those of {', '.join(map(repr, constraints.joints))} follow from the others)"
+        )
         return "\n".join(
             [
                 f"{self.times[-1]:g} s in {steps} steps ({rejected} rejected), {iterations / max(steps, 1):.2f} Newton "
@@ -145,6 +151,7 @@ class Trajectory:
                 f"energy: largest imbalance {np.max(np.abs(self.energies['balance'])):.3g} J, "
                 f"range of the kinetic energy {kinetic:.3g} J",
                 "constraints: largest violation " + ", ".join(f"{name} {value:.2g}" for name, value in worst.items()),
+                *([redundant] if constraints.joints else []),
             ]
         )
 

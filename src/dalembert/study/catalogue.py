@@ -68,12 +68,28 @@ def step_minimisers() -> dict[str, type]:
 
 
 @cache
+def stabilisations() -> dict[str, type]:
+    """How index-1 methods keep to the constraints, by the names that a study file gives them."""
+    from dalembert import multibody
+
+    kinds = (multibody.Augmented, multibody.Baumgarte, multibody.Projection, multibody.Partitioning)
+    return {kind.__name__.lower(): kind for kind in kinds}
+
+
+@cache
 def parts() -> dict[str, Any]:
     """Keys for settings that are chosen among several kinds themselves, by the names of their types."""
     scheme, swarm = settings_of(schemes()), settings_of(swarms())
     only = settings_of({"total-degree": schemes()["total-degree"]})
     step = settings_of(step_minimisers())
-    return {"Scheme": scheme, "TotalDegree": only, "ParticleSwarm": swarm, "GaussNewton": step}
+    stabilisation = settings_of(stabilisations())
+    return {
+        "Scheme": scheme,
+        "TotalDegree": only,
+        "ParticleSwarm": swarm,
+        "GaussNewton": step,
+        "Stabilisation": stabilisation,
+    }
 
 
 @cache

@@ -20,6 +20,8 @@ class Integrator(ABC):
     one motion, ensembles, and the derivatives of its own discrete solution.
     """
 
+    takes_redundancy = False  #: whether constraints may follow from others
+
     @abstractmethod
     def integrate(
         self,

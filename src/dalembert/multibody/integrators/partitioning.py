@@ -8,7 +8,7 @@ from dalembert.multibody.integrators.lifting import lift, set_signals
 from dalembert.multibody.kernels.assembly import constraint_rates, residual, tangent
 from dalembert.multibody.kernels.compiled import compiled, kernel, template
 from dalembert.multibody.kernels.dual import STEP
-from dalembert.multibody.kernels.linear import Factors, Layout, factorise, solve, storage
+from dalembert.multibody.kernels.linear import DENSE, Factors, Layout, factorise, solve, storage
 from dalembert.multibody.kernels.model import select
 from dalembert.multibody.kernels.motion import row
 from dalembert.multibody.kernels.vector import LANES
@@ -48,9 +48,9 @@ def _layout(problem, rank):
 
 @compiled
 def room(problem):
-    """Room for a partition; the matrix of the problem must be dense (`Structure.dense`)."""
+    """Room for a partition, for a dense matrix of the problem (`Structure.dense`); else for its Jacobian only."""
     size, n = problem.exact_layout.size, problem.n
-    m = size - n
+    m = size - n if problem.exact_layout.kind == DENSE else 0
     return Partition(
         np.arange(n), np.arange(m), np.zeros(1, np.int64), np.zeros(problem.exact_layout.lead * size),
         np.zeros((m, n)), storage(_layout(problem, m)), np.zeros(size + 1), np.zeros(size + 1), np.zeros(size + 1),
@@ -140,7 +140,7 @@ def dependence(problem, partition):
 
 
 @kernel
-def _fill_gap(model, n, level, x, v, a, work, gap, second):
+def fill_gap(model, n, level, x, v, a, work, gap, second):
     """The constraints, or their first or second rates, into the entries of ``gap`` from n on."""
     if level == POSITION:
         residual(model, n, x, v, a, work, 1.0, gap)
@@ -180,7 +180,7 @@ def _close(problem, model, dual, state, work, dual_work, partition):
         linearise(problem, dual, state, dual_work, partition)
         if not invert(problem, partition):
             return False
-        _fill_gap(model, problem.n, POSITION, state.x, state.v, state.a, work, partition.second, partition.gap)
+        fill_gap(model, problem.n, POSITION, state.x, state.v, state.a, work, partition.second, partition.gap)
         moved = _shift(problem, partition, POSITION, state)
         if moved <= _CLOSED:
             return True
@@ -203,7 +203,7 @@ def settle(problem, model, dual, directions, t, within, levels, state, dstates, 
         return False
     for level in range(POSITION, levels + 1):
         for _ in range(1 if level == POSITION else 2):  # linear from the velocities on; once more for rounding
-            _fill_gap(model, n, level, state.x, state.v, state.a, work, partition.second, partition.gap)
+            fill_gap(model, n, level, state.x, state.v, state.a, work, partition.second, partition.gap)
             _shift(problem, partition, level, state)
     for d in range(len(dstates.x)):
         tilted, dstate = select(directions, d), row(dstates, d)
@@ -211,7 +211,7 @@ def settle(problem, model, dual, directions, t, within, levels, state, dstates, 
         for level in range(POSITION, levels + 1):
             for _ in range(2):
                 lift(n, state, dstate, lifted)
-                _fill_gap(tilted, n, level, lifted[0], lifted[1], lifted[2], dual_work, lifted[3], lifted[4])
+                fill_gap(tilted, n, level, lifted[0], lifted[1], lifted[2], dual_work, lifted[3], lifted[4])
                 for i in range(n, len(state.x) - 1):
                     partition.second[i] = lifted[3, i].imag / STEP
                 _shift(problem, partition, level, dstate)

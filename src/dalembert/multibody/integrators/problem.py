@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-DONE, NEWTON_FAILED, SINGULAR, TOO_MANY_STEPS = range(4)
+DONE, NEWTON_FAILED, SINGULAR, TOO_MANY_STEPS, DIVERGED = range(5)
 
 
 class Problem(NamedTuple):

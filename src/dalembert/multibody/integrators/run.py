@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dalembert.multibody.assemble import scales
-from dalembert.multibody.integrators.problem import SINGULAR, TOO_MANY_STEPS, Problem
+from dalembert.multibody.integrators.problem import DIVERGED, SINGULAR, TOO_MANY_STEPS, Problem
 from dalembert.multibody.kernels.dual import STEP
 from dalembert.multibody.kernels.model import KINDS, Block, Model, Signals
 from dalembert.multibody.kernels.motion import Motion
@@ -111,6 +111,11 @@ def explain(lowered: Lowered, status: int, time: float, unknown: int, step: str,
         )
     if status == TOO_MANY_STEPS:
         return f"the adaptive step reached most_steps = {most_steps} at t = {time:.6g} s; raise tolerance or most_steps"
+    if status == DIVERGED:
+        return (
+            f"the motion grew without bound before t = {time:.6g} s: {step}, too long for an explicit method on the "
+            "fastest vibration of the model; take a smaller step, or an implicit method such as GeneralizedAlpha"
+        )
     return (
         f"Newton's iteration did not converge at t = {time:.6g} s, worst at component {owner!r}, though {step}; "
         "take a smaller step, or check the component's stiffness, loads and dimensions"

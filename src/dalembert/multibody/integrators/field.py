@@ -1,0 +1,109 @@
+"""The equations of index 1 as a field of rates over the states, for solvers that call it from Python."""
+
+import numpy as np
+
+from dalembert.multibody.integrators.index1 import PARTITIONED, PROJECTED, Terms, demand, make_tools
+from dalembert.multibody.integrators.partitioning import VELOCITY, settle
+from dalembert.multibody.integrators.problem import DIVERGED, DONE, NEWTON_FAILED, SINGULAR, Problem
+from dalembert.multibody.integrators.projection import project
+from dalembert.multibody.integrators.run import resting, stack
+from dalembert.multibody.integrators.runge_kutta import partition
+from dalembert.multibody.kernels.model import Model
+from dalembert.multibody.kernels.motion import Motion
+from dalembert.multibody.lowering import Lowered
+
+
+class Field:
+    """Rates of a sample's coordinates and velocities, and of their derivatives along directions.
+
+    The vectors hold coordinates (n,) and velocities (n,), then those of each direction. The state that was asked for
+    last is kept: its accelerations and multipliers are the first guess of the next.
+
+    Parameters
+    ----------
+    problem, terms : Problem, Terms
+    lowered : Lowered
+    directions : Model
+        Stack of complex models.
+    state, dstates : Motion
+        At the start; overwritten.
+    """
+
+    def __init__(
+        self, problem: Problem, terms: Terms, lowered: Lowered, directions: Model, state: Motion, dstates: Motion
+    ) -> None:
+        self.problem, self.terms, self.lowered = problem, terms, lowered
+        self.n, self.width, self.count = problem.n, len(state.x), len(dstates.x)
+        self.moves = terms.way == PROJECTED and self.width - 1 > self.n
+        self.within = 0.0
+        self.evaluations = 0
+        self._directions, self._state, self._dstates = directions, state, dstates
+        self._tools = make_tools(problem, lowered.real, lowered.dual)
+        self._units = stack([lowered.upright] * (2 * self.n), lowered.upright)
+
+    def __call__(self, t: float, y: np.ndarray) -> np.ndarray:
+        """Rates, not numbers where there are none: a solver then takes a shorter step."""
+        self.put(y)
+        return self.rates() if self.complete(t, projected=False) == DONE else np.full_like(y, np.nan)
+
+    def jacobian(self, t: float, y: np.ndarray) -> np.ndarray:
+        """Derivative of the motion's rates by coordinates and velocities, (2n, 2n)."""
+        n = self.n
+        self.put(y)
+        dstates = resting(2 * n, self.width)
+        dstates.x[:n, :n] = dstates.v[n:, :n] = np.eye(n)
+        if self._complete(t, False, self._units, dstates) != DONE:
+            return np.full((2 * n, 2 * n), np.nan)
+        return np.concatenate([dstates.v[:, :n], dstates.a[:, :n]], axis=1).T
+
+    def put(self, y: np.ndarray) -> None:
+        """Take coordinates and velocities, and their derivatives, from a vector."""
+        parts = y.reshape(1 + self.count, 2, self.n)
+        self._state.x[: self.n], self._state.v[: self.n] = parts[0]
+        self._dstates.x[:, : self.n], self._dstates.v[:, : self.n] = parts[1:, 0], parts[1:, 1]
+
+    def gathered(self) -> np.ndarray:
+        """The vector of the present state."""
+        return self._joined(self._state.x, self._state.v, self._dstates.x, self._dstates.v)
+
+    def rates(self) -> np.ndarray:
+        """The rates of the present state."""
+        return self._joined(self._state.v, self._state.a, self._dstates.v, self._dstates.a)
+
+    def complete(self, t: float, *, projected: bool) -> int:
+        """Bring the state to the constraints, then find what it demands: status."""
+        return self._complete(t, projected and self.moves, self._directions, self._dstates)
+
+    def choose(self, t: float) -> bool:
+        """Choose independent coordinates if they are parted and that is needed; whether it was done."""
+        if self.terms.way != PARTITIONED:
+            return False
+        return partition(
+            self.problem, self.terms, self.lowered.dual, t, self.within, self._state, self._tools
+        )  # fmt: skip
+
+    def record(self, out: Motion, dout: Motion, due: int) -> None:
+        """Write the present state as that of an output time."""
+        for target, values in zip(out, self._state, strict=True):
+            target[due] = values
+        for target, values in zip(dout, self._dstates, strict=True):
+            target[:, due] = values
+
+    def _joined(self, first: np.ndarray, second: np.ndarray, dfirst: np.ndarray, dsecond: np.ndarray) -> np.ndarray:
+        n = self.n
+        slopes = np.concatenate([dfirst[:, :n], dsecond[:, :n]], axis=1)
+        return np.concatenate([first[:n], second[:n], slopes.ravel()])
+
+    def _complete(self, t: float, projected: bool, directions: Model, dstates: Motion) -> int:
+        problem, tools, lowered = self.problem, self._tools, self.lowered
+        own = lowered.real, lowered.dual, directions, float(t), self.within, self._state, dstates
+        self.evaluations += 1
+        if not np.all(np.abs(self._state.x[: self.n]) + np.abs(self._state.v[: self.n]) < 1e100):
+            return DIVERGED
+        if self.terms.way == PARTITIONED:
+            works = tools.work, tools.dual_work, tools.lifted, tools.partition
+            if not settle(problem, *own[:5], VELOCITY, *own[5:], *works):
+                return NEWTON_FAILED
+        if projected and not project(problem, self.terms, *own, tools):
+            return NEWTON_FAILED
+        return DONE if demand(problem, self.terms, *own, tools) else SINGULAR

@@ -1,0 +1,198 @@
+"""SciPy's error-controlled methods for the equations of index 1."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+
+import numpy as np
+from scipy import integrate as scipy_integrate
+from scipy.sparse import block_diag
+
+from dalembert.errors import InputError, unknown
+from dalembert.multibody.integrators.field import Field
+from dalembert.multibody.integrators.index1 import PROJECTED
+from dalembert.multibody.integrators.integrator import Integrator
+from dalembert.multibody.integrators.problem import DONE, TOO_MANY_STEPS, Problem
+from dalembert.multibody.integrators.run import Run, cut, explain, resting, stacks, starts
+from dalembert.multibody.integrators.stabilisation import Projection, Stabilisation, posed
+from dalembert.multibody.kernels.motion import Motion, row
+from dalembert.multibody.lowering import Lowered
+
+EXPLICIT, IMPLICIT = ("RK45", "DOP853"), ("Radau", "BDF", "LSODA")
+_FINEST = 1e-12  # relative tolerance; SciPy takes none below 100 roundings, which derivatives divide further
+
+
+@dataclass(frozen=True)
+class OdeSolver(Integrator):
+    """One of SciPy's methods, which choose their steps by the estimated local error, for the equations of index 1.
+
+    The constraints are differentiated twice; what keeps positions and velocities to them is the ``stabilisation``.
+    Redundant constraints are allowed; their multipliers are those of least norm. The loop over the steps runs in
+    Python, so that ensembles gain nothing from threads.
+
+    Parameters
+    ----------
+    method : {"DOP853", "RK45", "Radau", "BDF", "LSODA"}
+        Explicit of order 8 or 5; implicit of order 5, of orders 1 to 5, and of both kinds in turn, for stiff models.
+    relative_tolerance : float
+        Of the local error of each coordinate and velocity.
+    absolute_tolerance : float
+        The same in units of each coordinate's scale (m or rad, and per s): the mechanism's extent, or one for angles.
+    stabilisation : Stabilisation
+        `Augmented`, `Baumgarte` with given numbers, `Projection` (not with LSODA, whose memory cannot be moved) or
+        `Partitioning`.
+    most_steps : int
+        After which a run gives up.
+
+    Notes
+    -----
+    Between the ends of steps the motion is the method's own dense output, brought to the constraints by `Projection`
+    or `Partitioning`; accelerations and multipliers are those that it demands.
+
+    Derivatives are integrated beside the motion, as the linearised equations. The explicit methods control the error of
+    the motion alone, so that they take the same steps as without derivatives, and these are those of the discrete
+    solution; the implicit ones control the error of both.
+
+    Examples
+    --------
+    >>> OdeSolver("Radau", relative_tolerance=1e-6).stabilisation
+    Projection()
+    """
+
+    method: str = "DOP853"
+    relative_tolerance: float = field(default=1e-8, metadata={"unit": ""})
+    absolute_tolerance: float = field(default=1e-10, metadata={"unit": ""})
+    stabilisation: Stabilisation = field(default_factory=Projection)
+    most_steps: int = 1_000_000
+    takes_redundancy = True
+
+    def __post_init__(self) -> None:
+        if self.method not in EXPLICIT + IMPLICIT:
+            raise InputError(unknown("method", self.method, EXPLICIT + IMPLICIT, "OdeSolver"))
+        if not _FINEST <= self.relative_tolerance < 1:
+            raise InputError(
+                f"OdeSolver: relative_tolerance is {self.relative_tolerance}; expected a number from {_FINEST:g} to 1"
+            )
+        if not self.absolute_tolerance > 0:
+            raise InputError(f"OdeSolver: absolute_tolerance is {self.absolute_tolerance}; expected a positive number")
+        if self.method == "LSODA" and self.stabilisation.way == PROJECTED:
+            raise InputError(
+                "OdeSolver: LSODA keeps a memory of past steps that a projection cannot move; give "
+                "stabilisation=Partitioning(), or take BDF"
+            )
+        self.stabilisation.gains(None)
+
+    def integrate(
+        self,
+        samples: Sequence[Lowered],
+        tilted: Sequence[Lowered],
+        problem: Problem,
+        end: float,
+        *,
+        logged: bool = True,
+    ) -> list[Run]:
+        """Runs of samples, one after another; see `Integrator`."""
+        problem, terms = posed(self.stabilisation, samples, cut(samples, problem, end), None)
+        states, dstates = starts(samples, tilted)
+        directions = stacks(samples, tilted)[2]
+        runs = []
+        for number, lowered in enumerate(samples):
+            own = Field(problem, terms, lowered, directions, row(states, number), dstates)
+            edges = problem.edges[number, : problem.stretches[number] + 1]
+            runs.append(self._run(own, edges))
+        return runs
+
+    def _run(self, own: Field, edges: np.ndarray) -> Run:
+        """The motion of one sample."""
+        times = own.problem.times
+        shape = len(times), own.width
+        out, dout = resting(*shape), resting(own.count, *shape)
+        ends: list[float] = []
+        due, reason = 0, None
+        for begin, end in pairwise(edges):
+            own.within = 0.5 * (begin + end)
+            own.choose(begin)
+            if (status := own.complete(begin, projected=False)) != DONE:
+                reason = explain(own.lowered, status, begin, 0, "the motion begins there")
+                break
+            while due < len(times) and times[due] <= begin and not ends:
+                own.record(out, dout, due)
+                due += 1
+            reason, due = self._stretch(own, begin, end, out, dout, due, ends)
+            if reason is not None:
+                break
+        counts = np.array([len(ends), 0, own.evaluations, 0])
+        return Run(reason, times, out, dout, counts, np.zeros(len(ends), dtype=np.int64), np.array(ends))
+
+    def _stretch(
+        self, own: Field, begin: float, end: float, out: Motion, dout: Motion, due: int, ends: list[float]
+    ) -> tuple[str | None, int]:
+        """One smooth stretch: why it ended early, and the number of the next output."""
+        times, solver = own.problem.times, self._solver(own, begin, end)
+        while solver.status == "running":
+            if len(ends) >= self.most_steps:
+                return explain(own.lowered, TOO_MANY_STEPS, solver.t, 0, "", self.most_steps), due
+            with np.errstate(all="ignore"):  # a step that is too long may overflow before it is cut down
+                message = solver.step()
+            if solver.status == "failed":
+                return self._explain(own, solver.t, message), due
+            reached = min(solver.t, end)
+            last = due
+            while last < len(times) and times[last] <= reached * (1 + 1e-14):
+                last += 1
+            path = solver.dense_output() if last > due else None
+            ends.append(reached)
+            for number in range(due, last):
+                assert path is not None
+                own.put(path(min(times[number], reached)))
+                if (status := own.complete(times[number], projected=True)) != DONE:
+                    return self._explain(own, times[number], str(status)), due
+                own.record(out, dout, number)
+            due = last
+            own.put(solver.y)
+            if own.moves or own.choose(reached):
+                if own.complete(reached, projected=True) != DONE:
+                    return self._explain(own, reached, "the state does not come back to the constraints"), due
+                solver = self._moved(solver, own, end)
+        if not own.moves:
+            own.put(solver.y)
+            own.complete(end, projected=True)
+        return None, due
+
+    def _solver(self, own: Field, begin: float, end: float, first_step: float | None = None):
+        """SciPy's object for the rest of a stretch."""
+        scale = np.tile(own.problem.scale[: own.n], 2)
+        rtol, atol = self.relative_tolerance, np.tile(self.absolute_tolerance * scale, 1 + own.count)
+        kind, options = getattr(scipy_integrate, self.method), {}
+        if self.method in EXPLICIT:
+            # The norm of the error is a mean over all entries: those without a tolerance count as exact.
+            atol[2 * own.n :] = np.inf
+            rtol, atol = rtol / np.sqrt(1 + own.count), atol / np.sqrt(1 + own.count)
+        elif self.method == "LSODA":
+            options["jac"] = lambda t, y: block_diag([own.jacobian(t, y)] * (1 + own.count)).toarray()
+        else:
+            options["jac"] = lambda t, y: block_diag([own.jacobian(t, y)] * (1 + own.count), format="csc")
+        return kind(own, begin, own.gathered(), end, rtol=rtol, atol=atol, first_step=first_step, **options)
+
+    def _moved(self, solver, own: Field, end: float):
+        """The solver, going on from a state that has been moved."""
+        if solver.status != "running":
+            return solver
+        if self.method == "LSODA":
+            return self._solver(own, solver.t, end)
+        solver.y = own.gathered()
+        if self.method == "BDF":
+            solver.D[0] = solver.y
+        else:
+            solver.f = own.rates()
+        return solver
+
+    def _explain(self, own: Field, time: float, message: str | None) -> str:
+        if own.lowered.failures.errors:
+            return explain(own.lowered, DONE, time, 0, "")
+        why = f"{message[0].lower()}{message[1:].rstrip('.')}" if message else "no reason was given"
+        return (
+            f"OdeSolver: {self.method} could not go on at t = {time:.6g} s ({why}); if the model is stiff take an "
+            "implicit method (Radau, BDF) or GeneralizedAlpha, else loosen relative_tolerance or start from another "
+            "position: near a singular one the accelerations grow without bound"
+        )

@@ -1,0 +1,127 @@
+"""Coordinates and velocities moved onto the constraints by the smallest kinetic energy."""
+
+from dalembert.multibody.integrators.index1 import factorise_motion
+from dalembert.multibody.integrators.lifting import set_signals
+from dalembert.multibody.integrators.partitioning import POSITION, VELOCITY, fill_gap
+from dalembert.multibody.kernels.assembly import residual
+from dalembert.multibody.kernels.compiled import compiled, kernel
+from dalembert.multibody.kernels.dual import STEP
+from dalembert.multibody.kernels.linear import solve
+from dalembert.multibody.kernels.model import select
+from dalembert.multibody.kernels.motion import row
+
+_MOST_ITERATIONS = 15
+# Corrections that stop to shrink are rounding, which a nearly singular position magnifies up to this size.
+_MAGNIFIED = 1e-9
+_NOTHING = 1e-16
+
+
+@kernel
+def _move(problem, level, tools, state, change):
+    """Add the correction in ``tools.answer`` to the whole change, and take it off the state; its size."""
+    n, answer, largest = problem.n, tools.answer, 0.0
+    for i in range(n):
+        size = abs(answer[i]) / problem.scale[i]
+        if largest == largest and not size <= largest:
+            largest = size
+        change.a[i] += answer[i]
+        if level == POSITION:
+            state.x[i] -= answer[i]
+        else:
+            state.v[i] -= answer[i]
+    for i in range(n, len(answer) - 1):
+        change.x[i] += answer[i]
+    return largest
+
+
+@kernel
+def _clear_forces(n, answer, lifted):
+    """A complex state at rest without multipliers: x from row 0, v and a nothing."""
+    for i in range(lifted.shape[1]):
+        lifted[1, i] = 0.0
+        lifted[2, i] = 0.0
+        if i >= n:
+            lifted[0, i] = 0.0
+
+
+@compiled
+def _follow(problem, level, model, t, within, state, dstate, tools, change):
+    """The derivative of a projection along one direction.
+
+    ``dstate`` holds the derivative of the state before the projection, and that of the one after it when done. The
+    equations are those of the projection in complex numbers: M w + J^T m = 0 in the coordinates before, and the
+    constraints after.
+    """
+    n, last, lifted = problem.n, len(state.x) - 1, tools.lifted
+    base, gap, answer = tools.base, tools.gap, tools.answer
+    set_signals(model, t, within, tools.dual_work)
+    # The derivatives of w and m stand in the last rows; the coordinates before, whose derivative does not change, too.
+    for i in range(last + 1):
+        lifted[5, i] = 0.0
+        lifted[6, i] = complex(base.x[i], STEP * dstate.x[i]) if i < n else 0.0
+    for _ in range(3):  # the matrix is that of the coordinates before
+        for i in range(last + 1):
+            lifted[0, i] = lifted[6, i] if i < n else complex(change.x[i], lifted[5, i].imag)
+            lifted[1, i] = 0.0
+            lifted[2, i] = complex(change.a[i], lifted[5, i].imag) if i < n else 0.0
+        residual(model, n, lifted[0], lifted[1], lifted[2], tools.dual_work, 1.0, lifted[3])
+        _clear_forces(n, answer, lifted)
+        residual(model, n, lifted[0], lifted[1], lifted[2], tools.dual_work, 1.0, lifted[4])
+        for i in range(n):
+            gap[i] = (lifted[3, i].imag - lifted[4, i].imag) / STEP
+        for i in range(n):
+            shift = lifted[5, i].imag
+            lifted[0, i] = complex(state.x[i], STEP * dstate.x[i] - (shift if level == POSITION else 0.0))
+            lifted[1, i] = complex(state.v[i], STEP * dstate.v[i] - (shift if level == VELOCITY else 0.0))
+        fill_gap(model, n, level, lifted[0], lifted[1], lifted[2], tools.dual_work, lifted[3], lifted[4])
+        for i in range(n, last):
+            gap[i] = -lifted[3, i].imag / STEP
+        solve(problem.exact_layout, tools.exact, gap, answer)
+        for i in range(last):
+            lifted[5, i] = complex(0.0, lifted[5, i].imag - STEP * answer[i])
+    for i in range(n):
+        if level == POSITION:
+            dstate.x[i] -= lifted[5, i].imag / STEP
+        else:
+            dstate.v[i] -= lifted[5, i].imag / STEP
+
+
+@compiled
+def project(problem, terms, model, dual, directions, t, within, state, dstates, tools):
+    """Move coordinates, then velocities, onto the constraints, with their derivatives; whether that was possible.
+
+    With the state's mass matrix M and Jacobian J: M w + J^T m = 0 such that the constraints of q - w vanish, by
+    Newton's iteration with J kept; then v alike, which is linear.
+    """
+    n, last, base, change = problem.n, len(state.x) - 1, tools.base, tools.change
+    set_signals(model, t, within, tools.work)
+    for level in (POSITION, VELOCITY):
+        set_signals(dual, t, within, tools.dual_work)
+        for i in range(last + 1):  # at rest and unloaded: the forces of friction are none
+            base.x[i] = state.x[i] if i < n else 0.0
+            change.x[i], change.a[i] = 0.0, 0.0
+        if not factorise_motion(problem, terms, dual, base, tools):
+            return False
+        before = 1e300
+        for _ in range(_MOST_ITERATIONS):
+            fill_gap(model, n, level, state.x, state.v, state.a, tools.work, tools.gap, tools.second)
+            for i in range(n):
+                tools.gap[i] = 0.0
+            solve(problem.exact_layout, tools.exact, tools.gap, tools.answer)
+            moved = _move(problem, level, tools, state, change)
+            if moved <= _NOTHING or (moved <= _MAGNIFIED and moved > 0.1 * before) or not moved < 1e100:
+                break
+            before = moved
+        if not moved <= _MAGNIFIED * (1.0 if level == POSITION else 1.0 + _largest(n, state.v)):
+            return False
+        for d in range(len(dstates.x)):
+            _follow(problem, level, select(directions, d), t, within, state, row(dstates, d), tools, change)
+    return True
+
+
+@kernel
+def _largest(n, values):
+    largest = 0.0
+    for i in range(n):
+        largest = max(largest, abs(values[i]))
+    return largest

@@ -1,0 +1,144 @@
+"""How a method that integrates the differentiated constraints keeps to the constraints themselves."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from dalembert.errors import InputError
+from dalembert.multibody.assemble import redundancy
+from dalembert.multibody.integrators.index1 import AS_THEY_COME, PARTITIONED, PROJECTED, Terms
+from dalembert.multibody.integrators.problem import Problem
+from dalembert.multibody.lowering import Lowered
+
+
+class Stabilisation:
+    """What is done about the drift of positions and velocities off the constraints; a frozen dataclass."""
+
+    way: int = AS_THEY_COME
+
+    def gains(self, step: float | None) -> tuple[float, float]:
+        """Coefficients alpha and beta (1/s) of the constraints' feedback, for a method of this fixed step (s)."""
+        return 0.0, 0.0
+
+
+@dataclass(frozen=True)
+class Augmented(Stabilisation):
+    """Nothing: the constraints hold at the level of acceleration, and positions and velocities drift off them.
+
+    Examples
+    --------
+    >>> Augmented().gains(0.01)
+    (0.0, 0.0)
+    """
+
+
+@dataclass(frozen=True)
+class Baumgarte(Stabilisation):
+    """Feedback of the constraints: their second rate is -2 alpha (first rate) - beta^2 (constraint) instead of zero.
+
+    Parameters
+    ----------
+    alpha, beta : float, optional
+        1/s, both or none. If not given alpha = 1/h and beta = sqrt(2)/h of a fixed step h, with which the
+        constraints at the step's end vanish to the second order of their Taylor expansion.
+
+    References
+    ----------
+    J. Baumgarte, Stabilization of constraints and integrals of motion in dynamical systems, Computer Methods in Applied
+    Mechanics and Engineering 1 (1972). P. Flores and others, Investigation on the Baumgarte stabilization method for
+    dynamic analysis of constrained multibody systems (2009).
+
+    Examples
+    --------
+    >>> Baumgarte().gains(0.5)[0], Baumgarte(5.0, 5.0).gains(None)
+    (2.0, (5.0, 5.0))
+    """
+
+    alpha: float | None = field(default=None, metadata={"unit": "1/s"})
+    beta: float | None = field(default=None, metadata={"unit": "1/s"})
+
+    def __post_init__(self) -> None:
+        given = [value for value in (self.alpha, self.beta) if value is not None]
+        if len(given) == 1 or not all(np.isfinite(value) and value > 0 for value in given):
+            raise InputError(
+                f"Baumgarte: alpha is {self.alpha} and beta is {self.beta}; expected two positive numbers (1/s), or "
+                "none of them, which takes 1/h and sqrt(2)/h of a fixed step h"
+            )
+
+    def gains(self, step: float | None) -> tuple[float, float]:
+        """Alpha and beta, by the step if they were not given."""
+        if self.alpha is not None and self.beta is not None:
+            return float(self.alpha), float(self.beta)
+        if step is None:
+            raise InputError(
+                "Baumgarte: neither alpha nor beta was given, and the integrator chooses its step by the error; give "
+                "both (1/s), such as Baumgarte(alpha=10.0, beta=10.0), or use Projection() or Partitioning()"
+            )
+        return 1.0 / step, np.sqrt(2.0) / step
+
+
+@dataclass(frozen=True)
+class Projection(Stabilisation):
+    """After each accepted step coordinates and velocities are moved onto the constraints, by the least kinetic energy.
+
+    With the constraint Jacobian J and the mass matrix M the coordinates q are moved by a solution of
+    M dq + J^T m = 0 and constraint(q - dq) = 0, to rounding; the velocities alike.
+
+    References
+    ----------
+    E. Eich, Convergence results for a coordinate projection method applied to mechanical systems with algebraic
+    constraints, SIAM Journal on Numerical Analysis 30 (1993).
+
+    Examples
+    --------
+    >>> Projection()
+    Projection()
+    """
+
+    way = PROJECTED
+
+
+@dataclass(frozen=True)
+class Partitioning(Stabilisation):
+    """Only independent coordinates are integrated; the others follow from the constraints, by Newton's iteration.
+
+    The dependent ones are those of the pivots of the constraint Jacobian, and are chosen anew where one of them comes
+    to move ``limit`` times as fast as an independent one. The matrices are dense: it is for small models.
+
+    Parameters
+    ----------
+    limit : float
+
+    References
+    ----------
+    R. A. Wehage and E. J. Haug, Generalized coordinate partitioning for dimension reduction in analysis of constrained
+    dynamic systems, Journal of Mechanical Design 104 (1982).
+
+    Examples
+    --------
+    >>> Partitioning().limit
+    10.0
+    """
+
+    limit: float = field(default=10.0, metadata={"unit": ""})
+    way = PARTITIONED
+
+    def __post_init__(self) -> None:
+        if not self.limit > 1:
+            raise InputError(f"Partitioning: limit is {self.limit}; expected a number greater than 1")
+
+
+def posed(
+    stabilisation: Stabilisation, samples: Sequence[Lowered], problem: Problem, step: float | None
+) -> tuple[Problem, Terms]:
+    """The problem with the matrices that the index-1 methods need, and what they need to know.
+
+    Partitions and least squares need dense matrices.
+    """
+    redundant = any(redundancy(lowered).rank < redundancy(lowered).count for lowered in samples)
+    if redundant or stabilisation.way == PARTITIONED:
+        slots, layout = samples[0].structure.dense
+        problem = problem._replace(exact_slots=slots, exact_layout=layout)
+    alpha, beta = stabilisation.gains(step)
+    return problem, Terms(alpha, beta, redundant, stabilisation.way, float(getattr(stabilisation, "limit", 0.0)))

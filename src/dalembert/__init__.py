@@ -31,7 +31,10 @@ _NAMES = {
     "forward": "Channel Coordinate ForwardModel PythonModel Responses Sensor Sensors",
     "optimize": "Firefly ImprovedParticleSwarm LeastSquares Minimiser ParticleSwarm ResponseSensitivity",
     "surrogate": "Adaptive ChebyshevPolynomial Surrogate Tensor TotalDegree",
-    "structure": "Dofs EigenModes Modal Nodes Rayleigh Structure eigenmodes lumped similarity",
+    "structure": """
+        Dofs EigenModes Material Modal Nodes Rayleigh Structure box eigenmodes lumped plate
+        similarity solid
+    """,
     "data": "Bands Measurements derivative read read_bands read_csv read_mat read_netcdf read_parquet read_uff",
     "inverse": """
         BandFit Designs Experiment Fit GlobalSurrogate MultipleShooting Nested ParameterSet Prediction Profiles State

@@ -102,13 +102,17 @@ from dalembert.parameters import Parameter as Parameter
 from dalembert.parameters import Parameters as Parameters
 from dalembert.structure import Dofs as Dofs
 from dalembert.structure import EigenModes as EigenModes
+from dalembert.structure import Material as Material
 from dalembert.structure import Modal as Modal
 from dalembert.structure import Nodes as Nodes
 from dalembert.structure import Rayleigh as Rayleigh
 from dalembert.structure import Structure as Structure
+from dalembert.structure import box as box
 from dalembert.structure import eigenmodes as eigenmodes
 from dalembert.structure import lumped as lumped
+from dalembert.structure import plate as plate
 from dalembert.structure import similarity as similarity
+from dalembert.structure import solid as solid
 from dalembert.surrogate import Adaptive as Adaptive
 from dalembert.surrogate import ChebyshevPolynomial as ChebyshevPolynomial
 from dalembert.surrogate import Surrogate as Surrogate

@@ -29,16 +29,16 @@ def test_frequencies_and_shapes_of_a_chain_are_the_closed_form(size: int) -> Non
 
 
 def test_a_shift_finds_the_modes_around_it() -> None:
-    every = eigenmodes(chain(900), 900).frequencies
+    every = np.sin(np.arange(1, 451) * np.pi / 902) / np.pi
     np.testing.assert_allclose(
-        eigenmodes(chain(900), 4, shift=0.2).frequencies,
+        eigenmodes(chain(450), 4, shift=0.2).frequencies,
         np.sort(every[np.argsort(abs(every**2 - 0.04))[:4]]),
         rtol=1e-9,
     )
 
 
 def test_results_repeat_bit_for_bit() -> None:
-    np.testing.assert_array_equal(eigenmodes(chain(900), 3).shapes, eigenmodes(chain(900), 3).shapes)
+    np.testing.assert_array_equal(eigenmodes(chain(450), 3).shapes, eigenmodes(chain(450), 3).shapes)
 
 
 def test_a_free_structure_asks_for_a_clamp_or_a_shift() -> None:

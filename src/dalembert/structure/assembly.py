@@ -1,0 +1,42 @@
+"""What all finite elements here share: the library of their shape functions, and the sum of element matrices.
+
+The shape functions, meshes and quadratures are scikit-fem's. Its own assembly evaluates a form once for each pair of
+local functions, 3,600 times for a brick of 20 nodes; products of the arrays of all elements at once are faster.
+"""
+
+from importlib import import_module
+from typing import Any
+
+import numpy as np
+from scipy.sparse import coo_array, csc_array
+
+from dalembert.errors import InputError
+
+PACKAGES = {"skfem": "scikit-fem"}
+
+
+def library(name: str, what: str) -> Any:
+    """A module that comes with the extra ``fem``.
+
+    Raises
+    ------
+    InputError
+        Saying what to install, if it is not there.
+    """
+    try:
+        return import_module(name)
+    except ImportError:
+        raise InputError(
+            f"{what}: {PACKAGES.get(name, name)} is needed and not installed; run: pip install 'dalembert[fem]'"
+        ) from None
+
+
+def assemble(local: np.ndarray, dofs: np.ndarray, size: int) -> csc_array:
+    """Sum of element matrices (elements, m, m) at their degrees of freedom (elements, m), shape (size, size).
+
+    Made exactly symmetric: the two sums that meet across the diagonal round differently.
+    """
+    rows = np.repeat(dofs, dofs.shape[1], axis=1).ravel()
+    columns = np.tile(dofs, dofs.shape[1]).ravel()
+    total = csc_array(coo_array((local.ravel(), (rows, columns)), shape=(size, size)))
+    return csc_array((total + total.T) / 2)

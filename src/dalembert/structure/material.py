@@ -1,0 +1,50 @@
+"""Elastic materials."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from dalembert.errors import InputError
+
+
+@dataclass(frozen=True)
+class Material:
+    """An isotropic elastic material.
+
+    Parameters
+    ----------
+    youngs_modulus : float
+        Pa, positive. This and the others may be complex, with a complex step as their imaginary part.
+    poisson_ratio : float
+        Above -1 and below 0.5.
+    density : float
+        kg/m³, positive.
+
+    Raises
+    ------
+    InputError
+        For a number out of its range.
+
+    Examples
+    --------
+    >>> Material(200e9, 0.25, 7800.0).lame  # λ and μ, Pa
+    (80000000000.0, 80000000000.0)
+    """
+
+    youngs_modulus: Any
+    poisson_ratio: Any
+    density: Any
+
+    def __post_init__(self) -> None:
+        for name, unit in (("youngs_modulus", " Pa"), ("density", " kg/m³")):
+            if not getattr(self, name).real > 0:
+                raise InputError(f"Material: {name} is {getattr(self, name)}{unit}; expected a positive number")
+        if not -1 < self.poisson_ratio.real < 0.5:
+            raise InputError(
+                f"Material: poisson_ratio is {self.poisson_ratio}; expected a number above -1 and below 0.5"
+            )
+
+    @property
+    def lame(self) -> tuple[Any, Any]:
+        """Lamé's constants λ and μ, Pa."""
+        modulus, ratio = self.youngs_modulus, self.poisson_ratio
+        return modulus * ratio / ((1 + ratio) * (1 - 2 * ratio)), modulus / (2 * (1 + ratio))

@@ -1,0 +1,57 @@
+"""The clamped steel plate of 405 mm × 405 mm × 2 mm: thin-plate elements and solids against Kirchhoff's theory."""
+
+import numpy as np
+import pytest
+from numpy.polynomial import legendre
+from scipy.linalg import eigh
+
+from dalembert.structure import Material, Structure, box, eigenmodes, plate, solid
+
+TOPIC = "Structures"
+SOURCE = "Rayleigh-Ritz for the Kirchhoff plate, 16 polynomials each way, computed by the test itself"
+STEEL = Material(210e9, 0.3, 7800.0)
+SIZE, THICKNESS = (0.405, 0.405), 2e-3
+
+
+def rayleigh_ritz(modes: int, count: int = 16) -> np.ndarray:
+    """Frequencies (Hz) of the clamped square Kirchhoff plate, from above, with (1 - x²)² times Legendre polynomials."""
+    points, weights = legendre.leggauss(60)
+    clamp = legendre.poly2leg([1.0, 0.0, -2.0, 0.0, 1.0])
+    functions = [legendre.legmul(clamp, np.eye(count)[number]) for number in range(count)]
+    value, slope, curvature = (
+        np.array([legendre.legval(points, legendre.legder(one, order)) for one in functions]) for order in range(3)
+    )
+    mass, turn, bend = ((one * weights) @ one.T for one in (value, slope, curvature))
+    # All round clamped, the energy is that of the squared Laplacian, whatever Poisson's ratio.
+    stiffness = np.kron(bend, mass) + np.kron(mass, bend) + 2 * np.kron(turn, turn)
+    squares = eigh(stiffness, np.kron(mass, mass), eigvals_only=True, subset_by_index=(0, modes - 1))
+    rigidity = STEEL.youngs_modulus * THICKNESS**3 / 12 / (1 - STEEL.poisson_ratio**2)
+    return np.sqrt(squares * rigidity / (STEEL.density * THICKNESS)) / (SIZE[0] / 2) ** 2 / (2 * np.pi)
+
+
+def check(record_evidence, structure: Structure, name: str, tolerances: list[float]) -> None:
+    exact = rayleigh_ritz(8)
+    ours = eigenmodes(structure.fixed("edge"), 8).frequencies
+    for number, (published, found, tolerance) in enumerate(zip(exact, ours, tolerances, strict=True), 1):
+        record_evidence(
+            f"clamped plate 405 × 405 × 2 mm, {name}, frequency of mode {number}",
+            published,
+            found,
+            unit="Hz",
+            tolerance=tolerance * published,
+            topic=TOPIC,
+            source=SOURCE,
+        )
+
+
+def test_thin_plate_elements(record_evidence) -> None:
+    check(record_evidence, plate(SIZE, THICKNESS, STEEL, (30, 30)), "30 × 30 Bogner-Fox-Schmit elements", [1e-4] * 8)
+
+
+@pytest.mark.slow
+def test_bricks_of_20_nodes(record_evidence) -> None:
+    """One layer through the thickness; the mesh is from above, 24 × 24 × 1 by 0.9 %."""
+    allowed = [3.5e-3] * 4 + [3e-3] + [3.5e-3] * 3  # the fifth is the one of the study of friction
+    check(
+        record_evidence, solid(box((*SIZE, THICKNESS), (60, 60, 1)), STEEL), "60 × 60 × 1 bricks of 20 nodes", allowed
+    )

@@ -22,6 +22,7 @@ _MODULES = (
     "report",
     "study",
     "uncertainty",
+    "vibration",
 )
 
 _NAMES = {
@@ -52,6 +53,10 @@ _NAMES = {
     "uncertainty": """
         Comparison Propagation compare propagate
         Chebyshev LatinHypercube MonteCarlo Optimise Scan Taylor Vertex
+    """,
+    "vibration": """
+        VibrationSystem HarmonicForce StaticForce FrictionContact Elastic Iwan Rigid
+        CubicSpring Gap BilinearStop UserElement HarmonicBalance FrequencyCurve frequency_response
     """,
 }
 _HOME = {name: module for module, names in _NAMES.items() for name in names.split()}

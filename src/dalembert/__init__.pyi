@@ -11,6 +11,7 @@ from dalembert import structure as structure
 from dalembert import study as study
 from dalembert import surrogate as surrogate
 from dalembert import uncertainty as uncertainty
+from dalembert import vibration as vibration
 from dalembert.data import Bands as Bands
 from dalembert.data import Measurements as Measurements
 from dalembert.data import derivative as derivative
@@ -129,5 +130,19 @@ from dalembert.uncertainty import Taylor as Taylor
 from dalembert.uncertainty import Vertex as Vertex
 from dalembert.uncertainty import compare as compare
 from dalembert.uncertainty import propagate as propagate
+from dalembert.vibration import BilinearStop as BilinearStop
+from dalembert.vibration import CubicSpring as CubicSpring
+from dalembert.vibration import Elastic as Elastic
+from dalembert.vibration import FrequencyCurve as FrequencyCurve
+from dalembert.vibration import FrictionContact as FrictionContact
+from dalembert.vibration import Gap as Gap
+from dalembert.vibration import HarmonicBalance as HarmonicBalance
+from dalembert.vibration import HarmonicForce as HarmonicForce
+from dalembert.vibration import Iwan as Iwan
+from dalembert.vibration import Rigid as Rigid
+from dalembert.vibration import StaticForce as StaticForce
+from dalembert.vibration import UserElement as UserElement
+from dalembert.vibration import VibrationSystem as VibrationSystem
+from dalembert.vibration import frequency_response as frequency_response
 
 __version__: str

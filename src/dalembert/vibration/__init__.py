@@ -1,0 +1,26 @@
+"""Structures with dry friction and other nonlinear elements, in frequency: harmonic balance and continuation."""
+
+from dalembert.vibration.contacts import Elastic, FrictionContact, Iwan, Rigid
+from dalembert.vibration.curve import FrequencyCurve, Peak
+from dalembert.vibration.frequency_response import frequency_response
+from dalembert.vibration.harmonic_balance import HarmonicBalance
+from dalembert.vibration.springs import BilinearStop, CubicSpring, Gap, UserElement
+from dalembert.vibration.system import HarmonicForce, StaticForce, VibrationSystem
+
+__all__ = [
+    "BilinearStop",
+    "CubicSpring",
+    "Elastic",
+    "FrequencyCurve",
+    "FrictionContact",
+    "Gap",
+    "HarmonicBalance",
+    "HarmonicForce",
+    "Iwan",
+    "Peak",
+    "Rigid",
+    "StaticForce",
+    "UserElement",
+    "VibrationSystem",
+    "frequency_response",
+]

@@ -1,0 +1,257 @@
+r"""The equations of harmonic balance and their exact Jacobian.
+
+The unknowns are the harmonics U of the retained coordinates q. With Λ the harmonics of the elements' forces over
+sampled displacements (alternating frequency and time), :math:`R(U, \omega) = Z_q U + L^T \Lambda - F_q`.
+
+Elements with their own compliance see D = L U. A rigid contact sees a predicted displacement: with
+:math:`R_0` the residual without rigid contacts and ε the penalty, :math:`D = U - R_0/\varepsilon` at its own
+coordinates. Where the equations hold, :math:`-R_0` is the contact's force, and the law of a slider of stiffness ε at D
+says of that force and of U what the rigid law says. The velocity kind takes as its trial force
+:math:`-R_0 + \varepsilon\, \partial U/\partial\tau` at once, without a slider; since this does not see the place of a
+contact that sticks all period, the mean of such a one is held at zero, as by the displacement kind.
+
+The Jacobian is :math:`J = Z_q + L^T G\, \partial D/\partial U` with G block-diagonal: one block for each contact.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from dalembert.vibration import friction_law
+from dalembert.vibration.condensation import Point
+from dalembert.vibration.fourier import Fourier, real_blocks
+from dalembert.vibration.friction_law import NORMAL, TANGENTIAL
+from dalembert.vibration.lowering import ELASTIC, FrictionBlock, Lowered
+from dalembert.vibration.springs import UserElement
+
+
+@dataclass(frozen=True)
+class Tangent:
+    """Derivatives of the residual.
+
+    Parameters
+    ----------
+    jacobian : array, shape (q, coefficients, q, coefficients)
+    slope : array, shape (q, coefficients)
+        By ω.
+    """
+
+    jacobian: np.ndarray
+    slope: np.ndarray
+
+    def copy(self) -> "Tangent":
+        """The same in other places of memory."""
+        return Tangent(self.jacobian.copy(), self.slope.copy())
+
+    @property
+    def matrix(self) -> np.ndarray:
+        """The Jacobian as a matrix, (unknowns, unknowns)."""
+        return self.jacobian.reshape(self.slope.size, self.slope.size)
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """Residual and what else is known of the equations at a point.
+
+    Parameters
+    ----------
+    residual : array, shape (q, coefficients)
+    forces : array, shape (rows, coefficients)
+        Of all elements, by the rows that they see.
+    states : tuple of array of uint8, shape (cells, samples)
+        Of each friction block.
+    """
+
+    residual: np.ndarray
+    forces: np.ndarray
+    states: tuple[np.ndarray, ...]
+
+
+@dataclass(frozen=True)
+class Balance:
+    """The elements of a system and a series, ready to be balanced with a condensed structure.
+
+    Parameters
+    ----------
+    lowered : Lowered
+    series : Fourier
+    """
+
+    lowered: Lowered
+    series: Fourier
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Retained coordinates and coefficients."""
+        return self._combination.shape[1], self.series.count
+
+    @cached_property
+    def _combination(self) -> np.ndarray:
+        return self.lowered.coordinates.combination
+
+    @cached_property
+    def _retained(self) -> np.ndarray:
+        """Retained coordinate of each row, -1 where it is none."""
+        place = np.full(len(self.lowered.row_names), -1)
+        place[self.lowered.coordinates.rows] = np.arange(self.shape[0])
+        return place
+
+    @cached_property
+    def _terms(self) -> list[tuple[np.ndarray, np.ndarray]]:
+        """Retained coordinates and factors that make up each row."""
+        return [(np.flatnonzero(row), row[np.flatnonzero(row)]) for row in self._combination]
+
+    def displacements(self, unknowns: np.ndarray) -> np.ndarray:
+        """Of all rows that elements see, (rows, coefficients)."""
+        return self._combination @ unknowns
+
+    def linear(self, stiffness: np.ndarray, force: np.ndarray, unknowns: np.ndarray) -> np.ndarray:
+        """Z_q U - F_q, or the same of their derivatives, (q, coefficients)."""
+        phasors = self.series.phasors(unknowns)
+        return self.series.coefficients((stiffness @ phasors[:, :, None])[:, :, 0] - force)
+
+    def linearised(self, point: Point, unknowns: np.ndarray) -> tuple[Evaluation, Tangent]:
+        """Residual at a point, with its exact Jacobian and its derivative by ω."""
+        tangent = Tangent(
+            real_blocks(point.stiffness, self.series.mean), self.linear(point.slope, point.force_slope, unknowns)
+        )
+        return self.residual(self.linear(point.stiffness, point.force, unknowns), unknowns, tangent), tangent
+
+    def residual(self, linear: np.ndarray, unknowns: np.ndarray, tangent: Tangent | None = None) -> Evaluation:
+        """Residual from its linear part; the elements' part of the tangent is added to ``tangent``.
+
+        Without a tangent, in complex numbers where the linear part or the elements' numbers are complex.
+        """
+        kind = np.result_type(linear, unknowns, *(block.numbers for block in self.lowered.blocks), *self._spring_kinds)
+        acting = np.zeros((len(self.lowered.row_names), self.series.count), dtype=kind)
+        states = [np.zeros((0, 0), dtype=np.uint8)] * len(self.lowered.blocks)
+        self._add_springs(acting, unknowns, tangent)
+        for rigid in (False, True):  # rigid contacts last: their prediction needs the residual without them
+            total = linear + self._combination.T @ acting
+            before = tangent.copy() if tangent is not None and rigid else None
+            for number, block in enumerate(self.lowered.blocks):
+                if (block.kind != ELASTIC) == rigid:
+                    states[number] = self._add_friction(block, acting, unknowns, total, tangent, before)
+        return Evaluation(linear + self._combination.T @ acting, acting, tuple(states))
+
+    def _add_springs(self, acting: np.ndarray, unknowns: np.ndarray, tangent: Tangent | None) -> None:
+        """Elements without memory: their forces, and their local Jacobians in the global one."""
+        series = self.series
+        for rows, element in self.lowered.springs:
+            samples = (self._combination[rows] @ unknowns) @ series.synthesis.T
+            several = isinstance(element, UserElement)
+            force, slopes = element.law(samples if several else samples[0])
+            acting[rows] += np.atleast_2d(force) @ series.analysis.T
+            if tangent is None:
+                continue
+            slopes = slopes if several else slopes[None, None]
+            for i, row in enumerate(rows):
+                for j, column in enumerate(rows):
+                    block = series.analysis @ (slopes[i, j][:, None] * series.synthesis)
+                    self._scatter(tangent.jacobian, row, column, block)
+
+    def _scatter(self, jacobian: np.ndarray, row: int, column: int, block: np.ndarray) -> None:
+        """Add the derivative of the force of one row by the displacement of another."""
+        for a, factor in zip(*self._terms[row], strict=True):
+            for b, other in zip(*self._terms[column], strict=True):
+                jacobian[a, :, b, :] += factor * other * block
+
+    def _add_friction(
+        self,
+        block: FrictionBlock,
+        acting: np.ndarray,
+        unknowns: np.ndarray,
+        total: np.ndarray,
+        tangent: Tangent | None,
+        before: Tangent | None,
+    ) -> np.ndarray:
+        """Forces of a block's cells, and its part of the tangent; the states (cells, samples)."""
+        series, shape = self.series, (block.tangents, block.normal, block.memory)
+        predicted, numbers = self._predicted(block, unknowns, total)
+        samples = np.ascontiguousarray(predicted @ series.synthesis.T)
+        if tangent is None:
+            kind = np.result_type(samples, numbers)
+            force, states = friction_law.forces(samples.astype(kind), numbers.astype(kind), *shape)
+        else:
+            force, states, local = friction_law.tangent(samples, numbers, *shape, series.synthesis, series.analysis)
+            if before is None:
+                self._spread_elastic(block, local, tangent.jacobian)
+            else:
+                self._spread_rigid(block, local, tangent, before)
+        result = force @ series.analysis.T
+        for cell in self._undetermined(block, states):
+            places = self._retained[block.rows[cell, : block.tangents]]
+            penalty = block.numbers[cell, TANGENTIAL]
+            result[cell, : block.tangents, 0] += penalty * unknowns[places, 0]
+            if tangent is not None:
+                tangent.jacobian[places, 0, places, 0] += penalty
+        np.add.at(acting, block.rows, result)
+        return states
+
+    def _predicted(
+        self, block: FrictionBlock, unknowns: np.ndarray, total: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """What the law is given: displacements (cells, columns, coefficients) and numbers."""
+        if block.kind == ELASTIC:
+            return (self._combination @ unknowns)[block.rows], block.numbers
+        places = self._retained[block.rows]
+        moved = unknowns[places] - total[places] / _penalties(block)[:, :, None]
+        if block.memory:
+            return moved, block.numbers
+        tangents = places[:, : block.tangents]
+        penalty = block.numbers[:, TANGENTIAL, None, None]
+        trial = penalty * (unknowns[tangents] @ self.series.derivative.T) - total[tangents]
+        numbers = block.numbers.copy()
+        numbers[:, TANGENTIAL] = 1.0
+        return np.concatenate([trial, moved[:, block.tangents :]], axis=1), numbers
+
+    def _undetermined(self, block: FrictionBlock, states: np.ndarray) -> np.ndarray:
+        """Cells of the velocity kind that stick all period: nothing else determines their mean position."""
+        if block.memory or not self.series.mean:
+            return np.zeros(0, dtype=int)
+        return np.flatnonzero(np.all(states == friction_law.STUCK, axis=1))
+
+    def _spread_elastic(self, block: FrictionBlock, local: np.ndarray, jacobian: np.ndarray) -> None:
+        """J += L^T G L."""
+        cells, columns = block.rows.shape
+        split = local.reshape(cells, columns, self.series.count, columns, self.series.count)
+        for cell in range(cells):
+            for i, row in enumerate(block.rows[cell]):
+                for j, column in enumerate(block.rows[cell]):
+                    self._scatter(jacobian, row, column, split[cell, i, :, j, :])
+
+    def _spread_rigid(self, block: FrictionBlock, local: np.ndarray, tangent: Tangent, before: Tangent) -> None:
+        """J += G ∂D/∂U with ∂D/∂U = 1 - J_0/ε, or ε ∂/∂τ - J_0 for trial forces; the same for ω."""
+        count, columns = self.series.count, block.rows.shape[1]
+        own = np.tile(np.eye(count), (columns, 1, 1))
+        weights = 1 / _penalties(block)
+        if not block.memory:
+            weights[:, : block.tangents] = 1.0
+        for places, weight, numbers, gradient in zip(
+            self._retained[block.rows], weights, block.numbers, local, strict=True
+        ):
+            if not block.memory:
+                own[: block.tangents] = numbers[TANGENTIAL] * self.series.derivative
+            motion = -weight[:, None, None, None] * before.jacobian[places]
+            motion[np.arange(columns), :, places] += own
+            change = gradient @ motion.reshape(columns * count, -1)
+            tangent.jacobian[places] += change.reshape(motion.shape)
+            change = gradient @ (weight[:, None] * before.slope[places]).ravel()
+            tangent.slope[places] -= change.reshape(columns, count)
+
+    @cached_property
+    def _spring_kinds(self) -> list[Any]:
+        """Numbers of the springs, for the kind of arithmetic."""
+        return [
+            value
+            for _, element in self.lowered.springs
+            for value in (getattr(element, "stiffness", 0.0), getattr(element, "gap", 0.0))
+        ]
+
+
+def _penalties(block: FrictionBlock) -> np.ndarray:
+    """Penalty of each row of a block, (cells, columns)."""
+    columns = [block.numbers[:, TANGENTIAL]] * block.tangents + [block.numbers[:, NORMAL]] * block.normal
+    return np.stack(columns, axis=1)

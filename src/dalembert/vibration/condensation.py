@@ -1,0 +1,199 @@
+r"""Dynamic stiffness of a structure at the coordinates of its nonlinear elements.
+
+With q the retained and l the interior coordinates, for each harmonic at :math:`s = h\omega`, exactly,
+
+.. math:: Z(s) = K - s^2 M + i s C, \qquad Z_q = Z_{qq} - Z_{ql} Z_{ll}^{-1} Z_{lq}, \qquad
+          F_q = f_q - Z_{ql} Z_{ll}^{-1} f_l,
+
+which is the inverse of the receptance :math:`S Z^{-1} S^T`, and is also there where that has none. The interior of a
+small structure is written in its modes with q held, so that :math:`Z_{ll}` is diagonal if the damping is; else it is
+factorised.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.linalg import LinAlgError, eigh
+from scipy.sparse import csc_array, issparse
+from scipy.sparse.linalg import splu
+
+from dalembert.errors import ModelError
+from dalembert.structure import Structure
+from dalembert.vibration.coordinates import Coordinates
+
+DENSE = 1500
+"""Size up to which a sparse interior is treated as a dense one."""
+COUPLED = 1e-9
+"""Damping between modes, as part of the largest of a mode, above which it counts."""
+FLOATING = 3e-14
+"""Smallest interior stiffness as part of the largest, below which it is none."""
+
+
+@dataclass(frozen=True)
+class Point:
+    """A condensed structure at one frequency, with what is needed to go back.
+
+    Parameters
+    ----------
+    frequencies : array, shape (orders,)
+        h ω, rad/s.
+    stiffness, slope : array, shape (orders, q, q), complex
+        Z_q and its derivative by ω.
+    force, force_slope : array, shape (orders, q), complex
+    follow : array, shape (orders, l, q), complex
+        Z_ll⁻¹ Z_lq: the interior follows q by the negative of it.
+    free : array, shape (orders, l), complex
+        Z_ll⁻¹ f_l: the interior with q held.
+    """
+
+    frequencies: np.ndarray
+    stiffness: np.ndarray
+    slope: np.ndarray
+    force: np.ndarray
+    force_slope: np.ndarray
+    follow: np.ndarray
+    free: np.ndarray
+
+    def interior(self, retained: np.ndarray) -> np.ndarray:
+        """Interior coordinates (orders, l) where the retained ones are (orders, q)."""
+        return self.free - (self.follow @ retained[:, :, None])[:, :, 0]
+
+
+class Condensation:
+    """A structure ready to be condensed at any frequency.
+
+    Parameters
+    ----------
+    structure : Structure
+    coordinates : Coordinates
+    orders : tuple of int
+    loads : array, shape (orders, n), complex
+        Phasors of the forces.
+    """
+
+    def __init__(
+        self, structure: Structure, coordinates: Coordinates, orders: tuple[int, ...], loads: np.ndarray
+    ) -> None:
+        self.orders = np.array(orders, dtype=float)
+        size: int = structure.size
+        matrices = [_real(structure.stiffness), _real(structure.mass)]
+        matrices.append(matrices[0] * 0.0 if structure.damping is None else _real(structure.damping))
+        retained, interior = coordinates.retained, coordinates.interior
+        dense = size <= DENSE or not issparse(structure.stiffness)
+        self.retained, self.back = retained.toarray(), interior.toarray() if dense else interior
+        inner = [_two_sided(self.back, matrix, self.back) for matrix in matrices]
+        if dense and interior.shape[1]:
+            inner = self._modal(inner)
+        self.inner: list[Any] = [block if dense else csc_array(block) for block in inner]
+        self.outer = [np.asarray(self.retained.T @ (matrix @ self.retained)) for matrix in matrices]
+        self.across = [np.asarray(self.back.T @ (matrix @ self.retained)).T for matrix in matrices]
+        self.loads = loads
+        self.outer_loads, self.inner_loads = loads @ self.retained, np.asarray((self.back.T @ loads.T).T)
+        if self.orders[0] == 0:
+            _require_held(self.inner[0])
+
+    def at(self, omega: float) -> Point:
+        """The condensed structure at ω, rad/s."""
+        s = self.orders * omega
+        outer, across = _dynamic(self.outer, s), _dynamic(self.across, s)
+        inner = self._inner(s)
+        right = np.concatenate([np.swapaxes(across, 1, 2), self.inner_loads[:, :, None]], axis=2)
+        solved = self.solve(s, right, inner)
+        follow, free = solved[:, :, :-1], solved[:, :, -1]
+        turned = np.swapaxes(follow, 1, 2)
+        across_slope = self._slope(self.across, s)
+        moved = self._inner_slope(s, solved)
+        crossed = across_slope @ solved
+        return Point(
+            frequencies=s,
+            stiffness=outer - across @ follow,
+            slope=self._slope(self.outer, s)
+            - crossed[:, :, :-1]
+            - np.swapaxes(crossed[:, :, :-1], 1, 2)
+            + turned @ moved[:, :, :-1],
+            force=self.outer_loads - (turned @ self.inner_loads[:, :, None])[:, :, 0],
+            force_slope=-crossed[:, :, -1] + (turned @ moved[:, :, -1:])[:, :, 0],
+            follow=follow,
+            free=free,
+        )
+
+    def full(self, retained: np.ndarray, interior: np.ndarray) -> np.ndarray:
+        """All degrees of freedom (orders, n) from the retained and the interior ones."""
+        return retained @ self.retained.T + np.asarray((self.back @ interior.T).T)
+
+    def solve(self, s: np.ndarray, right: np.ndarray, inner: Any = None) -> np.ndarray:
+        """Z_ll⁻¹ times right-hand sides (orders, l, columns)."""
+        inner = self._inner(s) if inner is None else inner
+        if isinstance(inner, list):
+            return np.stack([splu(matrix).solve(columns) for matrix, columns in zip(inner, right, strict=True)])
+        if inner.ndim == 2:
+            return right / inner[:, :, None]
+        return np.linalg.solve(inner, right)
+
+    def _modal(self, blocks: list[np.ndarray]) -> list[np.ndarray]:
+        """Interior matrices in modes with q held: vectors where they are diagonal. Without modes, as they are."""
+        stiffness, mass, damping = blocks
+        try:
+            squares, shapes = eigh(stiffness, mass)
+        except LinAlgError:  # an interior without mass somewhere
+            return blocks
+        modal = shapes.T @ damping @ shapes
+        off = np.abs(modal - np.diag(np.diag(modal))).max()
+        if off > COUPLED * max(np.abs(np.diag(modal)).max(), np.finfo(float).tiny):
+            return blocks
+        self.back = self.back @ shapes
+        return [squares, np.ones_like(squares), np.diag(modal)]
+
+    def _inner(self, s: np.ndarray) -> Any:
+        stiffness, mass, damping = self.inner
+        if issparse(stiffness):
+            return [csc_array(stiffness - x**2 * mass + 1j * x * damping) for x in s]
+        return _dynamic(self.inner, s)
+
+    def _slope(self, blocks: list[np.ndarray], s: np.ndarray) -> np.ndarray:
+        """Derivative of K - s²M + i s C by ω."""
+        _, mass, damping = blocks
+        factor = self.orders.reshape(-1, *[1] * mass.ndim)
+        return factor * (1j * damping - 2 * s.reshape(factor.shape) * mass)
+
+    def _inner_slope(self, s: np.ndarray, solved: np.ndarray) -> np.ndarray:
+        """Derivative of Z_ll by ω, times columns (orders, l, columns)."""
+        _, mass, damping = self.inner
+        if issparse(mass):
+            return np.stack(
+                [h * (1j * (damping @ x) - 2 * w * (mass @ x)) for h, w, x in zip(self.orders, s, solved, strict=True)]
+            )
+        slope = self._slope(self.inner, s)
+        return slope[:, :, None] * solved if slope.ndim == 2 else slope @ solved
+
+
+def _dynamic(blocks: list[np.ndarray], s: np.ndarray) -> np.ndarray:
+    stiffness, mass, damping = blocks
+    s = s.reshape(-1, *[1] * mass.ndim)
+    return stiffness - s**2 * mass + 1j * s * damping
+
+
+def _two_sided(left: Any, matrix: Any, right: Any) -> Any:
+    return left.T @ (matrix @ right)
+
+
+def _real(matrix: Any) -> Any:
+    return matrix.real if np.iscomplexobj(matrix) else matrix
+
+
+def _require_held(stiffness: Any) -> None:
+    """Refuse a structure that still moves freely where the coordinates of its elements are held."""
+    if not stiffness.shape[0]:
+        return
+    if issparse(stiffness):
+        diagonal = np.abs(splu(csc_array(stiffness)).U.diagonal())
+    elif stiffness.ndim == 1:
+        diagonal = np.abs(stiffness)
+    else:
+        diagonal = np.abs(np.linalg.eigvalsh(stiffness))
+    if diagonal.min() <= FLOATING * diagonal.max():
+        raise ModelError(
+            "the structure can move freely without a spring or a contact that holds it, so its mean position is not "
+            "determined; clamp it, or keep odd harmonics only (odd_only=True) where the motion is symmetric"
+        )

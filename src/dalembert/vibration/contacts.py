@@ -1,0 +1,184 @@
+"""Contacts with dry friction, and the laws that they may follow."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from dalembert.errors import InputError, unknown
+
+Number = float | complex
+"""A float, or a complex number whose imaginary part is a direction of differentiation."""
+
+RIGID_KINDS = ("displacement", "velocity")
+AXES = ("x", "y", "z")
+
+
+def require_not_negative(what: str, unit: str, value: Number) -> None:
+    """Refuse a number that is negative or not finite."""
+    if not (np.isfinite(value) and np.real(value) >= 0):
+        raise InputError(f"{what} is {f'{np.real(value):g} {unit}'.strip()}; expected a number that is not negative")
+
+
+def require_positive(what: str, unit: str, value: Number | None) -> None:
+    """Refuse a number that is not positive; None is none."""
+    if value is not None and not (np.isfinite(value) and np.real(value) > 0):
+        raise InputError(f"{what} is {f'{np.real(value):g} {unit}'.strip()}; expected a positive number")
+
+
+@dataclass(frozen=True)
+class Elastic:
+    """Contact with springs in series with the slider (Jenkins), and in the normal direction.
+
+    Parameters
+    ----------
+    tangential_stiffness : float
+        N/m.
+    normal_stiffness : float, optional
+        N/m; needed by contacts with a normal direction.
+    gap : float
+        Penetration at which the contact closes, m.
+    """
+
+    tangential_stiffness: Number
+    normal_stiffness: Number | None = None
+    gap: Number = 0.0
+
+
+@dataclass(frozen=True)
+class Iwan:
+    """Several sliders side by side (Iwan), which give way one after the other: microslip.
+
+    Parameters
+    ----------
+    stiffnesses : sequence of float
+        Tangential stiffnesses of the cells, N/m.
+    shares : sequence of float
+        Parts of the friction limit that the cells carry; they add up to 1.
+    normal_stiffness : float, optional
+        Of all cells together, N/m.
+    gap : float
+        m.
+    """
+
+    stiffnesses: tuple[Number, ...]
+    shares: tuple[Number, ...]
+    normal_stiffness: Number | None = None
+    gap: Number = 0.0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "stiffnesses", tuple(self.stiffnesses))
+        object.__setattr__(self, "shares", tuple(self.shares))
+        total = sum(self.shares)
+        if len(self.stiffnesses) != len(self.shares) or not self.shares or abs(total - 1) > 1e-9:
+            raise InputError(
+                f"Iwan: {len(self.stiffnesses)} stiffnesses and {len(self.shares)} shares that add up to "
+                f"{np.real(total):.6g} were given; expected one share for each stiffness, and a sum of 1"
+            )
+
+
+@dataclass(frozen=True)
+class Rigid:
+    """Coulomb friction and unilateral contact without compliance, by the dynamic Lagrangian method (DLFT).
+
+    Parameters
+    ----------
+    penalty : float, optional
+        N/m; it scales the prediction, and is no stiffness of the contact. That of the structure behind the contact,
+        with everything else held, if not given: much larger values converge more slowly with the number of harmonics.
+    kind : {"displacement", "velocity"}
+        Predict stuck motion by displacements, with a slider that remembers, or by velocities, without history. The
+        latter is the more robust for contacts that carry mass.
+    gap : float
+        Penetration at which the contact closes, m.
+
+    Notes
+    -----
+    Sources: Nacivet, Pierre, Thouverez and Jezequel, "A dynamic Lagrangian frequency-time method for the vibration of
+    dry-friction-damped systems" (2003); Ma, Li, Fan and Wu, "Friction damping analysis by an accelerated dynamic
+    Lagrangian method" (2019).
+    """
+
+    penalty: Number | None = None
+    kind: str = "displacement"
+    gap: Number = 0.0
+
+    def __post_init__(self) -> None:
+        if self.kind not in RIGID_KINDS:
+            raise InputError(unknown("kind", self.kind, RIGID_KINDS, "Rigid"))
+        require_positive("Rigid: the penalty", "N/m", self.penalty)
+
+
+Law = Elastic | Iwan | Rigid
+
+
+@dataclass(frozen=True)
+class FrictionContact:
+    """Dry friction between two nodes, or a node and the ground.
+
+    The relative displacement is that of ``first`` less that of ``second``; along the normal it is penetration.
+
+    Parameters
+    ----------
+    name : str
+    first : str
+        A node.
+    second : str, optional
+        Another node; the ground if not given.
+    tangential : sequence of str
+        One or two directions, ``"x"``, ``"y"`` or ``"z"``.
+    normal : str, optional
+        Direction in which ``first`` moves into ``second``, such as ``"z"`` or ``"-z"``; if not given, the normal load
+        is constant.
+    friction : float
+        Coefficient of friction, not negative.
+    preload : float
+        Normal load without any motion, N, not negative. Where static forces press the contact, 0.
+    law : Elastic, Iwan or Rigid
+
+    Raises
+    ------
+    InputError
+        For a negative coefficient of friction, preload or stiffness, or directions that make no sense.
+
+    Examples
+    --------
+    >>> FrictionContact("foot", "A", tangential=("x", "y"), normal="z", friction=0.6, preload=80.0).normal
+    'z'
+    >>> FrictionContact("foot", "A", friction=-0.6)
+    Traceback (most recent call last):
+    dalembert.errors.InputError: contact 'foot': the coefficient of friction is -0.6; expected a number that is not
+    negative
+    """
+
+    name: str
+    first: str
+    second: str | None = None
+    tangential: Sequence[str] = ("x",)
+    normal: str | None = None
+    friction: Number = field(kw_only=True)
+    preload: Number = field(default=0.0, kw_only=True)
+    law: Law = field(default=Rigid(), kw_only=True)
+
+    def __post_init__(self) -> None:
+        where = f"contact {self.name!r}"
+        object.__setattr__(self, "tangential", tuple(self.tangential))
+        axes = [
+            direction.removeprefix("-") for direction in (*self.tangential, *([self.normal] if self.normal else []))
+        ]
+        if len(self.tangential) not in (1, 2) or len(set(axes)) < len(axes) or not set(axes) <= set(AXES):
+            raise InputError(
+                f"{where}: the directions are {', '.join(self.tangential) or 'none'}, normal {self.normal}; expected "
+                "one or two tangential ones and another one for the normal, if any, each x, y or z"
+            )
+        require_not_negative(f"{where}: the coefficient of friction", "", self.friction)
+        require_not_negative(f"{where}: the preload", "N", self.preload)
+        if isinstance(self.law, Rigid):
+            return
+        cells = self.law.stiffnesses if isinstance(self.law, Iwan) else (self.law.tangential_stiffness,)
+        for stiffness in cells:
+            require_positive(f"{where}: the tangential stiffness", "N/m", stiffness)
+        if self.normal is not None:
+            if self.law.normal_stiffness is None:
+                raise InputError(f"{where} has a normal direction; give its law a normal_stiffness in N/m")
+            require_positive(f"{where}: the normal stiffness", "N/m", self.law.normal_stiffness)

@@ -1,0 +1,187 @@
+"""Following the response over frequency: from one given frequency to the next, or along the curve past its folds."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import cast
+
+import numpy as np
+from scipy.optimize import brentq
+
+from dalembert.vibration.equations import Equations
+from dalembert.vibration.newton import Plane, Solution, bordered
+
+STEADY = 0.9
+"""Cosine of the angle between directions of a path, below which a step was too long."""
+EASY = 4
+"""Newton iterations that a step may take and the next still be longer."""
+SHORTEST = 1e-7
+"""Step, as part of the longest, at which a path is given up."""
+MOST_POINTS = 20_000
+
+
+@dataclass(frozen=True)
+class Found:
+    """A point of a curve.
+
+    Parameters
+    ----------
+    solution : Solution
+    fold : bool
+        Whether the curve turns back here.
+    """
+
+    solution: Solution
+    fold: bool = False
+
+
+def at_frequencies(equations: Equations, omegas: np.ndarray, start: Solution | None) -> Iterator[Found]:
+    """Solutions at given frequencies, each from the one before; a point that is not found does not end the curve."""
+    known = start
+    for omega in omegas:
+        solution = equations.first(omega) if known is None else _towards(equations, known, omega)
+        known = solution if solution.converged else known
+        yield Found(solution)
+
+
+def _towards(equations: Equations, known: Solution, omega: float) -> Solution:
+    """The solution at a frequency from a known one, by halves of the way where need be."""
+    way = [omega]
+    worst = None
+    while way:
+        solution = equations.solve(_predicted(known, way[-1]), way[-1], known.samples)
+        if solution.converged:
+            known = solution
+            way.pop()
+        elif len(way) > equations.method.halvings:
+            fresh = equations.first(omega)
+            return fresh if fresh.converged else worst or solution
+        else:
+            worst = worst or solution
+            way.append((known.omega + way[-1]) / 2)
+    return known
+
+
+def _predicted(known: Solution, omega: float) -> np.ndarray:
+    if omega == known.omega:
+        return known.unknowns
+    try:
+        return known.unknowns + (omega - known.omega) * known.rate()
+    except np.linalg.LinAlgError:
+        return known.unknowns
+
+
+def natural(equations: Equations, begin: float, end: float, start: Solution | None) -> Iterator[Found]:
+    """Solutions from one frequency to another, with steps as long as Newton's method allows."""
+    known = start if start is not None else equations.first(begin)
+    yield Found(known)
+    longest = (end - begin) * equations.method.resolution
+    step = longest / 4
+    while known.omega != end:
+        target = known.omega + step
+        target = end if abs(end - target) < 1e-3 * abs(step) or (end - target) * step < 0 else target
+        guess = _predicted(known, target) if known.converged else known.unknowns
+        solution = equations.solve(guess, target, known.samples)
+        if not solution.converged and abs(step) > abs(longest) * 2.0**-equations.method.halvings:
+            step /= 2
+            continue
+        if not solution.converged:
+            fresh = equations.first(target)
+            solution = fresh if fresh.converged else solution
+        yield Found(solution)
+        known = solution if solution.converged else replace(known, omega=target)
+        step = min(2 * step, longest, key=abs) if solution.iterations <= EASY else step
+
+
+def along(equations: Equations, begin: float, end: float, start: Solution | None) -> Iterator[Found]:
+    """Points along the curve from one frequency to another, by arc length, with its folds."""
+    known = start if start is not None else equations.first(begin)
+    yield Found(known)
+    if not known.converged:
+        return
+    width = abs(end - begin) / 10
+    longest = 10 * equations.method.resolution
+    low, high = min(begin, end), max(begin, end)
+    onward = np.zeros(known.unknowns.size + 1)
+    onward[-1] = np.sign(end - begin)
+    step, points = longest / 4, 1
+    path = _Path(known, _direction(known, onward, width), width)
+    while points < MOST_POINTS:
+        solution, direction = path.step(equations, step)
+        bent = direction is not None and float(path.direction @ direction) < STEADY
+        if direction is None or (bent and step > longest * 1e-2):
+            step /= 2
+            if step < SHORTEST * longest:
+                yield Found(solution)
+                return
+            continue
+        if not low <= solution.omega <= high:
+            last = equations.solve(*_on_border(path.known, solution, low, high), solution.samples)
+            yield Found(last)
+            return
+        if direction[-1] * path.direction[-1] < 0:
+            fold = _fold(equations, path, step)
+            if fold is not None:
+                yield Found(fold, fold=True)
+        yield Found(solution)
+        points += 1
+        path = _Path(solution, _direction(solution, direction, width), width)
+        step = min(longest, step * (1.5 if solution.iterations <= EASY else 0.7))
+
+
+@dataclass(frozen=True)
+class _Path:
+    """A known point of a curve and the direction in which it goes on, in scaled unknowns."""
+
+    known: Solution
+    direction: np.ndarray
+    width: float
+
+    @property
+    def size(self) -> float:
+        return float(np.linalg.norm(self.known.unknowns)) or 1.0
+
+    def step(self, equations: Equations, length: float) -> tuple[Solution, np.ndarray | None]:
+        """The point some length on, and the direction there in the scales of here, or None if it is not found."""
+        moved = self.direction[:-1].reshape(self.known.unknowns.shape) * (length * self.size)
+        guess, omega = self.known.unknowns + moved, self.known.omega + self.direction[-1] * length * self.width
+        plane = Plane(self.direction, guess, omega, self.size, self.width)
+        solution = equations.solve(guess, omega, self.known.samples, plane)
+        if not solution.converged:
+            return solution, None
+        return solution, _direction(solution, self.direction, self.width, self.size)
+
+
+def _direction(known: Solution, before: np.ndarray, width: float, size: float | None = None) -> np.ndarray:
+    """Unit tangent of the curve in scaled unknowns, to the same side as the one before."""
+    size = size or float(np.linalg.norm(known.unknowns)) or 1.0
+    scale = float(np.linalg.norm(known.point.force) + np.linalg.norm(known.evaluation.forces)) or 1.0
+    right = np.zeros(len(before))
+    right[-1] = 1.0
+    tangent = np.linalg.solve(bordered(known.tangent, before, size, width, scale), right)
+    return tangent / np.linalg.norm(tangent)
+
+
+def _on_border(before: Solution, after: Solution, low: float, high: float) -> tuple[np.ndarray, float]:
+    """Guess where the way between two points crosses the border of the frequencies."""
+    border = low if after.omega < low else high
+    part = (border - before.omega) / (after.omega - before.omega)
+    return before.unknowns + part * (after.unknowns - before.unknowns), border
+
+
+def _fold(equations: Equations, path: _Path, step: float) -> Solution | None:
+    """The point of a step at which the frequency turns back: a zero of the direction's last component."""
+    tried: dict[float, Solution] = {}
+
+    def turning(length: float) -> float:
+        if length == 0.0:
+            return float(path.direction[-1])
+        solution, direction = path.step(equations, length)
+        tried[length] = solution
+        return float("nan") if direction is None else float(direction[-1])
+
+    try:
+        length = float(cast(float, brentq(turning, 0.0, step, xtol=1e-6 * step)))
+    except (ValueError, RuntimeError):  # a step in between was not found
+        return None
+    solution = tried.get(length)
+    return solution if solution is not None else path.step(equations, length)[0]

@@ -1,0 +1,228 @@
+"""A response over frequency."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+from scipy.optimize import minimize_scalar
+
+from dalembert.errors import InputError, unknown
+from dalembert.results import Result
+from dalembert.vibration.amplitudes import Amplitude
+from dalembert.vibration.fourier import synthesis
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+_DIMENSIONS = {
+    "frequencies": ("point",),
+    "response": ("point", "dof", "coefficient"),
+    "displacements": ("point", "coordinate", "coefficient"),
+    "forces": ("point", "coordinate", "coefficient"),
+    "states": ("point", "contact", "phase"),
+    "unknowns": ("point", "retained", "coefficient"),
+    "iterations": ("point",),
+    "residuals": ("point",),
+    "converged": ("point",),
+    "fold": ("point",),
+    "samples": ("point",),
+    "sampling_errors": ("point",),
+}
+_UNITS = {"frequencies": "Hz", "response": "m", "displacements": "m", "forces": "N", "unknowns": "m"}
+_NAMES = ("dofs", "coordinates", "contacts", "orders")
+
+
+class Peak(NamedTuple):
+    """The largest response of a curve: frequency in Hz, and amplitude."""
+
+    frequency: float
+    amplitude: float
+
+
+@dataclass(frozen=True, eq=False)
+class FrequencyCurve(Result):
+    """Periodic responses of a system along a path over frequency, as :func:`frequency_response` returns them.
+
+    Parameters
+    ----------
+    dofs, coordinates, contacts : tuple of str
+        Names of the observed degrees of freedom, of the coordinates that elements see, and of the friction contacts.
+    orders : tuple of int
+        Harmonics; the coefficients are the mean, if it is kept, then a cosine and a sine for each other one.
+    frequencies : array, shape (points,)
+        Hz, in the order of the path.
+    response : array, shape (points, dofs, coefficients)
+        m; NaN where a point was not found.
+    displacements, forces : array, shape (points, coordinates, coefficients)
+        m and N, of the elements; normal forces are those beyond the preload.
+    states : array of uint8, shape (points, contacts, phases)
+        0 separated, 1 stuck, 2 slipping, over the period; of several cells the one that gives way most.
+    unknowns : array, shape (points, retained, coefficients)
+        From which a curve can be restarted.
+    iterations : array of int, shape (points,)
+    residuals : array, shape (points,)
+        As part of the forces.
+    converged : array of bool, shape (points,)
+    fold : array of bool, shape (points,)
+        Where the path turns back in frequency.
+    samples : array of int, shape (points,)
+        Of a period.
+    sampling_errors : array, shape (points,)
+        Change of the residual with twice as many, as part of the forces.
+    provenance : mapping
+        Versions, method, settings.
+    """
+
+    FORMAT: ClassVar[str] = "dalembert frequency curve 1"
+
+    dofs: tuple[str, ...]
+    coordinates: tuple[str, ...]
+    contacts: tuple[str, ...]
+    orders: tuple[int, ...]
+    frequencies: np.ndarray
+    response: np.ndarray
+    displacements: np.ndarray
+    forces: np.ndarray
+    states: np.ndarray
+    unknowns: np.ndarray
+    iterations: np.ndarray
+    residuals: np.ndarray
+    converged: np.ndarray
+    fold: np.ndarray
+    samples: np.ndarray
+    sampling_errors: np.ndarray
+    provenance: Mapping[str, Any]
+
+    def __len__(self) -> int:
+        return len(self.frequencies)
+
+    def harmonics(self, dof: str) -> np.ndarray:
+        """Coefficients of an observed degree of freedom, (points, coefficients); a node with only one may stand alone.
+
+        Raises
+        ------
+        InputError
+            For one that was not observed.
+        """
+        own = [name for name in self.dofs if name.rpartition(".")[0] == dof]
+        name = own[0] if len(own) == 1 else dof
+        if name not in self.dofs:
+            raise InputError(unknown("observed degree of freedom", dof, self.dofs))
+        return self.response[:, self.dofs.index(name)]
+
+    def amplitude(self, dof: str, kind: str = "peak") -> np.ndarray:
+        """Size of the motion at each point, m, (points,): ``"peak"``, ``"rms"`` or ``"harmonic 1"`` and so on.
+
+        Raises
+        ------
+        InputError
+            For another kind, or a degree of freedom that was not observed.
+        """
+        return Amplitude(kind, self.orders).of(self.harmonics(dof))
+
+    def motion(self, dof: str, point: int, phases: np.ndarray) -> np.ndarray:
+        """Displacement, m, at phases of the period (rad), (phases,)."""
+        return synthesis(self.orders, np.asarray(phases, dtype=float)) @ self.harmonics(dof)[point]
+
+    def loop(self, coordinate: str, point: int, count: int = 256) -> tuple[np.ndarray, np.ndarray]:
+        """Displacement (m) and force (N) of an element's coordinate over a period, (count + 1,) each."""
+        if coordinate not in self.coordinates:
+            raise InputError(unknown("coordinate", coordinate, self.coordinates))
+        waves = synthesis(self.orders, np.linspace(0, 2 * np.pi, count + 1))
+        row = self.coordinates.index(coordinate)
+        return waves @ self.displacements[point, row], waves @ self.forces[point, row]
+
+    def dissipated(self, coordinate: str) -> np.ndarray:
+        """Energy that an element takes from the motion in a period along a coordinate, J, (points,).
+
+        ∮ λ du, which of all harmonics of the force takes those that the displacement has too.
+        """
+        if coordinate not in self.coordinates:
+            raise InputError(unknown("coordinate", coordinate, self.coordinates))
+        row = self.coordinates.index(coordinate)
+        u, force, total = self.displacements[:, row], self.forces[:, row], np.zeros(len(self))
+        mean = int(self.orders[0] == 0)
+        for number, order in enumerate(self.orders[mean:]):
+            c = mean + 2 * number
+            total += np.pi * order * (force[:, c] * u[:, c + 1] - force[:, c + 1] * u[:, c])
+        return total
+
+    @property
+    def folds(self) -> np.ndarray:
+        """Frequencies at which the path turns back, Hz, (folds,)."""
+        return self.frequencies[self.fold]
+
+    def peak(self, dof: str, kind: str = "peak") -> Peak:
+        """The largest response, between the points by a cubic spline of the harmonics along the path.
+
+        Raises
+        ------
+        InputError
+            For another kind, a degree of freedom that was not observed, or a curve without any point.
+        """
+        size, harmonics = Amplitude(kind, self.orders), self.harmonics(dof)[self.converged]
+        amplitude, frequency = size.of(harmonics), self.frequencies[self.converged]
+        if not len(amplitude):
+            raise InputError("no point of the curve was found, so it has no peak; see its residuals")
+        top = int(amplitude.argmax())
+        if not 0 < top < len(amplitude) - 1:
+            return Peak(float(frequency[top]), float(amplitude[top]))
+        rows = slice(max(top - 4, 0), top + 5)
+        near = np.column_stack([frequency[rows], harmonics[rows]])
+        lengths = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(harmonics[rows], axis=0), axis=1)))
+        kept = np.append(True, np.diff(lengths) > 0)
+        spline, place = CubicSpline(lengths[kept], near[kept]), lengths[top - rows.start]
+        inner = lengths[top - rows.start - 1], lengths[top - rows.start + 1]
+        found = minimize_scalar(lambda s: -size.of(spline(s)[1:]), bounds=inner, method="bounded")
+        best = spline(found.x if -found.fun > amplitude[top] else place)
+        return Peak(float(best[0]), float(size.of(best[1:])))
+
+    def summary(self) -> str:
+        """A few lines: points, iterations, samples, and the largest responses."""
+        found, lines = int(self.converged.sum()), []
+        lines.append(
+            f"{found} of {len(self)} points found between {self.frequencies.min():.6g} and "
+            f"{self.frequencies.max():.6g} Hz, {self.iterations.mean():.2f} Newton iterations a point"
+        )
+        if found < len(self):
+            worst = ", ".join(f"{value:.6g} Hz ({error:.1e})" for value, error in self._lost()[:5])
+            lines.append(f"not found, with residuals as part of the forces: {worst}")
+        if found:
+            lines.append(
+                f"{self.samples.max()} samples of a period; twice as many change the forces by up to "
+                f"{np.nanmax(self.sampling_errors):.1e}"
+            )
+            lines += [f"folds at {', '.join(f'{value:.6g}' for value in self.folds)} Hz"] * bool(len(self.folds))
+            for dof in self.dofs[:8]:
+                peak = self.peak(dof)
+                lines.append(f"{dof}: largest {peak.amplitude:.6g} m at {peak.frequency:.6g} Hz")
+        return "\n".join(lines)
+
+    def _lost(self) -> list[tuple[float, float]]:
+        lost = ~self.converged
+        return list(zip(self.frequencies[lost].tolist(), self.residuals[lost].tolist(), strict=True))
+
+    def to_xarray(self) -> "Dataset":
+        """Everything as an :class:`xarray.Dataset`, with units as attributes."""
+        import xarray as xr
+
+        variables = {
+            name: (dimensions, getattr(self, name), {"units": _UNITS[name]} if name in _UNITS else {})
+            for name, dimensions in _DIMENSIONS.items()
+        }
+        own = {name: json.dumps(getattr(self, name)) for name in _NAMES}
+        provenance = json.dumps(dict(self.provenance), sort_keys=True)
+        return xr.Dataset(variables, attrs={"format": self.FORMAT, **own, "provenance": provenance})
+
+    @classmethod
+    def from_xarray(cls, dataset: "Dataset") -> "FrequencyCurve":
+        """The curve that :meth:`to_xarray` turned into a dataset."""
+        values = {name: dataset[name].values for name in _DIMENSIONS}
+        for name in ("converged", "fold"):
+            values[name] = values[name].astype(bool)
+        names = {name: tuple(json.loads(dataset.attrs[name])) for name in _NAMES}
+        provenance = json.loads(dataset.attrs["provenance"])
+        return cls(**{field.name: {**values, **names, "provenance": provenance}[field.name] for field in fields(cls)})

@@ -1,0 +1,133 @@
+"""The equations of a system under harmonic balance, ready to be solved at any frequency."""
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+
+from dalembert.errors import InputError
+from dalembert.vibration.balance import Balance
+from dalembert.vibration.condensation import Condensation, Point
+from dalembert.vibration.fourier import Fourier
+from dalembert.vibration.harmonic_balance import AUTOMATIC, MOST_SAMPLES, HarmonicBalance
+from dalembert.vibration.lowering import Lowered, lower
+from dalembert.vibration.newton import Plane, Solution, correct
+from dalembert.vibration.springs import BilinearStop, CubicSpring
+from dalembert.vibration.system import StaticForce, VibrationSystem
+
+LOADS = (0.01, 0.03, 0.1, 0.3, 0.6, 1.0)
+"""Parts of the force through which a first point is followed where it is not found at once."""
+
+
+@dataclass(frozen=True)
+class Equations:
+    """A lowered system and a method.
+
+    Parameters
+    ----------
+    lowered : Lowered
+        Real.
+    method : HarmonicBalance
+    """
+
+    lowered: Lowered
+    method: HarmonicBalance
+    _balances: dict[int, Balance] = field(default_factory=dict, repr=False, compare=False)
+
+    @cached_property
+    def condensation(self) -> Condensation:
+        """The structure at any frequency."""
+        series = Fourier(self.method.orders, self.method.first_samples)
+        loads = series.phasors(np.real(self.lowered.loads(series)))
+        return Condensation(self.lowered.structure, self.lowered.coordinates, self.method.orders, loads)
+
+    def balance(self, samples: int) -> Balance:
+        """The elements with this many samples of a period."""
+        if samples not in self._balances:
+            self._balances[samples] = Balance(self.lowered, Fourier(self.method.orders, samples))
+        return self._balances[samples]
+
+    def solve(
+        self,
+        unknowns: np.ndarray,
+        omega: float,
+        samples: int,
+        plane: Plane | None = None,
+        point: Point | None = None,
+    ) -> Solution:
+        """Newton's method from a guess, with as many samples as it needs, and at least those given."""
+        solution = correct(self.balance(samples), self.condensation, self.method, unknowns, omega, plane, point)
+        while solution.converged:
+            solution = replace(solution, sampling_error=self._sampling_error(solution))
+            enough = solution.sampling_error <= self.method.sampling or solution.samples >= MOST_SAMPLES
+            if self.method.samples != AUTOMATIC or enough:
+                break
+            finer = self.balance(2 * solution.samples)
+            found = (solution.unknowns, solution.omega)
+            better = correct(finer, self.condensation, self.method, *found, plane, solution.point)
+            solution = replace(better, iterations=solution.iterations + better.iterations)
+        return solution
+
+    def first(self, omega: float) -> Solution:
+        """A first point: from rest, where contacts stick; from the motion without contacts; by raising the force."""
+        point, samples = self.condensation.at(omega), self.method.first_samples
+        rest = np.zeros(self.balance(samples).shape)
+        best = self.solve(rest, omega, samples, point=point)
+        if best.converged:
+            return best
+        free = np.linalg.solve(point.stiffness, point.force[:, :, None])[:, :, 0]
+        other = self.solve(self.balance(samples).series.coefficients(free), omega, samples, point=point)
+        if other.converged:
+            return other
+        unknowns = rest
+        for load in LOADS:
+            part = replace(point, force=load * point.force, force_slope=load * point.force_slope)
+            solution = self.solve(unknowns, omega, samples, point=part)
+            unknowns = solution.unknowns
+        return solution if solution.converged else min(best, other, solution, key=lambda one: one.error)
+
+    def _sampling_error(self, solution: Solution) -> float:
+        finer = self.balance(2 * solution.samples)
+        linear = finer.linear(solution.point.stiffness, solution.point.force, solution.unknowns)
+        evaluation = finer.residual(linear, solution.unknowns)
+        scale = np.linalg.norm(solution.point.force) + np.linalg.norm(evaluation.forces)
+        return float(np.linalg.norm(evaluation.residual) / (scale or 1.0))
+
+
+def equations(system: VibrationSystem, method: HarmonicBalance) -> Equations:
+    """The equations of a system.
+
+    Raises
+    ------
+    InputError
+        For parts on degrees of freedom that are not there, and for odd harmonics where something acts in one direction.
+    ModelError
+        For rigid contacts that depend on each other, and for a structure whose mean position nothing holds.
+    """
+    lowered = lower(system).real
+    if method.odd_only:
+        _require_symmetry(lowered)
+    return Equations(lowered, method)
+
+
+def _require_symmetry(lowered: Lowered) -> None:
+    lopsided = [f"the static force on {force.dof!r}" for force in lowered.forces if isinstance(force, StaticForce)]
+    lopsided += [f"the normal direction of {lowered.contacts[b.contacts[0]]!r}" for b in lowered.blocks if b.normal]
+    lopsided += [
+        f"the element {element.name!r}"
+        for _, element in lowered.springs
+        if not isinstance(element, CubicSpring | BilinearStop) and not _odd(element, len(_))
+    ]
+    if lopsided:
+        raise InputError(
+            f"HarmonicBalance: odd_only=True with {lopsided[0]}, which acts in one direction; keep all harmonics"
+        )
+
+
+def _odd(element: object, count: int) -> bool:
+    """Whether a law of the user's is odd at some displacements."""
+    if not hasattr(element, "function"):
+        return False
+    u = np.random.default_rng(0).normal(size=(count, 16))
+    there, back = element.function(u), element.function(-u)  # type: ignore[attr-defined]
+    return bool(np.allclose(there, -back, rtol=1e-9, atol=1e-12 * np.abs(there).max(initial=0.0)))

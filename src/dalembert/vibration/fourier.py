@@ -1,0 +1,104 @@
+"""Real Fourier series of periodic motions: their samples, their harmonics, their derivative."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Fourier:
+    r"""Harmonics :math:`x(\tau) = X_0 + \sum_h X_{ch} \cos h\tau + X_{sh} \sin h\tau` and samples of a period.
+
+    Parameters
+    ----------
+    orders : tuple of int
+        Harmonics that are kept, in ascending order; 0 is the mean.
+    samples : int
+        Samples of a period.
+
+    Examples
+    --------
+    >>> series = Fourier((0, 1), 4)
+    >>> (series.synthesis @ [1.0, 2.0, 0.0]).round(12).tolist()
+    [3.0, 1.0, -1.0, 1.0]
+    >>> (series.analysis @ [3.0, 1.0, -1.0, 3.0]).round(12).tolist()
+    [1.5, 2.0, -1.0]
+    """
+
+    orders: tuple[int, ...]
+    samples: int
+
+    @property
+    def count(self) -> int:
+        """Number of coefficients."""
+        return 2 * len(self.orders) - self.mean
+
+    @property
+    def mean(self) -> int:
+        """1 if the mean is among the harmonics, else 0."""
+        return int(self.orders[0] == 0)
+
+    @cached_property
+    def synthesis(self) -> np.ndarray:
+        """From coefficients to samples, (samples, coefficients)."""
+        return synthesis(self.orders, 2 * np.pi * np.arange(self.samples) / self.samples)
+
+    @cached_property
+    def analysis(self) -> np.ndarray:
+        """From samples to coefficients, (coefficients, samples)."""
+        rows = self.synthesis.T * (2 / self.samples)
+        rows[: self.mean] /= 2
+        return np.ascontiguousarray(rows)
+
+    @cached_property
+    def derivative(self) -> np.ndarray:
+        """Coefficients of the derivative by tau from those of the motion, (coefficients, coefficients)."""
+        matrix = np.zeros((self.count, self.count))
+        for order, cosine in zip(self.orders[self.mean :], range(self.mean, self.count, 2), strict=True):
+            matrix[cosine, cosine + 1], matrix[cosine + 1, cosine] = order, -order
+        return matrix
+
+    @cached_property
+    def cosines(self) -> np.ndarray:
+        """Places of the cosine coefficients, and of the mean, (orders,)."""
+        return np.array([*range(self.mean), *range(self.mean, self.count, 2)], dtype=int)
+
+    @cached_property
+    def sines(self) -> np.ndarray:
+        """Places of the sine coefficients, (orders without 0,)."""
+        return np.arange(self.mean + 1, self.count, 2)
+
+    def phasors(self, coefficients: np.ndarray) -> np.ndarray:
+        """Complex amplitudes X_c - i X_s, (orders, ...), of real coefficients (..., coefficients)."""
+        result = np.moveaxis(coefficients[..., self.cosines], -1, 0).astype(complex)
+        result[self.mean :] -= 1j * np.moveaxis(coefficients[..., self.sines], -1, 0)
+        return result
+
+    def coefficients(self, phasors: np.ndarray) -> np.ndarray:
+        """Real coefficients (..., coefficients) of complex amplitudes (orders, ...)."""
+        result = np.empty((*phasors.shape[1:], self.count))
+        result[..., self.cosines] = np.moveaxis(np.real(phasors), 0, -1)
+        result[..., self.sines] = -np.moveaxis(np.imag(phasors[self.mean :]), 0, -1)
+        return result
+
+
+def synthesis(orders: tuple[int, ...], angles: np.ndarray) -> np.ndarray:
+    """Cosines and sines of the harmonics at angles tau, (angles, coefficients)."""
+    columns = [[np.ones_like(angles)] if h == 0 else [np.cos(h * angles), np.sin(h * angles)] for h in orders]
+    return np.stack([column for pair in columns for column in pair], axis=1)
+
+
+def real_blocks(matrices: np.ndarray, mean: int) -> np.ndarray:
+    """Matrices on phasors (orders, q, r) as one on real coefficients, (q, coefficients, r, coefficients)."""
+    orders, q, r = matrices.shape
+    count = 2 * orders - mean
+    result = np.zeros((q, count, r, count))
+    if mean:
+        result[:, 0, :, 0] = matrices[0].real
+    for number in range(mean, orders):
+        c = 2 * number - mean
+        result[:, c, :, c] = result[:, c + 1, :, c + 1] = matrices[number].real
+        result[:, c, :, c + 1] = matrices[number].imag
+        result[:, c + 1, :, c] = -matrices[number].imag
+    return result

@@ -1,0 +1,169 @@
+"""The response of a vibrating system over frequency."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict
+
+import numpy as np
+import scipy
+
+import dalembert
+from dalembert.errors import InputError, unknown
+from dalembert.vibration.continuation import Found, along, at_frequencies, natural
+from dalembert.vibration.curve import FrequencyCurve
+from dalembert.vibration.equations import Equations, equations
+from dalembert.vibration.harmonic_balance import HarmonicBalance
+from dalembert.vibration.newton import Solution
+from dalembert.vibration.system import VibrationSystem
+
+NATURAL, ARC_LENGTH = "natural", "arc-length"
+PHASES = 64
+"""Instants of a period at which a curve keeps the contacts' states."""
+ALL = 60
+"""Size up to which all degrees of freedom are observed if none are named."""
+
+
+def frequency_response(
+    system: VibrationSystem,
+    frequencies: np.ndarray | tuple[float, float],
+    method: HarmonicBalance | None = None,
+    *,
+    continuation: str = NATURAL,
+    observe: Sequence[str] | None = None,
+    start: tuple[FrequencyCurve, int] | None = None,
+) -> FrequencyCurve:
+    """Periodic responses over frequency by harmonic balance.
+
+    Parameters
+    ----------
+    system : VibrationSystem
+    frequencies : array, shape (points,), or (begin, end)
+        Hz, positive. A tuple of two: points between them, as dense as the curve needs.
+    method : HarmonicBalance, optional
+    continuation : {"natural", "arc-length"}
+        From a frequency to the next, or along the curve past its folds, which needs (begin, end).
+    observe : sequence of str, optional
+        Degrees of freedom whose motion is kept; all of a small structure, and of a large one those with forces and
+        contacts, if not given.
+    start : (FrequencyCurve, int), optional
+        A curve of the same system and harmonics and the number of one of its points, from which to go on.
+
+    Returns
+    -------
+    FrequencyCurve
+        A point that Newton's method does not find, from the one before nor by halves of the step, is marked there and
+        the curve goes on.
+
+    Raises
+    ------
+    InputError
+        For frequencies that are not positive, unknown degrees of freedom, and a start that does not fit.
+    ModelError
+        For rigid contacts that depend on each other, and for a structure whose mean position nothing holds.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from dalembert.structure import lumped
+    >>> from dalembert.vibration import Elastic, FrictionContact, HarmonicForce, VibrationSystem
+    >>> system = VibrationSystem(lumped({"m": 1.0}, [("m", None, 1.0, 0.04)]))
+    >>> force = system.add(HarmonicForce("m", 1.0))
+    >>> law = Elastic(tangential_stiffness=0.8)
+    >>> damper = system.add(FrictionContact("damper", "m", friction=0.5, preload=2.0, law=law))
+    >>> curve = frequency_response(system, np.array([1.12]) / (2 * np.pi), HarmonicBalance(harmonics=5))
+    >>> curve.amplitude("m").round(3).tolist()
+    [3.625]
+    """
+    method = method or HarmonicBalance()
+    ends = isinstance(frequencies, tuple)
+    omegas = 2 * np.pi * np.atleast_1d(np.asarray(frequencies, dtype=float))
+    if omegas.ndim != 1 or not len(omegas) or not np.all(np.isfinite(omegas) & (omegas > 0)):
+        raise InputError(f"frequency_response: the frequencies are {frequencies}; expected positive numbers in Hz")
+    if ends and (len(omegas) != 2 or omegas[0] == omegas[1]):
+        raise InputError(f"frequency_response: the ends are {frequencies}; expected two different frequencies in Hz")
+    if continuation not in (NATURAL, ARC_LENGTH):
+        raise InputError(unknown("continuation", continuation, (NATURAL, ARC_LENGTH), "frequency_response"))
+    if continuation == ARC_LENGTH and not ends:
+        raise InputError(
+            "frequency_response: a path by arc length finds its own frequencies; give a tuple of two, (begin, end)"
+        )
+    problem = equations(system, method)
+    known = None if start is None else _restarted(problem, *start)
+    if not ends:
+        found = at_frequencies(problem, omegas, known)
+    else:
+        follow = along if continuation == ARC_LENGTH else natural
+        found = follow(problem, float(omegas[0]), float(omegas[1]), known)
+    settings = {"continuation": continuation, "frequencies": "given" if not ends else list(map(float, frequencies))}
+    return _curve(problem, found, _observed(problem, observe), settings)
+
+
+def _restarted(problem: Equations, curve: FrequencyCurve, point: int) -> Solution:
+    """The point of a curve, solved again."""
+    unknowns, samples = curve.unknowns[point], int(curve.samples[point])
+    if unknowns.shape != problem.balance(samples).shape or curve.orders != problem.method.orders:
+        raise InputError(
+            f"frequency_response: the start has unknowns of shape {unknowns.shape} and harmonics {curve.orders}; the "
+            f"system has {problem.balance(samples).shape} and {problem.method.orders}; "
+            "start from a curve of the same system"
+        )
+    return problem.solve(unknowns, 2 * np.pi * float(curve.frequencies[point]), samples)
+
+
+def _observed(problem: Equations, names: Sequence[str] | None) -> np.ndarray:
+    """Rows of the observed degrees of freedom."""
+    structure = problem.lowered.structure
+    if names is not None:
+        return np.array(structure.dofs.rows(names), dtype=int)
+    if structure.size <= ALL:
+        return np.arange(structure.size)
+    forced = [structure.dofs.index(force.dof) for force in problem.lowered.forces]
+    return np.unique([*forced, *problem.lowered.matrix.nonzero()[1]]).astype(int)
+
+
+def _curve(problem: Equations, found: Iterable[Found], rows: np.ndarray, settings: dict) -> FrequencyCurve:
+    lowered, records = problem.lowered, [(one, *_read(problem, one.solution, rows)) for one in found]
+    solutions = [one.solution for one, *_ in records]
+    method = asdict(problem.method)
+    provenance = {"version": dalembert.__version__, "numpy": np.__version__, "scipy": scipy.__version__}
+    return FrequencyCurve(
+        dofs=tuple(lowered.structure.dofs.names[row] for row in rows),
+        coordinates=lowered.row_names,
+        contacts=lowered.contacts,
+        orders=problem.method.orders,
+        frequencies=np.array([solution.omega / (2 * np.pi) for solution in solutions]),
+        response=np.stack([response for _, response, *_ in records]),
+        displacements=np.stack([displacements for *_, displacements, _, _ in records]),
+        forces=np.stack([forces for *_, forces, _ in records]),
+        states=np.stack([states for *_, states in records]),
+        unknowns=np.stack([solution.unknowns for solution in solutions]),
+        iterations=np.array([solution.iterations for solution in solutions]),
+        residuals=np.array([solution.error for solution in solutions]),
+        converged=np.array([solution.converged for solution in solutions]),
+        fold=np.array([one.fold for one, *_ in records]),
+        samples=np.array([solution.samples for solution in solutions]),
+        sampling_errors=np.array([solution.sampling_error for solution in solutions]),
+        provenance={**provenance, "method": method, **settings},
+    )
+
+
+def _read(
+    problem: Equations, solution: Solution, rows: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Response, elements' displacements and forces, and states of the contacts."""
+    balance, lowered = problem.balance(solution.samples), problem.lowered
+    states = np.zeros((len(lowered.contacts), PHASES), dtype=np.uint8)
+    instants = np.arange(PHASES) * solution.samples // PHASES
+    for block, own in zip(lowered.blocks, solution.evaluation.states, strict=True):
+        np.maximum.at(states, block.contacts, own[:, instants])
+    response = response_of(problem, solution)[rows]
+    displacements, forces = balance.displacements(solution.unknowns), solution.evaluation.forces
+    if not solution.converged:
+        response, displacements, forces = (np.full_like(array, np.nan) for array in (response, displacements, forces))
+    return response, displacements, forces, states
+
+
+def response_of(problem: Equations, solution: Solution) -> np.ndarray:
+    """Coefficients of all degrees of freedom at a solution, (n, coefficients)."""
+    series = problem.balance(solution.samples).series
+    retained = series.phasors(solution.unknowns)
+    return series.coefficients(problem.condensation.full(retained, solution.point.interior(retained)))

@@ -1,0 +1,87 @@
+"""Settings of harmonic balance."""
+
+from dataclasses import dataclass
+
+from dalembert.errors import InputError
+
+AUTOMATIC = "automatic"
+
+
+@dataclass(frozen=True)
+class HarmonicBalance:
+    """How a periodic response is balanced.
+
+    Parameters
+    ----------
+    harmonics : int
+        Highest harmonic.
+    odd_only : bool
+        Keep odd harmonics only: for motions that are their own opposite half a period later. Nothing in the system may
+        then act in one direction alone.
+    samples : int or "automatic"
+        Samples of a period at which the elements' forces are evaluated. Automatic: doubled until twice as many change
+        the balance of forces by less than ``sampling``.
+    sampling : float
+        Largest change, as part of the forces, for which samples are enough.
+    tolerance : float
+        Residual at which a point is found, as part of the forces.
+    iterations : int
+        Newton iterations after which a point is given up and the step towards it halved.
+    halvings : int
+        How often it is halved before the point is marked as not found.
+    resolution : float
+        Largest step of a path between two frequencies, as part of the way.
+
+    Raises
+    ------
+    InputError
+        For settings that make no sense, such as fewer samples than the harmonics need.
+
+    Examples
+    --------
+    >>> HarmonicBalance(harmonics=3).orders, HarmonicBalance(harmonics=4, odd_only=True).orders
+    ((0, 1, 2, 3), (1, 3))
+    >>> HarmonicBalance(harmonics=9, samples=16)
+    Traceback (most recent call last):
+    dalembert.errors.InputError: HarmonicBalance: 16 samples of a period cannot tell 9 harmonics apart; expected at
+    least 19
+    """
+
+    harmonics: int = 9
+    odd_only: bool = False
+    samples: int | str = AUTOMATIC
+    sampling: float = 1e-4
+    tolerance: float = 1e-10
+    iterations: int = 30
+    halvings: int = 6
+    resolution: float = 0.02
+
+    def __post_init__(self) -> None:
+        if self.harmonics < 1:
+            raise InputError(f"HarmonicBalance: {self.harmonics} harmonics were asked for; expected at least 1")
+        needed = 2 * self.harmonics + 1
+        if isinstance(self.samples, str):
+            if self.samples != AUTOMATIC:
+                raise InputError(f"HarmonicBalance: samples is {self.samples!r}; expected a number or 'automatic'")
+        elif self.samples < needed:
+            raise InputError(
+                f"HarmonicBalance: {self.samples} samples of a period cannot tell {self.harmonics} harmonics apart; "
+                f"expected at least {needed}"
+            )
+        for name in ("sampling", "tolerance", "resolution"):
+            if not 0 < getattr(self, name) < 1:
+                raise InputError(f"HarmonicBalance: {name} is {getattr(self, name)}; expected a number between 0 and 1")
+
+    @property
+    def orders(self) -> tuple[int, ...]:
+        """The harmonics kept."""
+        return tuple(range(1, self.harmonics + 1, 2) if self.odd_only else range(self.harmonics + 1))
+
+    @property
+    def first_samples(self) -> int:
+        """Samples to begin with: a power of two, eight and more for the shortest wave, where they are chosen."""
+        return self.samples if isinstance(self.samples, int) else max(64, 1 << (8 * self.harmonics - 1).bit_length())
+
+
+MOST_SAMPLES = 8192
+"""Where the automatic doubling ends."""

@@ -1,0 +1,168 @@
+"""Newton's method for the equations of harmonic balance, at a frequency or on a plane across a path.
+
+The forces have kinks, at which Newton's method takes the derivative of one side (a semismooth method); a line search on
+the residual keeps it from jumping between the sides.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from dalembert.vibration.balance import Balance, Evaluation, Tangent
+from dalembert.vibration.condensation import Condensation, Point
+from dalembert.vibration.harmonic_balance import HarmonicBalance
+
+DAMPINGS = (1.0, 0.5, 0.25, 0.125, 0.03125)
+"""Parts of a Newton step that are tried, until the residual falls."""
+ROUNDING = 100 * np.finfo(float).eps
+
+
+@dataclass(frozen=True)
+class Plane:
+    """A plane across a path in scaled unknowns: direction · (y - place) = 0, with y = (U/size, ω/width).
+
+    Parameters
+    ----------
+    direction : array, shape (unknowns + 1,)
+    unknowns : array, shape (q, coefficients)
+    omega : float
+        A place on the plane.
+    size, width : float
+        Scales of U and of ω.
+    """
+
+    direction: np.ndarray
+    unknowns: np.ndarray
+    omega: float
+    size: float
+    width: float
+
+    def distance(self, unknowns: np.ndarray, omega: float) -> float:
+        """Of a place from the plane."""
+        moved = np.append((unknowns - self.unknowns).ravel() / self.size, (omega - self.omega) / self.width)
+        return float(self.direction @ moved)
+
+
+@dataclass(frozen=True)
+class Solution:
+    """Where Newton's method ended.
+
+    Parameters
+    ----------
+    omega : float
+    unknowns : array, shape (q, coefficients)
+    point : Point
+    evaluation : Evaluation
+    tangent : Tangent
+    iterations : int
+    error : float
+        Residual as part of the forces.
+    converged : bool
+    samples : int
+    sampling_error : float
+        Change of the residual with twice the samples, as part of the forces.
+    """
+
+    omega: float
+    unknowns: np.ndarray
+    point: Point
+    evaluation: Evaluation
+    tangent: Tangent
+    iterations: int
+    error: float
+    converged: bool
+    samples: int
+    sampling_error: float = np.nan
+
+    def rate(self) -> np.ndarray:
+        """dU/dω along the path, (q, coefficients)."""
+        return np.linalg.solve(self.tangent.matrix, -self.tangent.slope.ravel()).reshape(self.unknowns.shape)
+
+
+@dataclass(frozen=True)
+class _Place:
+    """A trial."""
+
+    unknowns: np.ndarray
+    omega: float
+    point: Point
+    evaluation: Evaluation
+    tangent: Tangent
+    scale: float
+    floor: float
+    distance: float
+
+    @property
+    def residual(self) -> float:
+        return float(np.linalg.norm(self.evaluation.residual))
+
+    @property
+    def error(self) -> float:
+        """Residual and distance from the plane, relative."""
+        return np.hypot(self.residual / self.scale, self.distance)
+
+
+def correct(
+    balance: Balance,
+    condensation: Condensation,
+    method: HarmonicBalance,
+    unknowns: np.ndarray,
+    omega: float,
+    plane: Plane | None = None,
+    point: Point | None = None,
+) -> Solution:
+    """Newton's method from a guess, at ω or, with a plane, on that; ``point`` if it is condensed already."""
+
+    def place(unknowns: np.ndarray, omega: float, point: Point | None) -> _Place:
+        point = condensation.at(omega) if point is None else point
+        evaluation, tangent = balance.linearised(point, unknowns)
+        scale = float(np.linalg.norm(point.force) + np.linalg.norm(evaluation.forces)) or 1.0
+        floor = ROUNDING * float(np.abs(point.stiffness).max(initial=0.0)) * float(np.linalg.norm(unknowns))
+        distance = 0.0 if plane is None else plane.distance(unknowns, omega)
+        return _Place(unknowns, omega, point, evaluation, tangent, scale, floor / scale, distance)
+
+    at, iterations, converged = place(unknowns, omega, point), 0, False
+    while True:
+        converged = at.error <= max(method.tolerance, at.floor)
+        if converged or iterations == method.iterations or not np.isfinite(at.error):
+            break
+        step = _step(at, plane)
+        if step is None:
+            break
+        trials = []
+        for part in DAMPINGS:
+            moved, turned = at.unknowns + part * step[0], at.omega + part * step[1]
+            trials.append(place(moved, turned, at.point if plane is None else None))
+            if trials[-1].error <= (1 - 0.1 * part) * at.error:
+                break
+        finite = [trial for trial in trials if np.isfinite(trial.error)]
+        if not finite:
+            break
+        at = min(finite, key=lambda trial: trial.error)
+        iterations += 1
+    return Solution(
+        at.omega, at.unknowns, at.point, at.evaluation, at.tangent, iterations, at.error, converged,
+        balance.series.samples,
+    )  # fmt: skip
+
+
+def _step(at: _Place, plane: Plane | None) -> tuple[np.ndarray, float] | None:
+    """Newton's step of U and ω; None where the matrix is singular."""
+    residual, shape = at.evaluation.residual.ravel(), at.unknowns.shape
+    try:
+        if plane is None:
+            return -np.linalg.solve(at.tangent.matrix, residual).reshape(shape), 0.0
+        matrix = bordered(at.tangent, plane.direction, plane.size, plane.width, at.scale)
+        change = -np.linalg.solve(matrix, np.append(residual / at.scale, at.distance))
+        return change[:-1].reshape(shape) * plane.size, float(change[-1]) * plane.width
+    except np.linalg.LinAlgError:
+        return None
+
+
+def bordered(tangent: Tangent, direction: np.ndarray, size: float, width: float, scale: float) -> np.ndarray:
+    """The Jacobian of scaled unknowns with its column by ω and a row, which is regular at a fold too."""
+    matrix = np.empty((len(direction), len(direction)))
+    matrix[:-1, :-1] = tangent.matrix * (size / scale)
+    matrix[:-1, -1] = tangent.slope.ravel() * (width / scale)
+    matrix[-1] = direction
+    return matrix

@@ -1,0 +1,139 @@
+"""Springs without memory: cubic, unilateral, bilinear, and laws of the user's."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from dalembert.vibration.contacts import Number, require_positive
+
+
+@dataclass(frozen=True)
+class CubicSpring:
+    """Force k u³ between two degrees of freedom, or one and the ground.
+
+    Parameters
+    ----------
+    name : str
+    first : str
+        Degree of freedom, such as ``"A.x"``.
+    second : str, optional
+        The ground if not given; u is the first displacement less the second.
+    stiffness : float
+        N/m³.
+    """
+
+    name: str
+    first: str
+    second: str | None = None
+    stiffness: Number = field(kw_only=True)
+
+    def law(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Force and its derivative at displacements."""
+        return self.stiffness * u**3, 3 * self.stiffness * u**2
+
+
+@dataclass(frozen=True)
+class Gap:
+    """A stop on one side: force k (u - gap) where u exceeds the gap, else none.
+
+    Parameters
+    ----------
+    name : str
+    first : str
+        Degree of freedom.
+    second : str, optional
+        The ground if not given.
+    stiffness : float
+        N/m.
+    gap : float
+        m.
+    """
+
+    name: str
+    first: str
+    second: str | None = None
+    stiffness: Number = field(kw_only=True)
+    gap: Number = field(default=0.0, kw_only=True)
+
+    def __post_init__(self) -> None:
+        require_positive(f"gap {self.name!r}: the stiffness", "N/m", self.stiffness)
+
+    def law(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Force and its derivative at displacements."""
+        closed = np.real(u - self.gap) > 0
+        return np.where(closed, self.stiffness * (u - self.gap), 0.0), np.where(closed, self.stiffness, 0.0)
+
+
+@dataclass(frozen=True)
+class BilinearStop:
+    """A stop on both sides: force k (u ∓ gap) where u exceeds the gap upwards or downwards, else none.
+
+    Parameters
+    ----------
+    name : str
+    first : str
+        Degree of freedom.
+    second : str, optional
+        The ground if not given.
+    stiffness : float
+        N/m.
+    gap : float
+        Half the free way, m.
+    """
+
+    name: str
+    first: str
+    second: str | None = None
+    stiffness: Number = field(kw_only=True)
+    gap: Number = field(default=0.0, kw_only=True)
+
+    def __post_init__(self) -> None:
+        require_positive(f"stop {self.name!r}: the stiffness", "N/m", self.stiffness)
+
+    def law(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Force and its derivative at displacements."""
+        side = np.where(np.real(u) > 0, 1.0, -1.0)
+        over = u - side * self.gap
+        closed = side * np.real(over) > 0
+        return np.where(closed, self.stiffness * over, 0.0), np.where(closed, self.stiffness, 0.0)
+
+
+@dataclass(frozen=True)
+class UserElement:
+    """A law of the user's without memory, of several degrees of freedom.
+
+    Parameters
+    ----------
+    name : str
+    dofs : sequence of str
+        Degrees of freedom.
+    function : callable
+        ``function(u)`` of displacements (dofs, samples), m, returns the internal forces (dofs, samples), N, which stand
+        beside the springs of the structure. Its derivative is taken by a complex step: it must run in complex numbers.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> UserElement("quintic", ["A.x"], lambda u: 2.0 * u**5).law(np.array([[1.0]]))[1].tolist()
+    [[[10.0]]]
+    """
+
+    name: str
+    dofs: Sequence[str]
+    function: Callable[[np.ndarray], np.ndarray]
+
+    def law(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Forces (dofs, samples) and their derivatives (dofs, dofs, samples), the latter of real displacements only."""
+        values = np.asarray(self.function(u))
+        if np.iscomplexobj(u):
+            return values, np.zeros(0)
+        slopes = np.empty((len(u), *u.shape))
+        for column in range(len(u)):
+            moved = u.astype(complex)
+            moved[column] += 1e-30j
+            slopes[:, column] = np.imag(self.function(moved)) / 1e-30
+        return values, slopes
+
+
+Spring = CubicSpring | Gap | BilinearStop

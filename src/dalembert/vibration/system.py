@@ -1,0 +1,91 @@
+"""A structure with forces, contacts and springs."""
+
+from dataclasses import dataclass
+from typing import TypeVar
+
+from dalembert.errors import InputError, ModelError
+from dalembert.structure import Structure
+from dalembert.vibration.contacts import FrictionContact, Number
+from dalembert.vibration.springs import BilinearStop, CubicSpring, Gap, UserElement
+
+
+@dataclass(frozen=True)
+class HarmonicForce:
+    """Force amplitude · cos(harmonic · ω t + phase) on a degree of freedom.
+
+    Parameters
+    ----------
+    dof : str
+        Such as ``"A.x"``.
+    amplitude : float
+        N.
+    phase : float
+        rad.
+    harmonic : int
+    """
+
+    dof: str
+    amplitude: Number
+    phase: Number = 0.0
+    harmonic: int = 1
+
+    def __post_init__(self) -> None:
+        if self.harmonic < 1:
+            raise InputError(
+                f"force on {self.dof!r}: the harmonic is {self.harmonic}; expected 1 or more, and a StaticForce for a "
+                "force that does not change"
+            )
+
+
+@dataclass(frozen=True)
+class StaticForce:
+    """A constant force on a degree of freedom.
+
+    Parameters
+    ----------
+    dof : str
+    value : float
+        N.
+    """
+
+    dof: str
+    value: Number
+
+
+Element = FrictionContact | CubicSpring | Gap | BilinearStop | UserElement
+Part = TypeVar("Part", bound=HarmonicForce | StaticForce | Element)
+
+
+class VibrationSystem:
+    """A linear structure with forces on it and nonlinear elements in it.
+
+    Parameters
+    ----------
+    structure : Structure
+
+    Examples
+    --------
+    >>> from dalembert.structure import lumped
+    >>> system = VibrationSystem(lumped({"m": 1.0}, [("m", None, 1.0, 0.04)]))
+    >>> force = system.add(HarmonicForce("m", 1.0))
+    >>> damper = system.add(FrictionContact("damper", "m", friction=0.5, preload=2.0))
+    >>> [element.name for element in system.elements]
+    ['damper']
+    """
+
+    def __init__(self, structure: Structure) -> None:
+        self.structure = structure
+        self.forces: list[HarmonicForce | StaticForce] = []
+        self.elements: list[Element] = []
+
+    def add(self, part: Part) -> Part:
+        """Add a force, a contact or a spring, and hand it back."""
+        if isinstance(part, HarmonicForce | StaticForce):
+            self.forces.append(part)
+        elif isinstance(part, Element):
+            if part.name in (element.name for element in self.elements):
+                raise ModelError(f"{type(part).__name__} {part.name!r}: the name is taken; give each element its own")
+            self.elements.append(part)
+        else:
+            raise InputError(f"{part!r} was added to a vibrating system; expected a force, a contact or a spring")
+        return part

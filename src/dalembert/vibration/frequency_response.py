@@ -42,8 +42,8 @@ def frequency_response(
     continuation : {"natural", "arc-length"}
         From a frequency to the next, or along the curve past its folds, which needs (begin, end).
     observe : sequence of str, optional
-        Degrees of freedom whose motion is kept; all of a small structure, and of a large one those with forces and
-        contacts, if not given.
+        Degrees of freedom, nodes or sets of nodes whose motion is kept; all of a small structure, and of a large one
+        those with forces and contacts, if not given.
     start : (FrequencyCurve, int), optional
         A curve of the same system and harmonics and the number of one of its points, from which to go on.
 
@@ -113,7 +113,7 @@ def _observed(problem: Equations, names: Sequence[str] | None) -> np.ndarray:
     """Rows of the observed degrees of freedom."""
     structure = problem.lowered.structure
     if names is not None:
-        return np.array(structure.dofs.rows(names), dtype=int)
+        return np.array(structure.rows(names), dtype=int)
     if structure.size <= ALL:
         return np.arange(structure.size)
     forced = [structure.dofs.index(force.dof) for force in problem.lowered.forces]

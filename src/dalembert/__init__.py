@@ -33,8 +33,8 @@ _NAMES = {
     "optimize": "Firefly ImprovedParticleSwarm LeastSquares Minimiser ParticleSwarm ResponseSensitivity",
     "surrogate": "Adaptive ChebyshevPolynomial Surrogate Tensor TotalDegree",
     "structure": """
-        Dofs EigenModes Material Modal Nodes Rayleigh Structure box eigenmodes lumped plate
-        similarity solid
+        Dofs EigenModes Material Modal Nodes Rayleigh ReducedStructure ReductionErrors Structure box
+        combine craig_bampton eigenmodes lumped pairs plate similarity solid tie
     """,
     "data": "Bands Measurements derivative read read_bands read_csv read_mat read_netcdf read_parquet read_uff",
     "inverse": """

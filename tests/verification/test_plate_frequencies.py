@@ -5,7 +5,7 @@ import pytest
 from numpy.polynomial import legendre
 from scipy.linalg import eigh
 
-from dalembert.structure import Material, Structure, box, eigenmodes, plate, solid
+from dalembert.structure import Material, Structure, box, craig_bampton, eigenmodes, plate, solid
 
 TOPIC = "Structures"
 SOURCE = "Rayleigh-Ritz for the Kirchhoff plate, 16 polynomials each way, computed by the test itself"
@@ -54,4 +54,35 @@ def test_bricks_of_20_nodes(record_evidence) -> None:
     allowed = [3.5e-3] * 4 + [3e-3] + [3.5e-3] * 3  # the fifth is the one of the study of friction
     check(
         record_evidence, solid(box((*SIZE, THICKNESS), (60, 60, 1)), STEEL), "60 × 60 × 1 bricks of 20 nodes", allowed
+    )
+
+
+def test_ten_modes_of_the_reduced_plate(record_evidence) -> None:
+    """Fifty modes with four forced points and the middles of the edges' strips held; a part in 200 is asked for."""
+    full = solid(box((*SIZE, THICKNESS), (14, 14, 1)), STEEL).fixed("edge")
+    assert full.nodes is not None
+    quarter, middle, near = SIZE[0] / 4, SIZE[0] / 2, SIZE[0] / 20
+    places = [(quarter, quarter), (3 * quarter, quarter), (quarter, 3 * quarter), (3 * quarter, 3 * quarter)]
+    places += [(middle, near), (middle, SIZE[1] - near), (near, middle), (SIZE[0] - near, middle)]
+    masters = [full.nodes.nearest((*place, THICKNESS)) for place in places]
+    errors = craig_bampton(full, masters, modes=50).errors(full, 10)
+    source = "the full model, 14 × 14 × 1 bricks of 20 nodes"
+    record_evidence(
+        "clamped plate 405 × 405 × 2 mm, first ten frequencies by Craig-Bampton with 50 modes",
+        errors.full,
+        errors.reduced,
+        unit="Hz",
+        tolerance=5e-3,
+        relative=True,
+        topic=TOPIC,
+        source=source,
+    )
+    assert np.all(np.abs(errors.relative) < 5e-3)
+    record_evidence(
+        "the same, least part of a reduced shape in the full shapes of its frequency",
+        1.0,
+        errors.similarity.min(),
+        tolerance=1e-3,
+        topic=TOPIC,
+        source=source,
     )

@@ -1,8 +1,10 @@
 """Structures as matrices: mass, stiffness and damping with named degrees of freedom."""
 
+from dalembert.structure.craig_bampton import ReducedStructure, ReductionErrors, craig_bampton
 from dalembert.structure.damping import Modal, Rayleigh
 from dalembert.structure.dofs import Dofs
 from dalembert.structure.eigenmodes import EigenModes, eigenmodes, similarity
+from dalembert.structure.joining import combine, pairs, tie
 from dalembert.structure.lumped import lumped
 from dalembert.structure.material import Material
 from dalembert.structure.nodes import Nodes
@@ -17,11 +19,17 @@ __all__ = [
     "Modal",
     "Nodes",
     "Rayleigh",
+    "ReducedStructure",
+    "ReductionErrors",
     "Structure",
     "box",
+    "combine",
+    "craig_bampton",
     "eigenmodes",
     "lumped",
+    "pairs",
     "plate",
     "similarity",
     "solid",
+    "tie",
 ]

@@ -80,6 +80,10 @@ class Dofs:
         """
         return [row for name in names for row in self._of_node.get(name) or [self.index(name)]]
 
+    def has_node(self, name: str) -> bool:
+        """Whether a node has degrees of freedom here."""
+        return name in self._of_node
+
     @cached_property
     def _places(self) -> dict[str, int]:
         return {name: row for row, name in enumerate(self.names)}

@@ -1,5 +1,6 @@
 """Frequencies and shapes of the free vibrations of a structure, and how similar shapes are."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, cast
 
@@ -66,12 +67,17 @@ def eigenmodes(structure: Structure, count: int = 10, shift: float = 0.0) -> Eig
             "degrees of freedom"
         )
     sigma = (2 * np.pi * shift) ** 2
-    mass, stiffness = (_real(matrix) for matrix in (structure.mass, structure.stiffness))
+    mass, stiffness = (real_part(matrix) for matrix in (structure.mass, structure.stiffness))
     if structure.size <= max(DENSE, 2 * count):
-        squares, shapes = _dense(mass, stiffness)
+        squares, shapes = all_modes(mass, stiffness)
         near = np.sort(np.argsort(np.abs(squares - sigma), kind="stable")[:count])
     else:
-        squares, shapes = _lanczos(csc_array(mass), csc_array(stiffness), count, sigma)
+        solve = factorise(
+            csc_array(stiffness - sigma * mass),
+            "eigenmodes: the stiffness, less the mass at the shift,",
+            ", or the shift is a frequency of it; clamp it, or choose another shift",
+        )
+        squares, shapes = lanczos(csc_array(mass), csc_array(stiffness), count, solve, sigma)
         near = np.argsort(squares)
     shapes = shapes[:, near]
     shapes = shapes * np.sign(shapes[np.argmax(np.abs(shapes), axis=0), np.arange(count)])
@@ -105,11 +111,13 @@ def similarity(shapes: np.ndarray, others: np.ndarray, mass: Matrix) -> np.ndarr
     return (shapes.T @ (mass @ others)) ** 2 / np.outer(sizes, other_sizes)
 
 
-def _real(matrix: Matrix) -> Matrix:
+def real_part(matrix: Matrix) -> Matrix:
+    """A dense or sparse matrix without what a complex step adds."""
     return matrix.real if np.iscomplexobj(matrix.data if issparse(matrix) else matrix) else matrix
 
 
-def _dense(mass: Matrix, stiffness: Matrix) -> tuple[np.ndarray, np.ndarray]:
+def all_modes(mass: Matrix, stiffness: Matrix) -> tuple[np.ndarray, np.ndarray]:
+    """Squares of all angular frequencies, ascending, and shapes, by dense matrices."""
     m, k = (matrix.toarray() if issparse(matrix) else matrix for matrix in (mass, stiffness))
     try:
         return eigh(k, m)
@@ -119,12 +127,10 @@ def _dense(mass: Matrix, stiffness: Matrix) -> tuple[np.ndarray, np.ndarray]:
         ) from None
 
 
-def _lanczos(mass: Any, stiffness: Any, count: int, sigma: float) -> tuple[np.ndarray, np.ndarray]:
-    solve = factorise(
-        stiffness - sigma * mass,
-        "eigenmodes: the stiffness, less the mass at the shift,",
-        ", or the shift is a frequency of it; clamp it, or choose another shift",
-    )
+def lanczos(
+    mass: Any, stiffness: Any, count: int, solve: Callable[[np.ndarray], np.ndarray], sigma: float = 0.0
+) -> tuple[np.ndarray, np.ndarray]:
+    """Squares of angular frequencies nearest to ``sigma``, and shapes, by the solution with K - sigma M."""
     inverse = cast(Any, LinearOperator)(mass.shape, matvec=solve, dtype=float)
     # The same start each time, so that bits repeat; without symmetry, so that it has a part of every mode.
     start = np.random.default_rng(0).standard_normal(mass.shape[0])

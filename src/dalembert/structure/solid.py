@@ -15,6 +15,7 @@ from dalembert.structure.structure import Structure
 
 ELEMENTS = {
     "brick 20": ("ElementHexS2", 3, 5),
+    "brick 20 full": ("ElementHexS2", 5, 5),
     "brick 27": ("ElementHex2", 5, 5),
     "tetrahedron 10": ("ElementTetP2", 2, 4),
 }
@@ -69,8 +70,9 @@ def solid(mesh: Any, material: Material | Mapping[str, Material], element: str |
         One for all, or one for each named subdomain of the mesh; where subdomains overlap the last one holds.
     element : str, optional
         "brick 20" (the default for hexahedra): serendipity, 2 × 2 × 2 Gauss points for the stiffness, 3 × 3 × 3 for the
-        mass. "brick 27": full integration, stiffer in thin parts and somewhat dearer. "tetrahedron 10" (the default for
-        tetrahedra).
+        mass. Its eight Gauss points miss some motions of a brick, which neighbours hold; a row of single bricks keeps
+        them, without energy, so have two across, or take one of the next ones. "brick 20 full" and "brick 27":
+        3 × 3 × 3 points throughout, stiffer in thin parts. "tetrahedron 10" (the default for tetrahedra).
 
     Returns
     -------

@@ -86,6 +86,8 @@ class Structure:
     def rows(self, names: str | Sequence[str]) -> list[int]:
         """Rows of degrees of freedom, of all those of nodes, or of all those of sets of nodes.
 
+        Nodes of a set that have none left, since they are clamped, are passed over.
+
         Raises
         ------
         InputError
@@ -93,7 +95,9 @@ class Structure:
         """
         sets = self.nodes.sets if self.nodes else {}
         names = [names] if isinstance(names, str) else names
-        single = [name for given in names for name in sets.get(given, (given,))]
+        single = [
+            name for given in names for name in (filter(self.dofs.has_node, sets[given]) if given in sets else [given])
+        ]
         return list(dict.fromkeys(self.dofs.rows(single)))
 
     def fixed(self, held: str | Sequence[str]) -> Structure:

@@ -1,0 +1,182 @@
+"""Reduction of a structure to some of its degrees of freedom and the modes between them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from scipy.sparse import csc_array, issparse
+
+from dalembert.errors import InputError
+from dalembert.structure.dofs import Dofs
+from dalembert.structure.eigenmodes import DENSE, all_modes, eigenmodes, lanczos, real_part, similarity
+from dalembert.structure.factorise import factorise
+from dalembert.structure.structure import Matrix, Structure, block
+
+NEIGHBOURS = 0.01
+"""Modes whose frequencies differ by less, relative, share their shapes when a reduction is judged."""
+
+
+@dataclass(frozen=True, eq=False)
+class ReductionErrors:
+    """The lowest modes of a reduced structure beside those of the full one.
+
+    Parameters
+    ----------
+    full, reduced : array, shape (count,)
+        Frequencies in Hz, ascending.
+    similarity : array, shape (count,)
+        Part of the kinetic energy of each reduced shape that lies in the full modes whose frequencies differ by less
+        than 1 %; modes of equal frequency, whose shapes are anyone's choice, count together. 1 is perfect.
+    """
+
+    full: np.ndarray
+    reduced: np.ndarray
+    similarity: np.ndarray
+
+    @property
+    def relative(self) -> np.ndarray:
+        """Errors of the frequencies, as parts of the full ones; positive, since a reduction only stiffens."""
+        return self.reduced / self.full - 1
+
+
+@dataclass(frozen=True, eq=False)
+class ReducedStructure(Structure):
+    """A structure in few coordinates; :func:`craig_bampton` makes it.
+
+    Parameters
+    ----------
+    mass, stiffness, dofs, damping, nodes
+        As of every :class:`Structure`; dense.
+    basis : array, shape (n, reduced size)
+        The motion of the full structure for each coordinate.
+    full_dofs : Dofs
+        Names of the n rows of the basis.
+    """
+
+    basis: np.ndarray = field(kw_only=True)
+    full_dofs: Dofs = field(kw_only=True)
+
+    def fixed(self, held: str | Sequence[str]) -> "ReducedStructure":
+        """The structure with some of its degrees of freedom clamped.
+
+        Parameters
+        ----------
+        held : str or sequence of str
+            Degrees of freedom, nodes for all of theirs, or sets of nodes.
+        """
+        less = super().fixed(held)
+        return replace(less, basis=self.basis[:, self.dofs.rows(less.dofs.names)])  # type: ignore[call-arg]
+
+    def expand(self, motion: np.ndarray) -> np.ndarray:
+        """Motion of the full structure, shape (n, ...), for one of the reduced structure, shape (size, ...)."""
+        return np.tensordot(self.basis, motion, axes=1)
+
+    def errors(self, full: Structure, count: int = 10) -> ReductionErrors:
+        """Frequencies and shapes of the lowest modes beside those of the full structure.
+
+        Parameters
+        ----------
+        full : Structure
+            The one that was reduced.
+        count : int
+            How many modes; at most as many as the reduced structure has.
+
+        Raises
+        ------
+        InputError
+            For a structure with other degrees of freedom.
+        """
+        if full.dofs.names != self.full_dofs.names:
+            raise InputError(
+                f"errors: the structure given has {full.size} degrees of freedom, which are not those of the structure "
+                f"that was reduced, with {len(self.full_dofs)}; give the one that craig_bampton was given"
+            )
+        ours, theirs = eigenmodes(self, min(count, self.size)), eigenmodes(full, min(count + 2, full.size))
+        near = np.abs(theirs.frequencies / ours.frequencies[:, None] - 1) < NEIGHBOURS
+        alike = similarity(self.expand(ours.shapes), theirs.shapes, real_part(full.mass))
+        return ReductionErrors(theirs.frequencies[: len(alike)], ours.frequencies, np.sum(alike * near, axis=1))
+
+
+def craig_bampton(structure: Structure, masters: str | Sequence[str], modes: int = 50) -> ReducedStructure:
+    r"""A structure in its master degrees of freedom and the lowest modes with these held.
+
+    With the masters m and the others i, the motion is
+    :math:`u_i = -K_{ii}^{-1} K_{im} u_m + \Phi q`, where :math:`\Phi` holds the lowest modes of
+    :math:`K_{ii} \phi = \omega^2 M_{ii} \phi`. Static answers to forces on the masters are exact. Imaginary parts of
+    the matrices (complex steps) go through with the basis of the real parts.
+
+    Parameters
+    ----------
+    structure : Structure
+        Held well enough by its masters that nothing else moves freely.
+    masters : str or sequence of str
+        Degrees of freedom, nodes or sets of nodes: where forces act, contacts are and motion is watched.
+    modes : int
+        How many modes with held masters; all if there are fewer.
+
+    Returns
+    -------
+    ReducedStructure
+        Its degrees of freedom are the masters, by their names, and then "mode 1.q", "mode 2.q", …
+
+    Raises
+    ------
+    InputError
+        For an unknown master or a negative number of modes.
+    SolveError
+        If a part of the structure moves freely while the masters are held.
+
+    References
+    ----------
+    Craig, R. R., Bampton, M. C. C.: Coupling of substructures for dynamic analyses. AIAA J. 6(7), 1968.
+
+    Examples
+    --------
+    >>> from dalembert.structure import lumped
+    >>> names = [f"m{number}" for number in range(6)]
+    >>> springs = [("m0", None, 1.0, 0.0)] + [(a, b, 1.0, 0.0) for a, b in zip(names, names[1:])]
+    >>> chain = lumped(dict.fromkeys(names, 1.0), springs)
+    >>> small = craig_bampton(chain, ["m5"], modes=2)
+    >>> small.dofs.names, small.errors(chain, 1).relative.round(6)
+    (('m5.x', 'mode 1.q', 'mode 2.q'), array([0.000476]))
+    """
+    if modes < 0:
+        raise InputError(f"craig_bampton: modes is {modes}; expected 0 or more")
+    held = np.array(structure.rows(masters), dtype=int)
+    inner = np.setdiff1d(np.arange(structure.size), held)
+    mass, stiffness = real_part(structure.mass), real_part(structure.stiffness)
+    count = min(modes, len(inner))
+    basis = np.zeros((structure.size, len(held) + count))
+    basis[held, np.arange(len(held))] = 1.0
+    if len(inner):
+        own = block(stiffness, inner)
+        solve = factorise(own, "craig_bampton: the stiffness with the masters held", "; clamp it or add masters")
+        basis[inner, : len(held)] = -solve(_dense(block(stiffness, inner, held)))
+        own_mass = block(mass, inner)
+        if len(inner) <= max(DENSE, 2 * count):
+            shapes = all_modes(own_mass, own)[1][:, :count]
+        elif count:
+            squares, shapes = lanczos(csc_array(own_mass), csc_array(own), count, solve)
+            shapes = shapes[:, np.argsort(squares)]
+        else:
+            shapes = np.zeros((len(inner), 0))
+        basis[inner, len(held) :] = shapes
+
+    def reduced(matrix: Matrix) -> np.ndarray:
+        small = basis.T @ (matrix @ basis)
+        return (small + small.T) / 2
+
+    names = [structure.dofs.names[row] for row in held] + [f"mode {number}.q" for number in range(1, count + 1)]
+    return ReducedStructure(
+        reduced(structure.mass),
+        reduced(structure.stiffness),
+        Dofs(tuple(names)),
+        None if structure.damping is None else reduced(structure.damping),
+        structure.nodes,
+        basis=basis,
+        full_dofs=structure.dofs,
+    )
+
+
+def _dense(matrix: Matrix) -> np.ndarray:
+    return matrix.toarray() if issparse(matrix) else matrix

@@ -1,0 +1,161 @@
+"""Structures made of parts: put side by side, their nodes paired by geometry, and tied."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from scipy.sparse import block_diag, csc_array, issparse
+from scipy.spatial import KDTree
+
+from dalembert.errors import InputError
+from dalembert.structure.dofs import Dofs
+from dalembert.structure.nodes import Nodes
+from dalembert.structure.structure import Matrix, Structure
+
+Pairs = tuple[tuple[str, str], ...]
+
+
+def combine(parts: Mapping[str, Structure]) -> Structure:
+    """Several structures as one, not yet connected.
+
+    Parameters
+    ----------
+    parts : mapping of str to Structure
+        The node "7" of the part "plate" gets the name "plate/7", and so do sets of nodes.
+
+    Returns
+    -------
+    Structure
+        With sparse matrices, and with nodes if all parts have them.
+
+    Examples
+    --------
+    >>> from dalembert.structure import lumped
+    >>> pair = combine({"left": lumped({"a": 1.0}, []), "right": lumped({"a": 2.0}, [])})
+    >>> pair.dofs.names, pair.mass.diagonal()
+    (('left/a.x', 'right/a.x'), array([1., 2.]))
+    """
+    structures = list(parts.values())
+
+    def whole(name: str) -> csc_array:
+        return csc_array(block_diag([csc_array(getattr(one, name)) for one in structures], format="csc"))
+
+    damped = [one if one.damping is not None else replace(one, damping=0 * one.mass) for one in structures]
+    names = tuple(f"{part}/{name}" for part, one in parts.items() for name in one.dofs.names)
+    damping = None
+    if any(one.damping is not None for one in structures):
+        damping = csc_array(block_diag([csc_array(one.damping) for one in damped], format="csc"))
+    return Structure(whole("mass"), whole("stiffness"), Dofs(names), damping, _nodes(parts))
+
+
+def pairs(structure: Structure, first: str, second: str, tolerance: float) -> Pairs:
+    """Nodes of one set with their nearest nodes of another, for contacts or ties.
+
+    Parameters
+    ----------
+    structure : Structure
+        With nodes.
+    first, second : str
+        Sets of nodes. Each node of the first gets a partner; nodes of the second may remain single.
+    tolerance : float
+        Largest distance of partners, m.
+
+    Returns
+    -------
+    tuple of (node of the first set, node of the second)
+
+    Raises
+    ------
+    InputError
+        For an unknown set, a structure without nodes, or a node of the first set without a partner of its own.
+    """
+    nodes = _with_nodes(structure, "pairs")
+    ours, theirs = nodes.members(first), nodes.members(second)
+    distances, nearest = KDTree(nodes.places[nodes.rows(theirs)]).query(nodes.places[nodes.rows(ours)])
+    far = np.flatnonzero(distances > tolerance)
+    if len(far):
+        raise InputError(
+            f"pairs: {len(far)} of the {len(ours)} nodes of {first!r} have no node of {second!r} within {tolerance:g} "
+            f"m, node {ours[far[0]]!r} is {distances[far[0]]:.3g} m from the nearest; raise the tolerance, or use a "
+            "set of fewer nodes"
+        )
+    values, counts = np.unique(nearest, return_counts=True)
+    if counts.max(initial=1) > 1:
+        raise InputError(
+            f"pairs: the node {theirs[values[np.argmax(counts)]]!r} of {second!r} is nearest to {counts.max()} nodes "
+            f"of {first!r}; expected one each; lower the tolerance, or swap the sets"
+        )
+    return tuple((node, theirs[other]) for node, other in zip(ours, np.ravel(nearest), strict=True))
+
+
+def tie(structure: Structure, joined: Sequence[tuple[str, str]]) -> Structure:
+    """The structure with pairs of nodes made one.
+
+    Parameters
+    ----------
+    structure : Structure
+    joined : sequence of (kept node, node)
+        The second one of each pair moves with the first, in every direction that both have, and leaves the structure;
+        in sets of nodes the first takes its place.
+
+    Raises
+    ------
+    InputError
+        For an unknown node, or one that is tied twice.
+    """
+    keeper = {second: first for first, second in joined}
+    if len(keeper) < len(joined) or set(keeper) & set(keeper.values()):
+        raise InputError("tie: a node is the second of two pairs, or the second of one and the first of another")
+    structure.rows([node for pair in joined for node in pair])
+    targets = []
+    for name in structure.dofs.names:
+        node, _, direction = name.rpartition(".")
+        targets.append(f"{keeper.get(node, node)}.{direction}")
+    names = tuple(dict.fromkeys(targets))
+    places = {name: place for place, name in enumerate(names)}
+    columns = [places[target] for target in targets]
+    ones = csc_array((np.ones(len(columns)), (np.arange(len(columns)), columns)), shape=(structure.size, len(names)))
+
+    def tied(matrix: Matrix) -> Matrix:
+        return ones.T @ (matrix if issparse(matrix) else csc_array(matrix)) @ ones
+
+    nodes = structure.nodes
+    if nodes is not None:
+        sets = {name: tuple(dict.fromkeys(keeper.get(node, node) for node in own)) for name, own in nodes.sets.items()}
+        nodes = replace(nodes, sets=sets)
+    return replace(
+        structure,
+        mass=tied(structure.mass),
+        stiffness=tied(structure.stiffness),
+        dofs=Dofs(names),
+        damping=None if structure.damping is None else tied(structure.damping),
+        nodes=nodes,
+    )
+
+
+def _with_nodes(structure: Structure, where: str) -> Nodes:
+    if structure.nodes is None:
+        raise InputError(f"{where}: the structure does not say where its nodes are; give it nodes=Nodes(...)")
+    return structure.nodes
+
+
+def _nodes(parts: Mapping[str, Structure]) -> Nodes | None:
+    if any(one.nodes is None for one in parts.values()):
+        return None
+    every = {part: one.nodes for part, one in parts.items() if one.nodes is not None}
+    starts = np.cumsum([0, *(len(nodes.names) for nodes in every.values())])
+    faces = [
+        nodes.faces + start
+        for nodes, start in zip(every.values(), starts, strict=False)
+        if nodes.faces is not None and nodes.faces.shape[1] == 4
+    ]
+    return Nodes(
+        tuple(f"{part}/{name}" for part, nodes in every.items() for name in nodes.names),
+        np.vstack([nodes.places for nodes in every.values()]),
+        {
+            f"{part}/{name}": tuple(f"{part}/{node}" for node in own)
+            for part, nodes in every.items()
+            for name, own in nodes.sets.items()
+        },
+        np.vstack(faces) if len(faces) == len(every) else None,
+    )

@@ -88,6 +88,7 @@ from dalembert.multibody import Torque as Torque
 from dalembert.multibody import TorsionSpring as TorsionSpring
 from dalembert.multibody import Trajectory as Trajectory
 from dalembert.multibody import UserForce as UserForce
+from dalembert.multibody import Variational as Variational
 from dalembert.multibody import WorkPrecision as WorkPrecision
 from dalembert.multibody import equilibrium as equilibrium
 from dalembert.multibody import modes as modes

@@ -9,6 +9,7 @@ from dalembert.multibody.integrators.ode_solver import OdeSolver
 from dalembert.multibody.integrators.radau5 import Radau5
 from dalembert.multibody.integrators.runge_kutta import RungeKutta4
 from dalembert.multibody.integrators.stabilisation import Augmented, Baumgarte, Partitioning, Projection
+from dalembert.multibody.integrators.variational import Variational
 from dalembert.multibody.joints import DistanceJoint, FixedJoint, PrescribedMotion, PrismaticJoint, RevoluteJoint
 from dalembert.multibody.loads import Force, Spring, Torque, TorsionSpring, UserForce
 from dalembert.multibody.points import Ground, GroundPoint, Point
@@ -61,6 +62,7 @@ __all__ = [
     "TorsionSpring",
     "Trajectory",
     "UserForce",
+    "Variational",
     "WorkPrecision",
     "equilibrium",
     "modes",

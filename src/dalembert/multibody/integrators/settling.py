@@ -22,11 +22,8 @@ _ROUNDING = 2e-16  # of the largest entry, below which an error is left
 
 
 @inlined
-def weigh(model, n, pattern, matrices, x, w, work, f):
-    """Fill ``f`` (N + 1,): M w + J^T m in its first n entries, for w = (w, m), and the constraints behind them."""
-    for i in range(len(f)):
-        f[i] = 0.0
-    add_product(n, pattern, matrices.mass, w, 1.0, f)
+def constrain(model, x, w, factor, work, f):
+    """Add ``factor`` times the constraint forces J^T m at x, with the multipliers of w, and the constraints behind."""
     block = model.joints
     for e in range(len(block.index)):
         for i in range(joints.WIDTH):
@@ -34,8 +31,17 @@ def weigh(model, n, pattern, matrices, x, w, work, f):
             work.x[i] = x[g] if i < joints.MULTIPLIERS else w[g]
         joints.residual(work.x, work.v, work.a, work.signals, model.callbacks, block.data, block.meta, e, work.r)
         for i in range(joints.WIDTH):
-            f[block.index[e, i]] += work.r[i]
+            f[block.index[e, i]] += factor * work.r[i]
     f[len(f) - 1] = 0.0
+
+
+@inlined
+def weigh(model, n, pattern, matrices, x, w, work, f):
+    """Fill ``f`` (N + 1,): M w + J^T m in its first n entries, for w = (w, m), and the constraints behind them."""
+    for i in range(len(f)):
+        f[i] = 0.0
+    add_product(n, pattern, matrices.mass, w, 1.0, f)
+    constrain(model, x, w, 1.0, work, f)
 
 
 @kernel

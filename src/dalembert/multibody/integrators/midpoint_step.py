@@ -1,0 +1,204 @@
+"""One step of the constrained midpoint rule: a discrete Lagrange-d'Alembert equation and its hidden constraints.
+
+The step has two halves of constant acceleration a and b. The forces F are those of the middle, the constraint forces
+those of the ends:
+
+    M a + F(q_m, v_m, l_m) + J(q_0)^T l_0 = 0,  constraints (q_1) = 0,  M b + F(q_m, v_m, l_m) + J(q_1)^T l_1 = 0,
+    their rates (q_1, v_1) = 0,  v_m = v_0 + h a / 2,  q_1 = q_0 + h v_m,  v_1 = v_m + h b / 2,
+
+with q_m and l_m the means of both ends. Newton's iteration takes the difference of both equations, in which the forces
+cancel: so one matrix of the implicit midpoint rule and one projection do.
+"""
+
+import numpy as np
+
+from dalembert.multibody.integrators.matrices import add_product
+from dalembert.multibody.integrators.settling import constrain, weigh_along
+from dalembert.multibody.kernels.assembly import constraint_rates, residual
+from dalembert.multibody.kernels.compiled import compiled, kernel
+from dalembert.multibody.kernels.dual import STEP
+from dalembert.multibody.kernels.linear import solve
+
+# Rows of a step (8, N + 1): unknowns at its start, in its middle and at its end, velocities there, both accelerations.
+X0, XM, X1, V0, VM, V1, A, B = range(8)
+ROWS = 8
+_CLOSED = 1e-15  # violation against the largest scale that is rounding
+_NOISE = 1e-13  # part of a step's way below which the ratio of two corrections says nothing
+# Relative corrections that stop to shrink are rounding below the first size, and below the second one if a nearly
+# singular position magnifies it.
+_ROUNDING, _MAGNIFIED = 1e-12, 1e-9
+_MOST_ITERATIONS = 20
+
+
+@kernel
+def place(n, h, s):
+    """Coordinates and velocities of a step by its accelerations, multipliers of its middle."""
+    for k in range(n):
+        way = h * (s[V0, k] + 0.5 * h * s[A, k])
+        s[VM, k] = s[V0, k] + 0.5 * h * s[A, k]
+        s[V1, k] = s[V0, k] + 0.5 * h * (s[A, k] + s[B, k])
+        s[XM, k] = s[X0, k] + 0.5 * way
+        s[X1, k] = s[X0, k] + way
+    for k in range(n, s.shape[1]):
+        s[XM, k] = 0.5 * (s[X0, k] + s[X1, k])
+
+
+@kernel
+def begin(n, h, start, slope, s):
+    """A step ahead of a state, by its accelerations and multipliers and what they missed in the step before."""
+    for k in range(len(start.x)):
+        s[X0, k] = start.x[k]
+        if k < n:
+            s[V0, k] = start.v[k]
+            s[A, k], s[B, k] = start.a[k] + slope[0, k], start.a[k] + slope[1, k]
+        else:
+            s[X0, k], s[X1, k] = start.x[k] + slope[0, k], start.x[k] + slope[1, k]
+    place(n, h, s)
+
+
+@kernel
+def learn(n, start, s, slope):
+    """What accelerations and multipliers of a start missed in its step."""
+    for k in range(len(start.x)):
+        if k < n:
+            slope[0, k], slope[1, k] = s[A, k] - start.a[k], s[B, k] - start.a[k]
+        else:
+            slope[0, k], slope[1, k] = s[X0, k] - start.x[k], s[X1, k] - start.x[k]
+
+
+@kernel
+def _balance(model, n, at, middle, end, f, gap, rate, second):
+    """Fill the residuals of a step, in real or in complex numbers; the signals of both works hold the time.
+
+    ``f``: M a + F + J^T l at the start. ``gap``: J^T l at the end less that at the start, constraints at the end.
+    ``rate``: their rates.
+    """
+    for k in range(len(gap)):
+        gap[k] = 0.0
+    residual(model, n, at[XM], at[VM], at[A], middle, 1.0, f)
+    constrain(model, at[XM], at[XM], -1.0, middle, f)
+    constrain(model, at[X0], at[X0], -1.0, middle, gap)
+    for k in range(n, len(gap)):
+        gap[k] = 0.0
+    for k in range(n):
+        f[k] -= gap[k]
+    constrain(model, at[X1], at[X1], 1.0, end, gap)
+    constraint_rates(model, n, at[X1], at[V1], at[A], end, rate, second)
+
+
+@kernel
+def _correct(n, size, pattern, matrices, h, f, gap, rate, first, other, s):
+    """Take Newton's correction off a step, by the residuals; ``f`` and ``gap`` become what accelerations moved."""
+    square = 2.0 / (h * h)
+    for k in range(n, size):
+        f[k] = square * gap[k]
+        gap[k] = 2.0 / h * rate[k] - 2.0 * f[k]
+    solve(pattern.layout, matrices.real, f, first)
+    solve(pattern.layout, matrices.rigid, gap, other)
+    for k in range(size):
+        f[k], gap[k] = first[k], first[k] + other[k]
+        if k < n:
+            s[A, k] -= f[k]
+            s[B, k] -= gap[k]
+        else:
+            s[X0, k] -= f[k]
+            s[X1, k] -= gap[k]
+    place(n, h, s)
+
+
+@kernel
+def _sizes(n, h, scale, f, gap, s):
+    """Largest correction of a coordinate and largest way of one in the step, against its scale; which moved most."""
+    norm, way, worst = 0.0, 0.0, 0
+    for k in range(n):
+        moved = 0.25 * h * h * (abs(f[k]) + abs(gap[k])) / scale[k]
+        way = max(way, h * abs(s[VM, k]) / scale[k])
+        if norm == norm and not moved <= norm:  # the first that is not a number stays
+            norm, worst = moved, k
+    return norm, way, worst
+
+
+@kernel
+def converge(problem, pattern, matrices, model, middle, end, h, s, push, b, tolerance, least):
+    """Newton's iteration on a step that a force ``push`` (N + 1,) resists.
+
+    Answers whether it converged, iterations, last contraction, unknown that moved most. Corrections end at
+    ``tolerance`` times the way that the coordinates go in the step, and at least ``least``, in parts of their scales.
+    """
+    n, size = problem.n, s.shape[1] - 1
+    f, gap, rate, second, first, other = b[0], b[1], b[2], b[3], b[4], b[5]
+    before, norm, contraction, worst = 0.0, 1.0, 1.0, 0
+    closed = 0.0
+    for k in range(n):
+        closed = max(closed, _CLOSED * problem.scale[k])
+    for iteration in range(1, _MOST_ITERATIONS + 1):
+        _balance(model, n, s, middle, end, f, gap, rate, second)
+        for k in range(n):
+            f[k] += push[k]
+            first[k] = s[B, k] - s[A, k]
+        for k in range(n, size):  # rounding would come back as velocities, 1/h times as large
+            if abs(gap[k]) <= closed:
+                gap[k] = 0.0
+        add_product(n, pattern, matrices.mass, first, 1.0, gap)
+        _correct(n, size, pattern, matrices, h, f, gap, rate, first, other, s)
+        norm, way, worst = _sizes(n, h, problem.scale, f, gap, s)
+        way = max(least, way)
+        if iteration > 1 and norm > _NOISE * way:
+            contraction = norm / before
+        if not norm < 1e100 or (iteration > 2 and contraction > 2.0 and norm > 1e-9):
+            break
+        left = norm * contraction / (1.0 - contraction) if contraction < 1.0 else norm
+        if min(norm, left) <= tolerance * way:
+            return True, iteration, contraction, worst
+        if iteration > 2 and norm <= _ROUNDING and norm > 0.5 * before:
+            return True, iteration, contraction, worst
+        before = norm
+    return norm <= _MAGNIFIED, iteration, contraction, worst
+
+
+@kernel
+def _lift(s, ds, at):
+    """The step plus the imaginary step along a direction."""
+    for i in range(ROWS):
+        for k in range(s.shape[1]):
+            at[i, k] = complex(s[i, k], STEP * ds[i, k])
+
+
+@compiled
+def converge_along(problem, pattern, matrices, tilted, middle, end, h, s, ds, dpush, b, lifted):
+    """Derivative ``ds`` of a converged step along a direction, by the same iteration on imaginary parts."""
+    n, size = problem.n, s.shape[1] - 1
+    f, gap, rate, first, other, heavier = b[0], b[1], b[2], b[4], b[5], b[6]
+    at, r, c, u, w = lifted[:ROWS], lifted[8], lifted[9], lifted[10], lifted[11]
+    # What changes of the masses do to the difference of both accelerations, once.
+    for k in range(size + 1):
+        at[0, k] = s[XM, k]
+        u[k] = s[B, k] - s[A, k] if k < n else 0.0
+    weigh_along(tilted, n, at[0], u, middle, lifted[12:], w)
+    for k in range(n):
+        heavier[k] = w[k].imag / STEP
+    before = 0.0
+    for _ in range(4 * _MOST_ITERATIONS):
+        _lift(s, ds, at)
+        _balance(tilted, n, at, middle, end, r, c, u, w)
+        for k in range(size + 1):
+            f[k], gap[k], rate[k] = r[k].imag / STEP, c[k].imag / STEP, u[k].imag / STEP
+            if k < n:
+                f[k] += dpush[k]
+                gap[k] += heavier[k]
+                first[k] = ds[B, k] - ds[A, k]
+        add_product(n, pattern, matrices.mass, first, 1.0, gap)
+        _correct(n, size, pattern, matrices, h, f, gap, rate, first, other, ds)
+        norm = _sizes(n, h, problem.scale, f, gap, ds)[0]
+        length = 0.0
+        for k in range(n):
+            length = max(length, (abs(ds[X1, k]) + h * abs(ds[V1, k])) / problem.scale[k])
+        if norm <= 1e-15 * length or not norm < 1e100 or (norm <= 1e-10 * length and norm > 0.5 * before):
+            break
+        before = norm
+
+
+@compiled
+def buffers(width):
+    """Room for the iterations of a step: vectors in real and in complex numbers; number 12 of these stays zero."""
+    return np.zeros((7, width)), np.zeros((15, width), np.complex128)

@@ -34,7 +34,8 @@ _NAMES = {
     "surrogate": "Adaptive ChebyshevPolynomial Surrogate Tensor TotalDegree",
     "structure": """
         Dofs EigenModes Material Modal Nodes Rayleigh ReducedStructure ReductionErrors Structure box
-        combine craig_bampton eigenmodes lumped pairs plate similarity solid tie
+        combine craig_bampton eigenmodes lumped pairs plate read_structure similarity solid tie
+        write_structure
     """,
     "data": "Bands Measurements derivative read read_bands read_csv read_mat read_netcdf read_parquet read_uff",
     "inverse": """

@@ -118,9 +118,11 @@ from dalembert.structure import eigenmodes as eigenmodes
 from dalembert.structure import lumped as lumped
 from dalembert.structure import pairs as pairs
 from dalembert.structure import plate as plate
+from dalembert.structure import read_structure as read_structure
 from dalembert.structure import similarity as similarity
 from dalembert.structure import solid as solid
 from dalembert.structure import tie as tie
+from dalembert.structure import write_structure as write_structure
 from dalembert.surrogate import Adaptive as Adaptive
 from dalembert.surrogate import ChebyshevPolynomial as ChebyshevPolynomial
 from dalembert.surrogate import Surrogate as Surrogate

@@ -29,6 +29,11 @@ def mat_columns(path: Path, time: str, names: Iterable[str] | None, missing: str
 
 
 def _version_5(path: Path) -> Iterator[tuple[str, np.ndarray]]:
+    yield from _fields("", version_5(path))
+
+
+def version_5(path: Path) -> dict[str, Any]:
+    """All variables of a MAT file of version 5 or older, as SciPy gives them."""
     # In a process of its own: over some damaged files SciPy's compiled reader ends the whole process.
     done = subprocess.run([sys.executable, "-c", _READER, str(path)], capture_output=True, check=False)
     if done.returncode < 0:
@@ -36,7 +41,7 @@ def _version_5(path: Path) -> Iterator[tuple[str, np.ndarray]]:
     if done.returncode > 0:
         last = done.stderr.decode(errors="replace").strip().splitlines()[-1:]
         raise ValueError(*last)
-    yield from _fields("", pickle.loads(done.stdout))
+    return pickle.loads(done.stdout)
 
 
 _READER = """

@@ -32,8 +32,8 @@ def reading(path: Path, what: str) -> Iterator[None]:
         raise DataError(f"{path}: cannot be read as {what} ({reason})") from error
 
 
-def library(name: str, path: Path, what: str) -> Any:
-    """A module that comes with the extra ``data``.
+def library(name: str, path: Path, what: str, extra: str = "data", package: str = "") -> Any:
+    """A module that comes with an extra.
 
     Raises
     ------
@@ -43,9 +43,9 @@ def library(name: str, path: Path, what: str) -> Any:
     try:
         return import_module(name)
     except ImportError:
-        package = name.partition(".")[0]
+        package = package or name.partition(".")[0]
         raise DataError(
-            f"{path}: {package} is needed to read {what}, and is not installed; run: pip install 'dalembert[data]'"
+            f"{path}: {package} is needed to read {what}, and is not installed; run: pip install 'dalembert[{extra}]'"
         ) from None
 
 

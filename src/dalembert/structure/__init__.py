@@ -9,6 +9,7 @@ from dalembert.structure.lumped import lumped
 from dalembert.structure.material import Material
 from dalembert.structure.nodes import Nodes
 from dalembert.structure.plate import plate
+from dalembert.structure.read_structure import read_structure, write_structure
 from dalembert.structure.solid import box, solid
 from dalembert.structure.structure import Structure
 
@@ -29,7 +30,9 @@ __all__ = [
     "lumped",
     "pairs",
     "plate",
+    "read_structure",
     "similarity",
     "solid",
     "tie",
+    "write_structure",
 ]

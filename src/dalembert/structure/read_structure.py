@@ -1,0 +1,164 @@
+"""Structures from and into files."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+from scipy.sparse import csc_array, issparse
+
+from dalembert.errors import DataError, InputError, unknown
+from dalembert.files import replacing
+from dalembert.structure.dofs import Dofs
+from dalembert.structure.matrix_files import NamedMatrix, matrices
+from dalembert.structure.structure import Matrix, Structure
+
+ROLES = {
+    "mass": ("mass", "m", "maa", "mgg"),
+    "stiffness": ("stiffness", "k", "kaa", "kgg"),
+    "damping": ("damping", "c", "baa", "bgg"),
+}
+"""What matrices are usually called in files, in small letters; the last ones are Nastran's."""
+
+
+def read_structure(
+    path: str | Path | Mapping[str, str | Path],
+    names: Mapping[str, str] | None = None,
+    dofs: Sequence[str] | None = None,
+    directions: Sequence[str] = ("x",),
+) -> Structure:
+    """A structure whose matrices another program has written.
+
+    ========================  ======================================================================================
+    file                      what is read
+    ========================  ======================================================================================
+    ``.npz``                  arrays of NumPy; what :func:`write_structure` wrote, with the names of its rows
+    ``.mtx``                  Matrix Market, or ``*MATRIX OUTPUT, FORMAT=MATRIX INPUT`` of Abaqus; one matrix a file
+    ``.mat``                  full or sparse matrices of MATLAB, up to version 7
+    ``.op4``                  OUTPUT4 of Nastran (extra ``nastran``)
+    ``.pch`` ``.bdf``         DMIG entries of Nastran (extra ``nastran``); also ``.dmig``
+    ``.sti`` ``.mas``         ``SOLVER=MATRIXSTORAGE`` of CalculiX, both and the ``.dof`` beside them
+    ``.full``                 full files of ANSYS (extra ``ansys``)
+    ========================  ======================================================================================
+
+    Parameters
+    ----------
+    path : path, or mapping of str to path
+        One file with all matrices, or files for "mass", "stiffness" and, if there is, "damping".
+    names : mapping of str to str, optional
+        Which matrix of the file is which, such as ``{"mass": "MXX"}``; the usual ones (mass, M, MAA, …) are found.
+    dofs : sequence of str, optional
+        Names of the rows, where the file has none.
+    directions : sequence of str
+        Where neither has any: the directions of each node, and nodes are numbered from 1.
+
+    Returns
+    -------
+    Structure
+
+    Raises
+    ------
+    DataError
+        For a file that is missing, damaged, of no known kind, without a mass or stiffness matrix, or whose library is
+        not installed.
+    InputError
+        For names that are no roles, and matrices that make no structure.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from dalembert.structure import lumped, write_structure
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     write_structure(lumped({"a": 2.0}, [("a", None, 8.0, 0.0)]), Path(folder) / "bob.npz")
+    ...     read_structure(Path(folder) / "bob.npz").dofs.names
+    ('a.x',)
+    """
+    files = path if isinstance(path, Mapping) else dict.fromkeys(ROLES, path)
+    names = names or {}
+    for role in (*files, *names):
+        if role not in ROLES:
+            raise InputError(unknown("role of a matrix", role, ROLES, "read_structure"))
+    whole = not isinstance(path, Mapping)
+    read = {file: matrices(Path(file)) for file in dict.fromkeys(files.values())}
+    found = {}
+    for role, file in files.items():
+        one = _of_role(role, read[file], names.get(role), alone=not whole)
+        if one is not None:
+            found[role] = one
+        elif role != "damping" or not whole:
+            raise DataError(
+                f"{file}: no {role} matrix is found; name it, such as names={{{role!r}: NAME}}; the file has "
+                f"{', '.join(read[file]) or 'no square matrices'}"
+            )
+    rows = _rows(found, dofs, directions)
+    aligned = {role: _aligned(one, rows) for role, one in found.items()}
+    for role in ("mass", "stiffness"):
+        if role not in aligned:
+            raise InputError(f"read_structure: no file is given for the {role}; expected files for mass and stiffness")
+    return Structure(aligned["mass"], aligned["stiffness"], Dofs(rows), aligned.get("damping"))
+
+
+def write_structure(structure: Structure, path: str | Path) -> None:
+    """Matrices and names of degrees of freedom in an NPZ file, for :func:`read_structure`; nodes are not kept.
+
+    Parameters
+    ----------
+    structure : Structure
+    path : path
+        Ends in .npz.
+
+    Raises
+    ------
+    InputError
+        For another ending, or where there is no folder to write to.
+    """
+    arrays: dict[str, np.ndarray] = {"dofs": np.array(structure.dofs.names)}
+    for role in ROLES:
+        matrix = getattr(structure, role)
+        if issparse(matrix):
+            columns = csc_array(matrix)
+            arrays |= {f"{role}.{part}": getattr(columns, part) for part in ("data", "indices", "indptr")}
+        elif matrix is not None:
+            arrays[role] = matrix
+    if Path(path).suffix != ".npz":
+        raise InputError(f"write_structure: {path} does not end in .npz, which is what is written")
+    with replacing(path) as temporary:
+        np.savez(temporary, **arrays)  # type: ignore[arg-type]
+
+
+def _of_role(role: str, held: Mapping[str, NamedMatrix], name: str | None, alone: bool) -> NamedMatrix | None:
+    """The matrix of a file for a role: the named one, the only one of a file of its own, or one with a usual name."""
+    if name is not None:
+        if name not in held:
+            raise DataError(unknown("matrix", name, held, f"read_structure: {role}"))
+        return held[name]
+    if alone and len(held) == 1:
+        return next(iter(held.values()))
+    usual = [one for key, one in held.items() if key.lower() in ROLES[role]]
+    return usual[0] if len(usual) == 1 else None
+
+
+def _rows(found: Mapping[str, NamedMatrix], dofs: Sequence[str] | None, directions: Sequence[str]) -> tuple[str, ...]:
+    if dofs is not None:
+        return tuple(dofs)
+    named = [name for one in found.values() for name in one.dofs or ()]
+    if named:
+        return tuple(dict.fromkeys(named))
+    size = next(iter(found.values())).matrix.shape[0]
+    if size % len(directions):
+        raise InputError(
+            f"read_structure: the matrices have {size} rows, which is no multiple of the {len(directions)} directions "
+            f"{', '.join(directions)} of each node"
+        )
+    return tuple(f"{node}.{direction}" for node in range(1, size // len(directions) + 1) for direction in directions)
+
+
+def _aligned(one: NamedMatrix, rows: tuple[str, ...]) -> Matrix:
+    """The matrix in the order of all rows, with zeros where its file does not name them."""
+    if one.dofs is None or one.dofs == rows or set(one.dofs) - set(rows):
+        return one.matrix
+    place = {name: row for row, name in enumerate(rows)}
+    spread = csc_array(
+        (np.ones(len(one.dofs)), ([place[name] for name in one.dofs], np.arange(len(one.dofs)))),
+        shape=(len(rows), len(one.dofs)),
+    )
+    return csc_array(spread @ csc_array(one.matrix) @ spread.T)

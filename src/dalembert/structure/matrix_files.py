@@ -94,19 +94,24 @@ def mat(path: Path) -> Matrices:
 
 def op4(path: Path) -> Matrices:
     """Matrices of Nastran's OUTPUT4, by pyYeti; their rows have no names."""
-    held = library("pyyeti.nastran.op4", path, "OP4 files", "nastran").load(str(path), sparse=None)
+    held = _pyyeti("op4", path, "OP4 files").load(str(path), sparse=None)
     return {name: NamedMatrix(csc_array(matrix) if issparse(matrix) else matrix) for name, (matrix, *_) in held.items()}
 
 
 def dmig(path: Path) -> Matrices:
     """DMIG entries of Nastran's bulk data or punch file, by pyYeti; scalar points (component 0) count as x."""
-    held = library("pyyeti.nastran.bulk", path, "DMIG entries", "nastran").rddmig(str(path))
+    held = _pyyeti("bulk", path, "DMIG entries").rddmig(str(path))
     found = {}
     for name, table in held.items():
         dofs = tuple(_dof(int(node), max(int(component), 1)) for node, component in table.index)
         if table.shape[0] == table.shape[1] and list(table.index) == list(table.columns):
             found[name] = NamedMatrix(csc_array(table.to_numpy()), dofs)
     return found
+
+
+def _pyyeti(module: str, path: Path, what: str) -> Any:
+    with np.printoptions():  # its import changes how NumPy prints
+        return library(f"pyyeti.nastran.{module}", path, what, "nastran")
 
 
 def ansys_full(path: Path) -> Matrices:

@@ -1,7 +1,7 @@
 """The systems of the published references for friction in frequency."""
 
 from dalembert.structure import lumped
-from dalembert.vibration import CubicSpring, Elastic, FrictionContact, Gap, HarmonicForce, VibrationSystem
+from dalembert.vibration import CubicSpring, Elastic, FrictionContact, Gap, HarmonicForce, Rigid, VibrationSystem
 
 
 def one_mass() -> VibrationSystem:
@@ -12,12 +12,15 @@ def one_mass() -> VibrationSystem:
     return system
 
 
-def two_masses() -> VibrationSystem:
+SPRING = Elastic(1.5)
+
+
+def two_masses(law: Elastic | Rigid = SPRING) -> VibrationSystem:
     """Two degrees of freedom with a slider on the second."""
     springs = [("m1", None, 1.0, 0.02), ("m1", "m2", 1.0, 0.02), ("m2", None, 0.5, 0.01)]
     system = VibrationSystem(lumped({"m1": 1.0, "m2": 1.0}, springs))
     system.add(HarmonicForce("m1", 1.0))
-    system.add(FrictionContact("slider", "m2", friction=0.3, preload=2.0, law=Elastic(1.5)))
+    system.add(FrictionContact("slider", "m2", friction=0.3, preload=2.0, law=law))
     return system
 
 

@@ -57,7 +57,7 @@ _NAMES = {
     """,
     "vibration": """
         VibrationSystem HarmonicForce StaticForce FrictionContact Elastic Iwan Rigid
-        CubicSpring Gap BilinearStop UserElement HarmonicBalance FrequencyCurve frequency_response
+        CubicSpring Gap BilinearStop UserElement HarmonicBalance FrequencyCurve FrequencyResponse frequency_response
     """,
 }
 _HOME = {name: module for module, names in _NAMES.items() for name in names.split()}

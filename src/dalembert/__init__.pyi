@@ -143,6 +143,7 @@ from dalembert.vibration import BilinearStop as BilinearStop
 from dalembert.vibration import CubicSpring as CubicSpring
 from dalembert.vibration import Elastic as Elastic
 from dalembert.vibration import FrequencyCurve as FrequencyCurve
+from dalembert.vibration import FrequencyResponse as FrequencyResponse
 from dalembert.vibration import FrictionContact as FrictionContact
 from dalembert.vibration import Gap as Gap
 from dalembert.vibration import HarmonicBalance as HarmonicBalance

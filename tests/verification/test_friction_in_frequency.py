@@ -3,7 +3,16 @@
 import numpy as np
 import pytest
 
-from dalembert.vibration import HarmonicBalance, frequency_response
+from dalembert.structure import lumped
+from dalembert.vibration import (
+    Elastic,
+    FrictionContact,
+    HarmonicBalance,
+    HarmonicForce,
+    Rigid,
+    VibrationSystem,
+    frequency_response,
+)
 from vibrating_systems import chain, duffing, one_mass, two_masses
 
 TOPIC = "Friction in frequency"
@@ -64,4 +73,96 @@ def test_duffing_oscillator_past_its_folds(record_evidence) -> None:
     record_evidence(
         "Duffing oscillator: first harmonic at 1.26878 rad/s, where the published curve is largest", 2.83019,
         up.amplitude("m", "harmonic 1")[-1], tolerance=5e-6, topic=TOPIC, source=CODES, unit="m",
+    )  # fmt: skip
+
+
+def massless_foot(law: Rigid) -> VibrationSystem:
+    """The one mass again, with the slider's spring in the structure: a foot without mass rubs on the ground."""
+    springs = [("m", None, 1.0, 0.04), ("m", "foot", 0.8, 0.0)]
+    system = VibrationSystem(lumped({"m": 1.0, "foot": 0.0}, springs))
+    system.add(HarmonicForce("m", 1.0))
+    system.add(FrictionContact("slider", "foot", friction=0.5, preload=2.0, law=law))
+    return system
+
+
+def largest(system: VibrationSystem, omega: float, harmonics: int, dof: str = "m") -> float:
+    curve = frequency_response(system, np.array([omega]) / TURN, HarmonicBalance(harmonics, samples=1024))
+    assert curve.converged.all()
+    return float(curve.amplitude(dof)[0])
+
+
+@pytest.mark.parametrize("harmonics", [1, 9])
+def test_a_rigid_contact_on_a_massless_foot_is_the_elastic_one_with_the_stiffness_behind_it(
+    record_evidence, harmonics: int
+) -> None:
+    record_evidence(
+        f"rigid contact of a massless foot beside the elastic law, {harmonics} harmonics: largest displacement",
+        largest(one_mass(), 1.12, harmonics), largest(massless_foot(Rigid()), 1.12, harmonics),
+        tolerance=1e-13, topic=TOPIC, source="elastic law with the same stiffness", unit="m", noisy=True,
+    )  # fmt: skip
+
+
+def test_a_rigid_contact_forgets_its_penalty_as_harmonics_are_added(record_evidence) -> None:
+    """Over three decades of the penalty, 0.025 to 25 beside a stiffness of 0.8."""
+    exact = largest(massless_foot(Rigid()), 1.12, 39)
+    spread = [
+        max(abs(largest(massless_foot(Rigid(penalty)), 1.12, harmonics) / exact - 1) for penalty in (0.025, 0.8, 25.0))
+        for harmonics in (1, 5, 19)
+    ]
+    assert spread[0] > spread[1] > spread[2]
+    record_evidence(
+        "rigid contact, 19 harmonics: largest part by which a penalty over three decades changes the response",
+        0.0, spread[2], tolerance=0.006, topic=TOPIC, source="the law itself, which knows no penalty",
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("second", [None, "b"])
+@pytest.mark.parametrize("kind", ["displacement", "velocity"])
+def test_the_penalty_does_not_matter_where_a_rigid_contact_sticks(second: str | None, kind: str) -> None:
+    """A contact that sticks is a clamp, whatever the penalty, to the ground and between two masses alike."""
+    results = []
+    for penalty in (1.0, 30.0, 1000.0):
+        springs = [("a", None, 1.0, 0.02), ("a", "b", 2.0, 0.04), ("b", None, 0.5, 0.01)]
+        system = VibrationSystem(lumped({"a": 1.0, "b": 1.5}, springs))
+        system.add(HarmonicForce("a", 1.0))
+        system.add(HarmonicForce("b", 0.5))
+        system.add(FrictionContact("joint", "a", second, friction=1.0, preload=50.0, law=Rigid(penalty, kind)))
+        curve = frequency_response(system, np.array([0.5, 0.9]) / TURN, HarmonicBalance(5, samples=256))
+        assert np.all(curve.states == 1)
+        results.append(curve.amplitude("b"))
+    moving, mass, stiffness, damping = (1.5, 2.5, 1.5, 0.03) if second else (0.5, 1.5, 2.5, 0.05)
+    for omega, *found in zip((0.5, 0.9), *results, strict=True):
+        clamped = abs(moving / (stiffness - omega**2 * mass + 1j * omega * damping))
+        np.testing.assert_allclose(found, clamped, rtol=1e-6)
+
+
+def test_the_elastic_law_tends_to_the_rigid_one(record_evidence) -> None:
+    """With the contact's stiffness as the penalty, the difference falls as the inverse of the stiffness."""
+    stiffnesses = (15.0, 150.0, 1500.0)
+    differences = [
+        abs(largest(two_masses(Elastic(k)), 0.88, 5, "m2") - largest(two_masses(Rigid(k)), 0.88, 5, "m2"))
+        for k in stiffnesses
+    ]
+    record_evidence(
+        "elastic contact beside the rigid one: order in the inverse of its stiffness",
+        1.0, np.log10(differences[1] / differences[2]), tolerance=0.05, topic=TOPIC, source="series of springs",
+    )  # fmt: skip
+    assert differences[0] > differences[1] > differences[2]
+
+
+def test_one_harmonic_of_a_slider_is_the_closed_form(record_evidence) -> None:
+    r"""Loop of Jenkins: with cos θ = 1 - 2 μN/(k X), Λc = kX/π (θ - sin θ cos θ), Λs = -(4 μN/π) (1 - μN/(k X))."""
+    curve = frequency_response(one_mass(), np.array([1.12]) / TURN, HarmonicBalance(1, samples=4096))
+    size, limit, stiffness = curve.amplitude("m", "harmonic 1")[0], 1.0, 0.8
+    theta = np.arccos(1 - 2 * limit / (stiffness * size))
+    spring = stiffness * size / np.pi * (theta - np.sin(theta) * np.cos(theta))
+    loss = 4 * limit / np.pi * (1 - limit / (stiffness * size))
+    balance = np.hypot((1 - 1.12**2) * size + spring, 0.04 * 1.12 * size + loss)
+    record_evidence(
+        "one harmonic of a slider: force that balances the response", 1.0, balance,
+        tolerance=1e-6, topic=TOPIC, source="closed form of Jenkins' element", unit="N",
+    )  # fmt: skip
+    record_evidence(
+        "energy that a slider takes in a period of full slip", 4 * limit * (size - limit / stiffness),
+        curve.dissipated("slider.x")[0], tolerance=1e-5, topic=TOPIC, source="4 μN (X - μN/k)", unit="J",
     )  # fmt: skip

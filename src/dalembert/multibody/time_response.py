@@ -1,7 +1,6 @@
 """The response of a mechanism in time as a forward model."""
 
 import hashlib
-import os
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
@@ -11,6 +10,7 @@ import numpy as np
 
 from dalembert.errors import DalembertError, InputError, SolveError
 from dalembert.forward import Channel, Coordinate, Responses
+from dalembert.forward.builders import cores, inexact, restructured
 from dalembert.multibody.assemble import assembled, refuse_kinks, refuse_redundancy
 from dalembert.multibody.callbacks import in_complex_numbers
 from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha
@@ -176,7 +176,7 @@ class TimeResponse:
             raise SolveError(result.reason)
         for name, own in zip(self.parameters.names, tilted, strict=True):
             for error in (*lowered.failures.inexact, *own.failures.inexact):
-                raise _inexact(name, error) from error
+                raise inexact(name, error) from error
         states, slopes = result.states, result.derivatives
         values = frame.observer.read(lowered, lowered.real, states.x, states.v, states.a)
         jacobian = np.empty((*values.shape, len(vector)))
@@ -224,15 +224,12 @@ class TimeResponse:
         try:
             return self._fit(assembled(self.builder(**given), tilted=True))
         except (TypeError, np.exceptions.ComplexWarning) as error:
-            raise _inexact(self.parameters.names[column], error) from error
+            raise inexact(self.parameters.names[column], error) from error
 
     def _fit(self, lowered: Lowered) -> Lowered:
         structure = self._frame.lowered.structure
         if not structure.same(lowered.structure):
-            raise InputError(
-                "the model's function returned systems of different structure for different parameters; "
-                "parameters may change numbers, not the number or the kinds of components"
-            )
+            raise restructured()
         return replace(lowered, structure=structure)
 
 
@@ -243,19 +240,6 @@ class _Frame:
     lowered: Lowered
     problem: Problem
     observer: Observer
-
-
-def _inexact(parameter: str, error: Exception) -> InputError:
-    return InputError(
-        f"the model's function cannot run in complex numbers, as exact derivatives by {parameter!r} need ({error}); "
-        "use NumPy's functions instead of those of math, and no float() or comparison on parameters; "
-        "or wrap the model in a PythonModel with derivative='central-differences'"
-    )
-
-
-def cores() -> int:
-    """Cores that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _parts(count: int, workers: int) -> list[np.ndarray]:

@@ -2,6 +2,7 @@
 
 from dalembert.vibration.contacts import Elastic, FrictionContact, Iwan, Rigid
 from dalembert.vibration.curve import FrequencyCurve, Peak
+from dalembert.vibration.forward_model import FrequencyResponse
 from dalembert.vibration.frequency_response import frequency_response
 from dalembert.vibration.harmonic_balance import HarmonicBalance
 from dalembert.vibration.springs import BilinearStop, CubicSpring, Gap, UserElement
@@ -12,6 +13,7 @@ __all__ = [
     "CubicSpring",
     "Elastic",
     "FrequencyCurve",
+    "FrequencyResponse",
     "FrictionContact",
     "Gap",
     "HarmonicBalance",

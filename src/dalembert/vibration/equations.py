@@ -69,7 +69,10 @@ class Equations:
         return solution
 
     def first(self, omega: float) -> Solution:
-        """A first point: from rest, where contacts stick; from the motion without contacts; by raising the force."""
+        """A first point: from rest, where contacts stick; from the motion without contacts; by and by.
+
+        By and by is with more and more harmonics, and then with more and more of the force.
+        """
         point, samples = self.condensation.at(omega), self.method.first_samples
         rest = np.zeros(self.balance(samples).shape)
         best = self.solve(rest, omega, samples, point=point)
@@ -79,12 +82,24 @@ class Equations:
         other = self.solve(self.balance(samples).series.coefficients(free), omega, samples, point=point)
         if other.converged:
             return other
+        laddered = self._by_harmonics(point, omega, rest)
+        if laddered.converged:
+            return laddered
         unknowns = rest
         for load in LOADS:
             part = replace(point, force=load * point.force, force_slope=load * point.force_slope)
             solution = self.solve(unknowns, omega, samples, point=part)
             unknowns = solution.unknowns
-        return solution if solution.converged else min(best, other, solution, key=lambda one: one.error)
+        return solution if solution.converged else min(best, other, laddered, solution, key=lambda one: one.error)
+
+    def _by_harmonics(self, point: Point, omega: float, unknowns: np.ndarray) -> Solution:
+        """The solution by twice as many harmonics again and again, each from that with fewer."""
+        balance, kept = self.balance(self.method.first_samples), 2
+        while kept < balance.series.count:
+            part = correct(balance, self.condensation, self.method, unknowns, omega, point=point, kept=kept)
+            unknowns = part.unknowns if part.converged else unknowns
+            kept *= 2
+        return self.solve(unknowns, omega, self.method.first_samples, point=point)
 
     def _sampling_error(self, solution: Solution) -> float:
         finer = self.balance(2 * solution.samples)

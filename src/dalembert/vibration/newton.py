@@ -91,15 +91,7 @@ class _Place:
     scale: float
     floor: float
     distance: float
-
-    @property
-    def residual(self) -> float:
-        return float(np.linalg.norm(self.evaluation.residual))
-
-    @property
-    def error(self) -> float:
-        """Residual and distance from the plane, relative."""
-        return np.hypot(self.residual / self.scale, self.distance)
+    error: float
 
 
 def correct(
@@ -110,8 +102,12 @@ def correct(
     omega: float,
     plane: Plane | None = None,
     point: Point | None = None,
+    kept: int | None = None,
 ) -> Solution:
-    """Newton's method from a guess, at ω or, with a plane, on that; ``point`` if it is condensed already."""
+    """Newton's method from a guess, at ω or, with a plane, on that.
+
+    ``point`` if it is condensed already; ``kept`` to solve for the first coefficients only, and leave the others.
+    """
 
     def place(unknowns: np.ndarray, omega: float, point: Point | None) -> _Place:
         point = condensation.at(omega) if point is None else point
@@ -119,14 +115,15 @@ def correct(
         scale = float(np.linalg.norm(point.force) + np.linalg.norm(evaluation.forces)) or 1.0
         floor = ROUNDING * float(np.abs(point.stiffness).max(initial=0.0)) * float(np.linalg.norm(unknowns))
         distance = 0.0 if plane is None else plane.distance(unknowns, omega)
-        return _Place(unknowns, omega, point, evaluation, tangent, scale, floor / scale, distance)
+        error = float(np.hypot(np.linalg.norm(evaluation.residual[:, :kept]) / scale, distance))
+        return _Place(unknowns, omega, point, evaluation, tangent, scale, floor / scale, distance, error)
 
     at, iterations, converged = place(unknowns, omega, point), 0, False
     while True:
         converged = at.error <= max(method.tolerance, at.floor)
         if converged or iterations == method.iterations or not np.isfinite(at.error):
             break
-        step = _step(at, plane)
+        step = _step(at, plane, kept)
         if step is None:
             break
         trials = []
@@ -146,12 +143,16 @@ def correct(
     )  # fmt: skip
 
 
-def _step(at: _Place, plane: Plane | None) -> tuple[np.ndarray, float] | None:
+def _step(at: _Place, plane: Plane | None, kept: int | None) -> tuple[np.ndarray, float] | None:
     """Newton's step of U and ω; None where the matrix is singular."""
     residual, shape = at.evaluation.residual.ravel(), at.unknowns.shape
     try:
         if plane is None:
-            return -np.linalg.solve(at.tangent.matrix, residual).reshape(shape), 0.0
+            step = np.zeros(shape)
+            first = step[:, :kept]
+            matrix = at.tangent.jacobian[:, :kept, :, :kept].reshape(first.size, first.size)
+            step[:, :kept] = -np.linalg.solve(matrix, at.evaluation.residual[:, :kept].ravel()).reshape(first.shape)
+            return step, 0.0
         matrix = bordered(at.tangent, plane.direction, plane.size, plane.width, at.scale)
         change = -np.linalg.solve(matrix, np.append(residual / at.scale, at.distance))
         return change[:-1].reshape(shape) * plane.size, float(change[-1]) * plane.width

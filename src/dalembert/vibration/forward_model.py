@@ -1,0 +1,226 @@
+"""The response of a vibrating system over frequency as a forward model."""
+
+import hashlib
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from dalembert.errors import DalembertError, InputError, SolveError
+from dalembert.forward import Channel, Coordinate, Responses
+from dalembert.forward.builders import cores, inexact, restructured
+from dalembert.parameters import Parameter, Parameters
+from dalembert.vibration.amplitudes import Amplitude
+from dalembert.vibration.continuation import at_frequencies
+from dalembert.vibration.curve import FrequencyCurve
+from dalembert.vibration.equations import Equations, equations
+from dalembert.vibration.frequency_response import frequency_response, response_of
+from dalembert.vibration.harmonic_balance import HarmonicBalance
+from dalembert.vibration.lowering import Lowered, lower
+from dalembert.vibration.newton import Solution
+from dalembert.vibration.sensitivity import STEP, sensitivities
+from dalembert.vibration.springs import UserElement
+from dalembert.vibration.system import VibrationSystem
+
+
+@dataclass(frozen=True)
+class FrequencyResponse:
+    """Amplitudes of a vibrating system at given frequencies, as a function of parameters.
+
+    Parameters
+    ----------
+    builder : callable
+        ``builder(**parameters) -> VibrationSystem``; called with floats, and with complex numbers for derivatives.
+    parameters : mapping of str to (lower, upper), or Parameters
+    channels : sequence of str
+        A degree of freedom and a kind of amplitude: ``"m2 peak"``, ``"m2 rms"`` or ``"m2 harmonic 1"`` and so on.
+    frequencies : array, shape (samples,)
+        Hz; the response is followed from each to the next, so the first should lie where there is only one.
+    method : HarmonicBalance, optional
+    workers : int, optional
+        Threads of an ensemble; as many as there are cores if not given.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from dalembert.structure import lumped
+    >>> from dalembert.vibration import FrequencyResponse, HarmonicForce, VibrationSystem
+    >>> def oscillator(stiffness):
+    ...     system = VibrationSystem(lumped({"m": 1.0}, [("m", None, stiffness, 0.04)]))
+    ...     system.add(HarmonicForce("m", 1.0))
+    ...     return system
+    >>> model = FrequencyResponse(oscillator, {"stiffness": (0.5, 2.0)}, ["m harmonic 1"], np.array([0.1, 0.2]))
+    >>> model.evaluate(np.array([[1.0]])).values.round(3).tolist()
+    [[[1.651], [1.72]]]
+    >>> model.jacobian(np.array([1.0])).round(3).tolist()
+    [[[-2.723]], [[2.948]]]
+    """
+
+    builder: Callable[..., VibrationSystem]
+    parameters: Parameters
+    channel_names: tuple[str, ...]
+    frequencies: np.ndarray
+    method: HarmonicBalance
+    workers: int = field(default=1, compare=False)
+
+    def __init__(
+        self,
+        builder: Callable[..., VibrationSystem],
+        parameters: Parameters | Mapping[str, Parameter | tuple[float, float]],
+        channels: Sequence[str],
+        frequencies: np.ndarray,
+        method: HarmonicBalance | None = None,
+        workers: int | None = None,
+    ) -> None:
+        frequencies = np.asarray(frequencies, dtype=float)
+        if frequencies.ndim != 1 or not len(frequencies) or not np.all(np.isfinite(frequencies) & (frequencies > 0)):
+            raise InputError("FrequencyResponse: expected one or more frequencies, positive numbers in Hz")
+        if not channels:
+            raise InputError("FrequencyResponse: no channels were given; name at least one, such as 'm2 peak'")
+        for name, value in (
+            ("builder", builder),
+            ("parameters", Parameters.of(parameters)),
+            ("channel_names", tuple(channels)),
+            ("frequencies", frequencies),
+            ("method", method or HarmonicBalance()),
+            ("workers", workers or cores()),
+        ):
+            object.__setattr__(self, name, value)
+
+    @property
+    def channels(self) -> tuple[Channel, ...]:
+        """Channels with their units."""
+        return tuple(Channel(name, "m") for name in self.channel_names)
+
+    @property
+    def coordinate(self) -> Coordinate:
+        """The frequencies of the samples."""
+        return Coordinate("frequency", "Hz", self.frequencies)
+
+    @property
+    def fingerprint(self) -> str:
+        """Hash of the system at the parameters' first guesses, the channels, the frequencies and the method."""
+        return self._fingerprint
+
+    @cached_property
+    def _fingerprint(self) -> str:
+        lowered = lower(self.system(self.parameters.start))
+        own = lowered.structure
+        digest = hashlib.sha256(repr((self.parameters.names, self.channel_names, self.method)).encode())
+        digest.update(repr((own.dofs.names, lowered.row_names, lowered.contacts, lowered.forces)).encode())
+        damping = [] if own.damping is None else [own.damping]
+        for matrix in (own.mass, own.stiffness, *damping, lowered.matrix):
+            digest.update(np.asarray(matrix @ np.linspace(0.5, 1.5, own.size)).tobytes())
+        for block in lowered.blocks:
+            digest.update(repr((block.kind, block.tangents, block.normal)).encode() + block.numbers.tobytes())
+        for rows, element in lowered.springs:
+            several = isinstance(element, UserElement)
+            probe = np.linspace(-1.0, 1.0, 7 * len(rows)).reshape(len(rows), 7)
+            digest.update(np.asarray(element.law(probe if several else probe[0])[0]).tobytes())
+        return digest.hexdigest()
+
+    def evaluate(self, vectors: np.ndarray) -> Responses:
+        """Responses of a batch over all cores; ``vectors`` (batch, parameters), values (batch, samples, channels).
+
+        A sample one of whose points is not found is marked with the reason, and its values are NaN.
+        """
+        vectors = np.atleast_2d(np.asarray(vectors, dtype=float))
+        values = np.full((len(vectors), len(self.frequencies), len(self.channel_names)), np.nan)
+        failures: list[str | None] = [None] * len(vectors)
+
+        def work(row: int) -> None:
+            try:
+                values[row] = self._read(*self._solve(vectors[row]))
+            except DalembertError as error:
+                failures[row] = str(error)
+            except Exception as error:  # the user's builder raised: this sample's failure, not the batch's
+                failures[row] = f"{type(error).__name__}: {error}"
+
+        if self.workers == 1 or len(vectors) == 1:
+            for row in range(len(vectors)):
+                work(row)
+        else:
+            with ThreadPoolExecutor(self.workers) as pool:
+                list(pool.map(work, range(len(vectors))))
+        return Responses(values, tuple(failures))
+
+    def jacobian(self, vector: np.ndarray) -> np.ndarray:
+        """Exact derivative of the balanced response, (samples, channels, parameters)."""
+        return self.linearise(vector)[1]
+
+    def linearise(self, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Response (samples, channels) and its exact derivative (samples, channels, parameters).
+
+        The derivative of the balance by a parameter comes from a complex step through the builder and the laws, that of
+        the response from the Jacobian of the balance (implicit function).
+
+        Raises
+        ------
+        InputError
+            Where the builder, or a law of the user's, cannot run in complex numbers.
+        SolveError
+            Where a point is not found.
+        """
+        vector = self.parameters.vector(vector).astype(float)
+        problem, solutions = self._solve(vector)
+        values = self._read(problem, solutions)
+        jacobian = np.empty((*values.shape, len(vector)))
+        tilted = [self._tilted(vector, column, problem.lowered) for column in range(len(vector))]
+        for number, solution in enumerate(solutions):
+            response = response_of(problem, solution)
+            slopes = sensitivities(problem, solution, tilted)
+            for channel, (row, size) in enumerate(self._places(problem.lowered)):
+                jacobian[number, channel] = slopes[:, row] @ size.slope(response[row])
+        return values, jacobian / self.parameters.scale
+
+    def first(self, samples: int) -> "FrequencyResponse":
+        """The same model, cut to its first ``samples`` frequencies."""
+        return FrequencyResponse(
+            self.builder, self.parameters, self.channel_names, self.frequencies[:samples], self.method, self.workers
+        )
+
+    def system(self, vector: np.ndarray) -> VibrationSystem:
+        """The system at a parameter vector (parameters,)."""
+        return self.builder(**self.parameters.mapping(vector))
+
+    def curve(self, vector: np.ndarray) -> FrequencyCurve:
+        """The whole result at a parameter vector (parameters,)."""
+        return frequency_response(self.system(vector), self.frequencies, self.method)
+
+    def _solve(self, vector: np.ndarray) -> tuple[Equations, list[Solution]]:
+        problem = equations(self.system(vector), self.method)
+        solutions = []
+        for found in at_frequencies(problem, 2 * np.pi * self.frequencies, None):
+            if not found.solution.converged:
+                raise SolveError(
+                    f"at {found.solution.omega / (2 * np.pi):.6g} Hz the harmonics were not found: after "
+                    f"{found.solution.iterations} iterations {found.solution.error:.1e} of the forces are not "
+                    "balanced; give more frequencies on the way there, or fewer harmonics"
+                )
+            solutions.append(found.solution)
+        return problem, solutions
+
+    def _places(self, lowered: Lowered) -> list[tuple[int, Amplitude]]:
+        """Degree of freedom and amplitude of each channel."""
+        parts = [name.partition(" ") for name in self.channel_names]
+        return [(lowered.structure.dofs.index(dof), Amplitude(kind, self.method.orders)) for dof, _, kind in parts]
+
+    def _read(self, problem: Equations, solutions: Sequence[Solution]) -> np.ndarray:
+        places = self._places(problem.lowered)
+        responses = [response_of(problem, solution) for solution in solutions]
+        return np.array([[size.of(response[row]) for row, size in places] for response in responses])
+
+    def _tilted(self, vector: np.ndarray, column: int, real: Lowered) -> Lowered:
+        """The system along one parameter, moved by a complex step of its scale."""
+        name = self.parameters.names[column]
+        given: dict = dict(zip(self.parameters.names, vector.tolist(), strict=True))
+        given[name] = complex(vector[column], STEP * self.parameters.scale[column])
+        try:
+            tilted = lower(self.builder(**given))
+        except (TypeError, np.exceptions.ComplexWarning) as error:
+            raise inexact(name, error) from error
+        if tilted.row_names != real.row_names or tilted.structure.dofs.names != real.structure.dofs.names:
+            raise restructured()
+        return tilted

@@ -149,9 +149,9 @@ def test_friction_is_identified_from_a_response_curve() -> None:
     def build(friction, contact) -> VibrationSystem:
         return builder(Elastic)(**{**NOMINAL, "friction": friction, "contact": contact})
 
-    frequencies = np.linspace(0.6, 1.0, 5) / (2 * np.pi)
+    frequencies = np.linspace(0.6, 1.0, 9) / (2 * np.pi)
     bounds = {"friction": (0.1, 0.6), "contact": (0.5, 3.0)}
-    own = FrequencyResponse(build, bounds, ["m2 harmonic 1"], frequencies, HarmonicBalance(3, samples=128))
+    own = FrequencyResponse(build, bounds, ["m2 harmonic 1"], frequencies, HarmonicBalance(3, samples=64))
     truth = np.array([0.3, 1.5])
     data = da.Measurements(own.coordinate, ("m2 harmonic 1",), own.evaluate(truth[None]).values[0])
     fit = da.identify(own, data, seed=1)

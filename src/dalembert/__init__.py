@@ -48,8 +48,8 @@ _NAMES = {
         Force Torque Spring TorsionSpring UserForce
         Step Harmonic Polynomial Table Custom
         Collocation GaussNewton Augmented Baumgarte Projection Partitioning
-        GeneralizedAlpha RungeKutta4 OdeSolver Radau5 Variational TimeResponse Trajectory WorkPrecision simulate
-        equilibrium modes work_precision
+        GeneralizedAlpha RungeKutta4 OdeSolver Radau5 EnergyMomentum Variational TimeResponse Trajectory WorkPrecision
+        simulate equilibrium modes work_precision
     """,
     "uncertainty": """
         Comparison Propagation compare propagate

@@ -61,6 +61,7 @@ from dalembert.multibody import Baumgarte as Baumgarte
 from dalembert.multibody import Collocation as Collocation
 from dalembert.multibody import Custom as Custom
 from dalembert.multibody import DistanceJoint as DistanceJoint
+from dalembert.multibody import EnergyMomentum as EnergyMomentum
 from dalembert.multibody import FixedJoint as FixedJoint
 from dalembert.multibody import Force as Force
 from dalembert.multibody import GaussNewton as GaussNewton

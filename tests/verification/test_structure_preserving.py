@@ -11,7 +11,7 @@ from soft_pendulum import soft
 
 TOPIC = "Structure-preserving integrators"
 SOURCE = "Marsden & West, Discrete mechanics and variational integrators (2001)"
-SOLVERS = [da.Variational]
+SOLVERS = [da.Variational, da.EnergyMomentum]
 
 
 @pytest.fixture
@@ -143,6 +143,82 @@ def test_the_energy_does_not_drift(record_evidence, arm) -> None:
         tolerance=2e-4,
         topic=TOPIC,
         source=SOURCE,
+    )
+
+
+def falling() -> da.System:
+    """The free flight under gravity."""
+    system = flying()
+    system.gravity = (0.0, -9.81)
+    return system
+
+
+@pytest.mark.parametrize(
+    ("name", "builder", "end", "step"),
+    [
+        ("free flight", flying, 8.0, 4e-3),
+        ("free fall", falling, 2.0, 4e-3),
+        ("flexible pendulum", lambda: pendulum(np.pi / 4, np.pi / 6), 2.0, 5e-4),
+        ("soft pendulum", soft, 2.0, 2e-3),
+    ],
+)
+def test_energy_to_rounding(record_evidence, name: str, builder, end: float, step: float) -> None:
+    trajectory = da.simulate(builder(), end, solver=da.EnergyMomentum(step=step))
+    total, kinetic = trajectory.energies["total"], trajectory.energies["kinetic"].max()
+    record_evidence(
+        f"EnergyMomentum: energy of the {name} over {len(total) - 1} steps, by the largest kinetic energy",
+        np.zeros(len(total)),
+        (total - total[0]) / kinetic,
+        tolerance=1e-12,
+        topic=TOPIC,
+        source="conservation law",
+        noisy=True,
+    )
+
+
+def test_energy_of_the_two_link_arm_to_rounding(record_evidence, arm) -> None:
+    trajectory = da.simulate(arm, 100.0, solver=da.EnergyMomentum(step=2e-3))
+    total, kinetic = trajectory.energies["total"], trajectory.energies["kinetic"].max()
+    record_evidence(
+        "EnergyMomentum: energy of the two-link arm over 50 000 steps, by the largest kinetic energy",
+        np.zeros(len(total)),
+        (total - total[0]) / kinetic,
+        tolerance=1e-12,
+        topic=TOPIC,
+        source="conservation law",
+        noisy=True,
+    )
+
+
+def test_the_momentum_across_gravity_stays_in_free_fall(record_evidence) -> None:
+    found = momenta(da.simulate(falling(), 2.0, solver=da.EnergyMomentum(step=4e-3)))[:, 0]
+    record_evidence(
+        "EnergyMomentum: momentum across gravity in free fall",
+        np.zeros_like(found),
+        found / found[0] - 1,
+        tolerance=1e-12,
+        topic=TOPIC,
+        source="conservation law",
+        noisy=True,
+    )
+
+
+def test_work_of_loads_dampers_and_friction_balances_the_energy(record_evidence, arm) -> None:
+    """The work is a trapezoidal sum over the steps; the integrator's own is that of their middles."""
+    upper, lower = arm.bodies
+    arm.add(da.Torque("motor", upper.centre, da.Harmonic(5.0, 3.0)))
+    arm.add(da.Spring("spring", arm.ground.point(2.0, 0.0), lower.centre, 20.0, damping=1.0, free_length=1.0))
+    gaps = []
+    for step in (4e-3, 2e-3, 1e-3):
+        trajectory = da.simulate(arm, 2.0, solver=da.EnergyMomentum(step=step))
+        gaps.append(np.abs(trajectory.energies["balance"]).max() / trajectory.energies["kinetic"].max())
+    record_evidence(
+        "EnergyMomentum: order of the driven, damped arm's energy without explanation",
+        2.0,
+        np.log2(gaps[1] / gaps[2]),
+        tolerance=0.2,
+        topic=TOPIC,
+        source="conservation law",
     )
 
 

@@ -4,6 +4,7 @@ from dalembert.multibody.beams import AncfBeam, AncfCable
 from dalembert.multibody.bodies import PointMass, RigidBar, RigidBody
 from dalembert.multibody.drawing import Drawing
 from dalembert.multibody.integrators.collocation import Collocation, GaussNewton
+from dalembert.multibody.integrators.energy_momentum import EnergyMomentum
 from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha
 from dalembert.multibody.integrators.ode_solver import OdeSolver
 from dalembert.multibody.integrators.radau5 import Radau5
@@ -31,6 +32,7 @@ __all__ = [
     "Custom",
     "DistanceJoint",
     "Drawing",
+    "EnergyMomentum",
     "Equilibrium",
     "FixedJoint",
     "Force",

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dalembert.multibody.integrators import energy_balance as balance
 from dalembert.multibody.integrators import midpoint_step as midpoint
 from dalembert.multibody.integrators.consistent import accelerate
 from dalembert.multibody.integrators.lifting import set_signals
@@ -21,11 +22,12 @@ _HALVINGS = 8  # of a step that Newton's iteration does not converge on
 
 
 class Settings(NamedTuple):
-    """What the compiled loop needs of an integrator; whether forces may be ``damped``."""
+    """What the compiled loop needs of an integrator; whether forces may be ``damped``; ``conserving`` the energy."""
 
     step: float
     newton_tolerance: float
     damped: bool
+    conserving: bool
 
 
 @kernel
@@ -39,8 +41,8 @@ def _read(n, s, new):
 
 @template
 def _differentiate(
-    problem, pattern, matrices, directions, h, t, target, within, s, new, moved, slopes, dolds, dnews, ds, push, b,
-    ahead, dual_works, lifted,
+    problem, pattern, matrices, directions, rigid, strength, h, t, target, within, s, new, moved, slopes, denergies,
+    dolds, dnews, ds, push, b, e, ahead, dual_works, lifted,
 ):  # fmt: skip
     """Derivatives of a step along all directions."""
     n = problem.n
@@ -50,18 +52,20 @@ def _differentiate(
         set_signals(tilted, t + 0.5 * h, within, dual_works[0])
         set_signals(tilted, target, within, dual_works[1])
         midpoint.begin(n, h, dold, slopes[d], ds)
-        midpoint.converge_along(
-            problem, pattern, matrices, tilted, dual_works[0], dual_works[1], h, s, ds, push, b, ahead
-        )
+        denergies[d] += balance.converge_along(
+            problem, pattern, matrices, tilted, rigid, rigid.shifts[d], strength, dual_works[0], dual_works[1], h,
+            denergies[d], s, ds, push, b, e, ahead,
+        )  # fmt: skip
         midpoint.learn(n, dold, ds, slopes[d])
         _read(n, ds, dnew)
         settle_along(problem, pattern, matrices, tilted, new, dnew, moved, dual_works[1], lifted, VELOCITIES)
 
 
 @compiled
-def integrate(problem, pattern, edges, settings, model, dual, directions, start, dstates, out, dout, log):
+def integrate(problem, pattern, edges, settings, rigid, model, dual, directions, start, dstates, out, dout, log):
     """Run one sample between ``edges`` (s): status, time reached, and the unknown that moved most.
 
+    ``rigid`` are the rigid motions whose momenta a force that conserves energy leaves.
     ``directions`` is a stack of complex models, one a direction of differentiation. ``start`` (N + 1) and its
     derivatives ``dstates`` (directions, N + 1) are overwritten; ``out`` (times, N + 1) and ``dout`` (directions, times,
     N + 1) are filled at ``problem.times``.
@@ -78,6 +82,8 @@ def integrate(problem, pattern, edges, settings, model, dual, directions, start,
     slope, slopes = np.zeros((2, width)), np.zeros((len(dstates.x), 2, width))
     b, ahead = midpoint.buffers(width)
     push, moved, lifted = np.zeros(width), np.zeros((2, width)), np.zeros((10, width), np.complex128)
+    e = balance.room(len(rigid.spin), width)
+    energy, denergies = 0.0, np.zeros(len(dstates.x))
     due = np.int64(0)  # no literal, for which there would be another compilation
     speed, h = 1.0 / (edges[-1] - edges[0]), 0.0
     for stretch in range(len(edges) - 1):
@@ -89,6 +95,13 @@ def integrate(problem, pattern, edges, settings, model, dual, directions, start,
             return SINGULAR, t, 0
         if stretch == 0:
             weigh_masses(pattern, matrices, dual, n, new, dual_works[0])
+            energy = balance.first_energy(model, n, new, works[0], e.totals)
+            for d in range(len(denergies)):
+                tilted = select(directions, d)
+                set_signals(tilted, t, within, dual_works[0])
+                denergies[d] = balance.first_energy_along(
+                    tilted, n, new, row(dstates, d), dual_works[0], lifted, e.lifted_totals
+                )
         steps = max(1, int(np.ceil((end - t) / settings.step - 1e-6)))
         begin, nominal, number, level = t, (end - t) / steps, 0, 0
         stale, fresh, made = True, True, 0.0
@@ -120,9 +133,9 @@ def integrate(problem, pattern, edges, settings, model, dual, directions, start,
             set_signals(model, t + 0.5 * h, within, works[0])
             set_signals(model, target, within, works[1])
             midpoint.begin(n, h, new, slope, s)
-            converged, iterations, rate, worst = midpoint.converge(
-                problem, pattern, matrices, model, works[0], works[1], h, s, push, b, settings.newton_tolerance,
-                h * speed,
+            converged, iterations, rate, worst, strength, gain = balance.converge(
+                problem, pattern, matrices, model, rigid, settings.conserving, works[0], works[1], h, energy, s, push,
+                b, e, settings.newton_tolerance, h * speed,
             )  # fmt: skip
             log.counts[1] += iterations
             if converged:
@@ -142,11 +155,12 @@ def integrate(problem, pattern, edges, settings, model, dual, directions, start,
             midpoint.learn(n, new, s, slope)
             copy(new, old)
             copy(between, new)
+            energy += gain
             for k in range(n):
                 speed = max(speed, abs(s[midpoint.VM, k]) / problem.scale[k])
             _differentiate(
-                problem, pattern, matrices, directions, h, t, target, within, s, new, moved, slopes, dolds, dstates, ds,
-                push, b, ahead, dual_works, lifted,
+                problem, pattern, matrices, directions, rigid, strength, h, t, target, within, s, new, moved, slopes,
+                denergies, dolds, dstates, ds, push, b, e, ahead, dual_works, lifted,
             )  # fmt: skip
             if log.counts[0] < len(log.iterations):
                 log.iterations[log.counts[0]] = iterations

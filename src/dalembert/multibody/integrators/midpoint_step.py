@@ -157,7 +157,7 @@ def converge(problem, pattern, matrices, model, middle, end, h, s, push, b, tole
 
 
 @kernel
-def _lift(s, ds, at):
+def lift_step(s, ds, at):
     """The step plus the imaginary step along a direction."""
     for i in range(ROWS):
         for k in range(s.shape[1]):
@@ -179,7 +179,7 @@ def converge_along(problem, pattern, matrices, tilted, middle, end, h, s, ds, dp
         heavier[k] = w[k].imag / STEP
     before = 0.0
     for _ in range(4 * _MOST_ITERATIONS):
-        _lift(s, ds, at)
+        lift_step(s, ds, at)
         _balance(tilted, n, at, middle, end, r, c, u, w)
         for k in range(size + 1):
             f[k], gap[k], rate[k] = r[k].imag / STEP, c[k].imag / STEP, u[k].imag / STEP

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import ClassVar
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from dalembert.multibody.integrators.matrices import damps, pattern_of
 from dalembert.multibody.integrators.midpoint_loop import Settings, integrate
 from dalembert.multibody.integrators.problem import DONE, Log, Problem
 from dalembert.multibody.integrators.run import Run, cut, explain, resting, stack, starts
+from dalembert.multibody.integrators.symmetries import rigid_motions
 from dalembert.multibody.kernels.motion import Motion
 from dalembert.multibody.lowering import Lowered
 
@@ -50,6 +52,8 @@ class Variational(Integrator):
     step: float = field(metadata={"unit": "s"})
     newton_tolerance: float = field(default=1e-14, metadata={"unit": ""})
 
+    _conserving: ClassVar[bool] = False  # the energy
+
     def __post_init__(self) -> None:
         name = type(self).__name__
         if not (np.isfinite(self.step) and self.step > 0):
@@ -78,12 +82,13 @@ class Variational(Integrator):
             ends = self.step_ends(end, lowered.jumps)
             room = 2 * len(ends) if logged and ends is not None else 0  # steps that are cut down need more
             log = Log(np.zeros(4, dtype=np.int64), np.zeros(room, dtype=np.int64), np.zeros(room))
-            settings = Settings(float(self.step), float(self.newton_tolerance), damps(lowered))
+            settings = Settings(float(self.step), float(self.newton_tolerance), damps(lowered), self._conserving)
+            rigid = rigid_motions(lowered, tilted)
             edges = problem.edges[number, : problem.stretches[number] + 1]
             own, start = resting(*shape), Motion(*(array[number] for array in states))
             status, time, unknown = integrate(
-                problem, pattern, edges, settings, lowered.real, lowered.dual, directions, start, dstates, own, dout,
-                log,
+                problem, pattern, edges, settings, rigid, lowered.real, lowered.dual, directions, start, dstates, own,
+                dout, log,
             )  # fmt: skip
             reason = None if status == DONE else self._explain(lowered, status, time, unknown)
             taken = min(int(log.counts[0]), room)

@@ -1,0 +1,58 @@
+"""Rigid motions that the surroundings of a mechanism leave free: to each belongs a momentum that it keeps."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from dalembert.multibody.integrators.energy_balance import Rigid
+from dalembert.multibody.kernels import joints, spring
+from dalembert.multibody.kernels.markers import GROUND
+from dalembert.multibody.lowering import Lowered
+
+_WEIGHTS = {"bodies": (2, 4), "beams": (9, 11), "cables": (5, 7)}  # columns of gravity
+_POINTS = {"joints": (joints.REVOLUTE, joints.DISTANCE), "springs": (spring.TRANSLATION,)}  # hold a point, not a frame
+
+
+def rigid_motions(lowered: Lowered, tilted: Sequence[Lowered]) -> Rigid:
+    """The free translations and the free rotation of a mechanism, by its gravity and what holds it to the ground.
+
+    Without any hold, those are the translations across gravity, and without gravity the rotation, too. Pins, rods and
+    springs at one point of the ground leave the rotation about it. What else may be free (along a slide) is not looked
+    for.
+    """
+    kinds = np.array(lowered.structure.kinds)
+    vectors, positions = np.flatnonzero(kinds != "angle"), np.flatnonzero(kinds == "position")
+    partner, sign = np.arange(len(kinds)), np.zeros(len(kinds))
+    partner[vectors[::2]], partner[vectors[1::2]] = vectors[1::2], vectors[::2]
+    sign[vectors[::2]], sign[vectors[1::2]] = -1.0, 1.0
+    held, points = _held(lowered)
+    gravity = np.vstack([np.real(lowered.data[kind][:, slice(*columns)]) for kind, columns in _WEIGHTS.items()])
+    free = [not held and len(points) == 0 and not np.any(gravity[:, axis]) for axis in range(2)]
+    turns = not held and not np.any(gravity) and not np.any(np.ptp(np.real(points), axis=0) if len(points) else 0.0)
+    shifts = []
+    for entry in (lowered, *tilted):
+        rows = []
+        for axis in np.flatnonzero(free):
+            rows.append(np.zeros(len(kinds), dtype=complex))
+            rows[-1][positions[axis::2]] = 1.0
+        if turns:
+            places = _held(entry)[1]
+            x, y = places[0] if len(places) else (0.0, 0.0)
+            rows.append(np.where(kinds == "angle", 1.0 + 0j, 0j))
+            rows[-1][positions[::2]], rows[-1][positions[1::2]] = y, -x
+        shifts.append(np.array(rows).reshape(len(rows), len(kinds)))
+    spin = np.array([0.0] * sum(free) + [1.0] * turns)
+    along = np.array(shifts[1:], dtype=complex).reshape(len(tilted), *shifts[0].shape)
+    return Rigid(partner, sign, spin, np.ascontiguousarray(shifts[0].real), along)
+
+
+def _held(lowered: Lowered) -> tuple[bool, np.ndarray]:
+    """Whether a frame of the ground holds the mechanism, and the points of the ground that do, (points, 2)."""
+    found, held = [], False
+    for kind, of_points in _POINTS.items():
+        meta, data = lowered.structure.meta[kind], lowered.data[kind]
+        for side in range(2):
+            grounded = meta[:, 1 + side] == GROUND
+            held = held or bool(np.any(grounded & ~np.isin(meta[:, 0], of_points)))
+            found.append(data[grounded, 3 * side : 3 * side + 2])
+    return held, np.vstack(found)

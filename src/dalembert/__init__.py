@@ -33,9 +33,9 @@ _NAMES = {
     "optimize": "Firefly ImprovedParticleSwarm LeastSquares Minimiser ParticleSwarm ResponseSensitivity",
     "surrogate": "Adaptive ChebyshevPolynomial Surrogate Tensor TotalDegree",
     "structure": """
-        Dofs EigenModes Material Modal Nodes Rayleigh ReducedStructure ReductionErrors Structure box
-        combine craig_bampton eigenmodes lumped pairs plate read_structure similarity solid tie
-        write_structure
+        Dofs EigenModes Material Modal Nodes Patch Rayleigh ReducedStructure ReductionErrors
+        Structure box combine craig_bampton eigenmodes foot_pairs lumped pairs patched_plate plate
+        read_structure similarity solid tie write_structure
     """,
     "data": "Bands Measurements derivative read read_bands read_csv read_mat read_netcdf read_parquet read_uff",
     "inverse": """

@@ -108,6 +108,7 @@ from dalembert.structure import EigenModes as EigenModes
 from dalembert.structure import Material as Material
 from dalembert.structure import Modal as Modal
 from dalembert.structure import Nodes as Nodes
+from dalembert.structure import Patch as Patch
 from dalembert.structure import Rayleigh as Rayleigh
 from dalembert.structure import ReducedStructure as ReducedStructure
 from dalembert.structure import ReductionErrors as ReductionErrors
@@ -116,8 +117,10 @@ from dalembert.structure import box as box
 from dalembert.structure import combine as combine
 from dalembert.structure import craig_bampton as craig_bampton
 from dalembert.structure import eigenmodes as eigenmodes
+from dalembert.structure import foot_pairs as foot_pairs
 from dalembert.structure import lumped as lumped
 from dalembert.structure import pairs as pairs
+from dalembert.structure import patched_plate as patched_plate
 from dalembert.structure import plate as plate
 from dalembert.structure import read_structure as read_structure
 from dalembert.structure import similarity as similarity

@@ -8,6 +8,7 @@ from dalembert.structure.joining import combine, pairs, tie
 from dalembert.structure.lumped import lumped
 from dalembert.structure.material import Material
 from dalembert.structure.nodes import Nodes
+from dalembert.structure.patched_plate import Patch, foot_pairs, patched_plate
 from dalembert.structure.plate import plate
 from dalembert.structure.read_structure import read_structure, write_structure
 from dalembert.structure.solid import box, solid
@@ -19,6 +20,7 @@ __all__ = [
     "Material",
     "Modal",
     "Nodes",
+    "Patch",
     "Rayleigh",
     "ReducedStructure",
     "ReductionErrors",
@@ -27,8 +29,10 @@ __all__ = [
     "combine",
     "craig_bampton",
     "eigenmodes",
+    "foot_pairs",
     "lumped",
     "pairs",
+    "patched_plate",
     "plate",
     "read_structure",
     "similarity",

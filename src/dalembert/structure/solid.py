@@ -41,13 +41,20 @@ def box(size: Sequence[float], elements: Sequence[int], corner: Sequence[float] 
     skfem.MeshHex
         With the named boundaries left, right (x), front, back (y), bottom, top (z) and edge (the first four).
     """
-    skfem = library("skfem", "box")
-    lines = [
-        start + np.linspace(0.0, length, count + 1) for start, length, count in zip(corner, size, elements, strict=True)
-    ]
+    return grid(
+        *(
+            start + np.linspace(0.0, length, count + 1)
+            for start, length, count in zip(corner, size, elements, strict=True)
+        )
+    )
+
+
+def grid(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> Any:
+    """A mesh of bricks between ascending coordinates, with the named boundaries of :func:`box`."""
+    lines = (x, y, z)
     sides = {name: _at(at // 2, lines[at // 2][-(at % 2)]) for at, name in enumerate(SIDES)}
     sides["edge"] = lambda x: np.any([sides[name](x) for name in SIDES[:4]], axis=0)
-    return skfem.MeshHex.init_tensor(*lines).with_boundaries(sides)
+    return library("skfem", "box").MeshHex.init_tensor(*lines).with_boundaries(sides)
 
 
 def _at(axis: int, place: float) -> Callable[[np.ndarray], np.ndarray]:

@@ -47,9 +47,9 @@ _NAMES = {
         RevoluteJoint PrismaticJoint FixedJoint DistanceJoint PrescribedMotion
         Force Torque Spring TorsionSpring UserForce
         Step Harmonic Polynomial Table Custom
-        Collocation GaussNewton Augmented Baumgarte Projection Partitioning
-        GeneralizedAlpha RungeKutta4 OdeSolver Radau5 EnergyMomentum Variational TimeResponse Trajectory WorkPrecision
-        simulate equilibrium modes work_precision
+        Augmented Automatic Baumgarte Collocation EnergyMomentum GaussNewton GeneralizedAlpha OdeSolver Partitioning
+        Projection Radau5 RungeKutta4 Variational
+        TimeResponse Trajectory WorkPrecision simulate equilibrium modes work_precision
     """,
     "uncertainty": """
         Comparison Propagation compare propagate

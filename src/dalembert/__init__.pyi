@@ -57,6 +57,7 @@ from dalembert.inverse import profile as profile
 from dalembert.multibody import AncfBeam as AncfBeam
 from dalembert.multibody import AncfCable as AncfCable
 from dalembert.multibody import Augmented as Augmented
+from dalembert.multibody import Automatic as Automatic
 from dalembert.multibody import Baumgarte as Baumgarte
 from dalembert.multibody import Collocation as Collocation
 from dalembert.multibody import Custom as Custom

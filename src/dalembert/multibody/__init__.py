@@ -3,6 +3,7 @@
 from dalembert.multibody.beams import AncfBeam, AncfCable
 from dalembert.multibody.bodies import PointMass, RigidBar, RigidBody
 from dalembert.multibody.drawing import Drawing
+from dalembert.multibody.integrators.automatic import Automatic
 from dalembert.multibody.integrators.collocation import Collocation, GaussNewton
 from dalembert.multibody.integrators.energy_momentum import EnergyMomentum
 from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha
@@ -26,6 +27,7 @@ __all__ = [
     "AncfBeam",
     "AncfCable",
     "Augmented",
+    "Automatic",
     "Baumgarte",
     "Collocation",
     "Constant",

@@ -2,9 +2,10 @@
 
 import numpy as np
 
-from dalembert.errors import InputError, SolveError
+from dalembert.errors import InputError, SolveError, unknown
 from dalembert.multibody.assemble import assembled, refuse_kinks, refuse_redundancy
 from dalembert.multibody.callbacks import in_complex_numbers
+from dalembert.multibody.integrators.automatic import Automatic
 from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha
 from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.run import make_problem
@@ -16,7 +17,7 @@ _ROOM = 20_000_000  # numbers up to which the states of all steps are kept, for 
 
 
 def simulate(
-    system: System, end: float, solver: Integrator | None = None, times: np.ndarray | None = None
+    system: System, end: float, solver: Integrator | str | None = None, times: np.ndarray | None = None
 ) -> Trajectory:
     """Integrate the motion of a system from time 0.
 
@@ -25,11 +26,12 @@ def simulate(
     system : System
     end : float
         s.
-    solver : Integrator, optional
-        Generalized-alpha with steps of ``end`` / 1000 if not given.
+    solver : Integrator or "auto", optional
+        "auto" takes the one that suits the mechanism, see :class:`Automatic`. Generalized-alpha with steps of
+        ``end`` / 1000 if not given.
     times : array, shape (samples,), optional
-        Output times in s, increasing, within [0, end]. Every step if not given; 1001 equal ones if the
-        solver chooses its steps. Between steps the motion is interpolated (cubic in coordinates and velocities).
+        Output times in s, increasing, within [0, end]. Every step if not given; 1001 equal ones if the solver chooses
+        its steps. Between steps the motion is interpolated, by generalized-alpha cubically.
 
     Returns
     -------
@@ -56,9 +58,10 @@ def simulate(
     """
     if not (np.isfinite(end) and end > 0):
         raise InputError(f"simulate: end is {end}; expected a positive number of seconds")
-    solver = solver or GeneralizedAlpha(step=end / 1000)
+    solver = integrator(solver, end)
     with in_complex_numbers(strict=False):
         lowered = assembled(system)
+        solver = solver.suiting(lowered, end)
         if not solver.takes_redundancy:
             refuse_redundancy(lowered)
         refuse_kinks(lowered, end)
@@ -71,6 +74,18 @@ def simulate(
     if result.reason:
         raise SolveError(result.reason)
     return Trajectory(system, lowered, solver, result, np.searchsorted(grid, times))
+
+
+def integrator(given: Integrator | str | None, end: float) -> Integrator:
+    """The integrator that is meant."""
+    if given is None:
+        return GeneralizedAlpha(step=end / 1000)
+    if isinstance(given, str):
+        if given != "auto":
+            known = unknown("solver", given, ("auto",))
+            raise InputError(f"{known} Or give an integrator, such as GeneralizedAlpha(step=1e-3)")
+        return Automatic()
+    return given
 
 
 def checked(times: np.ndarray, end: float) -> np.ndarray:

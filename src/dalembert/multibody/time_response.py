@@ -13,14 +13,13 @@ from dalembert.forward import Channel, Coordinate, Responses
 from dalembert.forward.builders import cores, inexact, restructured
 from dalembert.multibody.assemble import assembled, refuse_kinks, refuse_redundancy
 from dalembert.multibody.callbacks import in_complex_numbers
-from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha
 from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.problem import Problem
 from dalembert.multibody.integrators.run import Run, make_problem
 from dalembert.multibody.kernels.dual import STEP
 from dalembert.multibody.lowering import Lowered
 from dalembert.multibody.observe import Observer, observer
-from dalembert.multibody.simulate import checked
+from dalembert.multibody.simulate import checked, integrator
 from dalembert.multibody.system import System
 from dalembert.parameters import Parameter, Parameters
 
@@ -38,7 +37,7 @@ class TimeResponse:
         Such as ``"AB.end.x"``; see :meth:`Trajectory.channel_names`.
     times : array, shape (samples,)
         s; the motion starts at 0 and ends at the last one.
-    solver : Integrator, optional
+    solver : Integrator or "auto", optional
         Generalized-alpha with steps of a thousandth of the motion if not given.
     workers : int, optional
         Threads of an ensemble; as many as there are cores if not given.
@@ -72,7 +71,7 @@ class TimeResponse:
         parameters: Parameters | Mapping[str, Parameter | tuple[float, float]],
         channels: Sequence[str],
         times: np.ndarray,
-        solver: Integrator | None = None,
+        solver: Integrator | str | None = None,
         workers: int | None = None,
     ) -> None:
         times = np.asarray(times, dtype=float)
@@ -86,7 +85,7 @@ class TimeResponse:
             ("parameters", Parameters.of(parameters)),
             ("channel_names", tuple(channels)),
             ("times", times),
-            ("solver", solver or GeneralizedAlpha(step=float(times[-1]) / 1000)),
+            ("solver", integrator(solver, float(times[-1]))),
             ("workers", workers or cores()),
         ):
             object.__setattr__(self, name, value)
@@ -200,7 +199,7 @@ class TimeResponse:
     def _frame(self) -> "_Frame":
         system = self.builder(**self.parameters.mapping(self.parameters.start))
         lowered = assembled(system)
-        if not self.solver.takes_redundancy:
+        if not self.solver.suiting(lowered, float(self.times[-1])).takes_redundancy:
             refuse_redundancy(lowered)
         refuse_kinks(lowered, float(self.times[-1]))
         problem = make_problem(lowered, self.times)

@@ -53,6 +53,10 @@ class Integrator(ABC):
         told = (f"{item.name}={value!r}" for item, value in given if value != item.default)
         return f"{type(self).__name__}({', '.join(told)})"
 
+    def suiting(self, lowered: Lowered, end: float) -> "Integrator":
+        """The integrator for a mechanism's motion until ``end`` (s): itself, but for one that chooses."""
+        return self
+
     @property
     def fixed_step(self) -> float | None:
         """The step in s, None if the method chooses it."""

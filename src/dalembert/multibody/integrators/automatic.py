@@ -1,0 +1,70 @@
+"""The integrator that suits the mechanism."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from dalembert.errors import InputError
+from dalembert.multibody.assemble import redundancy
+from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha
+from dalembert.multibody.integrators.integrator import Integrator
+from dalembert.multibody.integrators.ode_solver import OdeSolver
+from dalembert.multibody.integrators.problem import Problem
+from dalembert.multibody.integrators.radau5 import Radau5
+from dalembert.multibody.integrators.run import Run
+from dalembert.multibody.integrators.stabilisation import Partitioning
+from dalembert.multibody.lowering import Lowered
+
+_FIRST = 1e-3  # of the motion: the first step of an adaptive one
+_DEFORMABLE = ("beams", "cables")
+
+
+@dataclass(frozen=True)
+class Automatic(Integrator):
+    """Chooses the integrator by the mechanism.
+
+    Where all bodies are rigid nothing oscillates faster than the motion, and a high order takes long steps:
+    :class:`Radau5`; with redundant constraints :class:`OdeSolver`, which finds multipliers for them. Beams and cables
+    bring frequencies that nobody wants to follow: :class:`GeneralizedAlpha` damps them, and its step, adaptive here,
+    costs little. The page "Which integrator" has the measurements behind this rule.
+
+    Parameters
+    ----------
+    tolerance : float
+        Of the estimated error of a step, relative to each coordinate's scale.
+
+    Examples
+    --------
+    >>> from dalembert.multibody import RevoluteJoint, RigidBar, System, simulate
+    >>> system = System(gravity=(0.0, -9.81))
+    >>> bar = system.add(RigidBar("bar", length=1.0, mass=1.0))
+    >>> pin = system.add(RevoluteJoint("pin", system.ground, bar.start))
+    >>> simulate(system, end=1.0, solver="auto").solver
+    Radau5(tolerance=1e-06, step=None, newton_tolerance=1e-14, most_steps=1000000)
+    """
+
+    tolerance: float = field(default=1e-6, metadata={"unit": ""})
+
+    def __post_init__(self) -> None:
+        if not self.tolerance > 0:
+            raise InputError(f"Automatic: tolerance is {self.tolerance}; expected a positive number")
+
+    def suiting(self, lowered: Lowered, end: float) -> Integrator:
+        """The integrator for a mechanism's motion until ``end`` (s)."""
+        if any(len(lowered.structure.index[kind]) for kind in _DEFORMABLE):
+            return GeneralizedAlpha(step=_FIRST * end, adaptive=True, tolerance=self.tolerance)
+        known = redundancy(lowered)
+        if known.rank < known.count:
+            return OdeSolver("DOP853", self.tolerance, self.tolerance, Partitioning())
+        return Radau5(tolerance=self.tolerance)
+
+    def integrate(
+        self,
+        samples: Sequence[Lowered],
+        tilted: Sequence[Lowered],
+        problem: Problem,
+        end: float,
+        *,
+        logged: bool = True,
+    ) -> list[Run]:
+        """Runs by the integrator that suits the first sample; all samples have its structure."""
+        return self.suiting(samples[0], end).integrate(samples, tilted, problem, end, logged=logged)

@@ -8,6 +8,8 @@ from dalembert.multibody import (
     AncfCable,
     Automatic,
     GeneralizedAlpha,
+    OdeSolver,
+    Partitioning,
     Radau5,
     RevoluteJoint,
     RigidBar,
@@ -43,6 +45,16 @@ def test_a_rigid_mechanism_gets_the_high_order() -> None:
 def test_a_flexible_one_gets_generalized_alpha() -> None:
     trajectory = simulate(flexible(), 0.1, solver=Automatic(tolerance=1e-4))
     assert trajectory.solver == GeneralizedAlpha(step=1e-4, adaptive=True, tolerance=1e-4)
+
+
+def test_redundant_constraints_get_a_method_that_takes_them() -> None:
+    system = rigid()
+    system.add(RevoluteJoint("again", system.ground, system.bodies[0].start))
+    trajectory = simulate(system, 0.5, solver="auto")
+    assert trajectory.solver == OdeSolver("DOP853", 1e-6, 1e-6, Partitioning())
+    twin = simulate(rigid(), 0.5, solver="auto", times=trajectory.times)
+    apart = trajectory.channels(["bar.end.y"]) - twin.channels(["bar.end.y"])
+    assert np.max(np.abs(apart)) < 1e-5
 
 
 def test_a_forward_model_takes_the_same_choice() -> None:

@@ -44,6 +44,9 @@ def found(study: Study, outcome: Outcome, row: dict[str, Any]) -> float:
             return getattr(outcome, "result").simulations  # noqa: B009
         case "identify_bands" | "identify_set":
             return outcome.best[quantity] if quantity == "fitness" else outcome.best["values"][quantity]
+        case "work_precision":
+            runs: Any = getattr(outcome, "result").rows  # noqa: B009
+            return next(run.error for run in runs if (run.method, run.settings) == (row["method"], row["settings"]))
         case "propagate":
             return bounded(study, getattr(outcome, "result"), row)  # noqa: B009
         case "simulate":

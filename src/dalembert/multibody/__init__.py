@@ -7,6 +7,7 @@ from dalembert.multibody.integrators.automatic import Automatic
 from dalembert.multibody.integrators.collocation import Collocation, GaussNewton
 from dalembert.multibody.integrators.energy_momentum import EnergyMomentum
 from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha
+from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.ode_solver import OdeSolver
 from dalembert.multibody.integrators.radau5 import Radau5
 from dalembert.multibody.integrators.runge_kutta import RungeKutta4
@@ -43,6 +44,7 @@ __all__ = [
     "Ground",
     "GroundPoint",
     "Harmonic",
+    "Integrator",
     "Modes",
     "OdeSolver",
     "Partitioning",

@@ -9,6 +9,7 @@ from dalembert.multibody.integrators.automatic import Automatic
 from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha
 from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.run import make_problem
+from dalembert.multibody.lowering import Lowered
 from dalembert.multibody.system import System
 from dalembert.multibody.trajectory import Trajectory
 
@@ -60,11 +61,7 @@ def simulate(
         raise InputError(f"simulate: end is {end}; expected a positive number of seconds")
     solver = integrator(solver, end)
     with in_complex_numbers(strict=False):
-        lowered = assembled(system)
-        solver = solver.suiting(lowered, end)
-        if not solver.takes_redundancy:
-            refuse_redundancy(lowered)
-        refuse_kinks(lowered, end)
+        lowered, solver = prepared(system, end, solver)
         steps = solver.step_ends(end, lowered.jumps)
         if steps is None:
             steps = np.linspace(0.0, end, _ADAPTIVE_OUTPUTS)
@@ -74,6 +71,16 @@ def simulate(
     if result.reason:
         raise SolveError(result.reason)
     return Trajectory(system, lowered, solver, result, np.searchsorted(grid, times))
+
+
+def prepared(system: System, end: float, solver: Integrator) -> tuple[Lowered, Integrator]:
+    """The assembled mechanism and the integrator that suits it, once nothing speaks against the two."""
+    lowered = assembled(system)
+    solver = solver.suiting(lowered, end)
+    if not solver.takes_redundancy:
+        refuse_redundancy(lowered)
+    refuse_kinks(lowered, end)
+    return lowered, solver
 
 
 def integrator(given: Integrator | str | None, end: float) -> Integrator:

@@ -48,11 +48,15 @@ RIGID = {
     "Runge-Kutta 4, Baumgarte": (mb.RungeKutta4(1e-3, mb.Baumgarte(10.0, 10.0)), 1e-6),
     "DOP853": (mb.OdeSolver("DOP853"), 1e-7),
     "BDF": (mb.OdeSolver("BDF", 1e-7, 1e-9), 1e-4),
+    "variational": (mb.Variational(2e-4), 2e-5),
+    "energy-momentum": (mb.EnergyMomentum(2e-4), 2e-5),
     "collocation of order 6": (mb.Collocation(5e-3, degree=4, gauss_points=3), 1e-7),
 }
 FLEXIBLE = {
     "generalized-alpha": (mb.GeneralizedAlpha(step=1e-4), 1e-5),
     "Runge-Kutta 4, projection": (mb.RungeKutta4(5e-4), 1e-6),
+    "variational": (mb.Variational(1e-4), 1e-5),
+    "energy-momentum": (mb.EnergyMomentum(1e-4), 1e-5),
     "collocation of order 4": (mb.Collocation(1e-3, degree=3), 1e-6),
 }
 CASES = [("engine", name, *entry) for name, entry in RIGID.items()]

@@ -25,30 +25,10 @@ from dalembert.vibration.fourier import Fourier, real_blocks
 from dalembert.vibration.friction_law import NORMAL, TANGENTIAL
 from dalembert.vibration.lowering import ELASTIC, FrictionBlock, Lowered
 from dalembert.vibration.springs import UserElement
+from dalembert.vibration.tangents import BlockTangent, DenseTangent, Tangent
 
-
-@dataclass(frozen=True)
-class Tangent:
-    """Derivatives of the residual.
-
-    Parameters
-    ----------
-    jacobian : array, shape (q, coefficients, q, coefficients)
-    slope : array, shape (q, coefficients)
-        By ω.
-    """
-
-    jacobian: np.ndarray
-    slope: np.ndarray
-
-    def copy(self) -> "Tangent":
-        """The same in other places of memory."""
-        return Tangent(self.jacobian.copy(), self.slope.copy())
-
-    @property
-    def matrix(self) -> np.ndarray:
-        """The Jacobian as a matrix, (unknowns, unknowns)."""
-        return self.jacobian.reshape(self.slope.size, self.slope.size)
+LARGE = 600
+"""Unknowns above which the Jacobian is kept by its structure."""
 
 
 @dataclass(frozen=True)
@@ -114,9 +94,11 @@ class Balance:
 
     def linearised(self, point: Point, unknowns: np.ndarray) -> tuple[Evaluation, Tangent]:
         """Residual at a point, with its exact Jacobian and its derivative by ω."""
-        tangent = Tangent(
-            real_blocks(point.stiffness, self.series.mean), self.linear(point.slope, point.force_slope, unknowns)
-        )
+        slope = self.linear(point.slope, point.force_slope, unknowns)
+        if unknowns.size > LARGE and self._separate:
+            tangent: Tangent = BlockTangent(point, self.series, slope, *self._references)
+        else:
+            tangent = DenseTangent(real_blocks(point.stiffness, self.series.mean), slope)
         return self.residual(self.linear(point.stiffness, point.force, unknowns), unknowns, tangent), tangent
 
     def residual(self, linear: np.ndarray, unknowns: np.ndarray, tangent: Tangent | None = None) -> Evaluation:
@@ -130,7 +112,7 @@ class Balance:
         self._add_springs(acting, unknowns, tangent)
         for rigid in (False, True):  # rigid contacts last: their prediction needs the residual without them
             total = linear + self._combination.T @ acting
-            before = tangent.copy() if tangent is not None and rigid else None
+            before = tangent.copy() if isinstance(tangent, DenseTangent) and rigid else None
             for number, block in enumerate(self.lowered.blocks):
                 if (block.kind != ELASTIC) == rigid:
                     states[number] = self._add_friction(block, acting, unknowns, total, tangent, before)
@@ -147,10 +129,14 @@ class Balance:
             if tangent is None:
                 continue
             slopes = slopes if several else slopes[None, None]
+            blocks = series.analysis @ (slopes[:, :, :, None] * series.synthesis)
+            if isinstance(tangent, BlockTangent):
+                local = np.swapaxes(blocks, 1, 2).reshape(1, len(rows) * series.count, -1)
+                tangent.add(self._retained[rows][None], local)
+                continue
             for i, row in enumerate(rows):
                 for j, column in enumerate(rows):
-                    block = series.analysis @ (slopes[i, j][:, None] * series.synthesis)
-                    self._scatter(tangent.jacobian, row, column, block)
+                    self._scatter(tangent.jacobian, row, column, blocks[i, j])
 
     def _scatter(self, jacobian: np.ndarray, row: int, column: int, block: np.ndarray) -> None:
         """Add the derivative of the force of one row by the displacement of another."""
@@ -165,7 +151,7 @@ class Balance:
         unknowns: np.ndarray,
         total: np.ndarray,
         tangent: Tangent | None,
-        before: Tangent | None,
+        before: DenseTangent | None,
     ) -> np.ndarray:
         """Forces of a block's cells, and its part of the tangent; the states (cells, samples)."""
         series, shape = self.series, (block.tangents, block.normal, block.memory)
@@ -176,7 +162,9 @@ class Balance:
             force, states = friction_law.forces(samples.astype(kind), numbers.astype(kind), *shape)
         else:
             force, states, local = friction_law.tangent(samples, numbers, *shape, series.synthesis, series.analysis)
-            if before is None:
+            if isinstance(tangent, BlockTangent):
+                tangent.add(self._retained[block.rows], local)
+            elif before is None:
                 self._spread_elastic(block, local, tangent.jacobian)
             else:
                 self._spread_rigid(block, local, tangent, before)
@@ -185,7 +173,7 @@ class Balance:
             places = self._retained[block.rows[cell, : block.tangents]]
             penalty = block.numbers[cell, TANGENTIAL]
             result[cell, : block.tangents, 0] += penalty * unknowns[places, 0]
-            if tangent is not None:
+            if isinstance(tangent, DenseTangent):
                 tangent.jacobian[places, 0, places, 0] += penalty
         np.add.at(acting, block.rows, result)
         return states
@@ -222,7 +210,9 @@ class Balance:
                 for j, column in enumerate(block.rows[cell]):
                     self._scatter(jacobian, row, column, split[cell, i, :, j, :])
 
-    def _spread_rigid(self, block: FrictionBlock, local: np.ndarray, tangent: Tangent, before: Tangent) -> None:
+    def _spread_rigid(
+        self, block: FrictionBlock, local: np.ndarray, tangent: DenseTangent, before: DenseTangent
+    ) -> None:
         """J += G ∂D/∂U with ∂D/∂U = 1 - J_0/ε, or ε ∂/∂τ - J_0 for trial forces; the same for ω."""
         count, columns = self.series.count, block.rows.shape[1]
         own = np.tile(np.eye(count), (columns, 1, 1))
@@ -240,6 +230,22 @@ class Balance:
             tangent.jacobian[places] += change.reshape(motion.shape)
             change = gradient @ (weight[:, None] * before.slope[places]).ravel()
             tangent.slope[places] -= change.reshape(columns, count)
+
+    @cached_property
+    def _separate(self) -> bool:
+        """Whether each retained coordinate belongs to one cell or spring, so that the Jacobian has structure."""
+        seen = [block.rows.ravel() for block in self.lowered.blocks] + [rows for rows, _ in self.lowered.springs]
+        alone = len(np.unique(np.concatenate(seen))) == sum(map(len, seen)) == self.shape[0]
+        return alone and all(block.memory for block in self.lowered.blocks)
+
+    @cached_property
+    def _references(self) -> tuple[np.ndarray, np.ndarray]:
+        """Stiffness of each retained coordinate's contact if it sticks, and whether that is rigid."""
+        stiffness, rigid = np.zeros(self.shape[0]), np.zeros(self.shape[0], dtype=bool)
+        for block in self.lowered.blocks:
+            stiffness[self._retained[block.rows]] = _penalties(block)
+            rigid[self._retained[block.rows]] = block.kind != ELASTIC
+        return stiffness, rigid
 
     @cached_property
     def _spring_kinds(self) -> list[Any]:

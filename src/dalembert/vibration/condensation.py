@@ -10,7 +10,7 @@ small structure is written in its modes with q held, so that :math:`Z_{ll}` is d
 factorised.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -45,6 +45,8 @@ class Point:
         Z_ll⁻¹ Z_lq: the interior follows q by the negative of it.
     free : array, shape (orders, l), complex
         Z_ll⁻¹ f_l: the interior with q held.
+    kept : dict
+        Factors that serve all iterations here.
     """
 
     frequencies: np.ndarray
@@ -54,6 +56,7 @@ class Point:
     force_slope: np.ndarray
     follow: np.ndarray
     free: np.ndarray
+    kept: dict[str, Any] = field(default_factory=dict, repr=False)
 
     def interior(self, retained: np.ndarray) -> np.ndarray:
         """Interior coordinates (orders, l) where the retained ones are (orders, q)."""

@@ -8,7 +8,8 @@ import numpy as np
 from scipy.optimize import brentq
 
 from dalembert.vibration.equations import Equations
-from dalembert.vibration.newton import Plane, Solution, bordered
+from dalembert.vibration.newton import Plane, Solution
+from dalembert.vibration.tangents import bordered
 
 STEADY = 0.9
 """Cosine of the angle between directions of a path, below which a step was too long."""
@@ -155,9 +156,8 @@ def _direction(known: Solution, before: np.ndarray, width: float, size: float | 
     """Unit tangent of the curve in scaled unknowns, to the same side as the one before."""
     size = size or float(np.linalg.norm(known.unknowns)) or 1.0
     scale = float(np.linalg.norm(known.point.force) + np.linalg.norm(known.evaluation.forces)) or 1.0
-    right = np.zeros(len(before))
-    right[-1] = 1.0
-    tangent = np.linalg.solve(bordered(known.tangent, before, size, width, scale), right)
+    change, turned = bordered(known.tangent, before, (size, width, scale), np.zeros_like(known.unknowns), 1.0)
+    tangent = np.append(change, turned)
     return tangent / np.linalg.norm(tangent)
 
 

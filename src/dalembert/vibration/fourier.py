@@ -70,16 +70,16 @@ class Fourier:
         return np.arange(self.mean + 1, self.count, 2)
 
     def phasors(self, coefficients: np.ndarray) -> np.ndarray:
-        """Complex amplitudes X_c - i X_s, (orders, ...), of real coefficients (..., coefficients)."""
-        result = np.moveaxis(coefficients[..., self.cosines], -1, 0).astype(complex)
-        result[self.mean :] -= 1j * np.moveaxis(coefficients[..., self.sines], -1, 0)
+        """Complex amplitudes X_c - i X_s, (orders, rows), of real coefficients (rows, coefficients)."""
+        result = coefficients.T[self.cosines].astype(complex)
+        result[self.mean :] -= 1j * coefficients.T[self.sines]
         return result
 
     def coefficients(self, phasors: np.ndarray) -> np.ndarray:
-        """Real coefficients (..., coefficients) of complex amplitudes (orders, ...)."""
-        result = np.empty((*phasors.shape[1:], self.count))
-        result[..., self.cosines] = np.moveaxis(np.real(phasors), 0, -1)
-        result[..., self.sines] = -np.moveaxis(np.imag(phasors[self.mean :]), 0, -1)
+        """Real coefficients (rows, coefficients) of complex amplitudes (orders, rows)."""
+        result = np.empty((phasors.shape[1], self.count))
+        result[:, self.cosines] = np.real(phasors).T
+        result[:, self.sines] = -np.imag(phasors[self.mean :]).T
         return result
 
 

@@ -8,9 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dalembert.vibration.balance import Balance, Evaluation, Tangent
+from dalembert.vibration.balance import Balance, Evaluation
 from dalembert.vibration.condensation import Condensation, Point
 from dalembert.vibration.harmonic_balance import HarmonicBalance
+from dalembert.vibration.tangents import Tangent, bordered
 
 DAMPINGS = (1.0, 0.5, 0.25, 0.125, 0.03125)
 """Parts of a Newton step that are tried, until the residual falls."""
@@ -76,7 +77,7 @@ class Solution:
 
     def rate(self) -> np.ndarray:
         """dU/dω along the path, (q, coefficients)."""
-        return np.linalg.solve(self.tangent.matrix, -self.tangent.slope.ravel()).reshape(self.unknowns.shape)
+        return -self.tangent.solve(self.tangent.slope[:, :, None])[:, :, 0]
 
 
 @dataclass(frozen=True)
@@ -145,25 +146,18 @@ def correct(
 
 def _step(at: _Place, plane: Plane | None, kept: int | None) -> tuple[np.ndarray, float] | None:
     """Newton's step of U and ω; None where the matrix is singular."""
-    residual, shape = at.evaluation.residual.ravel(), at.unknowns.shape
+    residual = at.evaluation.residual
     try:
-        if plane is None:
-            step = np.zeros(shape)
-            first = step[:, :kept]
-            matrix = at.tangent.jacobian[:, :kept, :, :kept].reshape(first.size, first.size)
-            step[:, :kept] = -np.linalg.solve(matrix, at.evaluation.residual[:, :kept].ravel()).reshape(first.shape)
-            return step, 0.0
-        matrix = bordered(at.tangent, plane.direction, plane.size, plane.width, at.scale)
-        change = -np.linalg.solve(matrix, np.append(residual / at.scale, at.distance))
-        return change[:-1].reshape(shape) * plane.size, float(change[-1]) * plane.width
+        if plane is not None:
+            scales = plane.size, plane.width, at.scale
+            change, turned = bordered(at.tangent, plane.direction, scales, -residual / at.scale, -at.distance)
+            return change * plane.size, turned * plane.width
+        if kept is None:
+            return -at.tangent.solve(residual[:, :, None])[:, :, 0], 0.0
+        step = np.zeros(residual.shape)
+        first = residual[:, :kept]
+        matrix = at.tangent.jacobian[:, :kept, :, :kept].reshape(first.size, first.size)
+        step[:, :kept] = -np.linalg.solve(matrix, first.ravel()).reshape(first.shape)
+        return step, 0.0
     except np.linalg.LinAlgError:
         return None
-
-
-def bordered(tangent: Tangent, direction: np.ndarray, size: float, width: float, scale: float) -> np.ndarray:
-    """The Jacobian of scaled unknowns with its column by ω and a row, which is regular at a fold too."""
-    matrix = np.empty((len(direction), len(direction)))
-    matrix[:-1, :-1] = tangent.matrix * (size / scale)
-    matrix[:-1, -1] = tangent.slope.ravel() * (width / scale)
-    matrix[-1] = direction
-    return matrix

@@ -46,10 +46,10 @@ def sensitivities(problem: Equations, solution: Solution, tilted: Sequence[Lower
         stepped = linear - 1j * STEP * series.coefficients(condensed)
         residuals.append(_step(Balance(elements, series).residual(stepped, solution.unknowns).residual))
         given.append(inner)
-    moved = -np.linalg.solve(solution.tangent.matrix, np.stack([r.ravel() for r in residuals], axis=1)).T
+    moved = -np.moveaxis(solution.tangent.solve(np.stack(residuals, axis=2)), 2, 0)
     result = []
     for change, inner in zip(moved, given, strict=True):
-        shift = series.phasors(change.reshape(solution.unknowns.shape))
+        shift = series.phasors(change)
         interior = condensation.solve(point.frequencies, inner[:, :, None])[:, :, 0]
         interior = interior - (point.follow @ shift[:, :, None])[:, :, 0]
         result.append(series.coefficients(condensation.full(shift, interior)))

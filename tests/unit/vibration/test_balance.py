@@ -19,9 +19,12 @@ from dalembert.vibration import (
     StaticForce,
     UserElement,
     VibrationSystem,
+    frequency_response,
 )
+from dalembert.vibration import balance as module
 from dalembert.vibration.equations import equations
 from dalembert.vibration.fourier import real_blocks
+from dalembert.vibration.tangents import BlockTangent, DenseTangent, bordered
 
 Fill = Callable[[VibrationSystem], None]
 
@@ -118,3 +121,49 @@ def test_the_condensed_structure_and_its_slope_are_those_of_the_whole_one() -> N
     up, down = (problem.condensation.at(omega + shift) for shift in (1e-5, -1e-5))
     np.testing.assert_allclose(point.slope, (up.stiffness - down.stiffness) / 2e-5, atol=1e-7)
     np.testing.assert_allclose(point.force_slope, (up.force - down.force) / 2e-5, atol=1e-7)
+
+
+def mixed(to: VibrationSystem) -> None:
+    """Elastic and rigid contacts and springs, each on coordinates of its own."""
+    to.add(FrictionContact("first", "a", friction=0.4, preload=0.3, law=Rigid(), **SPATIAL))  # type: ignore[arg-type]
+    to.add(FrictionContact("second", "b", friction=0.4, preload=0.3, law=Elastic(3.0)))
+    to.add(CubicSpring("cubic", "b.y", stiffness=3.0))
+    to.add(UserElement("user", ["c.x", "c.y"], lambda u: np.stack([u[0] * u[1] ** 2, u[0] ** 2 * u[1]])))
+
+
+SEPARATE = {name: CASES[name] for name in ("elastic", "elastic-spatial", "rigid", "rigid-spatial")} | {"mixed": mixed}
+
+
+@pytest.mark.parametrize("size", [0.003, 0.1, 1.0])
+@pytest.mark.parametrize("name", SEPARATE)
+def test_the_jacobian_by_its_structure_is_the_dense_one(
+    name: str, size: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    problem = equations(system(SEPARATE[name]), HarmonicBalance(harmonics=3, samples=64))
+    balance, point = problem.balance(64), problem.condensation.at(1.3)
+    rng = np.random.default_rng(2)
+    unknowns = rng.normal(size=balance.shape) * size
+    _, dense = balance.linearised(point, unknowns)
+    monkeypatch.setattr(module, "LARGE", 0)
+    _, block = balance.linearised(point, unknowns)
+    assert isinstance(dense, DenseTangent)
+    assert isinstance(block, BlockTangent)
+    np.testing.assert_allclose(block.jacobian, dense.jacobian, atol=1e-11 * np.abs(dense.jacobian).max())
+    np.testing.assert_allclose(block.slope, dense.slope, atol=1e-11 * np.abs(dense.slope).max())
+    right = rng.normal(size=(*balance.shape, 2))
+    expected = dense.solve(right)
+    np.testing.assert_allclose(block.solve(right), expected, atol=1e-8 * np.abs(expected).max())
+    direction = rng.normal(size=unknowns.size + 1)
+    solved = [bordered(own, direction, (0.1, 2.0, 3.0), right[:, :, 0], 0.7) for own in (dense, block)]
+    for one, other in zip(*solved, strict=True):
+        np.testing.assert_allclose(one, other, rtol=1e-7, atol=1e-9 * np.abs(one).max())
+
+
+def test_curves_by_the_structure_are_the_dense_ones(monkeypatch: pytest.MonkeyPatch) -> None:
+    ends, method = (0.05, 0.07), HarmonicBalance(harmonics=3, samples=64, resolution=0.2)
+    dense = [frequency_response(system(mixed), ends, method, continuation=way) for way in ("natural", "arc-length")]
+    monkeypatch.setattr(module, "LARGE", 0)
+    block = [frequency_response(system(mixed), ends, method, continuation=way) for way in ("natural", "arc-length")]
+    for one, other in zip(dense, block, strict=True):
+        assert one.converged.all()
+        np.testing.assert_allclose(one.amplitude("a.x"), other.amplitude("a.x"), rtol=1e-6)

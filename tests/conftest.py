@@ -88,7 +88,7 @@ class Collector:
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         if report.when == "teardown":
-            self.rows += [value for name, value in report.user_properties if name == "evidence"]
+            self.rows += [json.loads(str(value)) for name, value in report.user_properties if name == "evidence"]
 
     def pytest_sessionfinish(self) -> None:
         self.path.parent.mkdir(parents=True, exist_ok=True)
@@ -101,6 +101,6 @@ def record_evidence(request: pytest.FixtureRequest) -> Callable[..., None]:
 
     def record(*args: object, **options: object) -> None:
         row = compare(*args, **options)  # type: ignore[arg-type]
-        request.node.user_properties.append(("evidence", asdict(row)))
+        request.node.user_properties.append(("evidence", json.dumps(asdict(row))))  # text passes between processes
 
     return record

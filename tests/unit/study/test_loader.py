@@ -284,14 +284,16 @@ horizon = "growin"
             ("[solver]", "[sweep]\nat=1\nchannels=['x']\nover.theta=[1.0]\n[solver]"),
             [
                 "study.toml: [simulate] and [sweep] are given; a study has one task, one of "
-                "[simulate], [identify], [sweep], [propagate], [identify_bands], [identify_set], [design], [work_precision]"
+                "[simulate], [identify], [sweep], [propagate], [identify_bands], [identify_set], [design], "
+                "[work_precision]"
             ],
         ),
         (
             ('[simulate]\nend = "1 s"', ""),
             [
                 "study.toml: no task is given; a study has one task, one of "
-                "[simulate], [identify], [sweep], [propagate], [identify_bands], [identify_set], [design], [work_precision]"
+                "[simulate], [identify], [sweep], [propagate], [identify_bands], [identify_set], [design], "
+                "[work_precision]"
             ],
         ),
         (('[solver]\nstep = "1 ms"', ""), ["study.toml: the table [solver] is missing; expected at least its step"]),

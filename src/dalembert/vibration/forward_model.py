@@ -23,6 +23,7 @@ from dalembert.vibration.newton import Solution
 from dalembert.vibration.sensitivity import STEP, sensitivities
 from dalembert.vibration.springs import UserElement
 from dalembert.vibration.system import VibrationSystem
+from dalembert.vibration.threads import one_thread
 
 
 @dataclass(frozen=True)
@@ -138,12 +139,13 @@ class FrequencyResponse:
             except Exception as error:  # the user's builder raised: this sample's failure, not the batch's
                 failures[row] = f"{type(error).__name__}: {error}"
 
-        if self.workers == 1 or len(vectors) == 1:
-            for row in range(len(vectors)):
-                work(row)
-        else:
-            with ThreadPoolExecutor(self.workers) as pool:
-                list(pool.map(work, range(len(vectors))))
+        with one_thread():
+            if self.workers == 1 or len(vectors) == 1:
+                for row in range(len(vectors)):
+                    work(row)
+            else:
+                with ThreadPoolExecutor(self.workers) as pool:
+                    list(pool.map(work, range(len(vectors))))
         return Responses(values, tuple(failures))
 
     def jacobian(self, vector: np.ndarray) -> np.ndarray:
@@ -163,17 +165,8 @@ class FrequencyResponse:
         SolveError
             Where a point is not found.
         """
-        vector = self.parameters.vector(vector).astype(float)
-        problem, solutions = self._solve(vector)
-        values = self._read(problem, solutions)
-        jacobian = np.empty((*values.shape, len(vector)))
-        tilted = [self._tilted(vector, column, problem.lowered) for column in range(len(vector))]
-        for number, solution in enumerate(solutions):
-            response = response_of(problem, solution)
-            slopes = sensitivities(problem, solution, tilted)
-            for channel, (row, size) in enumerate(self._places(problem.lowered)):
-                jacobian[number, channel] = slopes[:, row] @ size.slope(response[row])
-        return values, jacobian / self.parameters.scale
+        with one_thread():
+            return self._linearise(self.parameters.vector(vector).astype(float))
 
     def first(self, samples: int) -> "FrequencyResponse":
         """The same model, cut to its first ``samples`` frequencies."""
@@ -188,6 +181,18 @@ class FrequencyResponse:
     def curve(self, vector: np.ndarray) -> FrequencyCurve:
         """The whole result at a parameter vector (parameters,)."""
         return frequency_response(self.system(vector), self.frequencies, self.method)
+
+    def _linearise(self, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        problem, solutions = self._solve(vector)
+        values = self._read(problem, solutions)
+        jacobian = np.empty((*values.shape, len(vector)))
+        tilted = [self._tilted(vector, column, problem.lowered) for column in range(len(vector))]
+        for number, solution in enumerate(solutions):
+            response = response_of(problem, solution)
+            slopes = sensitivities(problem, solution, tilted)
+            for channel, (row, size) in enumerate(self._places(problem.lowered)):
+                jacobian[number, channel] = slopes[:, row] @ size.slope(response[row])
+        return values, jacobian / self.parameters.scale
 
     def _solve(self, vector: np.ndarray) -> tuple[Equations, list[Solution]]:
         problem = equations(self.system(vector), self.method)

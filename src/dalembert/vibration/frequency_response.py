@@ -14,6 +14,7 @@ from dalembert.vibration.equations import Equations, equations
 from dalembert.vibration.harmonic_balance import HarmonicBalance
 from dalembert.vibration.newton import Solution
 from dalembert.vibration.system import VibrationSystem
+from dalembert.vibration.threads import one_thread
 
 NATURAL, ARC_LENGTH = "natural", "arc-length"
 PHASES = 64
@@ -86,14 +87,25 @@ def frequency_response(
         raise InputError(
             "frequency_response: a path by arc length finds its own frequencies; give a tuple of two, (begin, end)"
         )
-    problem = equations(system, method)
+    settings = {"continuation": continuation, "frequencies": list(map(float, frequencies)) if ends else "given"}
+    with one_thread():
+        return _followed(equations(system, method), omegas, settings, observe, start)
+
+
+def _followed(
+    problem: Equations,
+    omegas: np.ndarray,
+    settings: dict,
+    observe: Sequence[str] | None,
+    start: tuple[FrequencyCurve, int] | None,
+) -> FrequencyCurve:
+    """The curve through given frequencies, or between two."""
     known = None if start is None else _restarted(problem, *start)
-    if not ends:
+    if settings["frequencies"] == "given":
         found = at_frequencies(problem, omegas, known)
     else:
-        follow = along if continuation == ARC_LENGTH else natural
+        follow = along if settings["continuation"] == ARC_LENGTH else natural
         found = follow(problem, float(omegas[0]), float(omegas[1]), known)
-    settings = {"continuation": continuation, "frequencies": "given" if not ends else list(map(float, frequencies))}
     return _curve(problem, found, _observed(problem, observe), settings)
 
 

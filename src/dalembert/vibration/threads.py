@@ -1,0 +1,22 @@
+"""One thread for linear algebra: the systems of a curve are small and many, and its samples run beside each other."""
+
+from contextlib import AbstractContextManager
+from functools import cache
+from typing import Any
+
+from threadpoolctl import ThreadpoolController
+
+
+@cache
+def _controller() -> ThreadpoolController:
+    """The libraries of linear algebra that are loaded; to look for them takes milliseconds."""
+    return ThreadpoolController()
+
+
+def one_thread() -> AbstractContextManager[Any]:
+    """A block in which linear algebra takes one thread.
+
+    Threads that wait for each other cost up to thirty times the time on a busy machine, and the order of their sums is
+    not the same everywhere.
+    """
+    return _controller().limit(limits=1, user_api="blas")

@@ -213,9 +213,9 @@ class FrequencyCurve(Result):
             name: (dimensions, getattr(self, name), {"units": _UNITS[name]} if name in _UNITS else {})
             for name, dimensions in _DIMENSIONS.items()
         }
-        own = {name: json.dumps(getattr(self, name)) for name in _NAMES}
+        names = json.dumps({name: getattr(self, name) for name in _NAMES})
         provenance = json.dumps(dict(self.provenance), sort_keys=True)
-        return xr.Dataset(variables, attrs={"format": self.FORMAT, **own, "provenance": provenance})
+        return xr.Dataset(variables, attrs={"format": self.FORMAT, "names": names, "provenance": provenance})
 
     @classmethod
     def from_xarray(cls, dataset: "Dataset") -> "FrequencyCurve":
@@ -223,6 +223,6 @@ class FrequencyCurve(Result):
         values = {name: dataset[name].values for name in _DIMENSIONS}
         for name in ("converged", "fold"):
             values[name] = values[name].astype(bool)
-        names = {name: tuple(json.loads(dataset.attrs[name])) for name in _NAMES}
+        names = {name: tuple(own) for name, own in json.loads(dataset.attrs["names"]).items()}
         provenance = json.loads(dataset.attrs["provenance"])
         return cls(**{field.name: {**values, **names, "provenance": provenance}[field.name] for field in fields(cls)})

@@ -58,6 +58,7 @@ _NAMES = {
     "vibration": """
         VibrationSystem HarmonicForce StaticForce FrictionContact Elastic Iwan Rigid
         CubicSpring Gap BilinearStop UserElement HarmonicBalance FrequencyCurve FrequencyResponse frequency_response
+        CurveFamily frequency_responses
     """,
 }
 _HOME = {name: module for module, names in _NAMES.items() for name in names.split()}

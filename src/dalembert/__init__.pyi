@@ -146,6 +146,7 @@ from dalembert.uncertainty import compare as compare
 from dalembert.uncertainty import propagate as propagate
 from dalembert.vibration import BilinearStop as BilinearStop
 from dalembert.vibration import CubicSpring as CubicSpring
+from dalembert.vibration import CurveFamily as CurveFamily
 from dalembert.vibration import Elastic as Elastic
 from dalembert.vibration import FrequencyCurve as FrequencyCurve
 from dalembert.vibration import FrequencyResponse as FrequencyResponse
@@ -159,5 +160,6 @@ from dalembert.vibration import StaticForce as StaticForce
 from dalembert.vibration import UserElement as UserElement
 from dalembert.vibration import VibrationSystem as VibrationSystem
 from dalembert.vibration import frequency_response as frequency_response
+from dalembert.vibration import frequency_responses as frequency_responses
 
 __version__: str

@@ -2,6 +2,7 @@
 
 from dalembert.vibration.contacts import Elastic, FrictionContact, Iwan, Rigid
 from dalembert.vibration.curve import FrequencyCurve, Peak
+from dalembert.vibration.curve_family import CurveFamily, Envelope, frequency_responses
 from dalembert.vibration.forward_model import FrequencyResponse
 from dalembert.vibration.frequency_response import frequency_response
 from dalembert.vibration.harmonic_balance import HarmonicBalance
@@ -11,7 +12,9 @@ from dalembert.vibration.system import HarmonicForce, StaticForce, VibrationSyst
 __all__ = [
     "BilinearStop",
     "CubicSpring",
+    "CurveFamily",
     "Elastic",
+    "Envelope",
     "FrequencyCurve",
     "FrequencyResponse",
     "FrictionContact",
@@ -25,4 +28,5 @@ __all__ = [
     "UserElement",
     "VibrationSystem",
     "frequency_response",
+    "frequency_responses",
 ]

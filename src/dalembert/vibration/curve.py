@@ -180,6 +180,18 @@ class FrequencyCurve(Result):
         best = spline(found.x if -found.fun > amplitude[top] else place)
         return Peak(float(best[0]), float(size.of(best[1:])))
 
+    @property
+    def success(self) -> bool:
+        """Whether every point was found."""
+        return bool(self.converged.all())
+
+    @property
+    def status(self) -> str:
+        """How many points were found, in a sentence, and which were not, with residuals as part of the forces."""
+        text = f"{int(self.converged.sum())} of {len(self)} points found"
+        worst = ", ".join(f"{value:.6g} Hz ({error:.1e})" for value, error in self._lost()[:5])
+        return f"{text}; not found, with residuals as part of the forces: {worst}" if worst else text
+
     def summary(self) -> str:
         """A few lines: points, iterations, samples, and the largest responses."""
         found, lines = int(self.converged.sum()), []

@@ -1,0 +1,274 @@
+"""Responses over frequency for several values of a parameter, such as a preload."""
+
+import json
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+
+import numpy as np
+
+from dalembert.errors import DalembertError, InputError
+from dalembert.forward.builders import cores
+from dalembert.results import Result
+from dalembert.vibration.curve import FrequencyCurve, Peak
+from dalembert.vibration.frequency_response import frequency_response
+from dalembert.vibration.harmonic_balance import HarmonicBalance
+from dalembert.vibration.system import VibrationSystem
+from dalembert.vibration.threads import one_thread
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+
+class Envelope(NamedTuple):
+    """The smallest and the largest response of all curves: frequencies in Hz, amplitudes, each (points,)."""
+
+    frequencies: np.ndarray
+    smallest: np.ndarray
+    largest: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class CurveFamily(Result):
+    """Responses over frequency for several values of a parameter, as :func:`frequency_responses` returns them.
+
+    Parameters
+    ----------
+    parameter, unit : str
+        What is varied.
+    values : array, shape (values,)
+    curves : tuple of FrequencyCurve or None
+        None where there is none.
+    failures : tuple of str or None
+        Why there is none.
+    """
+
+    FORMAT: ClassVar[str] = "dalembert curve family 1"
+
+    parameter: str
+    unit: str
+    values: np.ndarray
+    curves: tuple[FrequencyCurve | None, ...]
+    failures: tuple[str | None, ...]
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+    @property
+    def dofs(self) -> tuple[str, ...]:
+        """Names of the observed degrees of freedom."""
+        return next((curve.dofs for curve in self.curves if curve is not None), ())
+
+    def peaks(self, dof: str, kind: str = "peak") -> tuple[Peak, ...]:
+        """The largest response of each curve; NaN where there is none.
+
+        Raises
+        ------
+        InputError
+            For another kind, or a degree of freedom that was not observed.
+        """
+        none = Peak(float("nan"), float("nan"))
+        found = (None if one is None or not one.converged.any() else one.peak(dof, kind) for one in self.curves)
+        return tuple(none if peak is None else peak for peak in found)
+
+    def best(self, dof: str, kind: str = "peak") -> float:
+        """The value whose curve has the smallest peak.
+
+        Raises
+        ------
+        InputError
+            As :meth:`peaks`, and where no curve was found.
+        """
+        sizes = self._sizes(dof, kind)
+        if np.isnan(sizes).all():
+            raise InputError(f"no curve was found, so no value of {self.parameter} is the best; see failures")
+        return float(self.values[np.nanargmin(sizes)])
+
+    def reduction(self, dof: str, kind: str = "peak") -> np.ndarray:
+        """By which part each peak is lower than that of the first value, (values,): 1 - peak / first peak."""
+        sizes = self._sizes(dof, kind)
+        return 1 - sizes / sizes[0]
+
+    def envelope(self, dof: str, kind: str = "peak") -> Envelope:
+        """The smallest and the largest response of all curves at each frequency that all of them have.
+
+        A curve that passes a frequency several times, past folds, counts with all its responses there. Between points
+        curves are straight.
+        """
+        found = [one for one in self.curves if one is not None and one.converged.sum() > 1]
+        if not found:
+            raise InputError("no curve was found, so there is no envelope; see failures")
+        ends = np.array([[one.frequencies[one.converged].min(), one.frequencies[one.converged].max()] for one in found])
+        low, high = ends[:, 0].max(), ends[:, 1].min()
+        every = np.unique(np.concatenate([one.frequencies[one.converged] for one in found]))
+        frequencies = every[(low <= every) & (every <= high)]
+        smallest, largest = np.full((2, len(frequencies)), np.nan)
+        for one in found:
+            sizes = one.amplitude(dof, kind)[one.converged]
+            for rows, between in _passes(one.frequencies[one.converged], sizes, frequencies):
+                smallest[rows] = np.fmin(smallest[rows], between)
+                largest[rows] = np.fmax(largest[rows], between)
+        return Envelope(frequencies, smallest, largest)
+
+    @property
+    def success(self) -> bool:
+        """Whether every point of every curve was found."""
+        return all(curve is not None and curve.success for curve in self.curves)
+
+    @property
+    def status(self) -> str:
+        """How many curves were found, in a sentence."""
+        found = [curve for curve in self.curves if curve is not None]
+        points, lost = sum(map(len, found)), sum(int((~curve.converged).sum()) for curve in found)
+        text = f"{len(found)} of {len(self)} curves over {self.parameter}, {points - lost} of {points} points found"
+        reasons = [
+            f"; {self.parameter} = {value:.6g}: {reason}"
+            for value, reason in zip(self.values, self.failures, strict=True)
+            if reason
+        ]
+        return text + "".join(reasons[:3])
+
+    def summary(self) -> str:
+        """A few lines: what was found, and the peaks of the observed degrees of freedom over the parameter."""
+        lines = [self.status]
+        for dof in self.dofs[:4]:
+            peaks, less = self.peaks(dof), self.reduction(dof)
+            lines.append(f"{dof}: smallest peak at {self.parameter} = {_quantity(self.best(dof), self.unit)}")
+            lines += [
+                f"  {_quantity(value, self.unit)}: {peak.amplitude:.6g} m at {peak.frequency:.6g} Hz ({0.0 - part:+.1%})"
+                for value, peak, part in zip(self.values, peaks, less, strict=True)
+            ]
+        return "\n".join(lines)
+
+    def to_xarray(self) -> "Dataset":
+        """Everything as an :class:`xarray.Dataset`: the points of all curves one after the other, and their counts."""
+        import xarray as xr
+
+        kept = [curve.to_xarray() for curve in self.curves if curve is not None]
+        points = xr.concat(kept, "point", combine_attrs="drop") if kept else xr.Dataset()
+        counts = [-1 if curve is None else len(curve) for curve in self.curves]
+        attributes = {
+            "format": self.FORMAT,
+            "parameter": self.parameter,
+            "failures": json.dumps(self.failures),
+            "curves": json.dumps([dict(one.attrs) for one in kept]),
+        }
+        family = {"values": ("value", self.values, {"units": self.unit}), "counts": ("value", np.array(counts))}
+        return points.assign(family).assign_attrs(attributes)
+
+    @classmethod
+    def from_xarray(cls, dataset: "Dataset") -> "CurveFamily":
+        """The family that :meth:`to_xarray` turned into a dataset."""
+        attributes, first = iter(json.loads(dataset.attrs["curves"])), 0
+        points = dataset.drop_vars(["values", "counts"])
+        curves: list[FrequencyCurve | None] = []
+        for count in dataset["counts"].values.tolist():
+            if count < 0:
+                curves.append(None)
+                continue
+            own = points.isel(point=slice(first, first + count)).assign_attrs(next(attributes))
+            curves.append(FrequencyCurve.from_xarray(own))
+            first += count
+        given = dataset["values"]
+        failures = tuple(json.loads(dataset.attrs["failures"]))
+        return cls(dataset.attrs["parameter"], given.attrs["units"], given.values, tuple(curves), failures)
+
+    def _sizes(self, dof: str, kind: str) -> np.ndarray:
+        return np.array([peak.amplitude for peak in self.peaks(dof, kind)])
+
+
+def frequency_responses(
+    builder: Callable[..., VibrationSystem],
+    parameter: str,
+    values: Sequence[float] | np.ndarray,
+    frequencies: np.ndarray | tuple[float, float],
+    method: HarmonicBalance | None = None,
+    *,
+    unit: str = "",
+    workers: int | None = None,
+    on_curve: Callable[[int, FrequencyCurve | None, str | None], None] | None = None,
+    **options: Any,
+) -> CurveFamily:
+    """Responses over frequency for several values of a parameter, over all cores.
+
+    Parameters
+    ----------
+    builder : callable
+        ``builder(**{parameter: value}) -> VibrationSystem``.
+    parameter : str
+    values : array, shape (values,)
+        The first is what reductions are measured by: for a preload 0, with which contacts are free.
+    frequencies, method
+        As of :func:`frequency_response`.
+    unit : str
+        Of the parameter, for labels.
+    workers : int, optional
+        Threads; as many as there are cores if not given.
+    on_curve : callable, optional
+        Called with the number of each value, its curve and why there is none, in the order of the values.
+    options
+        Others of :func:`frequency_response`: ``continuation``, ``observe`` and so on.
+
+    Returns
+    -------
+    CurveFamily
+        A value for which there is no curve is marked with the reason, and the others return.
+
+    Raises
+    ------
+    InputError
+        Where no values are given.
+    DalembertError
+        Where there is no curve for any of them: the reason of the first.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from dalembert.structure import lumped
+    >>> from dalembert.vibration import Elastic, FrictionContact, HarmonicForce, VibrationSystem
+    >>> def damped(preload):
+    ...     system = VibrationSystem(lumped({"m": 1.0}, [("m", None, 1.0, 0.04)]))
+    ...     system.add(HarmonicForce("m", 1.0))
+    ...     system.add(FrictionContact("damper", "m", friction=0.5, preload=preload, law=Elastic(0.8)))
+    ...     return system
+    >>> family = frequency_responses(damped, "preload", [0.0, 1.0, 2.0, 10.0], np.linspace(0.12, 0.25, 40))
+    >>> family.best("m"), family.reduction("m").round(2).tolist()
+    (2.0, [0.0, 0.59, 0.85, 0.72])
+    """
+    given = np.asarray(values, dtype=float)
+    if given.ndim != 1 or not len(given):
+        raise InputError(f"frequency_responses: the values of {parameter} are {values}; expected one or more numbers")
+
+    def work(value: float) -> tuple[FrequencyCurve | None, DalembertError | None]:
+        try:
+            return frequency_response(builder(**{parameter: value}), frequencies, method, **options), None
+        except DalembertError as error:
+            return None, error
+
+    curves, errors = [], []
+    with one_thread(), ThreadPoolExecutor(min(workers or cores(), len(given))) as pool:
+        for row, (curve, error) in enumerate(pool.map(work, given.tolist())):
+            curves.append(curve)
+            errors.append(error)
+            if on_curve is not None:
+                on_curve(row, curve, None if error is None else str(error))
+    if errors[0] is not None and all(curve is None for curve in curves):
+        raise errors[0]
+    failures = tuple(None if error is None else str(error) for error in errors)
+    return CurveFamily(parameter, unit, given, tuple(curves), failures)
+
+
+def _passes(along: np.ndarray, sizes: np.ndarray, frequencies: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """Rows of the frequencies on each part of a curve that does not turn, and its responses there."""
+    turns = np.flatnonzero(np.diff(np.sign(np.diff(along)))) + 1
+    for begin, end in zip(np.append(0, turns), np.append(turns, len(along) - 1), strict=True):
+        part = slice(begin, end + 1)
+        order = np.argsort(along[part])
+        own, there = along[part][order], sizes[part][order]
+        rows = np.flatnonzero((own[0] <= frequencies) & (frequencies <= own[-1]))
+        yield rows, np.interp(frequencies[rows], own, there)
+
+
+def _quantity(value: float, unit: str) -> str:
+    return f"{value:.6g} {unit}".rstrip()

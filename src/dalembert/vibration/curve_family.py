@@ -133,11 +133,11 @@ class CurveFamily(Result):
         """A few lines: what was found, and the peaks of the observed degrees of freedom over the parameter."""
         lines = [self.status]
         for dof in self.dofs[:4]:
-            peaks, less = self.peaks(dof), self.reduction(dof)
+            peaks, more = self.peaks(dof), 0.0 - self.reduction(dof)
             lines.append(f"{dof}: smallest peak at {self.parameter} = {_quantity(self.best(dof), self.unit)}")
             lines += [
-                f"  {_quantity(value, self.unit)}: {peak.amplitude:.6g} m at {peak.frequency:.6g} Hz ({0.0 - part:+.1%})"
-                for value, peak, part in zip(self.values, peaks, less, strict=True)
+                f"  {_quantity(value, self.unit)}: {peak.amplitude:.6g} m at {peak.frequency:.6g} Hz ({part:+.1%})"
+                for value, peak, part in zip(self.values, peaks, more, strict=True)
             ]
         return "\n".join(lines)
 

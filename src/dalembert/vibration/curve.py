@@ -30,9 +30,10 @@ _DIMENSIONS = {
     "fold": ("point",),
     "samples": ("point",),
     "sampling_errors": ("point",),
+    "stable": ("point",),
 }
 _UNITS = {"frequencies": "Hz", "response": "m", "displacements": "m", "forces": "N", "unknowns": "m"}
-_NAMES = ("dofs", "coordinates", "contacts", "orders")
+_NAMES = ("dofs", "coordinates", "contacts", "orders", "markers")
 
 
 class Peak(NamedTuple):
@@ -72,6 +73,11 @@ class FrequencyCurve(Result):
         Of a period.
     sampling_errors : array, shape (points,)
         Change of the residual with twice as many, as part of the forces.
+    stable : array of int8, shape (points,)
+        1 stable, 0 unstable, -1 where it was not asked for, or the point was not found. A fold has what comes before.
+    markers : tuple of (str, int)
+        Bifurcations and their points: ``"fold"``, and where stability was asked for ``"torus"``, ``"period doubling"``
+        and ``"branch point"``.
     provenance : mapping
         Versions, method, settings.
     """
@@ -94,6 +100,8 @@ class FrequencyCurve(Result):
     fold: np.ndarray
     samples: np.ndarray
     sampling_errors: np.ndarray
+    stable: np.ndarray
+    markers: tuple[tuple[str, int], ...]
     provenance: Mapping[str, Any]
 
     def __len__(self) -> int:
@@ -207,11 +215,20 @@ class FrequencyCurve(Result):
                 f"{self.samples.max()} samples of a period; twice as many change the forces by up to "
                 f"{np.nanmax(self.sampling_errors):.1e}"
             )
-            lines += [f"folds at {', '.join(f'{value:.6g}' for value in self.folds)} Hz"] * bool(len(self.folds))
+            lines += self._bifurcations()
             for dof in self.dofs[:8]:
                 peak = self.peak(dof)
                 lines.append(f"{dof}: largest {peak.amplitude:.6g} m at {peak.frequency:.6g} Hz")
         return "\n".join(lines)
+
+    def _bifurcations(self) -> list[str]:
+        """A line a kind, and one on stability."""
+        kinds: dict[str, list[str]] = {}
+        for kind, point in self.markers:
+            kinds.setdefault(kind, []).append(f"{self.frequencies[point]:.6g}")
+        lines = [f"{kind} at {', '.join(places)} Hz" for kind, places in kinds.items()]
+        asked = int(np.sum(self.stable >= 0))
+        return lines + [f"{np.sum(self.stable == 1)} of {asked} points stable"] * bool(asked)
 
     def _lost(self) -> list[tuple[float, float]]:
         lost = ~self.converged
@@ -232,9 +249,13 @@ class FrequencyCurve(Result):
     @classmethod
     def from_xarray(cls, dataset: "Dataset") -> "FrequencyCurve":
         """The curve that :meth:`to_xarray` turned into a dataset."""
-        values = {name: dataset[name].values for name in _DIMENSIONS}
+        values = {name: dataset[name].values for name in _DIMENSIONS if name in dataset}
         for name in ("converged", "fold"):
             values[name] = values[name].astype(bool)
         names = {name: tuple(own) for name, own in json.loads(dataset.attrs["names"]).items()}
+        if "stable" not in values:  # written before curves kept their stability
+            values["stable"] = np.full(len(values["fold"]), -1, dtype=np.int8)
+            names["markers"] = tuple(("fold", int(point)) for point in np.flatnonzero(values["fold"]))
+        names["markers"] = tuple((kind, point) for kind, point in names["markers"])
         provenance = json.loads(dataset.attrs["provenance"])
         return cls(**{field.name: {**values, **names, "provenance": provenance}[field.name] for field in fields(cls)})

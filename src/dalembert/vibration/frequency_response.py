@@ -8,7 +8,8 @@ import scipy
 
 import dalembert
 from dalembert.errors import InputError, unknown
-from dalembert.vibration.continuation import Found, along, at_frequencies, natural
+from dalembert.vibration.bifurcations import Judged, judged, unjudged
+from dalembert.vibration.continuation import along, at_frequencies, natural
 from dalembert.vibration.curve import FrequencyCurve
 from dalembert.vibration.equations import Equations, equations
 from dalembert.vibration.harmonic_balance import HarmonicBalance
@@ -31,6 +32,7 @@ def frequency_response(
     continuation: str = NATURAL,
     observe: Sequence[str] | None = None,
     start: tuple[FrequencyCurve, int] | None = None,
+    stability: bool = False,
 ) -> FrequencyCurve:
     """Periodic responses over frequency by harmonic balance.
 
@@ -47,6 +49,9 @@ def frequency_response(
         those with forces and contacts, if not given.
     start : (FrequencyCurve, int), optional
         A curve of the same system and harmonics and the number of one of its points, from which to go on.
+    stability : bool
+        Whether the stability of each point is found too, by Hill's method, and the places where it changes. On paths
+        between two frequencies these are points of their own; with given frequencies the first one behind is marked.
 
     Returns
     -------
@@ -57,7 +62,8 @@ def frequency_response(
     Raises
     ------
     InputError
-        For frequencies that are not positive, unknown degrees of freedom, and a start that does not fit.
+        For frequencies that are not positive, unknown degrees of freedom, a start that does not fit, and stability of
+        a structure that is too large for dense matrices.
     ModelError
         For rigid contacts that depend on each other, and for a structure whose mean position nothing holds.
 
@@ -89,7 +95,7 @@ def frequency_response(
         )
     settings = {"continuation": continuation, "frequencies": list(map(float, frequencies)) if ends else "given"}
     with one_thread():
-        return _followed(equations(system, method), omegas, settings, observe, start)
+        return _followed(equations(system, method), omegas, settings, observe, start, stability)
 
 
 def _followed(
@@ -98,15 +104,18 @@ def _followed(
     settings: dict,
     observe: Sequence[str] | None,
     start: tuple[FrequencyCurve, int] | None,
+    stability: bool,
 ) -> FrequencyCurve:
     """The curve through given frequencies, or between two."""
     known = None if start is None else _restarted(problem, *start)
-    if settings["frequencies"] == "given":
+    given = settings["frequencies"] == "given"
+    if given:
         found = at_frequencies(problem, omegas, known)
     else:
         follow = along if settings["continuation"] == ARC_LENGTH else natural
         found = follow(problem, float(omegas[0]), float(omegas[1]), known)
-    return _curve(problem, found, _observed(problem, observe), settings)
+    points = judged(problem, found, located=not given) if stability else unjudged(found)
+    return _curve(problem, points, _observed(problem, observe), settings)
 
 
 def _restarted(problem: Equations, curve: FrequencyCurve, point: int) -> Solution:
@@ -132,9 +141,9 @@ def _observed(problem: Equations, names: Sequence[str] | None) -> np.ndarray:
     return np.unique([*forced, *problem.lowered.matrix.nonzero()[1]]).astype(int)
 
 
-def _curve(problem: Equations, found: Iterable[Found], rows: np.ndarray, settings: dict) -> FrequencyCurve:
-    lowered, records = problem.lowered, [(one, *_read(problem, one.solution, rows)) for one in found]
-    solutions = [one.solution for one, *_ in records]
+def _curve(problem: Equations, points: Iterable[Judged], rows: np.ndarray, settings: dict) -> FrequencyCurve:
+    lowered, records = problem.lowered, [(one, *_read(problem, one.found.solution, rows)) for one in points]
+    solutions = [one.found.solution for one, *_ in records]
     method = asdict(problem.method)
     provenance = {"version": dalembert.__version__, "numpy": np.__version__, "scipy": scipy.__version__}
     return FrequencyCurve(
@@ -151,9 +160,11 @@ def _curve(problem: Equations, found: Iterable[Found], rows: np.ndarray, setting
         iterations=np.array([solution.iterations for solution in solutions]),
         residuals=np.array([solution.error for solution in solutions]),
         converged=np.array([solution.converged for solution in solutions]),
-        fold=np.array([one.fold for one, *_ in records]),
+        fold=np.array([one.found.fold for one, *_ in records]),
         samples=np.array([solution.samples for solution in solutions]),
         sampling_errors=np.array([solution.sampling_error for solution in solutions]),
+        stable=np.array([one.stable for one, *_ in records], dtype=np.int8),
+        markers=tuple((one.marker, number) for number, (one, *_) in enumerate(records) if one.marker),
         provenance={**provenance, "method": method, **settings},
     )
 

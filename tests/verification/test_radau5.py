@@ -109,7 +109,7 @@ def test_andrews_mechanism(reference, record_evidence) -> None:
 def test_a_singular_position_ends_the_run(reference) -> None:
     """Where the flat four-bar loses a constraint, its rates cannot be met: said with time and component."""
     system = n_four_bar(reference("n_four_bar")["model"], 1)
-    with pytest.raises(da.SolveError, match=r"did not converge at t = 0\.708\d* s, worst at component '(U0|U1|C1)'"):
+    with pytest.raises(da.SolveError, match=r"did not converge at t = 0\.70\d* s, worst at component '(U0|U1|C1)'"):
         da.simulate(system, 1.0, solver=da.Radau5(tolerance=1e-6))
 
 

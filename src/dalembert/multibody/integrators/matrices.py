@@ -36,8 +36,10 @@ class Matrices(NamedTuple):
     ``mass``, ``damping`` and ``stiffness`` are the derivatives of the equations of motion by accelerations, velocities
     and coordinates; with the stiffness stand those of the constraints and by the multipliers. ``rigid`` is factorised
     [M, J^T; J, 0], ``real`` and ``double`` are [M + C/s + K/s^2, J^T; J, 0] for a real s and for a complex one.
+    ``heavy`` are the numbers of the entries that have a mass, as many as its last entry says.
     """
 
+    heavy: np.ndarray
     mass: np.ndarray
     damping: np.ndarray
     stiffness: np.ndarray
@@ -79,7 +81,7 @@ def room(pattern):
     """Room for the matrices of a motion."""
     entries = len(pattern.rows)
     return Matrices(
-        np.zeros(entries), np.zeros(entries), np.zeros(entries),
+        np.zeros(entries + 1, np.int64), np.zeros(entries), np.zeros(entries), np.zeros(entries),
         storage(pattern.layout), storage(pattern.layout), storage(pattern.double_layout),
     )  # fmt: skip
 
@@ -88,17 +90,23 @@ def room(pattern):
 def weigh_masses(pattern, matrices, dual, n, state, dual_work):
     """Evaluate the masses, which do not change in a motion; the signals in ``dual_work`` hold the time."""
     tangent(dual, pattern.slots, n, state.x, state.v, state.a, (0.0, 0.0, 1.0), (1.0, 0.0), dual_work, matrices.mass)
+    count = 0
+    for e in range(len(matrices.mass)):
+        if matrices.mass[e] != 0.0 and pattern.rows[e] < n and pattern.columns[e] < n:
+            matrices.heavy[count] = e
+            count += 1
+    matrices.heavy[len(matrices.mass)] = count
 
 
-@compiled
+@kernel
 def renew(problem, pattern, matrices, dual, damped, t, within, state, dual_work):
     """Evaluate stiffness (and damping, if ``damped``), and factorise [M, J^T; J, 0]; whether it is regular."""
     n = problem.n
     set_signals(dual, t, within, dual_work)
-    given = dual, pattern.slots, n, state.x, state.v, state.a
-    tangent(*given, (1.0, 0.0, 0.0), (1.0, 1.0), dual_work, matrices.stiffness)
+    x, v, a = state.x, state.v, state.a
+    tangent(dual, pattern.slots, n, x, v, a, (1.0, 0.0, 0.0), (1.0, 1.0), dual_work, matrices.stiffness)
     if damped:
-        tangent(*given, (0.0, 1.0, 0.0), (1.0, 0.0), dual_work, matrices.damping)
+        tangent(dual, pattern.slots, n, x, v, a, (0.0, 1.0, 0.0), (1.0, 0.0), dual_work, matrices.damping)
     matrix = matrices.rigid.matrix
     clear(matrix)
     for e in range(len(pattern.rows)):
@@ -137,6 +145,15 @@ def factorise_complex(n, pattern, matrices, s):
         matrix[double[2, e]] = turned
         matrix[double[3, e]] = value
     return factorise(pattern.double_layout, matrices.double)
+
+
+@kernel
+def add_inertia(pattern, matrices, vector, target):
+    """target += M vector."""
+    heavy = matrices.heavy
+    for number in range(heavy[len(heavy) - 1]):
+        e = heavy[number]
+        target[pattern.rows[e]] += matrices.mass[e] * vector[pattern.columns[e]]
 
 
 @kernel

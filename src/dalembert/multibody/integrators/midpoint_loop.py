@@ -81,7 +81,7 @@ def integrate(problem, pattern, edges, settings, rigid, model, dual, directions,
     s, ds = np.zeros((midpoint.ROWS, width)), np.zeros((midpoint.ROWS, width))
     slope, slopes = np.zeros((2, width)), np.zeros((len(dstates.x), 2, width))
     b, ahead = midpoint.buffers(width)
-    push, moved, lifted = np.zeros(width), np.zeros((2, width)), np.zeros((10, width), np.complex128)
+    push, moved, lifted = np.zeros(width), np.zeros((6, width)), np.zeros((10, width), np.complex128)
     e = balance.room(len(rigid.spin), width)
     energy, denergies = 0.0, np.zeros(len(dstates.x))
     due = np.int64(0)  # no literal, for which there would be another compilation

@@ -44,8 +44,8 @@ class Radau5(Integrator):
     M q' = M v - J^T mu, M v' = Q - J^T lambda, Phi = 0, J v + Phi_t = 0; C. W. Gear, B. Leimkuhler and G. K. Gupta,
     "Automatic integration of Euler-Lagrange equations with constraints" (1985); stages, error estimate and the split of
     Newton's matrix by E. Hairer and G. Wanner, "Solving Ordinary Differential Equations II" (1996), IV.8. The estimate
-    is that of q and v alone. Where the constraints lose rank (a flat four-bar), their rates cannot be met and the run
-    ends with the time; :class:`GeneralizedAlpha` passes such positions.
+    is that of q and v alone. Where the constraints lose rank (a flat four-bar), their rates cannot be met and as a
+    rule the run ends with the time; :class:`GeneralizedAlpha` passes such positions.
 
     Examples
     --------

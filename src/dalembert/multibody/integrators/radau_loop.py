@@ -10,14 +10,15 @@ from dalembert.multibody.integrators.lifting import set_signals
 from dalembert.multibody.integrators.matrices import renew, room, weigh_masses
 from dalembert.multibody.integrators.outputs import record
 from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR, TOO_MANY_STEPS
-from dalembert.multibody.integrators.settling import VELOCITIES, settle, settle_along
+from dalembert.multibody.integrators.settling import VELOCITIES, accelerate_roughly, settle, settle_along
 from dalembert.multibody.kernels.compiled import compiled, kernel
 from dalembert.multibody.kernels.linear import storage
 from dalembert.multibody.kernels.model import select, workspace
-from dalembert.multibody.kernels.motion import copy, row, still
+from dalembert.multibody.kernels.motion import Motion, copy, row, still
 
-_AGED = 0.02  # contraction at which the next step begins with new matrices
-_SLOW = 0.2  # contraction that was not worth a kept factorisation
+_AGED = 0.003  # contraction at which the next step begins with new matrices
+_NEAR = 1.25  # ratio of a step to the one that the kept systems were factorised for
+_FAR = 1.5  # ratio of a step to the one before, from which the latter alone predicts
 _HALVINGS = 8  # of a fixed step that Newton's iteration does not converge on
 
 
@@ -47,8 +48,8 @@ def _first_step(n, scale, span, tolerance, state):
     return min(0.1 * span, 0.3 * tolerance**0.25 / (rate + 1e-300))
 
 
-@compiled
-def _read(n, s, start, new):
+@kernel
+def _read(n, s, new):
     """State at the end of a step: its last stage."""
     for k in range(len(new.x)):
         new.x[k] = s.x[2, k]
@@ -58,18 +59,82 @@ def _read(n, s, start, new):
 
 @compiled
 def _differentiate(
-    problem, pattern, matrices, directions, h, t, target, within, s, new, moved, dolds, dnews, ds, b, dual_works, lifted
-):
+    problem, pattern, matrices, directions, h, t, target, within, s, dolds, dnews, ds, b, dual_works
+):  # fmt: skip
     """Derivatives of a step along all directions."""
-    n = problem.n
     for d in range(len(dnews.x)):
         tilted, dold, dnew = select(directions, d), row(dolds, d), row(dnews, d)
         copy(dnew, dold)
         for i in range(3):
             set_signals(tilted, target if i == 2 else t + stages.C[i] * h, within, dual_works[i])
         stages.converge_along(problem, pattern, matrices, tilted, dual_works, h, s, dold, ds, b)
-        _read(n, ds, dold, dnew)
-        settle_along(problem, pattern, matrices, tilted, new, dnew, moved, dual_works[2], lifted, VELOCITIES)
+        _read(problem.n, ds, dnew)
+
+
+@compiled
+def _settle_all(
+    problem, pattern, matrices, model, directions, t, within, state, dstates, moved, work, dual_work, lifted,
+):  # fmt: skip
+    """Settle a state and its derivatives; whether that went well."""
+    set_signals(model, t, within, work)
+    if not settle(problem, pattern, matrices, model, state, moved, work, VELOCITIES):
+        return False
+    for d in range(len(dstates.x)):
+        tilted = select(directions, d)
+        set_signals(tilted, t, within, dual_work)
+        settle_along(problem, pattern, matrices, tilted, state, row(dstates, d), moved, dual_work, lifted, VELOCITIES)
+    return True
+
+
+@kernel
+def _copy_all(source, dsource, target, dtarget):
+    """Copy a state and its derivatives."""
+    copy(source, target)
+    for d in range(len(dsource.x)):
+        for i in range(dsource.x.shape[1]):
+            dtarget.x[d, i], dtarget.v[d, i], dtarget.a[d, i] = dsource.x[d, i], dsource.v[d, i], dsource.a[d, i]
+
+
+@kernel
+def _attempt(
+    problem, pattern, matrices, model, dual, settings, t, target, within, before, earlier, stale, made, speed, old, new,
+    s, past, weights, b, works, dual_work, moved,
+):  # fmt: skip
+    """A step from ``new``, which becomes ``old`` if the step is good; in one kernel, as each call counts references.
+
+    Status, step that the kept systems are for, error against the tolerance, largest velocity, iterations, contraction,
+    unknown that moved most.
+    """
+    n, h = problem.n, target - t
+    if before > 0.0:
+        stages.go_on(n, h, before, earlier if h <= _FAR * before else 0.0, past, s, weights)
+    else:
+        stages.begin(n, h, new, s)
+    stages.integrate_stages(n, h, new, s)
+    if stale:
+        middle, place = t + stages.C[1] * h, Motion(s.x[1], s.v[1], s.a[1], s.a[1])
+        if not renew(problem, pattern, matrices, dual, settings.damped, middle, within, place, dual_work):
+            return SINGULAR, made, 0.0, speed, 0, 1.0, 0
+    if stale or not (made <= _NEAR * h and h <= _NEAR * made):
+        made = h
+        if not stages.factorise(n, pattern, matrices, h):
+            return SINGULAR, made, 0.0, speed, 0, 1.0, 0
+    for i in range(3):
+        set_signals(model, target if i == 2 else t + stages.C[i] * h, within, works[i])
+    converged, iterations, rate, worst = stages.converge(
+        problem, pattern, matrices, model, works, h, new, s, b, settings.newton_tolerance, h * speed
+    )
+    if not converged:
+        return NEWTON_FAILED, made, 0.0, speed, iterations, rate, worst
+    error = 0.0
+    if settings.step == 0.0:
+        speed = max(speed, _speed(n, problem.scale, s.v[2]))
+        error = stages.estimate(problem, pattern, matrices, settings.damped, h, new, s, b, speed) / settings.tolerance
+    if error <= 1.0:
+        copy(new, old)
+        _read(n, s, new)
+        accelerate_roughly(problem, pattern, matrices, model, new, works[2], moved[2:])
+    return DONE, made, error, speed, iterations, rate, worst
 
 
 @compiled
@@ -82,15 +147,16 @@ def integrate(problem, pattern, edges, settings, model, dual, directions, start,
     """
     n, width, adaptive = problem.n, len(start.x), settings.step == 0.0
     old, new, between, dbetween = still(width), still(width), still(width), still(width)
+    first, last = still(width), still(width)  # the same where there are outputs, settled
     copy(start, new)
-    dolds = stages.copies(dstates)
+    dolds, dfirst, dlast = stages.copies(dstates), stages.copies(dstates), stages.copies(dstates)
     works = workspace(model), workspace(model), workspace(model)
     dual_works = workspace(dual), workspace(dual), workspace(dual)
     matrices, exact = room(pattern), storage(problem.exact_layout)
-    s, ds, b = stages.stages(width), stages.stages(width), stages.buffers(width)
-    lifted, moved = np.zeros((10, width), np.complex128), np.zeros((2, width))
+    s, past, ds, b = stages.stages(width), stages.stages(width), stages.stages(width), stages.buffers(width)
+    lifted, moved, weights = np.zeros((10, width), np.complex128), np.zeros((6, width)), np.zeros((4, 6))
     due = np.int64(0)  # no literal, for which there would be another compilation
-    speed, h, length = 1.0 / (edges[-1] - edges[0]), 0.0, 0.0
+    speed, h, length, taken = 1.0 / (edges[-1] - edges[0]), 0.0, 0.0, 0.0
     for stretch in range(len(edges) - 1):
         t, end = edges[stretch], edges[stretch + 1]
         within = 0.5 * (t + end)
@@ -103,57 +169,62 @@ def integrate(problem, pattern, edges, settings, model, dual, directions, start,
             length = _first_step(n, problem.scale, end - t, settings.tolerance, new)
         steps = 1 if adaptive else max(1, int(np.ceil((end - t) / settings.step - 1e-6)))
         begin, nominal, number, level = t, (end - t) / steps, 0, 0
-        stale, fresh, made, before = True, True, 0.0, 0.0
+        stale, fresh, made, before, earlier = True, True, 0.0, 0.0, 0.0
+        settled, ready = False, False  # both ends of the last step; the end of the one before it
         while True:
-            while due < len(problem.times) and problem.times[due] <= t + 1e-9 * h:
-                written = record(
-                    problem, pattern, matrices, model, directions, h, t - h, within, old, new, dolds, dstates, out,
-                    dout, due, between, dbetween, moved, works[0], dual_works[0], lifted,
-                )  # fmt: skip
-                if not written:
+            while due < len(problem.times) and problem.times[due] <= t + 1e-9 * taken:
+                if not settled:  # seldom: most steps have no output
+                    if ready or taken == 0.0:
+                        _copy_all(last, dlast, first, dfirst)
+                    else:
+                        _copy_all(old, dolds, first, dfirst)
+                    _copy_all(new, dstates, last, dlast)
+                    settled = taken == 0.0 or (
+                        (
+                            ready
+                            or _settle_all(
+                                problem, pattern, matrices, model, directions, t - taken, within, first, dfirst, moved,
+                                works[0], dual_works[0], lifted,
+                            )
+                        )
+                        and _settle_all(
+                            problem, pattern, matrices, model, directions, t, within, last, dlast, moved, works[0],
+                            dual_works[0], lifted,
+                        )
+                    )  # fmt: skip
+                if not settled or not record(
+                    problem, pattern, matrices, model, directions, taken, t - taken, within, first, last, dfirst,
+                    dlast, out, dout, due, between, dbetween, moved, works[0], dual_works[0], lifted,
+                ):  # fmt: skip
                     return NEWTON_FAILED, problem.times[due], 0
                 due += 1
             if number == steps:
                 break
-            if stale:
-                if not renew(problem, pattern, matrices, dual, settings.damped, t, within, new, dual_works[0]):
-                    return SINGULAR, t, 0
-                stale, fresh, made = False, True, 0.0
             goal = end if number == steps - 1 else begin + nominal * (number + 1)
             if not adaptive:
                 length = (goal - t) / (1 << level)
             reached = (level == 0 and not adaptive) or t + length * 1.0001 >= goal
             target = goal if reached else t + length
             h = target - t
-            if not abs(h - made) <= 1e-10 * h:
-                log.counts[2] += 1
-                made = h
-                if not stages.factorise(n, pattern, matrices, h):
-                    return SINGULAR, t, 0
-            for i in range(3):
-                set_signals(model, target if i == 2 else t + stages.C[i] * h, within, works[i])
-            if before > 0.0:
-                stages.go_on(n, h, before, old, s)
-            else:
-                stages.begin(n, h, new, s)
-            converged, iterations, rate, worst = stages.converge(
-                problem, pattern, matrices, model, works, h, new, s, b, settings.newton_tolerance, h * speed
-            )
+            status, made, error, own, iterations, rate, worst = _attempt(
+                problem, pattern, matrices, model, dual, settings, t, target, within, before, earlier, stale, made,
+                speed, old, new, s, past, weights, b, works, dual_works[0], moved,
+            )  # fmt: skip
             log.counts[1] += iterations
-            error, own = 0.0, speed
-            if converged and adaptive:
-                own = max(speed, _speed(n, problem.scale, s.v[2]))
-                error = stages.estimate(problem, pattern, matrices, h, new, s, b, own) / settings.tolerance
-            if converged and error <= 1.0:
-                _read(n, s, new, between)
-                converged = settle(problem, pattern, matrices, model, between, moved, works[2], VELOCITIES)
+            if status == SINGULAR:
+                return SINGULAR, t, 0
+            log.counts[2] += 1 if made == h else 0
+            fresh, stale = fresh or stale, False
+            converged = status == DONE
             if not converged or not error <= 1.0:
                 log.counts[3] += 1
-                h, before = 0.0, 0.0
-                if not fresh and not converged:  # once more with matrices of this place
-                    stale = True
-                elif adaptive:
-                    length = made * (max(0.1, 0.9 * error**-0.25) if converged and error < 1e100 else 0.25)
+                earlier = 0.0
+                stages.go_back(past, s)
+                stale = not converged  # so that matrices are not those of a place that the step does not reach
+                if stale and not fresh:  # once more, as long
+                    continue
+                if adaptive:
+                    length = h * (max(0.1, 0.9 * error**-0.25) if converged and error < 1e100 else 0.25)
                     if length < 1e-12 * (end - begin):
                         return NEWTON_FAILED, t, worst
                 elif level == _HALVINGS:
@@ -161,13 +232,11 @@ def integrate(problem, pattern, edges, settings, model, dual, directions, start,
                 else:
                     level += 1
                 continue
-            speed, before = own, h
-            copy(new, old)
-            copy(between, new)
             _differentiate(
-                problem, pattern, matrices, directions, h, t, target, within, s, new, moved, dolds, dstates, ds, b,
-                dual_works, lifted,
-            )  # fmt: skip
+                problem, pattern, matrices, directions, h, t, target, within, s, dolds, dstates, ds, b, dual_works
+            )
+            speed, before, earlier, taken = own, h, before, h
+            ready, settled = settled, False
             if log.counts[0] < len(log.iterations):
                 log.iterations[log.counts[0]] = iterations
                 log.ends[log.counts[0]] = target
@@ -179,7 +248,6 @@ def integrate(problem, pattern, edges, settings, model, dual, directions, start,
             if adaptive:
                 if log.counts[0] >= settings.most_steps and not reached:
                     return TOO_MANY_STEPS, t, 0
-                growth = min(3.0, 0.9 * (error + 1e-30) ** -0.25)
-                length = h * growth if growth < 1.0 or growth > 1.2 or (stale and growth > 1.05) else h
+                length = h * min(3.0, 0.9 * (error + 1e-30) ** -0.25)
     copy(new, start)
     return DONE, edges[-1], 0

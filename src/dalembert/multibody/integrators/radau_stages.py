@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from dalembert.multibody.integrators.matrices import add_product, factorise_complex, factorise_real
+from dalembert.multibody.integrators.matrices import add_inertia, add_product, factorise_complex, factorise_real
 from dalembert.multibody.integrators.settling import weigh, weigh_along
 from dalembert.multibody.kernels.assembly import constraint_rates, residual, residual_here
 from dalembert.multibody.kernels.compiled import compiled, kernel
@@ -122,27 +122,52 @@ def begin(n, h, start, s):
 
 
 @kernel
-def go_on(n, h, before, last, s):
-    """Stages by the polynomials of the step before, which began in ``last`` and took ``before`` seconds."""
-    c0, c1, c2 = C
-    t0, t1, t2 = 1.0 + c0 * h / before, 1.0 + c1 * h / before, 1.0 + c2 * h / before
-    for k in range(len(last.x)):
+def go_back(past, s):
+    """Stages of the step before, as the prediction kept them."""
+    for i in range(3):
+        for k in range(s.x.shape[1]):
+            s.x[i, k], s.u[i, k], s.a[i, k] = past.x[i, k], past.u[i, k], past.a[i, k]
+
+
+@kernel
+def go_on(n, h, before, earlier, past, s, weights):
+    """Stages by the polynomial through those of the step before, and of the one earlier (0: without) in ``past``.
+
+    They took ``before`` and ``earlier`` seconds; ``weights`` (4, 6) is room. The stages before are then in ``past``.
+    """
+    count = 3 if earlier == 0.0 else 6
+    nodes = weights[3]
+    for j in range(3):
+        nodes[j], nodes[3 + j] = (C[j] - 1.0) * before, (C[j] - 1.0) * earlier - before
+    for i in range(3):
+        for j in range(count):
+            weight = 1.0
+            for k in range(count):
+                if k != j:
+                    weight *= (C[i] * h - nodes[k]) / (nodes[j] - nodes[k])
+            weights[i, j] = weight
+    for k in range(s.x.shape[1]):
         x0, x1, x2 = s.x[0, k], s.x[1, k], s.x[2, k]
         u0, u1, u2 = s.u[0, k], s.u[1, k], s.u[2, k]
         a0, a1, a2 = s.a[0, k], s.a[1, k], s.a[2, k]
         for i in range(3):
-            t = t0 if i == 0 else (t1 if i == 1 else t2)
-            first, second, third = t - c0, t - c1, t - c2
-            w0 = second * third / ((c0 - c1) * (c0 - c2))
-            w1 = first * third / ((c1 - c0) * (c1 - c2))
-            w2 = first * second / ((c2 - c0) * (c2 - c1))
+            w0, w1, w2 = weights[i, 0], weights[i, 1], weights[i, 2]
             s.m[i, k] = 0.0
             if k < n:
                 s.u[i, k] = w0 * u0 + w1 * u1 + w2 * u2
                 s.a[i, k] = w0 * a0 + w1 * a1 + w2 * a2
             else:
-                own = -first * second * third / (c0 * c1 * c2)
-                s.x[i, k] = own * last.x[k] + t * (w0 / c0 * x0 + w1 / c1 * x1 + w2 / c2 * x2)
+                s.x[i, k] = w0 * x0 + w1 * x1 + w2 * x2
+            for j in range(count - 3):
+                weight = weights[i, 3 + j]
+                if k < n:
+                    s.u[i, k] += weight * past.u[j, k]
+                    s.a[i, k] += weight * past.a[j, k]
+                else:
+                    s.x[i, k] += weight * past.x[j, k]
+        past.x[0, k], past.x[1, k], past.x[2, k] = x0, x1, x2
+        past.u[0, k], past.u[1, k], past.u[2, k] = u0, u1, u2
+        past.a[0, k], past.a[1, k], past.a[2, k] = a0, a1, a2
 
 
 @kernel
@@ -258,11 +283,10 @@ def converge(problem, pattern, matrices, model, works, h, start, s, b, tolerance
     """Newton's iteration on the stages: whether it converged, iterations, last contraction, unknown that moved most.
 
     Corrections end at ``tolerance`` times the way that the coordinates go in the step, and at least ``least``, in parts
-    of their scales.
+    of their scales. The stages are given as predicted, with their integrals.
     """
     n, size = problem.n, len(start.x) - 1
     before, norm, rate, worst = 0.0, 1.0, 1.0, 0
-    integrate_stages(n, h, start, s)
     closed = 0.0
     for k in range(n):
         closed = max(closed, _CLOSED * problem.scale[k])
@@ -334,8 +358,8 @@ def converge_along(problem, pattern, matrices, tilted, works, h, s, dstart, ds, 
         before = norm
 
 
-@compiled
-def estimate(problem, pattern, matrices, h, start, s, b, speed):
+@kernel
+def estimate(problem, pattern, matrices, damped, h, start, s, b, speed):
     """Estimated error of a step, as a part of the scales: of coordinates, and of velocities against ``speed``, 1/s."""
     n, size = problem.n, len(start.x) - 1
     s1 = REAL / h
@@ -349,15 +373,16 @@ def estimate(problem, pattern, matrices, h, start, s, b, speed):
         given[k] = 0.0
         if k < n:
             v[k] = v[k] / s1 + q[k]
-    add_product(n, pattern, matrices.mass, v, 1.0, given)
-    add_product(n, pattern, matrices.damping, q, 1.0 / s1, given)
+    add_inertia(pattern, matrices, v, given)
+    if damped:
+        add_product(n, pattern, matrices.damping, q, 1.0 / s1, given)
     solve(pattern.layout, matrices.real, given, answer)
     error = 0.0
     for k in range(n):
         error = max(error, abs(answer[k]) / problem.scale[k])
         v[k] = s1 * (answer[k] - q[k])
         given[k] = 0.0
-    add_product(n, pattern, matrices.mass, v, 1.0, given)
+    add_inertia(pattern, matrices, v, given)
     solve(pattern.layout, matrices.rigid, given, answer)
     for k in range(n):
         error = max(error, abs(answer[k]) / (problem.scale[k] * speed))

@@ -8,7 +8,7 @@ for derivatives, too: they are iterated after the state, with the same factorisa
 import numpy as np
 
 from dalembert.multibody.integrators.lifting import lift
-from dalembert.multibody.integrators.matrices import add_product
+from dalembert.multibody.integrators.matrices import add_inertia
 from dalembert.multibody.kernels import joints
 from dalembert.multibody.kernels.assembly import constraint_rates, residual
 from dalembert.multibody.kernels.compiled import compiled, inlined, kernel
@@ -19,6 +19,7 @@ from dalembert.multibody.kernels.linear import solve
 COORDINATES, VELOCITIES, ACCELERATIONS = np.int64(0), np.int64(1), np.int64(2)
 _MOST_ITERATIONS = 25
 _ROUNDING = 2e-16  # of the largest entry, below which an error is left
+_ROUGH = 1e-5  # the same of a correction, after which the error is smaller by the contraction
 
 
 @inlined
@@ -40,7 +41,7 @@ def weigh(model, n, pattern, matrices, x, w, work, f):
     """Fill ``f`` (N + 1,): M w + J^T m in its first n entries, for w = (w, m), and the constraints behind them."""
     for i in range(len(f)):
         f[i] = 0.0
-    add_product(n, pattern, matrices.mass, w, 1.0, f)
+    add_inertia(pattern, matrices, w, f)
     constrain(model, x, w, 1.0, work, f)
 
 
@@ -101,16 +102,17 @@ def _finished(iteration, norm, before, size):
     return norm * norm <= (before - norm) * _ROUNDING * size
 
 
-@compiled
+@kernel
 def settle(problem, pattern, matrices, model, state, moved, work, first):
     """Accelerations and multipliers of a state; if ``first`` says so, coordinates and velocities are moved before.
 
-    The signals in ``work`` hold the time. ``moved`` (2, N + 1) are the moves of coordinates and velocities with their
-    multipliers. Answers whether the iteration converged.
+    The signals in ``work`` hold the time. ``moved`` (6, N + 1) are the moves of coordinates and velocities with their
+    multipliers, and room. Answers whether the iteration converged.
     """
     n, last = problem.n, len(state.x) - 1
-    f, rate, second, answer = np.zeros(last + 1), np.zeros(last + 1), np.zeros(last + 1), np.zeros(last + 1)
-    moved[:] = 0.0
+    f, rate, second, answer = moved[2], moved[3], moved[4], moved[5]
+    for i in range(last + 1):
+        moved[0, i] = moved[1, i] = 0.0
     for level in range(first if last > n else ACCELERATIONS, 3):
         before, done = 0.0, False
         for iteration in range(_MOST_ITERATIONS):
@@ -132,6 +134,23 @@ def settle(problem, pattern, matrices, model, state, moved, work, first):
         if not done and not before <= 1e-9 * size:
             return False
     return True
+
+
+@kernel
+def accelerate_roughly(problem, pattern, matrices, model, state, work, room):
+    """Accelerations and multipliers of a state, as exactly as an estimate of errors needs; ``room`` (4, N + 1)."""
+    n, last = problem.n, len(state.x) - 1
+    f, answer = room[0], room[3]
+    for _ in range(_MOST_ITERATIONS):
+        residual(model, n, state.x, state.v, state.a, work, 1.0, f)
+        constraint_rates(model, n, state.x, state.v, state.a, work, room[1], room[2])
+        for i in range(n, last):
+            f[i] = room[2, i]
+        solve(pattern.layout, matrices.rigid, f, answer)
+        _move(n, ACCELERATIONS, answer, state, room)
+        norm, size = _sizes(n, ACCELERATIONS, answer, state)
+        if norm <= _ROUGH * size or not norm < 1e100:
+            break
 
 
 @compiled

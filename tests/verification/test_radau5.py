@@ -127,3 +127,14 @@ def test_flexible_pendulum_agrees_with_generalized_alpha(record_evidence) -> Non
         topic=TOPIC,
         source="generalized-α",
     )
+
+
+def test_outputs_leave_the_motion_alone(reference) -> None:
+    system = two_link_arm(reference("two_link_arm")["model"])
+    few, many = (
+        da.simulate(system, 1.0, solver=da.Radau5(tolerance=1e-8), times=np.linspace(0.0, 1.0, count))
+        for count in (2, 500)
+    )
+    names = ["lower.end.x", "lower.end.vy"]
+    np.testing.assert_array_equal(few.run.ends, many.run.ends)
+    np.testing.assert_array_equal(few.channels(names)[-1], many.channels(names)[-1])

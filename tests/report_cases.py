@@ -1,7 +1,7 @@
 """Small studies that provoke every figure and every sentence of reports and summaries, with the sentences of each."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +17,8 @@ from dalembert.study import load, run_study
 from dalembert.study.tasks.telling import foreseen
 from dalembert.surrogate import Adaptive, Tensor, TotalDegree
 from dalembert.uncertainty import Chebyshev, LatinHypercube, MonteCarlo, Optimise, Scan, Taylor, Vertex
+from frequency_cases import FREQUENCY_CASES
+from report_case import Case
 from small_models import DECAY, LINE, TIMES, banded, measured
 
 NOW = np.zeros(1)
@@ -27,19 +29,6 @@ SLOPE = PythonModel(lambda a: a * TIMES, {"a": Parameter("a", 0.0, 2.0, start=0.
 GHOST = PythonModel(lambda a, ghost: a * TIMES + 0 * ghost, {"a": (0.0, 2.0), "ghost": (0.0, 1.0)}, ["x"], TIMES)
 WAVE = PythonModel(lambda rate: np.cos(rate * TIMES), {"rate": (1.0, 20.0)}, ["x"], TIMES)
 BANDS = banded(DECAY, [1.8, 0.7], [2.2, 0.9], points=2)
-
-
-@dataclass(frozen=True)
-class Case:
-    """What a study gives, the sentences that its report or summary must say, and the figures that it must show.
-
-    ``make`` returns a result, or a result and the options of its report; text alone where there is no report.
-    """
-
-    make: Callable[[], Any]
-    says: tuple[str, ...]
-    shows: tuple[str, ...] = ()
-    options: dict[str, Any] = field(default_factory=dict)
 
 
 def _model(function: Callable, channels: str = "x", **box: Any) -> PythonModel:
@@ -697,4 +686,5 @@ CASES: dict[str, Case] = {
         ("one parameter varied at a time: rate.", "1 of them failed, see events.jsonl"),
         ("sweep-1",),
     ),
+    **FREQUENCY_CASES,
 }

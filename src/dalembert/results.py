@@ -40,10 +40,10 @@ class Result(ABC):
         """
         return cls.from_xarray(read_dataset(path, form=cls.FORMAT, expected=f"a result written by {cls.__name__}.save"))
 
-    def figures(self) -> dict[str, Any]:
-        """Plotly figures by name."""
-        return hook("figures")(self)
+    def figures(self, **options: Any) -> dict[str, Any]:
+        """Plotly figures by name; options as those of :func:`dalembert.report.figures`."""
+        return hook("figures")(self, **options)
 
-    def report(self, path: str | Path) -> Any:
-        """Write an HTML report that opens offline."""
-        return hook("report")(self, path)
+    def report(self, path: str | Path, **options: Any) -> Any:
+        """Write an HTML report that opens offline; options as those of :func:`dalembert.report.report`."""
+        return hook("report")(self, path, **options)

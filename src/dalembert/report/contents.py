@@ -17,10 +17,12 @@ from dalembert.report.needs import (
     SweepLike,
     TrajectoryLike,
 )
+from dalembert.report.needs_frequency import FrequencyCurveLike
 from dalembert.report.needs_integrators import WorkPrecisionLike
 from dalembert.report.needs_telling import DesignsLike, PredictionLike, ProfilesLike
 from dalembert.report.plot import Plot
 from dalembert.report.sections import (
+    Balance,
     Bounds,
     Comparison,
     Consistent,
@@ -28,7 +30,10 @@ from dalembert.report.sections import (
     Diagnostics,
     Estimates,
     Experiments,
+    ForcedResponse,
+    Friction,
     GivenBands,
+    Harmonics,
     Integrators,
     Intervals,
     Methods,
@@ -45,6 +50,7 @@ from dalembert.report.sections import (
     headline,
     motion,
     telling_headlines,
+    vibration_headlines,
 )
 
 Result = (
@@ -59,6 +65,7 @@ Result = (
     | PredictionLike
     | DesignsLike
     | WorkPrecisionLike
+    | FrequencyCurveLike
 )
 
 
@@ -73,6 +80,8 @@ def contents(
     truth: Mapping[str, Any] | None = None,
     profiles: ProfilesLike | None = None,
     prediction: PredictionLike | Mapping[str, PredictionLike] | None = None,
+    dofs: tuple[str, ...] = (),
+    amplitude: str = "peak",
 ) -> list[Section]:
     """Sections of a report in reading order; the first is the headline.
 
@@ -108,6 +117,9 @@ def contents(
             sections = [telling_headlines.of_designs(result, title, notes), Designing(result)]
         case WorkPrecisionLike():
             sections = [headline.of_work_precision(result, title, notes), Integrators(result)]
+        case FrequencyCurveLike():
+            own = [vibration_headlines.of_frequency_curve(result, dofs, amplitude, title, notes)]
+            sections = [*own, *_vibrating(result, dofs, amplitude), Balance(result)]
         case TrajectoryLike():
             moving = each(result)
             shown = [*_motion(moving, points), Diagnostics(moving)]
@@ -121,6 +133,14 @@ def contents(
             )
     facts = getattr(result, "provenance", {})
     return [*sections, Provenance(facts, study)] if facts or study else sections
+
+
+def _vibrating(curve: FrequencyCurveLike, dofs: tuple[str, ...], amplitude: str) -> list[Section]:
+    """The sections on a response over frequency, where any of it was found."""
+    if not curve.converged.any():
+        return []
+    elements = [Friction(curve, dofs, amplitude)] if curve.coordinates else []
+    return [ForcedResponse(curve, dofs, amplitude), *elements, Harmonics(curve, dofs, amplitude)]
 
 
 def _compared(fit: FitLike) -> Section:

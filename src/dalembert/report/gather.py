@@ -12,9 +12,10 @@ def figures(result: Result, **options: Any) -> dict[str, go.Figure]:
 
     Parameters
     ----------
-    result : Fit, Trajectory, Propagation, Comparison, BandFit, ParameterSet, Profiles, Prediction, Designs or sweep
+    result : Fit, Trajectory, FrequencyCurve, Propagation, Comparison, BandFit, ParameterSet, Profiles …
     **options
-        ``trajectory``, ``points``, ``truth``, ``profiles`` and ``prediction``, as in :func:`dalembert.report.report`.
+        ``trajectory``, ``points``, ``truth``, ``profiles``, ``prediction``, ``dofs`` and ``amplitude``, as in
+        :func:`dalembert.report.report`.
 
     Returns
     -------
@@ -24,7 +25,8 @@ def figures(result: Result, **options: Any) -> dict[str, go.Figure]:
         ``"mechanism"``, ``"energies"``, ``"violations"``, ``"newton"``, for bounds ``"bands-1"`` …, for methods
         compared ``"methods"`` and ``"differences"`` too, for intervals from bands ``"intervals"``,
         ``"residual-bands-1"`` …, for a set ``"paving-1"`` …, for a sweep ``"sweep-1"`` …, for profiles
-        ``"profile-1"`` …, for a prediction ``"prediction-1"`` …, for designs ``"ranking"`` and ``"horizons"``.
+        ``"profile-1"`` …, for a prediction ``"prediction-1"`` …, for designs ``"ranking"`` and ``"horizons"``, for a
+        response over frequency ``"frequency-curve"``, ``"hysteresis"``, ``"contact-states"``, ``"harmonic-content"`` ….
 
     Raises
     ------

@@ -34,12 +34,15 @@ def report(
     truth: Mapping[str, Any] | None = None,
     profiles: ProfilesLike | None = None,
     prediction: PredictionLike | Mapping[str, PredictionLike] | None = None,
+    dofs: Sequence[str] = (),
+    amplitude: str = "peak",
 ) -> Path:
     """Write an HTML report that opens offline in any browser, in its light or dark, and asks nothing of the network.
 
     Parameters
     ----------
-    result : Fit, Trajectory, Propagation, Comparison, BandFit, ParameterSet, Profiles, Prediction, Designs or sweep
+    result : Fit, Trajectory, FrequencyCurve, Propagation, Comparison, BandFit, ParameterSet, Profiles …
+        A result of this package.
     path : path
         The file is written whole or not at all; its folder is made.
     title : str, optional
@@ -59,6 +62,10 @@ def report(
         Profile likelihoods of a fit, for a section of its report.
     prediction : Prediction, or mapping of str to Prediction, optional
         Bands of a fit's response, for a section of its report; one for each of several experiments by name.
+    dofs : sequence of str
+        Degrees of freedom that a response over frequency is drawn for; those that move most if not given.
+    amplitude : str
+        What is drawn over frequency: ``"peak"``, ``"rms"``, or ``"harmonic 1"`` and so on.
 
     Returns
     -------
@@ -81,6 +88,8 @@ def report(
         truth=truth,
         profiles=profiles,
         prediction=prediction,
+        dofs=tuple(dofs),
+        amplitude=amplitude,
     )
     environment = _environment()
     scripts = [Markup(get_plotlyjs()), Markup(_packaged("page.js"))]

@@ -1,11 +1,16 @@
 """One function a figure, each in a file of its own."""
 
 from dalembert.report.charts.bands import bands
+from dalembert.report.charts.contact_states import contact_shares, contact_states
 from dalembert.report.charts.convergence import convergence
 from dalembert.report.charts.correlation import correlation
 from dalembert.report.charts.designs import horizons, ranking
+from dalembert.report.charts.dissipation import dissipation
 from dalembert.report.charts.energies import energies
+from dalembert.report.charts.frequency_curve import frequency_curve
 from dalembert.report.charts.gaps import gaps
+from dalembert.report.charts.harmonic_content import harmonic_content
+from dalembert.report.charts.hysteresis import hysteresis
 from dalembert.report.charts.intervals import intervals
 from dalembert.report.charts.l_curve import l_curve
 from dalembert.report.charts.mechanism import mechanism
@@ -13,6 +18,7 @@ from dalembert.report.charts.methods import differences, methods
 from dalembert.report.charts.newton import newton
 from dalembert.report.charts.parameters import parameters
 from dalembert.report.charts.paving import paving
+from dalembert.report.charts.points_found import points_found
 from dalembert.report.charts.prediction import prediction
 from dalembert.report.charts.profile import profile
 from dalembert.report.charts.residual_bands import residual_bands
@@ -26,12 +32,18 @@ from dalembert.report.charts.work_precision import work_precision
 
 __all__ = [
     "bands",
+    "contact_shares",
+    "contact_states",
     "convergence",
     "correlation",
     "differences",
+    "dissipation",
     "energies",
+    "frequency_curve",
     "gaps",
+    "harmonic_content",
     "horizons",
+    "hysteresis",
     "intervals",
     "l_curve",
     "mechanism",
@@ -39,6 +51,7 @@ __all__ = [
     "newton",
     "parameters",
     "paving",
+    "points_found",
     "prediction",
     "profile",
     "ranking",

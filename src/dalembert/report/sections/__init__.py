@@ -1,5 +1,6 @@
 """The sections of a report: one class each, with its template in ``templates/``."""
 
+from dalembert.report.sections.balance import Balance
 from dalembert.report.sections.bounds import Bounds
 from dalembert.report.sections.comparison import Comparison
 from dalembert.report.sections.consistent import Consistent
@@ -7,7 +8,11 @@ from dalembert.report.sections.designing import Designing
 from dalembert.report.sections.diagnostics import Diagnostics
 from dalembert.report.sections.estimates import Estimates
 from dalembert.report.sections.experiments import Experiments
+from dalembert.report.sections.findings import Findings
+from dalembert.report.sections.forced_response import ForcedResponse
+from dalembert.report.sections.friction import Friction
 from dalembert.report.sections.given_bands import GivenBands
+from dalembert.report.sections.harmonics import Harmonics
 from dalembert.report.sections.headline import Headline
 from dalembert.report.sections.integrators import Integrators
 from dalembert.report.sections.intervals import Intervals
@@ -23,6 +28,7 @@ from dalembert.report.sections.sweeps import Sweeps
 from dalembert.report.sections.telling import Telling
 
 __all__ = [
+    "Balance",
     "Bounds",
     "Comparison",
     "Consistent",
@@ -30,7 +36,11 @@ __all__ = [
     "Diagnostics",
     "Estimates",
     "Experiments",
+    "Findings",
+    "ForcedResponse",
+    "Friction",
     "GivenBands",
+    "Harmonics",
     "Headline",
     "Integrators",
     "Intervals",

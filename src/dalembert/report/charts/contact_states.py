@@ -1,0 +1,98 @@
+"""Whether contacts stick, slip or separate: over a period, and over frequency."""
+
+import numpy as np
+import plotly.graph_objects as go
+
+from dalembert.report.look import LIGHT, plain, themed
+from dalembert.report.needs_frequency import FrequencyCurveLike
+
+STATES = ("separated", "stuck", "slipping")
+COLOURS = {"separated": LIGHT.grid, "stuck": LIGHT.series[0], "slipping": LIGHT.series[1]}
+NAMED = 40
+"""Contacts up to which each has its name beside its row."""
+
+
+def contact_states(curve: FrequencyCurveLike, point: int, *, title: str = "Contact states over a period") -> go.Figure:
+    """State of each contact, a row, over the phase of a period at one point of a curve.
+
+    Parameters
+    ----------
+    curve : FrequencyCurve
+    point : int
+        Number of the point.
+    title : str
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    states = np.asarray(curve.states[point])
+    steps = [
+        [place, COLOURS[state]] for k, state in enumerate(STATES) for place in (k / len(STATES), (k + 1) / len(STATES))
+    ]
+    figure = go.Figure(
+        go.Heatmap(
+            z=states,
+            x=(np.arange(states.shape[1]) + 0.5) * 360 / states.shape[1],
+            y=[plain(name) for name in curve.contacts],
+            zmin=-0.5,
+            zmax=len(STATES) - 0.5,
+            colorscale=steps,
+            ygap=2 if len(states) <= NAMED else 0,
+            colorbar={
+                "orientation": "h",
+                "x": 0,
+                "xanchor": "left",
+                "y": 1.0,
+                "yanchor": "bottom",
+                "len": 0.6,
+                "thickness": 10,
+                "outlinewidth": 0,
+                "tickvals": list(range(len(STATES))),
+                "ticktext": list(STATES),
+            },
+            text=[[STATES[state] for state in row] for row in states],
+            hovertemplate="%{y}, %{x:.0f}°: %{text}<extra></extra>",
+        )
+    )
+    themed(figure, title, height=min(220 + 22 * len(states), 720))
+    figure.update_xaxes(title="phase of the period (°)", dtick=90, range=[0, 360], showgrid=False)
+    figure.update_yaxes(
+        showgrid=False, ticks="", autorange="reversed", showticklabels=len(states) <= NAMED, automargin=True
+    )
+    return figure.update_layout(margin_t=84)
+
+
+def contact_shares(curve: FrequencyCurveLike, *, title: str = "Contact states over frequency") -> go.Figure:
+    """Part of the period that contacts are stuck, slip and are separated, mean of all, over frequency.
+
+    Parameters
+    ----------
+    curve : FrequencyCurve
+    title : str
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    figure = go.Figure()
+    for number, state in enumerate(STATES):
+        share = np.mean(np.asarray(curve.states) == number, axis=(1, 2))
+        if not share.any():
+            continue
+        colour = LIGHT.muted if state == "separated" else COLOURS[state]
+        figure.add_scatter(
+            x=curve.frequencies,
+            y=np.where(curve.converged, 100 * share, np.nan),
+            name=state,
+            mode="lines",
+            line={"color": colour, "width": 2},
+        )
+    themed(figure, title, height=360)
+    figure.update_xaxes(title="frequency (Hz)")
+    return figure.update_yaxes(title="part of the period (%)", range=[-2, 102]).update_layout(showlegend=True)
+
+
+def shares(states: np.ndarray) -> dict[str, np.ndarray]:
+    """Part of the period in each state, (contacts,), from states (contacts, phases)."""
+    return {name: np.mean(np.asarray(states) == number, axis=1) for number, name in enumerate(STATES)}

@@ -1,0 +1,111 @@
+"""Amplitudes over frequency, their peaks, and what happens along the path."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from dalembert.report import charts
+from dalembert.report.digits import shown
+from dalembert.report.focus import at_peak, chosen_dofs, marked, size_label, unit_of, unstable
+from dalembert.report.needs_frequency import FrequencyCurveLike
+from dalembert.report.plot import Plot
+from dalembert.report.quantities import labelled
+from dalembert.report.sections.findings import Findings
+from dalembert.report.table import Table, cell
+
+MOST_NAMED = 4
+
+
+@dataclass(frozen=True)
+class ForcedResponse(Findings):
+    """The curve of the degrees of freedom looked at, and a table of the peaks of all."""
+
+    heading: ClassVar[str] = "Forced response"
+    curve: FrequencyCurveLike
+    dofs: tuple[str, ...] = ()
+    kind: str = "peak"
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        curve = self.curve
+        folds = [shown(float(curve.frequencies[point])) for point in marked(curve).get("fold", [])]
+        told = []
+        if folds:
+            many = "The path turns back in frequency at"
+            told.append(
+                f"{many} {_listed(folds)} Hz: between folds several motions are possible at the same frequency, and a "
+                "slow sweep jumps from one to another."
+            )
+        bad = unstable(curve)
+        if bad.any():
+            between = curve.frequencies[bad]
+            told.append(
+                f"{int(bad.sum())} of {len(bad)} points, between {shown(float(between.min()))} and "
+                f"{shown(float(between.max()))} Hz, are unstable: the structure does not stay in these motions."
+            )
+        left = [dof for dof in curve.dofs if dof not in chosen_dofs(curve, self.dofs, self.kind)]
+        if left:
+            told.append(
+                f"Drawn are the degrees of freedom that move most; the table has all {len(curve.dofs)} observed."
+            )
+        return tuple(told)
+
+    @property
+    def wide(self) -> tuple[Plot, ...]:
+        how = "Each point is a periodic motion."
+        how += " Symbols: where the path turns back or changes its stability." if marked(self.curve) else ""
+        how += " Dashed: unstable motions." if unstable(self.curve).any() else ""
+        how += " Crosses: not found." if not self.curve.converged.all() else ""
+        return (Plot("frequency-curve", charts.frequency_curve(self.curve, self.dofs, kind=self.kind), how),)
+
+    @property
+    def tables(self) -> tuple[Table, ...]:
+        return (_peaks(self.curve, self.kind), *_events(self.curve, chosen_dofs(self.curve, self.dofs, self.kind)))
+
+
+def _peaks(curve: FrequencyCurveLike, kind: str) -> Table:
+    rows = []
+    for dof in curve.dofs:
+        peak, point = curve.peak(dof, kind), at_peak(curve, dof, kind)
+        first = curve.amplitude(dof, f"harmonic {curve.orders[int(curve.orders[0] == 0)]}")[point]
+        rows.append(
+            (
+                cell(dof),
+                cell(peak.amplitude),
+                cell(peak.frequency),
+                cell(float(curve.amplitude(dof, "rms")[point])),
+                cell(float(first)),
+                cell(unit_of(dof)),
+            )
+        )
+    size = f"largest {size_label(kind)}"
+    columns = ("degree of freedom", size, "at frequency (Hz)", "its rms", "its first harmonic", "unit")
+    return Table("peaks", "Resonance peaks", columns, rows)
+
+
+def _events(curve: FrequencyCurveLike, dofs: tuple[str, ...]) -> tuple[Table, ...]:
+    """Tables of marked points and of those that were not found, where there are any."""
+    found = []
+    rows = [
+        (
+            cell(kind),
+            cell(float(curve.frequencies[point])),
+            *(cell(float(curve.amplitude(dof)[point])) for dof in dofs[:MOST_NAMED]),
+        )
+        for kind, points in marked(curve).items()
+        for point in points
+    ]
+    if rows:
+        columns = ("what", "frequency (Hz)", *(labelled(f"amplitude of {d}", unit_of(d)) for d in dofs[:MOST_NAMED]))
+        found.append(Table("marked-points", "Folds and changes of stability", columns, rows))
+    lost = np.flatnonzero(~curve.converged)
+    rows = [(cell(float(curve.frequencies[k])), cell(float(curve.residuals[k]), digits=2)) for k in lost]
+    if rows:
+        columns = ("frequency (Hz)", "left unbalanced, part of the forces")
+        found.append(Table("not-found", "Points that were not found", columns, rows))
+    return tuple(found)
+
+
+def _listed(words: list[str]) -> str:
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"

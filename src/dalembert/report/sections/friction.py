@@ -1,0 +1,120 @@
+"""What the contacts do at the peak and along the curve."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from dalembert.report import charts
+from dalembert.report.charts.contact_states import shares
+from dalembert.report.digits import shown
+from dalembert.report.focus import at_peak, dissipation_of, main_dof, of_contacts, of_springs
+from dalembert.report.look import plain
+from dalembert.report.needs_frequency import FrequencyCurveLike
+from dalembert.report.plot import Plot
+from dalembert.report.sections.findings import Findings
+from dalembert.report.table import Table, cell
+
+FEW_SPRINGS = 6
+
+
+@dataclass(frozen=True)
+class Friction(Findings):
+    """Hysteresis loops, states and energies of contacts, and the forces of springs, at the peak."""
+
+    heading: ClassVar[str] = "Contacts and springs"
+    curve: FrequencyCurveLike
+    dofs: tuple[str, ...] = ()
+    kind: str = "peak"
+
+    @property
+    def point(self) -> int:
+        return at_peak(self.curve, main_dof(self.curve, self.dofs, self.kind), self.kind)
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        curve, point = self.curve, self.point
+        at = f"the peak of {main_dof(curve, self.dofs, self.kind)} at {shown(float(curve.frequencies[point]))} Hz"
+        if not curve.contacts:
+            return (f"Drawn for {at}.",)
+        part = {name: float(share.mean()) for name, share in shares(curve.states[point]).items()}
+        told = f"At {at} the contacts are stuck for {_percent(part['stuck'])} of the period, slip for "
+        told += f"{_percent(part['slipping'])} and are separated for {_percent(part['separated'])}."
+        energy = float(np.sum([energy[point] for energy in dissipation_of(curve).values()]))
+        if part["stuck"] == 1:
+            return (told, "They stick all the time there: what damps is the structure, not friction.")
+        return (told, f"Friction takes {shown(energy, digits=4)} J from the motion in each period.")
+
+    @property
+    def wide(self) -> tuple[Plot, ...]:
+        if not self.curve.contacts:
+            return ()
+        at = _at(self.curve, self.point)
+        return (
+            Plot(
+                "contact-states",
+                charts.contact_states(self.curve, self.point, title=f"Contact states over a period at {at}"),
+                "A row for each contact; phase 0 is the crest of a force without phase.",
+            ),
+        )
+
+    @property
+    def pairs(self) -> tuple[Plot, ...]:
+        curve, point, at = self.curve, self.point, _at(self.curve, self.point)
+        found = []
+        if curve.contacts:
+            loops = charts.hysteresis(curve, point, title=f"Hysteresis loops at {at}")
+            area = "The area of a loop is the energy that friction takes in a period; forces by the harmonics kept."
+            mean = "Mean of all contacts." if len(curve.contacts) > 1 else ""
+            found = [
+                Plot("hysteresis", loops, area),
+                Plot("dissipation", charts.dissipation(curve), "What each contact takes from the motion."),
+                Plot("contact-shares", charts.contact_shares(curve), mean),
+            ]
+        springs = of_springs(curve)[:FEW_SPRINGS]
+        if springs:
+            figure = charts.hysteresis(curve, point, springs, title=f"Forces of {_named(springs)} at {at}")
+            found.append(Plot("spring-forces", figure, "Force over displacement during a period."))
+        return tuple(found)
+
+    @property
+    def tables(self) -> tuple[Table, ...]:
+        curve, point = self.curve, self.point
+        if not curve.contacts:
+            return ()
+        parts, energies = shares(curve.states[point]), dissipation_of(curve)
+        rows = []
+        for place, (contact, names) in enumerate(of_contacts(curve).items()):
+            u, force = curve.loop(names[0], point)
+            rows.append(
+                (
+                    cell(contact),
+                    *(cell(float(100 * parts[state][place]), digits=3) for state in ("stuck", "slipping", "separated")),
+                    cell(float(energies[contact][point]), digits=4),
+                    cell(float(np.abs(u).max()), digits=4),
+                    cell(float(np.abs(force).max()), digits=4),
+                )
+            )
+        columns = (
+            "contact",
+            "stuck (% of the period)",
+            "slipping (%)",
+            "separated (%)",
+            "energy of a period (J)",
+            "largest displacement (m)",
+            "largest friction force (N)",
+        )
+        caption = f"Contacts at {shown(float(curve.frequencies[point]))} Hz, along their first tangential direction"
+        return (Table("contacts", caption, columns, rows),)
+
+
+def _percent(part: float) -> str:
+    return f"{shown(100 * part, digits=3)} %"
+
+
+def _at(curve: FrequencyCurveLike, point: int) -> str:
+    return f"{shown(float(curve.frequencies[point]))} Hz"
+
+
+def _named(names: list[str]) -> str:
+    return plain(names[0]) if len(names) == 1 else "springs"

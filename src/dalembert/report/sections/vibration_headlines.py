@@ -1,0 +1,50 @@
+"""The first lines of a report on vibrations: forced response and what follows from it."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from dalembert.report.digits import counted, shown
+from dalembert.report.focus import main_dof, unit_of
+from dalembert.report.needs_frequency import FrequencyCurveLike
+from dalembert.report.sections.headline import Fact, Headline
+
+
+def of_frequency_curve(
+    curve: FrequencyCurveLike, dofs: tuple[str, ...], kind: str, title: str | None, notes: Sequence[str]
+) -> Headline:
+    """Headline of a response over frequency."""
+    found, points = int(curve.converged.sum()), len(curve.converged)
+    low, high = (shown(float(end)) for end in (curve.frequencies.min(), curve.frequencies.max()))
+    success = found == points
+    status = (
+        f"All {counted(points)} points between {low} and {high} Hz were found."
+        if success
+        else f"{counted(points - found)} of {counted(points)} points between {low} and {high} Hz were not found; "
+        "they are marked, and the curve goes on beside them."
+    )
+    facts = [
+        *([Fact(*_largest(curve, main_dof(curve, dofs, kind), kind))] if found else []),
+        Fact("harmonics", _orders(curve.orders)),
+        Fact("Newton iterations a point", shown(float(np.mean(curve.iterations)), digits=3)),
+        Fact("samples of a period", counted(int(np.max(curve.samples)))),
+        *([Fact("contacts", counted(len(curve.contacts)))] if curve.contacts else []),
+    ]
+    verdict = "computed" if success else "incomplete" if found else "not found"
+    return Headline(title or "Forced response", verdict, success, status, facts, notes)
+
+
+def _largest(curve: FrequencyCurveLike, dof: str, kind: str) -> tuple[str, str]:
+    peak = curve.peak(dof, kind)
+    return f"peak of {dof}", f"{shown(peak.amplitude, digits=5)} {unit_of(dof)} at {shown(peak.frequency)} Hz"
+
+
+def _orders(orders: Sequence[int]) -> str:
+    """Harmonics in a few words.
+
+    >>> _orders((0, 1, 2, 3)), _orders((1, 3, 5)), _orders((1, 3, 5, 7, 9))
+    ('0 to 3', '1, 3, 5', '1, 3 … 9')
+    """
+    if len(orders) > 2 and list(orders) == list(range(orders[0], orders[-1] + 1)):
+        return f"{orders[0]} to {orders[-1]}"
+    return ", ".join(map(str, orders)) if len(orders) < 5 else f"{orders[0]}, {orders[1]} … {orders[-1]}"

@@ -1,0 +1,111 @@
+"""Small studies of vibrations that provoke every figure and every sentence of their reports."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from dalembert.structure import Dofs, Structure, lumped
+from dalembert.vibration import (
+    Elastic,
+    FrequencyCurve,
+    FrictionContact,
+    HarmonicBalance,
+    HarmonicForce,
+    VibrationSystem,
+    frequency_response,
+)
+from report_case import Case
+from vibrating_systems import chain, duffing, one_mass, two_masses
+
+HZ = 1 / (2 * np.pi)
+AROUND = HZ * np.linspace(0.9, 1.3, 9)
+FEW = HarmonicBalance(harmonics=3, samples=256)
+
+
+def _stuck() -> VibrationSystem:
+    system = one_mass()
+    system.forces[0] = replace(system.forces[0], amplitude=1e-3)
+    return system
+
+
+def _row(masses: int) -> VibrationSystem:
+    """A chain of masses between walls, with a slider on every second one."""
+    names = [f"m{number}" for number in range(1, masses + 1)]
+    springs = [(a, b, 1.0, 0.03) for a, b in zip([None, *names], [*names, None], strict=True)]
+    system = VibrationSystem(
+        lumped(dict.fromkeys(names, 1.0), [(b or a, a if b else None, k, c) for a, b, k, c in springs])
+    )
+    system.add(HarmonicForce("m1", 1.0))
+    for name in names[::2]:
+        system.add(FrictionContact(f"slider {name}", name, friction=0.3, preload=1.0, law=Elastic(1.0)))
+    return system
+
+
+def _turning() -> VibrationSystem:
+    """A mass that moves along x and a disc that turns about z, on one shaft."""
+    stiffness = np.array([[2.0, -1.0], [-1.0, 2.0]])
+    system = VibrationSystem(Structure(np.eye(2), stiffness, Dofs(("a.x", "a.rz")), 0.02 * stiffness))
+    system.add(HarmonicForce("a.rz", 1.0))
+    return system
+
+
+def _unstable() -> Any:
+    """The curve with a fold, and what stability would say of it."""
+    curve = _folded()
+    between = np.cumsum(curve.fold) == 1
+    given = {name: getattr(curve, name) for name in dir(curve) if not name.startswith("_")}
+    return SimpleNamespace(**{**given, "stable": np.where(between, 0, 1), "markers": (("torus", 3),)})
+
+
+def _folded() -> FrequencyCurve:
+    return frequency_response(duffing(), (0.8 * HZ, 1.6 * HZ), HarmonicBalance(5), continuation="arc-length")
+
+
+FREQUENCY_CASES: dict[str, Case] = {
+    # ── forced response ─────────────────────────────────────────────────────────────────────────────────────────────
+    "a response with friction": Case(
+        lambda: frequency_response(two_masses(), HZ * np.linspace(0.7, 1.1, 9), HarmonicBalance(harmonics=7)),
+        (
+            "All 9 points between",
+            "the contacts are stuck for",
+            "% of the period, slip for",
+            "J from the motion in each period.",
+            "At the peak the last two harmonics kept are at most",
+            "Twice as many samples of a period would change the forces by at most",
+        ),
+        ("frequency-curve", "contact-states", "hysteresis", "dissipation", "harmonic-content", "points-found"),
+    ),
+    "a response with few harmonics and samples": Case(
+        lambda: frequency_response(chain(), HZ * np.linspace(1.0, 2.2, 9), HarmonicBalance(harmonics=2, samples=8)),
+        ("harmonics kept still reach", "keep more harmonics.", "allowed: give more samples."),
+    ),
+    "a response whose contacts stick": Case(
+        lambda: frequency_response(_stuck(), AROUND, HarmonicBalance(harmonics=9, odd_only=True, samples=256)),
+        ("They stick all the time there: what damps is the", "1, 3 … 9"),
+    ),
+    "a response of many masses": Case(
+        lambda: frequency_response(_row(8), AROUND, FEW),
+        ("Drawn are the degrees of freedom that move most; the table has all 8 observed.", "Mean of all contacts."),
+        ("contact-shares",),
+        {"amplitude": "rms"},
+    ),
+    "a response without contacts": Case(lambda: frequency_response(_turning(), AROUND, FEW), ("computed",)),
+    "a response with folds": Case(
+        _folded, ("The path turns back in frequency at", "Drawn for the peak of m.x"), ("spring-forces",)
+    ),
+    "a response that is unstable": Case(
+        _unstable, ("are unstable: the structure does not stay in these motions.", "Dashed: unstable motions.", "torus")
+    ),
+    "a response of which points are not found": Case(
+        lambda: frequency_response(
+            chain(), HZ * np.linspace(1.0, 2.2, 25), HarmonicBalance(harmonics=5, samples=256, iterations=4, halvings=0)
+        ),
+        ("points between", "were not found; they are marked", "Crosses: not found.", "Points that were not found"),
+    ),
+    "a response that is not found": Case(
+        lambda: frequency_response(two_masses(), AROUND, HarmonicBalance(harmonics=7, iterations=1, halvings=0)),
+        ("! not found",),
+    ),
+}

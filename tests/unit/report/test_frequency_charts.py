@@ -1,0 +1,122 @@
+"""Figures and tables of responses over frequency show the numbers of the curve."""
+
+import numpy as np
+import pytest
+
+from dalembert.errors import InputError
+from dalembert.report import charts, figures, report
+from dalembert.report.focus import at_peak, chosen_dofs, main_dof
+from dalembert.vibration import HarmonicBalance, frequency_response
+from pages import read_page
+from support import says
+from vibrating_systems import chain, duffing, two_masses
+
+HZ = 1 / (2 * np.pi)
+
+
+@pytest.fixture(scope="module")
+def curve():
+    return frequency_response(two_masses(), HZ * np.linspace(0.7, 1.1, 17), HarmonicBalance(harmonics=5))
+
+
+@pytest.fixture(scope="module")
+def folded():
+    return frequency_response(duffing(), (0.8 * HZ, 1.6 * HZ), HarmonicBalance(5), continuation="arc-length")
+
+
+def traces(figure):
+    return {trace.name: trace for trace in figure.data}
+
+
+def test_the_curve_is_drawn_as_it_is(curve):
+    figure = charts.frequency_curve(curve)
+    drawn = traces(figure)
+    assert set(drawn) == {"m1.x", "m2.x"}
+    np.testing.assert_array_equal(drawn["m2.x"].x, curve.frequencies)
+    np.testing.assert_array_equal(drawn["m2.x"].y, curve.amplitude("m2"))
+    assert figure.layout.yaxis.title.text == "amplitude (m)"
+    np.testing.assert_array_equal(
+        traces(charts.frequency_curve(curve, ["m2.x"], kind="rms"))["m2.x"].y, curve.amplitude("m2", "rms")
+    )
+    with pytest.raises(InputError, match=says("unknown observed degree of freedom 'm3'; known: m1.x, m2.x")):
+        charts.frequency_curve(curve, ["m3"])
+
+
+def test_small_motions_are_drawn_in_small_units(curve):
+    small = frequency_response(_pushed(1e-6), curve.frequencies, HarmonicBalance(3, samples=128))
+    figure = charts.frequency_curve(small, ["m2.x"])
+    assert figure.layout.yaxis.title.text == "amplitude (µm)"
+    np.testing.assert_allclose(figure.data[0].y, 1e6 * small.amplitude("m2"))
+
+
+def _pushed(force):
+    system = two_masses()
+    system.forces[0] = type(system.forces[0])("m1", force)
+    return system
+
+
+def test_folds_are_marked_and_both_branches_drawn(folded):
+    drawn = traces(charts.frequency_curve(folded))
+    np.testing.assert_array_equal(drawn["fold"].x, folded.folds)
+    np.testing.assert_array_equal(drawn["fold"].y, folded.amplitude("m")[folded.fold])
+    np.testing.assert_array_equal(drawn["m.x"].x, folded.frequencies)
+
+
+def test_the_loop_encloses_the_energy_of_a_period(curve):
+    point = at_peak(curve, "m2.x")
+    (loop,) = charts.hysteresis(curve, point).data
+    assert loop.name == "slider.x"
+    area = -np.sum((loop.y[1:] + loop.y[:-1]) / 2 * -np.diff(loop.x))
+    assert area == pytest.approx(curve.dissipated("slider.x")[point], rel=1e-3)
+
+
+def test_states_over_a_period_and_over_frequency(curve):
+    point = at_peak(curve, "m2.x")
+    (states,) = charts.contact_states(curve, point).data
+    np.testing.assert_array_equal(states.z, curve.states[point])
+    assert list(states.y) == ["slider"]
+    shares = traces(charts.contact_shares(curve))
+    assert set(shares) == {"stuck", "slipping"}
+    np.testing.assert_allclose(shares["slipping"].y, 100 * (curve.states == 2).mean(axis=(1, 2)))
+
+
+def test_energies_and_harmonics_over_frequency(curve):
+    (energy,) = charts.dissipation(curve).data
+    np.testing.assert_allclose(energy.y, curve.dissipated("slider.x"))
+    drawn = traces(charts.harmonic_content(curve, "m2.x"))
+    third = curve.amplitude("m2", "harmonic 3")
+    np.testing.assert_allclose(drawn["harmonic 3"].y, np.where(third > 1e-9, third, np.nan))  # no gap while it slips
+    assert "harmonic 2" not in drawn  # a symmetric motion has none
+
+
+def test_the_page_has_the_numbers(curve, tmp_path):
+    page = read_page(curve.report(tmp_path / "a.html", amplitude="harmonic 1"))
+    row = next(row for row in page.table("peaks") if row[0] == "m2.x")
+    peak = curve.peak("m2", "harmonic 1")
+    assert (float(row[1]), float(row[2])) == (peak.amplitude, peak.frequency)
+    (contact,) = page.table("contacts")[1:]
+    point = at_peak(curve, "m2.x", "harmonic 1")
+    assert float(contact[4]) == curve.dissipated("slider.x")[point]
+    assert sum(map(float, contact[1:4])) == pytest.approx(100.0)
+    sizes = {row[0]: float(row[1]) for row in page.table("harmonics")[1:]}
+    assert sizes["harmonic 1"] == curve.amplitude("m2", "harmonic 1")[point]
+
+
+def test_points_that_were_not_found_are_crossed_out_between_their_neighbours(tmp_path):
+    method = HarmonicBalance(harmonics=5, samples=256, iterations=4, halvings=0)
+    curve = frequency_response(chain(), HZ * np.linspace(1.0, 2.2, 25), method)
+    lost = traces(charts.frequency_curve(curve, ["m3.x"]))["not found"]
+    np.testing.assert_array_equal(lost.x, curve.frequencies[~curve.converged])
+    assert np.isfinite(lost.y).all()
+    page = read_page(report(curve, tmp_path / "a.html"))
+    assert len(page.table("not-found")) - 1 == np.count_nonzero(~curve.converged)
+
+
+def test_a_curve_of_which_nothing_was_found_has_its_diagnostics_alone():
+    method = HarmonicBalance(harmonics=7, iterations=1, halvings=0)
+    assert list(figures(frequency_response(chain(), HZ * np.linspace(1.0, 2.2, 5), method))) == ["points-found"]
+
+
+def test_the_degree_of_freedom_that_moves_most_is_looked_at(curve):
+    assert chosen_dofs(curve) == ("m1.x", "m2.x")
+    assert main_dof(curve) == max(curve.dofs, key=lambda dof: curve.amplitude(dof).max())

@@ -144,6 +144,7 @@ from dalembert.uncertainty import Taylor as Taylor
 from dalembert.uncertainty import Vertex as Vertex
 from dalembert.uncertainty import compare as compare
 from dalembert.uncertainty import propagate as propagate
+from dalembert.vibration import Backbone as Backbone
 from dalembert.vibration import BilinearStop as BilinearStop
 from dalembert.vibration import CubicSpring as CubicSpring
 from dalembert.vibration import CurveFamily as CurveFamily
@@ -155,11 +156,14 @@ from dalembert.vibration import Gap as Gap
 from dalembert.vibration import HarmonicBalance as HarmonicBalance
 from dalembert.vibration import HarmonicForce as HarmonicForce
 from dalembert.vibration import Iwan as Iwan
+from dalembert.vibration import ResonanceTrack as ResonanceTrack
 from dalembert.vibration import Rigid as Rigid
 from dalembert.vibration import StaticForce as StaticForce
 from dalembert.vibration import UserElement as UserElement
 from dalembert.vibration import VibrationSystem as VibrationSystem
+from dalembert.vibration import backbone as backbone
 from dalembert.vibration import frequency_response as frequency_response
 from dalembert.vibration import frequency_responses as frequency_responses
+from dalembert.vibration import track_resonance as track_resonance
 
 __version__: str

@@ -1,15 +1,20 @@
 """Structures with dry friction and other nonlinear elements, in frequency: harmonic balance and continuation."""
 
+from dalembert.vibration.backbone import Backbone
 from dalembert.vibration.contacts import Elastic, FrictionContact, Iwan, Rigid
 from dalembert.vibration.curve import FrequencyCurve, Peak
 from dalembert.vibration.curve_family import CurveFamily, Envelope, frequency_responses
 from dalembert.vibration.forward_model import FrequencyResponse
 from dalembert.vibration.frequency_response import frequency_response
 from dalembert.vibration.harmonic_balance import HarmonicBalance
+from dalembert.vibration.nonlinear_modes import backbone
+from dalembert.vibration.resonance import track_resonance
+from dalembert.vibration.resonance_track import ResonanceTrack
 from dalembert.vibration.springs import BilinearStop, CubicSpring, Gap, UserElement
 from dalembert.vibration.system import HarmonicForce, StaticForce, VibrationSystem
 
 __all__ = [
+    "Backbone",
     "BilinearStop",
     "CubicSpring",
     "CurveFamily",
@@ -23,10 +28,13 @@ __all__ = [
     "HarmonicForce",
     "Iwan",
     "Peak",
+    "ResonanceTrack",
     "Rigid",
     "StaticForce",
     "UserElement",
     "VibrationSystem",
+    "backbone",
     "frequency_response",
     "frequency_responses",
+    "track_resonance",
 ]

@@ -52,6 +52,10 @@ class Amplitude:
         size = self.of(coefficients)[..., None]
         return coefficients * self._weights() / np.where(size > 0, size, 1.0)
 
+    def instant(self, coefficients: np.ndarray) -> float:
+        """Phase, rad, at which a motion (coefficients,) is largest, to a 4096th of the period."""
+        return float(2 * np.pi * np.abs(self._waves() @ coefficients).argmax() / PHASES)
+
     def _order(self) -> int:
         word, _, number = self.kind.partition(" ")
         return int(number) if word == "harmonic" and number.isdigit() else -1

@@ -134,6 +134,12 @@ class Condensation:
             return right / inner[:, :, None]
         return np.linalg.solve(inner, right)
 
+    def interior_slope(self, point: Point, retained: np.ndarray) -> np.ndarray:
+        """Derivative of the interior coordinates by ω where the retained ones (orders, q) are held, (orders, l)."""
+        s, interior = point.frequencies, point.interior(retained)
+        across = np.swapaxes(self._slope(self.across, s), 1, 2) @ retained[:, :, None]
+        return -self.solve(s, self._inner_slope(s, interior[:, :, None]) + across)[:, :, 0]
+
     def _modal(self, blocks: list[np.ndarray]) -> list[np.ndarray]:
         """Interior matrices in modes with q held: vectors where they are diagonal. Without modes, as they are."""
         stiffness, mass, damping = blocks

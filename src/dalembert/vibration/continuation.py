@@ -105,7 +105,7 @@ def along(equations: Equations, begin: float, end: float, start: Solution | None
     onward = np.zeros(known.unknowns.size + 1)
     onward[-1] = np.sign(end - begin)
     step, points = longest / 4, 1
-    path = _Path(known, _direction(known, onward, width), width)
+    path = Path(known, direction_at(known, onward, width), width)
     while points < MOST_POINTS:
         solution, direction = path.step(equations, step)
         bent = direction is not None and float(path.direction @ direction) < STEADY
@@ -125,12 +125,12 @@ def along(equations: Equations, begin: float, end: float, start: Solution | None
                 yield Found(fold, fold=True)
         yield Found(solution)
         points += 1
-        path = _Path(solution, _direction(solution, direction, width), width)
+        path = Path(solution, direction_at(solution, direction, width), width)
         step = min(longest, step * (1.5 if solution.iterations <= EASY else 0.7))
 
 
 @dataclass(frozen=True)
-class _Path:
+class Path:
     """A known point of a curve and the direction in which it goes on, in scaled unknowns."""
 
     known: Solution
@@ -149,10 +149,10 @@ class _Path:
         solution = equations.solve(guess, omega, self.known.samples, plane)
         if not solution.converged:
             return solution, None
-        return solution, _direction(solution, self.direction, self.width, self.size)
+        return solution, direction_at(solution, self.direction, self.width, self.size)
 
 
-def _direction(known: Solution, before: np.ndarray, width: float, size: float | None = None) -> np.ndarray:
+def direction_at(known: Solution, before: np.ndarray, width: float, size: float | None = None) -> np.ndarray:
     """Unit tangent of the curve in scaled unknowns, to the same side as the one before."""
     size = size or float(np.linalg.norm(known.unknowns)) or 1.0
     scale = float(np.linalg.norm(known.point.force) + np.linalg.norm(known.evaluation.forces)) or 1.0
@@ -168,7 +168,7 @@ def _on_border(before: Solution, after: Solution, low: float, high: float) -> tu
     return before.unknowns + part * (after.unknowns - before.unknowns), border
 
 
-def _fold(equations: Equations, path: _Path, step: float) -> Solution | None:
+def _fold(equations: Equations, path: Path, step: float) -> Solution | None:
     """The point of a step at which the frequency turns back: a zero of the direction's last component."""
     tried: dict[float, Solution] = {}
 

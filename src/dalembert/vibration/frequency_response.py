@@ -107,7 +107,7 @@ def _followed(
     stability: bool,
 ) -> FrequencyCurve:
     """The curve through given frequencies, or between two."""
-    known = None if start is None else _restarted(problem, *start)
+    known = None if start is None else restarted(problem, *start)
     given = settings["frequencies"] == "given"
     if given:
         found = at_frequencies(problem, omegas, known)
@@ -118,7 +118,7 @@ def _followed(
     return _curve(problem, points, _observed(problem, observe), settings)
 
 
-def _restarted(problem: Equations, curve: FrequencyCurve, point: int) -> Solution:
+def restarted(problem: Equations, curve: FrequencyCurve, point: int) -> Solution:
     """The point of a curve, solved again."""
     unknowns, samples = curve.unknowns[point], int(curve.samples[point])
     if unknowns.shape != problem.balance(samples).shape or curve.orders != problem.method.orders:

@@ -50,7 +50,7 @@ class Exponents:
     @property
     def unstable(self) -> int:
         """How many grow."""
-        return int(np.sum(self.values.real > NEUTRAL))
+        return int(np.sum(np.real(self.values) > NEUTRAL))
 
     @property
     def multipliers(self) -> np.ndarray:

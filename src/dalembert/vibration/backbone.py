@@ -1,0 +1,142 @@
+"""The result of following a nonlinear mode."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from dalembert.errors import InputError, unknown
+from dalembert.results import Result
+from dalembert.vibration.amplitudes import Amplitude
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+_UNITS = {
+    "amplitudes": "m",
+    "frequencies": "Hz",
+    "damping": "",
+    "energies": "J",
+    "forces": "N",
+    "iterations": "",
+    "residuals": "",
+    "converged": "",
+    "samples": "",
+}
+_NAMES = ("mode", "dof", "dofs", "orders")
+
+
+@dataclass(frozen=True, eq=False)
+class Backbone(Result):
+    """Frequency, damping and shape of a nonlinear mode over its amplitude, as :func:`backbone` returns them.
+
+    Parameters
+    ----------
+    mode : int
+        Its number among the linear modes of the system at rest, from 1.
+    dof : str
+        Degree of freedom by which the amplitude is measured.
+    dofs : tuple of str
+    orders : tuple of int
+        Harmonics; the coefficients are the mean, if it is kept, then a cosine and a sine for each other one.
+    amplitudes : array, shape (points,)
+        Of the first harmonic of ``dof``, m.
+    frequencies : array, shape (points,)
+        Hz; NaN, as what follows, where a point was not found.
+    damping : array, shape (points,)
+        Damping ratios.
+    energies : array, shape (points,)
+        Largest kinetic energies of the period, J.
+    forces : array, shape (points,)
+        Amplitudes of a force on ``dof`` that a quarter of a period ahead of it keeps the motion going, N.
+    shapes : array, shape (points, dofs, coefficients)
+        The motions, m.
+    iterations : array of int, shape (points,)
+    residuals : array, shape (points,)
+        As part of the forces.
+    converged : array of bool, shape (points,)
+    samples : array of int, shape (points,)
+        Of a period.
+    provenance : mapping
+        Versions, method, settings.
+    """
+
+    FORMAT: ClassVar[str] = "dalembert backbone 1"
+
+    mode: int
+    dof: str
+    dofs: tuple[str, ...]
+    orders: tuple[int, ...]
+    amplitudes: np.ndarray
+    frequencies: np.ndarray
+    damping: np.ndarray
+    energies: np.ndarray
+    forces: np.ndarray
+    shapes: np.ndarray
+    iterations: np.ndarray
+    residuals: np.ndarray
+    converged: np.ndarray
+    samples: np.ndarray
+    provenance: Mapping[str, Any]
+
+    def __len__(self) -> int:
+        return len(self.amplitudes)
+
+    def amplitude(self, dof: str, kind: str = "peak") -> np.ndarray:
+        """Size of the motion of a degree of freedom, m, (points,): ``"peak"``, ``"rms"`` or ``"harmonic 1"`` and so on.
+
+        Raises
+        ------
+        InputError
+            For another kind, or an unknown degree of freedom.
+        """
+        own = [name for name in self.dofs if name.rpartition(".")[0] == dof]
+        name = own[0] if len(own) == 1 else dof
+        if name not in self.dofs:
+            raise InputError(unknown("observed degree of freedom", dof, self.dofs))
+        return Amplitude(kind, self.orders).of(self.shapes[:, self.dofs.index(name)])
+
+    def summary(self) -> str:
+        """A few lines: points, and the ranges of frequency, damping and energy."""
+        found = self.converged
+        lines = [f"mode {self.mode} at {found.sum()} of {len(self)} amplitudes of {self.dof}"]
+        if found.any():
+            ranges = [
+                f"{name} {values[found].min():.6g} to {values[found].max():.6g}{unit}"
+                for name, values, unit in (
+                    ("amplitudes", self.amplitudes, " m"),
+                    ("frequencies", self.frequencies, " Hz"),
+                    ("damping ratios", self.damping, ""),
+                    ("energies", self.energies, " J"),
+                )
+            ]
+            lines.append(", ".join(ranges))
+        if not found.all():
+            lost = ", ".join(f"{value:.6g} m" for value in self.amplitudes[~found][:5])
+            lines.append(f"not found: {lost}")
+        return "\n".join(lines)
+
+    def to_xarray(self) -> "Dataset":
+        """Everything as an :class:`xarray.Dataset`, with units as attributes."""
+        import xarray as xr
+
+        variables: dict = {
+            name: (("point",), getattr(self, name), {"units": unit} if unit else {}) for name, unit in _UNITS.items()
+        }
+        variables["shapes"] = (("point", "dof", "coefficient"), self.shapes, {"units": "m"})
+        names = json.dumps({name: getattr(self, name) for name in _NAMES})
+        provenance = json.dumps(dict(self.provenance), sort_keys=True)
+        return xr.Dataset(variables, attrs={"format": self.FORMAT, "names": names, "provenance": provenance})
+
+    @classmethod
+    def from_xarray(cls, dataset: "Dataset") -> "Backbone":
+        """The backbone that :meth:`to_xarray` turned into a dataset."""
+        values = {name: dataset[name].values for name in (*_UNITS, "shapes")}
+        names = json.loads(dataset.attrs["names"])
+        return cls(
+            **(values | {"converged": values["converged"].astype(bool)}),
+            **(names | {name: tuple(names[name]) for name in ("dofs", "orders")}),
+            provenance=json.loads(dataset.attrs["provenance"]),
+        )

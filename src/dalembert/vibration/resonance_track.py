@@ -1,0 +1,104 @@
+"""The result of following a resonance over a parameter."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from dalembert.errors import InputError
+from dalembert.results import Result
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+_ARRAYS = ("values", "frequencies", "amplitudes", "solves", "converged")
+_NAMES = ("parameter", "unit", "dof", "kind")
+
+
+@dataclass(frozen=True, eq=False)
+class ResonanceTrack(Result):
+    """The peak of a response over a parameter, as :func:`track_resonance` returns it.
+
+    Parameters
+    ----------
+    parameter, unit : str
+    dof, kind : str
+        Degree of freedom, and kind of amplitude, whose peak was followed.
+    values : array, shape (values,)
+        Of the parameter.
+    frequencies : array, shape (values,)
+        Hz; NaN where the peak was not found.
+    amplitudes : array, shape (values,)
+        m.
+    solves : array of int, shape (values,)
+        Points that were balanced on the way.
+    converged : array of bool, shape (values,)
+    provenance : mapping
+        Versions, method, settings.
+    """
+
+    FORMAT: ClassVar[str] = "dalembert resonance track 1"
+
+    parameter: str
+    unit: str
+    dof: str
+    kind: str
+    values: np.ndarray
+    frequencies: np.ndarray
+    amplitudes: np.ndarray
+    solves: np.ndarray
+    converged: np.ndarray
+    provenance: Mapping[str, Any]
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+    def best(self) -> float:
+        """The value with the smallest peak.
+
+        Raises
+        ------
+        InputError
+            Where no peak was found.
+        """
+        if not self.converged.any():
+            raise InputError("no peak was found, so none is the smallest; begin nearer to it, or with a whole curve")
+        return float(self.values[np.nanargmin(self.amplitudes)])
+
+    def summary(self) -> str:
+        """A few lines: peaks found, the smallest and the largest, and what they cost."""
+        found = self.converged
+        lines = [
+            f"{found.sum()} of {len(self)} peaks found of {self.dof} ({self.kind}), by {self.solves.sum()} solutions"
+        ]
+        if found.any():
+            ends = ("smallest", np.nanargmin(self.amplitudes)), ("largest", np.nanargmax(self.amplitudes))
+            for word, place in ends:
+                peak = f"{self.amplitudes[place]:.6g} m at {self.frequencies[place]:.6g} Hz"
+                where = f"{self.parameter} is {self.values[place]:.6g} {self.unit}".rstrip()
+                lines.append(f"{word} {peak}, where {where}")
+        if not found.all():
+            lost = ", ".join(f"{value:.6g}" for value in self.values[~found][:5])
+            lines.append(f"not found where {self.parameter} is {lost} {self.unit}".rstrip())
+        return "\n".join(lines)
+
+    def to_xarray(self) -> "Dataset":
+        """Everything as an :class:`xarray.Dataset`, with units as attributes."""
+        import xarray as xr
+
+        units = {"frequencies": "Hz", "amplitudes": "m"} | ({"values": self.unit} if self.unit else {})
+        variables = {
+            name: (("value",), getattr(self, name), {"units": units[name]} if name in units else {}) for name in _ARRAYS
+        }
+        names = json.dumps({name: getattr(self, name) for name in _NAMES})
+        provenance = json.dumps(dict(self.provenance), sort_keys=True)
+        return xr.Dataset(variables, attrs={"format": self.FORMAT, "names": names, "provenance": provenance})
+
+    @classmethod
+    def from_xarray(cls, dataset: "Dataset") -> "ResonanceTrack":
+        """The track that :meth:`to_xarray` turned into a dataset."""
+        values = {name: dataset[name].values for name in _ARRAYS}
+        values["converged"] = values["converged"].astype(bool)
+        return cls(**values, **json.loads(dataset.attrs["names"]), provenance=json.loads(dataset.attrs["provenance"]))

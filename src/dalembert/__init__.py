@@ -60,6 +60,7 @@ _NAMES = {
         CubicSpring Gap BilinearStop UserElement HarmonicBalance FrequencyCurve FrequencyResponse frequency_response
         Backbone ResonanceTrack backbone track_resonance
         CurveFamily frequency_responses
+        Newmark PeriodicMotion TimeComparison compare_in_time steady_state
     """,
 }
 _HOME = {name: module for module, names in _NAMES.items() for name in names.split()}

@@ -156,14 +156,19 @@ from dalembert.vibration import Gap as Gap
 from dalembert.vibration import HarmonicBalance as HarmonicBalance
 from dalembert.vibration import HarmonicForce as HarmonicForce
 from dalembert.vibration import Iwan as Iwan
+from dalembert.vibration import Newmark as Newmark
+from dalembert.vibration import PeriodicMotion as PeriodicMotion
 from dalembert.vibration import ResonanceTrack as ResonanceTrack
 from dalembert.vibration import Rigid as Rigid
 from dalembert.vibration import StaticForce as StaticForce
+from dalembert.vibration import TimeComparison as TimeComparison
 from dalembert.vibration import UserElement as UserElement
 from dalembert.vibration import VibrationSystem as VibrationSystem
 from dalembert.vibration import backbone as backbone
+from dalembert.vibration import compare_in_time as compare_in_time
 from dalembert.vibration import frequency_response as frequency_response
 from dalembert.vibration import frequency_responses as frequency_responses
+from dalembert.vibration import steady_state as steady_state
 from dalembert.vibration import track_resonance as track_resonance
 
 __version__: str

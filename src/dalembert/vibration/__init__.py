@@ -7,11 +7,15 @@ from dalembert.vibration.curve_family import CurveFamily, Envelope, frequency_re
 from dalembert.vibration.forward_model import FrequencyResponse
 from dalembert.vibration.frequency_response import frequency_response
 from dalembert.vibration.harmonic_balance import HarmonicBalance
+from dalembert.vibration.newmark import Newmark
 from dalembert.vibration.nonlinear_modes import backbone
+from dalembert.vibration.periodic_motion import PeriodicMotion
 from dalembert.vibration.resonance import track_resonance
 from dalembert.vibration.resonance_track import ResonanceTrack
 from dalembert.vibration.springs import BilinearStop, CubicSpring, Gap, UserElement
 from dalembert.vibration.system import HarmonicForce, StaticForce, VibrationSystem
+from dalembert.vibration.time_comparison import TimeComparison, compare_in_time
+from dalembert.vibration.time_reference import steady_state
 
 __all__ = [
     "Backbone",
@@ -27,14 +31,19 @@ __all__ = [
     "HarmonicBalance",
     "HarmonicForce",
     "Iwan",
+    "Newmark",
     "Peak",
+    "PeriodicMotion",
     "ResonanceTrack",
     "Rigid",
     "StaticForce",
+    "TimeComparison",
     "UserElement",
     "VibrationSystem",
     "backbone",
+    "compare_in_time",
     "frequency_response",
     "frequency_responses",
+    "steady_state",
     "track_resonance",
 ]

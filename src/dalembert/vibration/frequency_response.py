@@ -13,6 +13,7 @@ from dalembert.vibration.continuation import along, at_frequencies, natural
 from dalembert.vibration.curve import FrequencyCurve
 from dalembert.vibration.equations import Equations, equations
 from dalembert.vibration.harmonic_balance import HarmonicBalance
+from dalembert.vibration.lowering import Lowered
 from dalembert.vibration.newton import Solution
 from dalembert.vibration.system import VibrationSystem
 from dalembert.vibration.threads import one_thread
@@ -115,7 +116,7 @@ def _followed(
         follow = along if settings["continuation"] == ARC_LENGTH else natural
         found = follow(problem, float(omegas[0]), float(omegas[1]), known)
     points = judged(problem, found, located=not given) if stability else unjudged(found)
-    return _curve(problem, points, _observed(problem, observe), settings)
+    return _curve(problem, points, observed(problem.lowered, observe), settings)
 
 
 def restarted(problem: Equations, curve: FrequencyCurve, point: int) -> Solution:
@@ -130,15 +131,15 @@ def restarted(problem: Equations, curve: FrequencyCurve, point: int) -> Solution
     return problem.solve(unknowns, 2 * np.pi * float(curve.frequencies[point]), samples)
 
 
-def _observed(problem: Equations, names: Sequence[str] | None) -> np.ndarray:
-    """Rows of the observed degrees of freedom."""
-    structure = problem.lowered.structure
+def observed(lowered: Lowered, names: Sequence[str] | None) -> np.ndarray:
+    """Rows of the observed degrees of freedom: of those named, or of all, or of those with forces and elements."""
+    structure = lowered.structure
     if names is not None:
         return np.array(structure.rows(names), dtype=int)
     if structure.size <= ALL:
         return np.arange(structure.size)
-    forced = [structure.dofs.index(force.dof) for force in problem.lowered.forces]
-    return np.unique([*forced, *problem.lowered.matrix.nonzero()[1]]).astype(int)
+    forced = [structure.dofs.index(force.dof) for force in lowered.forces]
+    return np.unique([*forced, *lowered.matrix.nonzero()[1]]).astype(int)
 
 
 def _curve(problem: Equations, points: Iterable[Judged], rows: np.ndarray, settings: dict) -> FrequencyCurve:

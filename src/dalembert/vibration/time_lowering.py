@@ -1,0 +1,192 @@
+r"""From a vibrating system to arrays for integration in time: modes of its structure, cells and springs in it.
+
+The modes are those of the pencil :math:`(M, M + K/\omega^2)`, which also has them where some of the mass, or of the
+stiffness, is missing.
+"""
+
+import ctypes
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from scipy.linalg import LinAlgError, eigh
+from scipy.sparse import issparse
+
+from dalembert.errors import ModelError
+from dalembert.vibration.condensation import COUPLED, DENSE
+from dalembert.vibration.fourier import Fourier
+from dalembert.vibration.friction_law import NORMAL, TANGENTIAL
+from dalembert.vibration.lowering import ELASTIC, Lowered
+from dalembert.vibration.springs import BilinearStop, CubicSpring, Gap, UserElement
+from dalembert.vibration.system import StaticForce
+from dalembert.vibration.time_steps import CUBIC, GAP, STOP, Elements, Modes, Scheme
+
+MASSLESS = 1e-12
+"""Mass of a mode, as part of its mass and stiffness, below which it has no inertia of its own."""
+_KINDS: dict[type, int] = {CubicSpring: CUBIC, Gap: GAP, BilinearStop: STOP}
+_C_FUNCTION = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p)
+
+
+@dataclass(frozen=True)
+class Spectral:
+    """A structure in its modes.
+
+    Parameters
+    ----------
+    shapes : array, shape (n, modes)
+    mass, stiffness, damping : array, shape (modes,)
+        Diagonals.
+    coupled : array, shape (modes, modes) or (0, 0)
+        The damping where it couples modes.
+    """
+
+    shapes: np.ndarray
+    mass: np.ndarray
+    stiffness: np.ndarray
+    damping: np.ndarray
+    coupled: np.ndarray
+
+    def accelerations(self, force: np.ndarray, place: np.ndarray, velocity: np.ndarray) -> np.ndarray:
+        """Of the modes (modes,) under forces on them; none of those without mass."""
+        damping = self.coupled @ velocity if len(self.coupled) else self.damping * velocity
+        heavy = self.mass > MASSLESS
+        return np.where(heavy, force - damping - self.stiffness * place, 0.0) / np.where(heavy, self.mass, 1.0)
+
+
+def spectral(structure: Any, omega: float) -> Spectral:
+    """Modes of a structure, normalised to 1 in mass and stiffness/ω².
+
+    Raises
+    ------
+    ModelError
+        For a structure too large, or with degrees of freedom that have neither mass nor stiffness.
+    """
+    if structure.size > DENSE:
+        raise ModelError(
+            f"the structure has {structure.size} degrees of freedom, too many to be integrated in time (at most "
+            f"{DENSE}); reduce it with craig_bampton"
+        )
+    given = (structure.mass, structure.stiffness, structure.damping)
+    mass, stiffness, damping = (
+        np.real(matrix.toarray() if issparse(matrix) else matrix)
+        for matrix in (*given[:2], given[0] * 0.0 if given[2] is None else given[2])
+    )
+    try:
+        shapes = eigh(mass, mass + stiffness / omega**2)[1]
+    except LinAlgError:
+        raise ModelError(
+            "the structure has degrees of freedom with neither mass nor stiffness, or with negative ones, and cannot "
+            "be integrated in time; give them some mass or a spring"
+        ) from None
+    modal = shapes.T @ damping @ shapes
+    own = np.diag(modal).copy()
+    apart = np.abs(modal - np.diag(own)).max(initial=0.0) <= COUPLED * max(
+        np.abs(own).max(initial=0.0), np.finfo(float).tiny
+    )
+    inertia, hold = (np.einsum("ij,ij->j", shapes, matrix @ shapes) for matrix in (mass, stiffness))
+    return Spectral(shapes, inertia, hold, own, np.zeros((0, 0)) if apart else modal)
+
+
+@dataclass(frozen=True)
+class InTime:
+    """A lowered system in its modes, at one frequency.
+
+    Parameters
+    ----------
+    lowered : Lowered
+        Real.
+    omega : float
+    steps : int
+        Of a period.
+    stand_in : float
+        Stiffness of the springs in place of rigid contacts, in multiples of the penalties.
+    """
+
+    lowered: Lowered
+    omega: float
+    steps: int
+    stand_in: float
+
+    @cached_property
+    def spectral(self) -> Spectral:
+        """The structure's modes."""
+        return spectral(self.lowered.structure, self.omega)
+
+    @cached_property
+    def seen(self) -> np.ndarray:
+        """What elements see of the modes, (rows, modes)."""
+        return np.ascontiguousarray(self.lowered.matrix @ self.spectral.shapes)
+
+    @cached_property
+    def forces(self) -> np.ndarray:
+        """On the modes at the steps' ends, (steps, modes); those of the last end are those of the period's start."""
+        highest = max((0 if isinstance(one, StaticForce) else one.harmonic for one in self.lowered.forces), default=0)
+        series = Fourier(tuple(range(max(highest, 1) + 1)), self.steps)
+        samples = series.synthesis @ (np.real(self.lowered.loads(series)).T @ self.spectral.shapes)
+        return np.ascontiguousarray(np.roll(samples, -1, axis=0))
+
+    def modes(self, scheme: Scheme) -> Modes:
+        """Arrays of the structure for a method."""
+        own, seen = self.spectral, self.seen
+        ratio = (1 - scheme.alpha_f) / (1 - scheme.alpha_m)
+        by_place, by_velocity = scheme.beta * scheme.step**2 * ratio, scheme.gamma * scheme.step * ratio
+        inverse = 1 / (own.mass + by_velocity * own.damping + by_place * own.stiffness)
+        solver = own.coupled
+        if len(solver):
+            solver = np.linalg.inv(np.diag(own.mass + by_place * own.stiffness) + by_velocity * own.coupled)
+        pushed = solver @ seen.T if len(solver) else inverse[:, None] * seen.T
+        return Modes(
+            own.mass, own.damping, own.stiffness, inverse, own.coupled, solver, seen, np.ascontiguousarray(pushed),
+            np.ascontiguousarray(by_place * (seen @ pushed)), self.forces,
+        )  # fmt: skip
+
+    @cached_property
+    def elements(self) -> Elements:
+        """Arrays of the elements."""
+        blocks, springs = self.lowered.blocks, self.lowered.springs
+        rows, numbers = [np.zeros((0, 3), dtype=int)], [np.zeros((0, 5))]
+        for block in blocks:
+            rows.append(np.pad(block.rows, ((0, 0), (0, 3 - block.rows.shape[1]))))
+            numbers.append(block.numbers.astype(float))
+            if block.kind != ELASTIC:
+                numbers[-1][:, [TANGENTIAL, NORMAL]] *= self.stand_in
+        plain = [(places[0], element) for places, element in springs if not isinstance(element, UserElement)]
+        return Elements(
+            rows=np.concatenate(rows),
+            tangents=np.array([block.tangents for block in blocks for _ in block.rows], dtype=np.int64),
+            normal=np.array([block.normal for block in blocks for _ in block.rows], dtype=bool),
+            numbers=np.concatenate(numbers),
+            contacts=np.concatenate([np.zeros(0, dtype=int), *(block.contacts for block in blocks)]),
+            kinds=np.array([_KINDS[type(element)] for _, element in plain], dtype=np.int64),
+            places=np.array([place for place, _ in plain], dtype=np.int64),
+            values=np.array([[np.real(e.stiffness), np.real(getattr(e, "gap", 0.0))] for _, e in plain]).reshape(-1, 2),
+            users=len(plain) < len(springs),
+        )
+
+    def users(self, failures: list[Exception]) -> Any:
+        """The laws of the user's, callable from compiled code; what they raise is kept, and the run ends."""
+        laws = [(places, element.law) for places, element in self.lowered.springs if isinstance(element, UserElement)]
+        return _C_FUNCTION(_trampoline(laws, len(self.lowered.row_names), failures))
+
+
+def _trampoline(
+    laws: Sequence[tuple[np.ndarray, Callable]], rows: int, failures: list[Exception]
+) -> Callable[[int, int, int], None]:
+    def call(place: int, force: int, slopes: int) -> None:
+        u, into, matrix = _view(place, rows), _view(force, rows), _view(slopes, rows * rows).reshape(rows, rows)
+        try:
+            for own, law in laws:
+                values, changes = law(u[own][:, None])
+                np.add.at(into, own, values[:, 0])
+                np.add.at(matrix, (own[:, None], own[None, :]), changes[:, :, 0])
+        except Exception as error:  # must not cross the compiled code
+            failures.append(error)
+            into[:] = np.nan
+
+    return call
+
+
+def _view(address: int, count: int) -> np.ndarray:
+    return np.ctypeslib.as_array((ctypes.c_double * count).from_address(address))

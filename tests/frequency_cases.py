@@ -15,6 +15,7 @@ from dalembert.vibration import (
     HarmonicForce,
     VibrationSystem,
     frequency_response,
+    frequency_responses,
 )
 from report_case import Case
 from vibrating_systems import chain, duffing, one_mass, two_masses
@@ -49,6 +50,16 @@ def _turning() -> VibrationSystem:
     system = VibrationSystem(Structure(np.eye(2), stiffness, Dofs(("a.x", "a.rz")), 0.02 * stiffness))
     system.add(HarmonicForce("a.rz", 1.0))
     return system
+
+
+def damped(preload: float) -> VibrationSystem:
+    system = two_masses()
+    system.elements[0] = replace(system.elements[0], preload=preload)  # type: ignore[type-var]
+    return system
+
+
+def _family(preloads: list[float], method: HarmonicBalance = FEW) -> Any:
+    return frequency_responses(damped, "preload", preloads, (0.7 * HZ, 1.3 * HZ), method, unit="N")
 
 
 def _unstable() -> Any:
@@ -107,5 +118,28 @@ FREQUENCY_CASES: dict[str, Case] = {
     "a response that is not found": Case(
         lambda: frequency_response(two_masses(), AROUND, HarmonicBalance(harmonics=7, iterations=1, halvings=0)),
         ("! not found",),
+    ),
+    # ── over a parameter ────────────────────────────────────────────────────────────────────────────────────────────
+    "responses over a preload": Case(
+        lambda: _family([0.0, 2.0, 4.0, 12.0]),
+        (
+            "Forced response over preload",
+            "The smallest peak of m2.x is at preload = 4 N:",
+            "% below that at 0 N.",
+            "From 0 N to 12 N the frequency of the peak goes from",
+            "With preload = 4 N, at the peak of m2.x at",
+        ),
+        ("curve-family-1", "family-peaks-1", "contact-states"),
+    ),
+    "responses over a preload that should be larger, and one that fails": Case(
+        lambda: _family([-1.0, 0.0, 1.0, 2.0]),
+        (
+            "! incomplete",
+            "It lies at the end of the values: beyond them the peak may be smaller still.",
+            "the preload is -1 N; expected a number that is not negative",
+        ),
+    ),
+    "responses over a preload that are not found": Case(
+        lambda: _family([1.0, 2.0], HarmonicBalance(harmonics=7, iterations=1, halvings=0)), ("! incomplete",)
     ),
 }

@@ -6,8 +6,10 @@ from typing import Any
 from dalembert.errors import InputError
 from dalembert.report import charts
 from dalembert.report.charts.correlation import unknowns
+from dalembert.report.charts.curve_family import value_text
 from dalembert.report.charts.methods import reference
 from dalembert.report.each import each
+from dalembert.report.focus import family_dofs
 from dalembert.report.needs import (
     BandFitLike,
     ComparisonLike,
@@ -17,7 +19,7 @@ from dalembert.report.needs import (
     SweepLike,
     TrajectoryLike,
 )
-from dalembert.report.needs_frequency import FrequencyCurveLike
+from dalembert.report.needs_frequency import CurveFamilyLike, FrequencyCurveLike
 from dalembert.report.needs_integrators import WorkPrecisionLike
 from dalembert.report.needs_telling import DesignsLike, PredictionLike, ProfilesLike
 from dalembert.report.plot import Plot
@@ -30,6 +32,7 @@ from dalembert.report.sections import (
     Diagnostics,
     Estimates,
     Experiments,
+    Family,
     ForcedResponse,
     Friction,
     GivenBands,
@@ -52,6 +55,7 @@ from dalembert.report.sections import (
     telling_headlines,
     vibration_headlines,
 )
+from dalembert.report.sections.family import best_curve
 
 Result = (
     FitLike
@@ -66,6 +70,7 @@ Result = (
     | DesignsLike
     | WorkPrecisionLike
     | FrequencyCurveLike
+    | CurveFamilyLike
 )
 
 
@@ -120,6 +125,10 @@ def contents(
         case FrequencyCurveLike():
             own = [vibration_headlines.of_frequency_curve(result, dofs, amplitude, title, notes)]
             sections = [*own, *_vibrating(result, dofs, amplitude), Balance(result)]
+        case CurveFamilyLike():
+            looked = dofs or family_dofs(result, amplitude)
+            own = [vibration_headlines.of_family(result, looked, amplitude, title, notes)]
+            sections = [*own, *_family(result, looked, amplitude)]
         case TrajectoryLike():
             moving = each(result)
             shown = [*_motion(moving, points), Diagnostics(moving)]
@@ -141,6 +150,16 @@ def _vibrating(curve: FrequencyCurveLike, dofs: tuple[str, ...], amplitude: str)
         return []
     elements = [Friction(curve, dofs, amplitude)] if curve.coordinates else []
     return [ForcedResponse(curve, dofs, amplitude), *elements, Harmonics(curve, dofs, amplitude)]
+
+
+def _family(family: CurveFamilyLike, dofs: tuple[str, ...], amplitude: str) -> list[Section]:
+    """The sections on curves for several values of a parameter, and on the contacts at the best value."""
+    if not dofs:
+        return []
+    best = best_curve(family, dofs[0], amplitude)
+    lead = f"With {family.parameter} = {value_text(family, family.best(dofs[0], amplitude))}, "
+    contacts = [Friction(best, dofs[:1], amplitude, lead)] if best.coordinates else []
+    return [Family(family, dofs, amplitude), *contacts]
 
 
 def _compared(fit: FitLike) -> Section:

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from dalembert.report.needs_frequency import FrequencyCurveLike
+from dalembert.report.needs_frequency import CurveFamilyLike, FrequencyCurveLike
 
 UNITS = {"x": "m", "y": "m", "z": "m", "rx": "rad", "ry": "rad", "rz": "rad", "rxy": "1/m", "q": "m √kg"}
 MOST = 6
@@ -47,6 +47,12 @@ def chosen_dofs(curve: FrequencyCurveLike, dofs: Sequence[str] | None = None, ki
 def main_dof(curve: FrequencyCurveLike, dofs: Sequence[str] | None = None, kind: str = "peak") -> str:
     """The one of some degrees of freedom that moves most, the first where several do."""
     return max(chosen_dofs(curve, dofs, kind), key=lambda dof: largest(curve, dof, kind))
+
+
+def family_dofs(family: CurveFamilyLike, kind: str = "peak") -> tuple[str, ...]:
+    """The degree of freedom that moves most in the first curve there is; none where there is none."""
+    found = (curve for curve in family.curves if curve is not None and curve.converged.any())
+    return next(((main_dof(curve, kind=kind),) for curve in found), ())
 
 
 def at_peak(curve: FrequencyCurveLike, dof: str, kind: str = "peak") -> int:

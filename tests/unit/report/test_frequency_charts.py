@@ -6,7 +6,8 @@ import pytest
 from dalembert.errors import InputError
 from dalembert.report import charts, figures, report
 from dalembert.report.focus import at_peak, chosen_dofs, main_dof
-from dalembert.vibration import HarmonicBalance, frequency_response
+from dalembert.vibration import HarmonicBalance, frequency_response, frequency_responses
+from frequency_cases import damped
 from pages import read_page
 from support import says
 from vibrating_systems import chain, duffing, two_masses
@@ -120,3 +121,33 @@ def test_a_curve_of_which_nothing_was_found_has_its_diagnostics_alone():
 def test_the_degree_of_freedom_that_moves_most_is_looked_at(curve):
     assert chosen_dofs(curve) == ("m1.x", "m2.x")
     assert main_dof(curve) == max(curve.dofs, key=lambda dof: curve.amplitude(dof).max())
+
+
+@pytest.fixture(scope="module")
+def family():
+    values = np.array([0.0, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0])
+    return frequency_responses(
+        damped, "preload", values, (0.7 * HZ, 1.3 * HZ), HarmonicBalance(3, samples=256), unit="N"
+    )
+
+
+def test_a_family_shows_its_ends_its_best_and_the_envelope(family):
+    drawn = traces(charts.curve_family(family, "m2.x"))
+    named = [trace.name for trace in charts.curve_family(family, "m2.x").data if trace.showlegend is not False]
+    assert named == ["0 N", "4 N, smallest peak", "12 N", "smallest of all", "largest of all"]
+    np.testing.assert_array_equal(drawn["4 N, smallest peak"].y, family.curves[4].amplitude("m2"))
+    envelope = family.envelope("m2")
+    np.testing.assert_array_equal(drawn["smallest of all"].y, envelope.smallest)
+    np.testing.assert_array_equal(drawn["largest of all"].x, envelope.frequencies)
+
+
+def test_peaks_over_the_parameter(family, tmp_path):
+    drawn = traces(charts.family_peaks(family, "m2.x"))
+    peaks = family.peaks("m2")
+    np.testing.assert_array_equal(drawn["peak"].x, family.values)
+    np.testing.assert_array_equal(drawn["peak"].y, [peak.amplitude for peak in peaks])
+    np.testing.assert_array_equal(drawn["its frequency"].y, [peak.frequency for peak in peaks])
+    assert list(drawn["smallest, at 4 N"].x) == [family.best("m2")]
+    rows = read_page(family.report(tmp_path / "a.html")).table("family-1")[1:]
+    assert [float(row[1]) for row in rows] == [peak.amplitude for peak in peaks]
+    np.testing.assert_allclose([float(row[3]) for row in rows], -100 * family.reduction("m2"))

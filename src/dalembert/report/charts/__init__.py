@@ -4,6 +4,7 @@ from dalembert.report.charts.bands import bands
 from dalembert.report.charts.contact_states import contact_shares, contact_states
 from dalembert.report.charts.convergence import convergence
 from dalembert.report.charts.correlation import correlation
+from dalembert.report.charts.curve_family import curve_family, family_peaks
 from dalembert.report.charts.designs import horizons, ranking
 from dalembert.report.charts.dissipation import dissipation
 from dalembert.report.charts.energies import energies
@@ -36,9 +37,11 @@ __all__ = [
     "contact_states",
     "convergence",
     "correlation",
+    "curve_family",
     "differences",
     "dissipation",
     "energies",
+    "family_peaks",
     "frequency_curve",
     "gaps",
     "harmonic_content",

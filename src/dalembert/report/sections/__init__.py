@@ -8,6 +8,7 @@ from dalembert.report.sections.designing import Designing
 from dalembert.report.sections.diagnostics import Diagnostics
 from dalembert.report.sections.estimates import Estimates
 from dalembert.report.sections.experiments import Experiments
+from dalembert.report.sections.family import Family
 from dalembert.report.sections.findings import Findings
 from dalembert.report.sections.forced_response import ForcedResponse
 from dalembert.report.sections.friction import Friction
@@ -36,6 +37,7 @@ __all__ = [
     "Diagnostics",
     "Estimates",
     "Experiments",
+    "Family",
     "Findings",
     "ForcedResponse",
     "Friction",

@@ -26,6 +26,7 @@ class Friction(Findings):
     curve: FrequencyCurveLike
     dofs: tuple[str, ...] = ()
     kind: str = "peak"
+    lead: str = ""
 
     @property
     def point(self) -> int:
@@ -36,10 +37,11 @@ class Friction(Findings):
         curve, point = self.curve, self.point
         at = f"the peak of {main_dof(curve, self.dofs, self.kind)} at {shown(float(curve.frequencies[point]))} Hz"
         if not curve.contacts:
-            return (f"Drawn for {at}.",)
+            return (_after(self.lead, f"Drawn for {at}."),)
         part = {name: float(share.mean()) for name, share in shares(curve.states[point]).items()}
         told = f"At {at} the contacts are stuck for {_percent(part['stuck'])} of the period, slip for "
         told += f"{_percent(part['slipping'])} and are separated for {_percent(part['separated'])}."
+        told = _after(self.lead, told)
         energy = float(np.sum([energy[point] for energy in dissipation_of(curve).values()]))
         if part["stuck"] == 1:
             return (told, "They stick all the time there: what damps is the structure, not friction.")
@@ -118,3 +120,7 @@ def _at(curve: FrequencyCurveLike, point: int) -> str:
 
 def _named(names: list[str]) -> str:
     return plain(names[0]) if len(names) == 1 else "springs"
+
+
+def _after(lead: str, sentence: str) -> str:
+    return f"{lead}{sentence[0].lower()}{sentence[1:]}" if lead else sentence

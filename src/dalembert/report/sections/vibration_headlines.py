@@ -4,9 +4,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from dalembert.report.charts.curve_family import value_text
 from dalembert.report.digits import counted, shown
 from dalembert.report.focus import main_dof, unit_of
-from dalembert.report.needs_frequency import FrequencyCurveLike
+from dalembert.report.needs_frequency import CurveFamilyLike, FrequencyCurveLike
 from dalembert.report.sections.headline import Fact, Headline
 
 
@@ -32,6 +33,25 @@ def of_frequency_curve(
     ]
     verdict = "computed" if success else "incomplete" if found else "not found"
     return Headline(title or "Forced response", verdict, success, status, facts, notes)
+
+
+def of_family(
+    family: CurveFamilyLike, dofs: tuple[str, ...], kind: str, title: str | None, notes: Sequence[str]
+) -> Headline:
+    """Headline of responses for several values of a parameter."""
+    facts = [Fact("values", counted(len(family.values)))]
+    if dofs:
+        peaks, best = family.peaks(dofs[0], kind), family.best(dofs[0], kind)
+        at = int(np.flatnonzero(np.asarray(family.values) == best)[0])
+        gain = float(family.reduction(dofs[0], kind)[at])
+        facts += [
+            Fact(f"best {family.parameter}", value_text(family, best)),
+            Fact(f"peak of {dofs[0]} there", f"{shown(peaks[at].amplitude, digits=5)} {unit_of(dofs[0])}"),
+            Fact(f"reduction from {value_text(family, float(family.values[0]))}", f"{shown(100 * gain, digits=3)} %"),
+        ]
+    verdict = "computed" if family.success else "incomplete"
+    name = title or f"Forced response over {family.parameter}"
+    return Headline(name, verdict, family.success, f"{family.status}.", facts, notes)
 
 
 def _largest(curve: FrequencyCurveLike, dof: str, kind: str) -> tuple[str, str]:

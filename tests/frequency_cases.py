@@ -1,7 +1,6 @@
 """Small studies of vibrations that provoke every figure and every sentence of their reports."""
 
 from dataclasses import replace
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -62,16 +61,9 @@ def _family(preloads: list[float], method: HarmonicBalance = FEW) -> Any:
     return frequency_responses(damped, "preload", preloads, (0.7 * HZ, 1.3 * HZ), method, unit="N")
 
 
-def _unstable() -> Any:
-    """The curve with a fold, and what stability would say of it."""
-    curve = _folded()
-    between = np.cumsum(curve.fold) == 1
-    given = {name: getattr(curve, name) for name in dir(curve) if not name.startswith("_")}
-    return SimpleNamespace(**{**given, "stable": np.where(between, 0, 1), "markers": (("torus", 3),)})
-
-
-def _folded() -> FrequencyCurve:
-    return frequency_response(duffing(), (0.8 * HZ, 1.6 * HZ), HarmonicBalance(5), continuation="arc-length")
+def _folded(**options: Any) -> FrequencyCurve:
+    ends, method = (0.8 * HZ, 1.6 * HZ), HarmonicBalance(harmonics=5)
+    return frequency_response(duffing(), ends, method, continuation="arc-length", **options)
 
 
 FREQUENCY_CASES: dict[str, Case] = {
@@ -107,7 +99,8 @@ FREQUENCY_CASES: dict[str, Case] = {
         _folded, ("The path turns back in frequency at", "Drawn for the peak of m.x"), ("spring-forces",)
     ),
     "a response that is unstable": Case(
-        _unstable, ("are unstable: the structure does not stay in these motions.", "Dashed: unstable motions.", "torus")
+        lambda: _folded(stability=True),
+        ("are unstable: the structure does not stay in these motions.", "Dashed: unstable motions."),
     ),
     "a response of which points are not found": Case(
         lambda: frequency_response(

@@ -1,6 +1,6 @@
 """What of a response over frequency is looked at: which degrees of freedom, which contacts, which point."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -92,17 +92,14 @@ def dissipation_of(curve: FrequencyCurveLike) -> dict[str, np.ndarray]:
 def marked(curve: FrequencyCurveLike) -> dict[str, list[int]]:
     """Points where the path turns back or changes its stability, by what they are."""
     found: dict[str, list[int]] = {}
-    folds: Iterable[tuple[str, int]] = (("fold", int(point)) for point in np.flatnonzero(curve.fold))
-    for kind, point in [*folds, *getattr(curve, "markers", ())]:
-        if point not in found.setdefault(kind, []):
-            found[kind].append(point)
+    for kind, point in curve.markers:
+        found.setdefault(kind, []).append(point)
     return found
 
 
 def unstable(curve: FrequencyCurveLike) -> np.ndarray:
     """Whether each point is known to be unstable, (points,)."""
-    stable = getattr(curve, "stable", None)
-    return np.zeros(len(curve.frequencies), dtype=bool) if stable is None else np.asarray(stable) == 0
+    return np.asarray(curve.stable) == 0
 
 
 def _owner(coordinate: str) -> str:

@@ -63,6 +63,20 @@ def test_folds_are_marked_and_both_branches_drawn(folded):
     np.testing.assert_array_equal(drawn["m.x"].x, folded.frequencies)
 
 
+def test_what_is_unstable_is_dashed():
+    curve = frequency_response(
+        duffing(), (0.8 * HZ, 1.6 * HZ), HarmonicBalance(5), continuation="arc-length", stability=True
+    )
+    drawn = traces(charts.frequency_curve(curve))
+    sizes = curve.amplitude("m")
+    dashed = drawn["m.x, unstable"]
+    assert dashed.line.dash == "dash"
+    np.testing.assert_array_equal(dashed.y[curve.stable == 0], sizes[curve.stable == 0])
+    np.testing.assert_array_equal(drawn["m.x"].y, np.where(curve.stable == 0, np.nan, sizes))
+    ends = np.flatnonzero(np.diff((curve.stable == 0).astype(int)))
+    assert np.isfinite(dashed.y[ends]).all()  # the two meet
+
+
 def test_the_loop_encloses_the_energy_of_a_period(curve):
     point = at_peak(curve, "m2.x")
     (loop,) = charts.hysteresis(curve, point).data

@@ -12,9 +12,13 @@ from dalembert.vibration import (
     FrictionContact,
     HarmonicBalance,
     HarmonicForce,
+    Newmark,
     VibrationSystem,
+    backbone,
+    compare_in_time,
     frequency_response,
     frequency_responses,
+    track_resonance,
 )
 from report_case import Case
 from vibrating_systems import chain, duffing, one_mass, two_masses
@@ -64,6 +68,22 @@ def _family(preloads: list[float], method: HarmonicBalance = FEW) -> Any:
 def _folded(**options: Any) -> FrequencyCurve:
     ends, method = (0.8 * HZ, 1.6 * HZ), HarmonicBalance(harmonics=5)
     return frequency_response(duffing(), ends, method, continuation="arc-length", **options)
+
+
+def _timed(**settings: Any) -> tuple[VibrationSystem, FrequencyCurve, Any]:
+    system = two_masses()
+    curve = frequency_response(system, HZ * np.linspace(0.8, 1.0, 5), HarmonicBalance(harmonics=5))
+    return system, curve, compare_in_time(system, curve, points=[0, 2, 4], method=Newmark(**settings))
+
+
+def _backbone(system: VibrationSystem, amplitudes: list[float], **settings: Any) -> Any:
+    return backbone(system, np.array(amplitudes), method=HarmonicBalance(harmonics=3, **settings))
+
+
+def _track(values: list[float], start: tuple[float, float], **settings: Any) -> Any:
+    return track_resonance(
+        damped, "preload", values, start, HarmonicBalance(harmonics=3, samples=256, **settings), dof="m2.x", unit="N"
+    )
 
 
 FREQUENCY_CASES: dict[str, Case] = {
@@ -134,5 +154,51 @@ FREQUENCY_CASES: dict[str, Case] = {
     ),
     "responses over a preload that are not found": Case(
         lambda: _family([1.0, 2.0], HarmonicBalance(harmonics=7, iterations=1, halvings=0)), ("! incomplete",)
+    ),
+    # ── time, nonlinear modes, resonances ───────────────────────────────────────────────────────────────────────────
+    "a response beside time integration": Case(
+        lambda: (lambda system, curve, compared: (curve, {"time_comparison": compared}))(*_timed(steps_per_period=256)),
+        (
+            "3 points were integrated in time with 256 steps a period",
+            "Harmonic balance differs by at most",
+            "% of the largest motion, for m",
+            "Crosses: in time; circles: harmonic balance",
+        ),
+        ("frequency-curve", "time-comparison"),
+    ),
+    "time integration alone": Case(
+        lambda: _timed(steps_per_period=256)[2], ("All points are periodic in time.",), ("time-comparison",)
+    ),
+    "time integration that is not periodic yet": Case(
+        lambda: _timed(steps_per_period=64, periods=2)[2],
+        ("Some points are not periodic in time yet.", "Not periodic yet in time, so not to be compared:"),
+    ),
+    "a nonlinear mode that stiffens": Case(
+        lambda: (_folded(), {"backbone": _backbone(duffing(), [0.1, 0.5, 1.0, 2.0, 3.0])}),
+        ("of m.x the mode stiffens: its frequency goes from", "Dotted: the nonlinear mode without force."),
+        ("frequency-curve", "backbone"),
+    ),
+    "a nonlinear mode with friction": Case(
+        lambda: _backbone(two_masses(), [0.1, 0.5, 1.0, 2.0, 10.0]),
+        ("Mode 1 was found at 5 of 5 amplitudes of", "the mode softens", "It is damped most, by a ratio of"),
+    ),
+    "a nonlinear mode that is linear": Case(
+        lambda: _backbone(_turning(), [0.1, 0.2]), ("the frequency of the mode stays at",)
+    ),
+    "a nonlinear mode that is not found": Case(
+        lambda: _backbone(duffing(), [1.0, 3.0], iterations=1, halvings=0), ("! incomplete", "0 of 2 amplitudes")
+    ),
+    "a resonance over a preload": Case(
+        lambda: _track([12.0, 10.0, 8.0, 6.0, 4.0, 3.0], (0.7 * HZ, 1.4 * HZ)),
+        (
+            "Resonance over preload",
+            "The peak was found at 6 of 6 values of preload.",
+            "The peak of m2.x is smallest with preload = 4 N:",
+            "balanced points, without whole curves;",
+        ),
+        ("resonance-track",),
+    ),
+    "a resonance that is not found": Case(
+        lambda: _track([12.0, 0.0], (0.7 * HZ, 1.4 * HZ), iterations=2, halvings=0), ("! incomplete",)
     ),
 }

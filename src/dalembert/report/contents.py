@@ -6,8 +6,8 @@ from typing import Any
 from dalembert.errors import InputError
 from dalembert.report import charts
 from dalembert.report.charts.correlation import unknowns
-from dalembert.report.charts.curve_family import value_text
 from dalembert.report.charts.methods import reference
+from dalembert.report.charts.resonance_peaks import value_text
 from dalembert.report.each import each
 from dalembert.report.focus import family_dofs
 from dalembert.report.needs import (
@@ -19,7 +19,13 @@ from dalembert.report.needs import (
     SweepLike,
     TrajectoryLike,
 )
-from dalembert.report.needs_frequency import CurveFamilyLike, FrequencyCurveLike
+from dalembert.report.needs_frequency import (
+    BackboneLike,
+    CurveFamilyLike,
+    FrequencyCurveLike,
+    ResonanceTrackLike,
+    TimeComparisonLike,
+)
 from dalembert.report.needs_integrators import WorkPrecisionLike
 from dalembert.report.needs_telling import DesignsLike, PredictionLike, ProfilesLike
 from dalembert.report.plot import Plot
@@ -39,8 +45,10 @@ from dalembert.report.sections import (
     Harmonics,
     Integrators,
     Intervals,
+    InTime,
     Methods,
     Motion,
+    NonlinearMode,
     Predicting,
     Profiling,
     Provenance,
@@ -49,6 +57,7 @@ from dalembert.report.sections import (
     Shooting,
     Sweeps,
     Telling,
+    Tracks,
     bound_headlines,
     headline,
     motion,
@@ -71,6 +80,9 @@ Result = (
     | WorkPrecisionLike
     | FrequencyCurveLike
     | CurveFamilyLike
+    | TimeComparisonLike
+    | BackboneLike
+    | ResonanceTrackLike
 )
 
 
@@ -87,6 +99,8 @@ def contents(
     prediction: PredictionLike | Mapping[str, PredictionLike] | None = None,
     dofs: tuple[str, ...] = (),
     amplitude: str = "peak",
+    time_comparison: TimeComparisonLike | None = None,
+    backbone: BackboneLike | None = None,
 ) -> list[Section]:
     """Sections of a report in reading order; the first is the headline.
 
@@ -124,7 +138,15 @@ def contents(
             sections = [headline.of_work_precision(result, title, notes), Integrators(result)]
         case FrequencyCurveLike():
             own = [vibration_headlines.of_frequency_curve(result, dofs, amplitude, title, notes)]
-            sections = [*own, *_vibrating(result, dofs, amplitude), Balance(result)]
+            beside = [InTime(time_comparison, result)] if time_comparison is not None else []
+            modes = [NonlinearMode(backbone)] if backbone is not None else []
+            sections = [*own, *_vibrating(result, dofs, amplitude, backbone), *modes, *beside, Balance(result)]
+        case TimeComparisonLike():
+            sections = [vibration_headlines.of_time_comparison(result, title, notes), InTime(result)]
+        case BackboneLike():
+            sections = [vibration_headlines.of_backbone(result, title, notes), NonlinearMode(result)]
+        case ResonanceTrackLike():
+            sections = [vibration_headlines.of_track(result, title, notes), Tracks(result)]
         case CurveFamilyLike():
             looked = dofs or family_dofs(result, amplitude)
             own = [vibration_headlines.of_family(result, looked, amplitude, title, notes)]
@@ -144,12 +166,14 @@ def contents(
     return [*sections, Provenance(facts, study)] if facts or study else sections
 
 
-def _vibrating(curve: FrequencyCurveLike, dofs: tuple[str, ...], amplitude: str) -> list[Section]:
+def _vibrating(
+    curve: FrequencyCurveLike, dofs: tuple[str, ...], amplitude: str, backbone: BackboneLike | None
+) -> list[Section]:
     """The sections on a response over frequency, where any of it was found."""
     if not curve.converged.any():
         return []
     elements = [Friction(curve, dofs, amplitude)] if curve.coordinates else []
-    return [ForcedResponse(curve, dofs, amplitude), *elements, Harmonics(curve, dofs, amplitude)]
+    return [ForcedResponse(curve, dofs, amplitude, backbone), *elements, Harmonics(curve, dofs, amplitude)]
 
 
 def _family(family: CurveFamilyLike, dofs: tuple[str, ...], amplitude: str) -> list[Section]:

@@ -18,6 +18,7 @@ from dalembert.files import write_text
 from dalembert.report.contents import Result, contents
 from dalembert.report.look import DARK, FONT, LIGHT, exchanged, template
 from dalembert.report.needs import TrajectoryLike
+from dalembert.report.needs_frequency import BackboneLike, TimeComparisonLike
 from dalembert.report.needs_telling import PredictionLike, ProfilesLike
 from dalembert.report.plot import SAFE
 
@@ -36,6 +37,8 @@ def report(
     prediction: PredictionLike | Mapping[str, PredictionLike] | None = None,
     dofs: Sequence[str] = (),
     amplitude: str = "peak",
+    time_comparison: TimeComparisonLike | None = None,
+    backbone: BackboneLike | None = None,
 ) -> Path:
     """Write an HTML report that opens offline in any browser, in its light or dark, and asks nothing of the network.
 
@@ -66,6 +69,10 @@ def report(
         Degrees of freedom that a response over frequency is drawn for; those that move most if not given.
     amplitude : str
         What is drawn over frequency: ``"peak"``, ``"rms"``, or ``"harmonic 1"`` and so on.
+    time_comparison : TimeComparison, optional
+        Points of a response over frequency beside integration in time, for a section of its report.
+    backbone : Backbone, optional
+        A nonlinear mode, drawn with a response over frequency and for a section of its report.
 
     Returns
     -------
@@ -90,6 +97,8 @@ def report(
         prediction=prediction,
         dofs=tuple(dofs),
         amplitude=amplitude,
+        time_comparison=time_comparison,
+        backbone=backbone,
     )
     environment = _environment()
     scripts = [Markup(get_plotlyjs()), Markup(_packaged("page.js"))]

@@ -4,7 +4,7 @@ import base64
 import csv
 import io
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from dalembert.report.digits import counted, shown
 
@@ -54,6 +54,13 @@ class Table:
     def link(self) -> str:
         """Address that holds the CSV in itself."""
         return "data:text/csv;charset=utf-8;base64," + base64.b64encode(self.csv.encode()).decode()
+
+
+def noted(table: Table) -> Table:
+    """The table without its last column where that says nothing."""
+    if any(row[-1].text for row in table.rows):
+        return table
+    return replace(table, columns=table.columns[:-1], rows=[row[:-1] for row in table.rows])
 
 
 def cell(value: object, deviation: float | None = None, *, digits: int = 6, mark: bool = False) -> Cell:

@@ -6,7 +6,15 @@ import pytest
 from dalembert.errors import InputError
 from dalembert.report import charts, figures, report
 from dalembert.report.focus import at_peak, chosen_dofs, main_dof
-from dalembert.vibration import HarmonicBalance, frequency_response, frequency_responses
+from dalembert.vibration import (
+    HarmonicBalance,
+    Newmark,
+    backbone,
+    compare_in_time,
+    frequency_response,
+    frequency_responses,
+    track_resonance,
+)
 from frequency_cases import damped
 from pages import read_page
 from support import says
@@ -165,3 +173,38 @@ def test_peaks_over_the_parameter(family, tmp_path):
     rows = read_page(family.report(tmp_path / "a.html")).table("family-1")[1:]
     assert [float(row[1]) for row in rows] == [peak.amplitude for peak in peaks]
     np.testing.assert_allclose([float(row[3]) for row in rows], -100 * family.reduction("m2"))
+
+
+def test_points_in_time_lie_beside_the_curve(curve, tmp_path):
+    compared = compare_in_time(two_masses(), curve, points=[4, 8], method=Newmark(steps_per_period=128))
+    drawn = traces(charts.time_comparison(compared, curve))
+    column = compared.dofs.index("m2.x")
+    np.testing.assert_array_equal(drawn["m2.x"].y, curve.amplitude("m2"))
+    np.testing.assert_array_equal(drawn["m2.x, in time"].y, compared.time[:, column])
+    np.testing.assert_array_equal(drawn["m2.x, harmonic balance"].y, curve.amplitude("m2")[[4, 8]])
+    rows = read_page(report(curve, tmp_path / "a.html", time_comparison=compared)).table("in-time")
+    own = [row for row in rows if row[1] == "m2.x"]
+    np.testing.assert_allclose([float(row[4]) for row in own], 100 * compared.differences[:, column])
+
+
+def test_a_nonlinear_mode_lies_on_the_curve_and_alone(folded, tmp_path):
+    mode = backbone(duffing(), np.array([0.5, 1.0, 2.0]), method=HarmonicBalance(3))
+    line = traces(charts.frequency_curve(folded, mode=mode))["m.x, mode 1 without force"]
+    np.testing.assert_array_equal(line.x, mode.frequencies)
+    np.testing.assert_array_equal(line.y, mode.amplitude("m"))
+    frequency, damping = charts.backbone(mode).data
+    np.testing.assert_array_equal(frequency.y, mode.frequencies)
+    np.testing.assert_array_equal(damping.y, 100 * mode.damping)
+    rows = read_page(mode.report(tmp_path / "a.html")).table("backbone")[1:]
+    np.testing.assert_array_equal([float(row[4]) for row in rows], mode.forces)
+
+
+def test_a_resonance_over_a_parameter(tmp_path):
+    method = HarmonicBalance(3, samples=256)
+    track = track_resonance(damped, "preload", [12.0, 10.0, 8.0], (0.7 * HZ, 1.4 * HZ), method, dof="m2.x", unit="N")
+    drawn = traces(charts.resonance_track(track))
+    np.testing.assert_array_equal(drawn["peak"].y, track.amplitudes)
+    np.testing.assert_array_equal(drawn["its frequency"].y, track.frequencies)
+    assert list(drawn["smallest, at 8 N"].y) == [track.amplitudes.min()]
+    rows = read_page(track.report(tmp_path / "a.html")).table("resonance")
+    assert rows[0] == ["preload (N)", "peak (m)", "at frequency (Hz)", "points balanced"]

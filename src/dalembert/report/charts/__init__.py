@@ -1,10 +1,11 @@
 """One function a figure, each in a file of its own."""
 
+from dalembert.report.charts.backbone import backbone
 from dalembert.report.charts.bands import bands
 from dalembert.report.charts.contact_states import contact_shares, contact_states
 from dalembert.report.charts.convergence import convergence
 from dalembert.report.charts.correlation import correlation
-from dalembert.report.charts.curve_family import curve_family, family_peaks
+from dalembert.report.charts.curve_family import curve_family
 from dalembert.report.charts.designs import horizons, ranking
 from dalembert.report.charts.dissipation import dissipation
 from dalembert.report.charts.energies import energies
@@ -23,15 +24,18 @@ from dalembert.report.charts.points_found import points_found
 from dalembert.report.charts.prediction import prediction
 from dalembert.report.charts.profile import profile
 from dalembert.report.charts.residual_bands import residual_bands
+from dalembert.report.charts.resonance_peaks import family_peaks, resonance_track
 from dalembert.report.charts.responses import responses
 from dalembert.report.charts.singular_values import singular_values
 from dalembert.report.charts.starts import starts
 from dalembert.report.charts.steps import steps
 from dalembert.report.charts.sweep import sweep
+from dalembert.report.charts.time_comparison import time_comparison
 from dalembert.report.charts.violations import violations
 from dalembert.report.charts.work_precision import work_precision
 
 __all__ = [
+    "backbone",
     "bands",
     "contact_shares",
     "contact_states",
@@ -59,11 +63,13 @@ __all__ = [
     "profile",
     "ranking",
     "residual_bands",
+    "resonance_track",
     "responses",
     "singular_values",
     "starts",
     "steps",
     "sweep",
+    "time_comparison",
     "violations",
     "work_precision",
 ]

@@ -1,13 +1,12 @@
-"""Responses over frequency for several values of a parameter, their envelope, and their peaks over the parameter."""
+"""Responses over frequency for several values of a parameter, and their envelope."""
 
 from typing import Any
 
 import numpy as np
 import plotly.graph_objects as go
-from plotly.subplots import make_subplots
 
 from dalembert.report.charts.logarithm import logarithmic, positive
-from dalembert.report.digits import shown
+from dalembert.report.charts.resonance_peaks import value_text
 from dalembert.report.focus import size_label, unit_of
 from dalembert.report.look import LIGHT, plain, themed
 from dalembert.report.needs_frequency import CurveFamilyLike
@@ -17,8 +16,6 @@ from dalembert.report.thin import thin
 
 WIDE = 300
 """Ratio of the largest amplitude to the smallest above which the axis is logarithmic."""
-DECADES = 100
-"""Ratio of the largest value to the smallest above which the axis of the parameter is logarithmic."""
 
 
 def curve_family(family: CurveFamilyLike, dof: str, *, kind: str = "peak", title: str | None = None) -> go.Figure:
@@ -77,69 +74,6 @@ def curve_family(family: CurveFamilyLike, dof: str, *, kind: str = "peak", title
     wide = np.nanmax(envelope.largest) > WIDE * np.nanmin(positive(envelope.smallest))
     axis: dict[str, Any] = logarithmic(figure) if wide else {"rangemode": "tozero"}
     return figure.update_yaxes(title=labelled(size_label(kind), unit), **axis).update_layout(showlegend=True)
-
-
-def family_peaks(family: CurveFamilyLike, dof: str, *, kind: str = "peak", title: str | None = None) -> go.Figure:
-    """Height of the resonance peak over the parameter, the smallest marked; below, its frequency.
-
-    Parameters
-    ----------
-    family : CurveFamily
-    dof : str
-    kind : str
-    title : str, optional
-
-    Returns
-    -------
-    plotly.graph_objects.Figure
-
-    Raises
-    ------
-    InputError
-        For a degree of freedom that was not observed, another kind, or a family without curves.
-    """
-    peaks, values, best = family.peaks(dof, kind), np.asarray(family.values), family.best(dof, kind)
-    order = np.argsort(values, kind="stable")
-    heights, frequencies = (np.array([getattr(p, name) for p in peaks]) for name in ("amplitude", "frequency"))
-    factor, unit = prefixed(float(np.nanmax(heights)), unit_of(dof))
-    figure = make_subplots(rows=2, shared_xaxes=True, row_heights=[0.62, 0.38], vertical_spacing=0.06)
-    for row, name, y, colour in (
-        (1, "peak", factor * heights, LIGHT.series[0]),
-        (2, "its frequency", frequencies, LIGHT.series[2]),
-    ):
-        figure.add_scatter(
-            x=values[order],
-            y=y[order],
-            name=name,
-            mode="lines+markers",
-            line={"color": colour, "width": 2},
-            marker={"size": 6},
-            row=row,
-            col=1,
-        )
-    lowest = values == best
-    figure.add_scatter(
-        x=values[lowest],
-        y=factor * heights[lowest],
-        name=f"smallest, at {value_text(family, best)}",
-        mode="markers",
-        marker={"color": LIGHT.series[1], "size": 13, "symbol": "circle-open", "line": {"width": 3}},
-        row=1,
-        col=1,
-    )
-    themed(figure, title or f"Peak of {plain(dof)} over {plain(family.parameter)}", height=460)
-    figure.update_yaxes(title_text=labelled(size_label(kind), unit), rangemode="tozero", row=1)
-    figure.update_yaxes(title_text="frequency (Hz)", row=2)
-    if values.min() > 0 and values.max() > DECADES * values.min():
-        figure.update_xaxes(type="log", dtick=1)
-    return figure.update_xaxes(title_text=labelled(plain(family.parameter), plain(family.unit)), row=2).update_layout(
-        showlegend=True
-    )
-
-
-def value_text(family: CurveFamilyLike, value: float) -> str:
-    """A value of the parameter with its unit."""
-    return f"{shown(value)} {plain(family.unit)}".rstrip()
 
 
 def _coloured(family: CurveFamilyLike, found: list[int], best: float) -> dict[int, str]:

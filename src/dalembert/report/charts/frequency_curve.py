@@ -6,10 +6,11 @@ from typing import Any
 import numpy as np
 import plotly.graph_objects as go
 
+from dalembert.report.charts.backbone import backbone_line
 from dalembert.report.charts.logarithm import logarithmic, positive
-from dalembert.report.focus import chosen_dofs, marked, size_label, unit_of, unstable
+from dalembert.report.focus import chosen_dofs, main_dof, marked, size_label, unit_of, unstable
 from dalembert.report.look import LIGHT, plain, themed
-from dalembert.report.needs_frequency import FrequencyCurveLike
+from dalembert.report.needs_frequency import BackboneLike, FrequencyCurveLike
 from dalembert.report.prefixes import prefixed
 from dalembert.report.quantities import labelled
 from dalembert.report.thin import thin
@@ -26,6 +27,7 @@ def frequency_curve(
     dofs: Sequence[str] | None = None,
     *,
     kind: str = "peak",
+    mode: BackboneLike | None = None,
     title: str = "Forced response",
 ) -> go.Figure:
     """Amplitude over frequency along the path; dashed where it is unstable, with folds and points that were not found.
@@ -37,6 +39,8 @@ def frequency_curve(
         Degrees of freedom to draw; those that move most if not given.
     kind : str
         ``"peak"``, ``"rms"``, or ``"harmonic 1"`` and so on.
+    mode : Backbone, optional
+        A nonlinear mode, drawn as the line through the peaks of the degree of freedom that moves most.
     title : str
 
     Returns
@@ -63,6 +67,8 @@ def frequency_curve(
             marker={"symbol": SYMBOLS.get(event, "x"), "size": 9, "color": LIGHT.ink},
         )
     _lost(figure, curve, {dof: factor * size for dof, size in sizes.items()})
+    if mode is not None:
+        figure.add_trace(backbone_line(mode, main_dof(curve, chosen, kind), kind, factor))
     themed(figure, title, height=440)
     figure.update_xaxes(title="frequency (Hz)")
     return figure.update_yaxes(title=labelled(size_label(kind), unit), **_axis(figure)).update_layout(showlegend=True)

@@ -15,10 +15,12 @@ from dalembert.report.sections.friction import Friction
 from dalembert.report.sections.given_bands import GivenBands
 from dalembert.report.sections.harmonics import Harmonics
 from dalembert.report.sections.headline import Headline
+from dalembert.report.sections.in_time import InTime
 from dalembert.report.sections.integrators import Integrators
 from dalembert.report.sections.intervals import Intervals
 from dalembert.report.sections.methods import Methods
 from dalembert.report.sections.motion import Motion
+from dalembert.report.sections.nonlinear_mode import NonlinearMode
 from dalembert.report.sections.predicting import Predicting
 from dalembert.report.sections.profiling import Profiling
 from dalembert.report.sections.provenance import Provenance
@@ -27,6 +29,7 @@ from dalembert.report.sections.section import Section
 from dalembert.report.sections.shooting import Shooting
 from dalembert.report.sections.sweeps import Sweeps
 from dalembert.report.sections.telling import Telling
+from dalembert.report.sections.tracks import Tracks
 
 __all__ = [
     "Balance",
@@ -44,10 +47,12 @@ __all__ = [
     "GivenBands",
     "Harmonics",
     "Headline",
+    "InTime",
     "Integrators",
     "Intervals",
     "Methods",
     "Motion",
+    "NonlinearMode",
     "Predicting",
     "Profiling",
     "Provenance",
@@ -56,4 +61,5 @@ __all__ = [
     "Shooting",
     "Sweeps",
     "Telling",
+    "Tracks",
 ]

@@ -6,14 +6,14 @@ from typing import ClassVar
 import numpy as np
 
 from dalembert.report import charts
-from dalembert.report.charts.curve_family import value_text
+from dalembert.report.charts.resonance_peaks import value_text
 from dalembert.report.digits import shown
 from dalembert.report.focus import unit_of
 from dalembert.report.needs_frequency import CurveFamilyLike, FrequencyCurveLike
 from dalembert.report.plot import Plot
 from dalembert.report.quantities import labelled
 from dalembert.report.sections.findings import Findings
-from dalembert.report.table import Table, cell
+from dalembert.report.table import Table, cell, noted
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ class Family(Findings):
         return tuple(self._table(place, dof) for place, dof in enumerate(self.dofs, start=1))
 
     def _table(self, place: int, dof: str) -> Table:
-        family, noted = self.family, any(self.family.failures)
+        family = self.family
         rows = [
             (
                 cell(float(value)),
@@ -78,7 +78,7 @@ class Family(Findings):
                 cell(float(peak.frequency)),
                 cell(float(-100 * gain), digits=4),
                 cell("" if curve is None else f"{int(curve.converged.sum())} of {len(curve.converged)}"),
-                *([cell(reason or "", mark=True)] if noted else []),
+                cell(reason or "", mark=bool(reason)),
             )
             for value, peak, gain, curve, reason in zip(
                 family.values,
@@ -95,9 +95,9 @@ class Family(Findings):
             "at frequency (Hz)",
             "change from the first (%)",
             "points found",
-            *(["note"] if noted else []),
+            "note",
         )
-        return Table(f"family-{place}", f"Peaks of {dof}", columns, rows)
+        return noted(Table(f"family-{place}", f"Peaks of {dof}", columns, rows))
 
 
 def best_curve(family: CurveFamilyLike, dof: str, kind: str) -> FrequencyCurveLike:

@@ -8,7 +8,7 @@ import numpy as np
 from dalembert.report import charts
 from dalembert.report.digits import shown
 from dalembert.report.focus import at_peak, chosen_dofs, marked, size_label, unit_of, unstable
-from dalembert.report.needs_frequency import FrequencyCurveLike
+from dalembert.report.needs_frequency import BackboneLike, FrequencyCurveLike
 from dalembert.report.plot import Plot
 from dalembert.report.quantities import labelled
 from dalembert.report.sections.findings import Findings
@@ -25,6 +25,7 @@ class ForcedResponse(Findings):
     curve: FrequencyCurveLike
     dofs: tuple[str, ...] = ()
     kind: str = "peak"
+    mode: BackboneLike | None = None
 
     @property
     def sentences(self) -> tuple[str, ...]:
@@ -57,7 +58,9 @@ class ForcedResponse(Findings):
         how += " Symbols: where the path turns back or changes its stability." if marked(self.curve) else ""
         how += " Dashed: unstable motions." if unstable(self.curve).any() else ""
         how += " Crosses: not found." if not self.curve.converged.all() else ""
-        return (Plot("frequency-curve", charts.frequency_curve(self.curve, self.dofs, kind=self.kind), how),)
+        how += " Dotted: the nonlinear mode without force." if self.mode is not None else ""
+        figure = charts.frequency_curve(self.curve, self.dofs, kind=self.kind, mode=self.mode)
+        return (Plot("frequency-curve", figure, how),)
 
     @property
     def tables(self) -> tuple[Table, ...]:

@@ -4,10 +4,16 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from dalembert.report.charts.curve_family import value_text
+from dalembert.report.charts.resonance_peaks import value_text
 from dalembert.report.digits import counted, shown
 from dalembert.report.focus import main_dof, unit_of
-from dalembert.report.needs_frequency import CurveFamilyLike, FrequencyCurveLike
+from dalembert.report.needs_frequency import (
+    BackboneLike,
+    CurveFamilyLike,
+    FrequencyCurveLike,
+    ResonanceTrackLike,
+    TimeComparisonLike,
+)
 from dalembert.report.sections.headline import Fact, Headline
 
 
@@ -52,6 +58,55 @@ def of_family(
     verdict = "computed" if family.success else "incomplete"
     name = title or f"Forced response over {family.parameter}"
     return Headline(name, verdict, family.success, f"{family.status}.", facts, notes)
+
+
+def of_time_comparison(compared: TimeComparisonLike, title: str | None, notes: Sequence[str]) -> Headline:
+    """Headline of points of a curve beside time integration."""
+    found = np.asarray(compared.converged)
+    most = float(np.nanmax(np.abs(compared.differences[found]), initial=0.0))
+    facts = [
+        Fact("points", counted(len(found))),
+        Fact("largest difference", f"{shown(100 * most, digits=2)} %"),
+        Fact("steps a period", counted(int(compared.provenance["method"]["steps_per_period"]))),
+    ]
+    late = "All points are periodic in time." if found.all() else "Some points are not periodic in time yet."
+    verdict = "compared" if found.all() else "incomplete"
+    return Headline(title or "Beside time integration", verdict, bool(found.all()), late, facts, notes)
+
+
+def of_backbone(mode: BackboneLike, title: str | None, notes: Sequence[str]) -> Headline:
+    """Headline of a nonlinear mode."""
+    found, frequencies = np.asarray(mode.converged), np.asarray(mode.frequencies)
+    ends = [shown(float(frequencies[found][end])) for end in (0, -1)] if found.any() else []
+    facts = [
+        *([Fact("frequency", f"{' to '.join(dict.fromkeys(ends))} Hz")] if ends else []),
+        *([Fact("largest damping ratio", _percent(np.asarray(mode.damping)[found].max()))] if ends else []),
+        Fact("amplitudes", counted(len(found))),
+    ]
+    status = f"Mode {mode.mode} was found at {int(found.sum())} of {len(found)} amplitudes of {mode.dof}."
+    verdict = "computed" if found.all() else "incomplete"
+    return Headline(title or "Nonlinear mode", verdict, bool(found.all()), status, facts, notes)
+
+
+def of_track(track: ResonanceTrackLike, title: str | None, notes: Sequence[str]) -> Headline:
+    """Headline of a resonance over a parameter."""
+    found = np.asarray(track.converged)
+    facts = [Fact("values", counted(len(found))), Fact("points balanced", counted(int(np.sum(track.solves))))]
+    if found.any():
+        lowest = int(np.nanargmin(track.amplitudes))
+        facts += [
+            Fact(f"best {track.parameter}", value_text(track, track.best())),
+            Fact(
+                f"peak of {track.dof} there", f"{shown(float(track.amplitudes[lowest]), digits=5)} {unit_of(track.dof)}"
+            ),
+        ]
+    status = f"The peak was found at {int(found.sum())} of {len(found)} values of {track.parameter}."
+    verdict = "tracked" if found.all() else "incomplete"
+    return Headline(title or f"Resonance over {track.parameter}", verdict, bool(found.all()), status, facts, notes)
+
+
+def _percent(part: float) -> str:
+    return f"{shown(100 * float(part), digits=3)} %"
 
 
 def _largest(curve: FrequencyCurveLike, dof: str, kind: str) -> tuple[str, str]:

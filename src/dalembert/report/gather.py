@@ -14,8 +14,8 @@ def figures(result: Result, **options: Any) -> dict[str, go.Figure]:
     ----------
     result : Fit, Trajectory, FrequencyCurve, Propagation, Comparison, BandFit, ParameterSet, Profiles …
     **options
-        ``trajectory``, ``points``, ``truth``, ``profiles``, ``prediction``, ``dofs``, ``amplitude``, ``time_comparison``
-        and ``backbone``, as in :func:`dalembert.report.report`.
+        ``trajectory``, ``points``, ``truth``, ``profiles``, ``prediction``, ``dofs``, ``amplitude``,
+        ``time_comparison`` and ``backbone``, as in :func:`dalembert.report.report`.
 
     Returns
     -------

@@ -58,7 +58,7 @@ _NAMES = {
     "vibration": """
         VibrationSystem HarmonicForce StaticForce FrictionContact Elastic Iwan Rigid
         CubicSpring Gap BilinearStop UserElement HarmonicBalance FrequencyCurve FrequencyResponse frequency_response
-        Backbone ResonanceTrack backbone track_resonance
+        Backbone ResonanceTrack backbone floquet_multipliers track_resonance
         CurveFamily frequency_responses
         Newmark PeriodicMotion TimeComparison compare_in_time steady_state
     """,

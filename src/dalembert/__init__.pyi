@@ -166,6 +166,7 @@ from dalembert.vibration import UserElement as UserElement
 from dalembert.vibration import VibrationSystem as VibrationSystem
 from dalembert.vibration import backbone as backbone
 from dalembert.vibration import compare_in_time as compare_in_time
+from dalembert.vibration import floquet_multipliers as floquet_multipliers
 from dalembert.vibration import frequency_response as frequency_response
 from dalembert.vibration import frequency_responses as frequency_responses
 from dalembert.vibration import steady_state as steady_state

@@ -4,6 +4,7 @@ from dalembert.vibration.backbone import Backbone
 from dalembert.vibration.contacts import Elastic, FrictionContact, Iwan, Rigid
 from dalembert.vibration.curve import FrequencyCurve, Peak
 from dalembert.vibration.curve_family import CurveFamily, Envelope, frequency_responses
+from dalembert.vibration.floquet import floquet_multipliers
 from dalembert.vibration.forward_model import FrequencyResponse
 from dalembert.vibration.frequency_response import frequency_response
 from dalembert.vibration.harmonic_balance import HarmonicBalance
@@ -42,6 +43,7 @@ __all__ = [
     "VibrationSystem",
     "backbone",
     "compare_in_time",
+    "floquet_multipliers",
     "frequency_response",
     "frequency_responses",
     "steady_state",

@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 from dalembert.vibration.continuation import Found
 from dalembert.vibration.equations import Equations
 from dalembert.vibration.newton import Plane, Solution
-from dalembert.vibration.stability import Exponents, exponents
+from dalembert.vibration.stability import Exponents, exponents, remembers
 
 FOLD, TORUS, DOUBLING, BRANCH = "fold", "torus", "period doubling", "branch point"
 STABLE, UNSTABLE, NOT_ASKED = 1, 0, -1
@@ -69,7 +69,9 @@ def judged(problem: Equations, path: Iterable[Found], located: bool) -> Iterator
             kind = ""
             if before is not None and before[1].unstable != own.unstable and not folded:
                 kind = _kind(before[1], own)
-                place = _located(problem, before, (one.solution, own)) if located else None
+                if kind == BRANCH and not _branches(problem, before[0], one.solution):
+                    kind = ""
+                place = _located(problem, before, (one.solution, own)) if located and kind else None
                 if place is not None:
                     yield Judged(Found(place[0]), _said(before[1]), _kind(place[1], place[1], _rank(before[1], own)))
                     kind = ""
@@ -93,6 +95,17 @@ def _kind(before: Exponents, after: Exponents, rank: int | None = None) -> str:
     if min(turn, 1 - turn) < REAL:
         return BRANCH
     return DOUBLING if abs(turn - 0.5) < REAL else TORUS
+
+
+def _branches(problem: Equations, before: Solution, after: Solution) -> bool:
+    """Whether an exponent passes zero between two points without a fold, in the balance itself.
+
+    The steps of a time map shift a fold a little, so that its exponents may pass zero beside it.
+    """
+    if not remembers(problem):
+        return True
+    signs = [np.linalg.slogdet(one.tangent.jacobian.reshape(one.unknowns.size, -1))[0] for one in (before, after)]
+    return bool(signs[0] * signs[1] < 0)
 
 
 def _located(

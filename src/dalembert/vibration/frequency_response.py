@@ -51,8 +51,9 @@ def frequency_response(
     start : (FrequencyCurve, int), optional
         A curve of the same system and harmonics and the number of one of its points, from which to go on.
     stability : bool
-        Whether the stability of each point is found too, by Hill's method, and the places where it changes. On paths
-        between two frequencies these are points of their own; with given frequencies the first one behind is marked.
+        Whether the stability of each point is found too, and the places where it changes: by Hill's method, or with
+        friction by the linearised motion over a period (see :func:`floquet_multipliers`). On paths between two
+        frequencies these places are points of their own; with given frequencies the first one behind is marked.
 
     Returns
     -------
@@ -64,7 +65,7 @@ def frequency_response(
     ------
     InputError
         For frequencies that are not positive, unknown degrees of freedom, a start that does not fit, and stability of
-        a structure that is too large for dense matrices.
+        a structure that is too large for dense matrices, or where several degrees of freedom share one mass.
     ModelError
         For rigid contacts that depend on each other, and for a structure whose mean position nothing holds.
 

@@ -94,12 +94,15 @@ class Balance:
 
     def linearised(self, point: Point, unknowns: np.ndarray) -> tuple[Evaluation, Tangent]:
         """Residual at a point, with its exact Jacobian and its derivative by ω."""
+        tangent = self.tangent(point, unknowns)
+        return self.residual(self.linear(point.stiffness, point.force, unknowns), unknowns, tangent), tangent
+
+    def tangent(self, point: Point, unknowns: np.ndarray) -> Tangent:
+        """The tangent of the structure alone, to which :meth:`residual` adds the elements."""
         slope = self.linear(point.slope, point.force_slope, unknowns)
         if unknowns.size > LARGE and self._separate:
-            tangent: Tangent = BlockTangent(point, self.series, slope, *self._references)
-        else:
-            tangent = DenseTangent(real_blocks(point.stiffness, self.series.mean), slope)
-        return self.residual(self.linear(point.stiffness, point.force, unknowns), unknowns, tangent), tangent
+            return BlockTangent(point, self.series, slope, *self._references)
+        return DenseTangent(real_blocks(point.stiffness, self.series.mean), slope)
 
     def residual(self, linear: np.ndarray, unknowns: np.ndarray, tangent: Tangent | None = None) -> Evaluation:
         """Residual from its linear part; the elements' part of the tangent is added to ``tangent``.
@@ -132,7 +135,7 @@ class Balance:
             blocks = series.analysis @ (slopes[:, :, :, None] * series.synthesis)
             if isinstance(tangent, BlockTangent):
                 local = np.swapaxes(blocks, 1, 2).reshape(1, len(rows) * series.count, -1)
-                tangent.add(self._retained[rows][None], local)
+                tangent.add(self._retained[rows][None], local, np.zeros((1, len(rows))))
                 continue
             for i, row in enumerate(rows):
                 for j, column in enumerate(rows):
@@ -163,7 +166,7 @@ class Balance:
         else:
             force, states, local = friction_law.tangent(samples, numbers, *shape, series.synthesis, series.analysis)
             if isinstance(tangent, BlockTangent):
-                tangent.add(self._retained[block.rows], local)
+                tangent.add(self._retained[block.rows], local, _penalties(block))
             elif before is None:
                 self._spread_elastic(block, local, tangent.jacobian)
             else:
@@ -233,17 +236,15 @@ class Balance:
 
     @cached_property
     def _separate(self) -> bool:
-        """Whether each retained coordinate belongs to one cell or spring, so that the Jacobian has structure."""
-        seen = [block.rows.ravel() for block in self.lowered.blocks] + [rows for rows, _ in self.lowered.springs]
-        alone = len(np.unique(np.concatenate(seen))) == sum(map(len, seen)) == self.shape[0]
-        return alone and all(block.memory for block in self.lowered.blocks)
+        """Whether elements depend on each other through the structure alone, so that the Jacobian has structure."""
+        return self.shape[0] == len(self.lowered.row_names) and all(block.memory for block in self.lowered.blocks)
 
     @cached_property
     def _references(self) -> tuple[np.ndarray, np.ndarray]:
         """Stiffness of each retained coordinate's contact if it sticks, and whether that is rigid."""
         stiffness, rigid = np.zeros(self.shape[0]), np.zeros(self.shape[0], dtype=bool)
         for block in self.lowered.blocks:
-            stiffness[self._retained[block.rows]] = _penalties(block)
+            np.add.at(stiffness, self._retained[block.rows], _penalties(block))
             rigid[self._retained[block.rows]] = block.kind != ELASTIC
         return stiffness, rigid
 

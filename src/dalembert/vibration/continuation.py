@@ -2,12 +2,12 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import cast
+from typing import Protocol, cast
 
 import numpy as np
 from scipy.optimize import brentq
 
-from dalembert.vibration.equations import Equations
+from dalembert.vibration.harmonic_balance import HarmonicBalance
 from dalembert.vibration.newton import Plane, Solution
 from dalembert.vibration.tangents import bordered
 
@@ -18,6 +18,17 @@ EASY = 4
 SHORTEST = 1e-7
 """Step, as part of the longest, at which a path is given up."""
 MOST_POINTS = 20_000
+
+
+class Problem(Protocol):
+    """Equations with a parameter, the frequency or another, in which paths are followed."""
+
+    @property
+    def method(self) -> HarmonicBalance: ...
+
+    def solve(self, unknowns: np.ndarray, omega: float, samples: int, plane: Plane | None = None, /) -> Solution: ...
+
+    def first(self, omega: float, /) -> Solution: ...
 
 
 @dataclass(frozen=True)
@@ -35,7 +46,7 @@ class Found:
     fold: bool = False
 
 
-def at_frequencies(equations: Equations, omegas: np.ndarray, start: Solution | None) -> Iterator[Found]:
+def at_frequencies(equations: Problem, omegas: np.ndarray, start: Solution | None) -> Iterator[Found]:
     """Solutions at given frequencies, each from the one before; a point that is not found does not end the curve."""
     known = start
     for omega in omegas:
@@ -44,7 +55,7 @@ def at_frequencies(equations: Equations, omegas: np.ndarray, start: Solution | N
         yield Found(solution)
 
 
-def _towards(equations: Equations, known: Solution, omega: float) -> Solution:
+def _towards(equations: Problem, known: Solution, omega: float) -> Solution:
     """The solution at a frequency from a known one, by halves of the way where need be."""
     way = [omega]
     worst = None
@@ -71,7 +82,7 @@ def _predicted(known: Solution, omega: float) -> np.ndarray:
         return known.unknowns
 
 
-def natural(equations: Equations, begin: float, end: float, start: Solution | None) -> Iterator[Found]:
+def natural(equations: Problem, begin: float, end: float, start: Solution | None) -> Iterator[Found]:
     """Solutions from one frequency to another, with steps as long as Newton's method allows."""
     known = start if start is not None else equations.first(begin)
     yield Found(known)
@@ -93,7 +104,7 @@ def natural(equations: Equations, begin: float, end: float, start: Solution | No
         step = min(2 * step, longest, key=abs) if solution.iterations <= EASY else step
 
 
-def along(equations: Equations, begin: float, end: float, start: Solution | None) -> Iterator[Found]:
+def along(equations: Problem, begin: float, end: float, start: Solution | None) -> Iterator[Found]:
     """Points along the curve from one frequency to another, by arc length, with its folds."""
     known = start if start is not None else equations.first(begin)
     yield Found(known)
@@ -141,7 +152,7 @@ class Path:
     def size(self) -> float:
         return float(np.linalg.norm(self.known.unknowns)) or 1.0
 
-    def step(self, equations: Equations, length: float) -> tuple[Solution, np.ndarray | None]:
+    def step(self, equations: Problem, length: float) -> tuple[Solution, np.ndarray | None]:
         """The point some length on, and the direction there in the scales of here, or None if it is not found."""
         moved = self.direction[:-1].reshape(self.known.unknowns.shape) * (length * self.size)
         guess, omega = self.known.unknowns + moved, self.known.omega + self.direction[-1] * length * self.width
@@ -168,7 +179,7 @@ def _on_border(before: Solution, after: Solution, low: float, high: float) -> tu
     return before.unknowns + part * (after.unknowns - before.unknowns), border
 
 
-def _fold(equations: Equations, path: Path, step: float) -> Solution | None:
+def _fold(equations: Problem, path: Path, step: float) -> Solution | None:
     """The point of a step at which the frequency turns back: a zero of the direction's last component."""
     tried: dict[float, Solution] = {}
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from dalembert.errors import InputError
 from dalembert.vibration.balance import Balance
+from dalembert.vibration.cold_start import by_force
 from dalembert.vibration.condensation import Condensation, Point
 from dalembert.vibration.fourier import Fourier
 from dalembert.vibration.harmonic_balance import AUTOMATIC, MOST_SAMPLES, HarmonicBalance
@@ -14,9 +15,6 @@ from dalembert.vibration.lowering import Lowered, lower
 from dalembert.vibration.newton import Plane, Solution, correct
 from dalembert.vibration.springs import BilinearStop, CubicSpring
 from dalembert.vibration.system import StaticForce, VibrationSystem
-
-LOADS = (0.01, 0.03, 0.1, 0.3, 0.6, 1.0)
-"""Parts of the force through which a first point is followed where it is not found at once."""
 
 
 @dataclass(frozen=True)
@@ -69,9 +67,9 @@ class Equations:
         return solution
 
     def first(self, omega: float) -> Solution:
-        """A first point: from rest, where contacts stick; from the motion without contacts; by and by.
+        """A first point: from rest, where contacts stick; from the motion without contacts; with more and more force.
 
-        By and by is with more and more harmonics, and then with more and more of the force.
+        With little force contacts stick, so that this is the way of a friction limit from infinity to its own.
         """
         point, samples = self.condensation.at(omega), self.method.first_samples
         rest = np.zeros(self.balance(samples).shape)
@@ -82,24 +80,8 @@ class Equations:
         other = self.solve(self.balance(samples).series.coefficients(free), omega, samples, point=point)
         if other.converged:
             return other
-        laddered = self._by_harmonics(point, omega, rest)
-        if laddered.converged:
-            return laddered
-        unknowns = rest
-        for load in LOADS:
-            part = replace(point, force=load * point.force, force_slope=load * point.force_slope)
-            solution = self.solve(unknowns, omega, samples, point=part)
-            unknowns = solution.unknowns
-        return solution if solution.converged else min(best, other, laddered, solution, key=lambda one: one.error)
-
-    def _by_harmonics(self, point: Point, omega: float, unknowns: np.ndarray) -> Solution:
-        """The solution by twice as many harmonics again and again, each from that with fewer."""
-        balance, kept = self.balance(self.method.first_samples), 2
-        while kept < balance.series.count:
-            part = correct(balance, self.condensation, self.method, unknowns, omega, point=point, kept=kept)
-            unknowns = part.unknowns if part.converged else unknowns
-            kept *= 2
-        return self.solve(unknowns, omega, self.method.first_samples, point=point)
+        loaded = self.solve(by_force(self.balance(samples), self.method, point), omega, samples, point=point)
+        return loaded if loaded.converged else min(best, other, loaded, key=lambda one: one.error)
 
     def _sampling_error(self, solution: Solution) -> float:
         finer = self.balance(2 * solution.samples)

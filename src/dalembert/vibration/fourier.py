@@ -102,3 +102,15 @@ def real_blocks(matrices: np.ndarray, mean: int) -> np.ndarray:
         result[:, c, :, c + 1] = matrices[number].imag
         result[:, c + 1, :, c] = -matrices[number].imag
     return result
+
+
+def complex_blocks(matrices: np.ndarray, mean: int) -> np.ndarray:
+    """What of matrices on real coefficients (..., q, coefficients, r, coefficients) multiplies each phasor by a number.
+
+    (orders, ..., q, r): the inverse of :func:`real_blocks`, and without what couples harmonics or conjugates.
+    """
+    own = np.moveaxis(np.diagonal(matrices, axis1=-3, axis2=-1), -1, 0)
+    up = np.moveaxis(np.diagonal(matrices[..., :-1, :, 1:], axis1=-3, axis2=-1), -1, 0)[mean::2]
+    down = np.moveaxis(np.diagonal(matrices[..., 1:, :, :-1], axis1=-3, axis2=-1), -1, 0)[mean::2]
+    turning = (own[mean::2] + own[mean + 1 :: 2]) / 2 + 0.5j * (up - down)
+    return np.concatenate([own[:mean].astype(complex), turning])

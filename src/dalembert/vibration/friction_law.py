@@ -33,6 +33,8 @@ SWEEPS = 200
 """Periods after which a slider in two dimensions is taken as it is; one in one dimension is exact after two."""
 SETTLED = 1e-13
 """Change of a slider over a period, as part of the largest displacement, at which it is periodic."""
+NEUTRAL = 1e-6
+"""Determinant of 1 - ∂z(end)/∂z(start), z the slider's place, at which a slider stays wherever it starts."""
 
 
 @compiled
@@ -77,6 +79,97 @@ def _settled(z, before, scale):
 
 
 @compiled
+def _restart(kept):
+    """Determinant of 1 - kept, (tangents, tangents)."""
+    if len(kept) == 1:
+        return 1.0 - kept[0, 0]
+    return (1.0 - kept[0, 0]) * (1.0 - kept[1, 1]) - kept[0, 1] * kept[1, 0]
+
+
+@compiled
+def _solve(kept, right):
+    """(1 - kept)⁻¹ times (tangents, columns), in place."""
+    determinant = _restart(kept)
+    for column in range(right.shape[1]):
+        first = right[0, column]
+        if len(kept) == 1:
+            right[0, column] = first / determinant
+        else:
+            second = right[1, column]
+            right[0, column] = ((1.0 - kept[1, 1]) * first + kept[0, 1] * second) / determinant
+            right[1, column] = (kept[1, 0] * first + (1.0 - kept[0, 0]) * second) / determinant
+
+
+@compiled
+def _period(d, z, force, forces, states, kept, numbers, tangents, normal, memory):
+    """One period from a slider's place: writes forces and states, moves it; how many samples do not stick.
+
+    ``kept`` (tangents, tangents) becomes the derivative of the place at the end by that at the start.
+    """
+    moving = 0
+    kept[:] = 0.0
+    for i in range(tangents):
+        kept[i, i] = 1.0
+    for t in range(d.shape[1]):
+        state, size = update(d[:, t], z, force, numbers, tangents, normal, memory)
+        states[t] = state
+        forces[:, t] = force
+        if state == STUCK:
+            continue
+        moving += 1
+        if state == SEPARATED or tangents == 1:
+            kept[:] = 0.0
+            continue
+        limit = np.hypot(force[0].real, force[1].real)
+        if limit == 0.0:
+            kept[:] = 0.0
+            continue
+        e, f, ratio = force[0].real / limit, force[1].real / limit, limit / size.real
+        for j in range(tangents):
+            along = e * kept[0, j] + f * kept[1, j]
+            kept[0, j] = ratio * (kept[0, j] - e * along)
+            kept[1, j] = ratio * (kept[1, j] - f * along)
+    return moving
+
+
+@compiled
+def _settle(d, z, before, force, forces, states, kept, numbers, tangents, normal, memory, direct):
+    """Periods until the slider returns to where it was, from z = 0, in ``before`` and ``z``.
+
+    By the period's derivative (Newton) if ``direct``, from one period to the next if not. Returns how many samples of
+    all these periods did not stick.
+    """
+    scale, last, moving = np.max(np.abs(d.real)), np.inf, 0
+    step = np.zeros((tangents, 1), dtype=z.dtype)
+    z[:] = 0.0
+    for sweep in range(SWEEPS if memory else 1):
+        before[:] = z
+        moving += _period(d, z, force, forces, states, kept, numbers, tangents, normal, memory)
+        if sweep > 0 and (tangents == 1 or _settled(z, before, scale)):
+            break
+        if direct and sweep > 0 and _restart(kept) > NEUTRAL:
+            change = 0.0
+            for i in range(tangents):
+                step[i, 0] = z[i] - before[i]
+                change = max(change, abs(step[i, 0].real))
+            if change < last:
+                _solve(kept, step)
+                z[:tangents] = before[:tangents] + step[:, 0]
+            last = change
+    return moving
+
+
+@compiled
+def _balanced(d, z, before, force, forces, states, kept, numbers, tangents, normal, memory):
+    """As :func:`_settle`, directly where the slider's place does not depend on its past: that too, and ``moving``."""
+    moving = _settle(d, z, before, force, forces, states, kept, numbers, tangents, normal, memory, True)
+    forgets = _restart(kept) > NEUTRAL
+    if memory and not forgets and tangents == 2:
+        moving = _settle(d, z, before, force, forces, states, kept, numbers, tangents, normal, memory, False)
+    return forgets, moving
+
+
+@compiled
 def forces(displacements, numbers, tangents, normal, memory):
     """Forces over a period, real or complex.
 
@@ -94,23 +187,74 @@ def forces(displacements, numbers, tangents, normal, memory):
     contacts, _, samples = displacements.shape
     result = np.zeros_like(displacements)
     states = np.zeros((contacts, samples), dtype=np.uint8)
+    z, kept = np.zeros_like(displacements[0, :, 0]), np.zeros((tangents, tangents))
+    before, force = np.zeros_like(z), np.zeros_like(z)
     for c in range(contacts):
-        scale = np.max(np.abs(displacements[c].real))
-        z, before = np.zeros_like(displacements[c, :, 0]), np.zeros_like(displacements[c, :, 0])
-        force = np.zeros_like(z)
-        for sweep in range(SWEEPS if memory else 1):
-            before[:] = z
-            for t in range(samples):
-                states[c, t] = update(displacements[c, :, t], z, force, numbers[c], tangents, normal, memory)[0]
-                result[c, :, t] = force
-            if (tangents == 1 and sweep > 0) or (sweep > 0 and _settled(z, before, scale)):
-                break
+        _balanced(displacements[c], z, before, force, result[c], states[c], kept, numbers[c], tangents, normal, memory)
     return result, states
+
+
+@compiled
+def _slopes(d, z, force, states, moved, kept, slopes, past, numbers, tangents, normal, memory, synthesis):
+    """One period's derivatives of the forces by the displacements' coefficients, (columns, samples, unknowns).
+
+    ``moved`` (tangents, unknowns) is carried on: the derivative of the slider's place. ``kept`` becomes that of the end
+    by the start, and ``past`` (tangents, samples, tangents) that of the forces by it.
+    """
+    count = synthesis.shape[1]
+    stiffness, friction = numbers[TANGENTIAL], numbers[FRICTION]
+    direction, own = np.zeros(2), tangents * count
+    kept[:] = 0.0
+    for i in range(tangents):
+        kept[i, i] = 1.0
+    for t in range(d.shape[1]):
+        for i in range(tangents):
+            direction[i] = stiffness * (d[i, t] - z[i])
+        state, size = update(d[:, t], z, force, numbers, tangents, normal, memory)
+        states[t] = state
+        if normal:
+            rise = numbers[NORMAL] if state != SEPARATED else 0.0
+            slopes[tangents, t, own:] = rise * synthesis[t]
+        if state == SEPARATED:
+            slopes[:tangents, t] = 0.0
+            past[:, t] = 0.0
+        else:
+            for i in range(tangents):
+                slopes[i, t] = -stiffness * moved[i]
+                slopes[i, t, i * count : (i + 1) * count] += stiffness * synthesis[t]
+                past[i, t] = -stiffness * kept[i]
+        if state == SLIPPING:
+            direction /= size
+            ratio = (force[0] * direction[0] + (force[1] * direction[1] if tangents == 2 else 0.0)) / size
+            if tangents == 1:
+                slopes[0, t] = 0.0
+                past[0, t] = 0.0
+            else:
+                e, f = direction[0], direction[1]
+                for j in range(slopes.shape[2]):
+                    along = e * slopes[0, t, j] + f * slopes[1, t, j]
+                    slopes[0, t, j] = ratio * (slopes[0, t, j] - e * along)
+                    slopes[1, t, j] = ratio * (slopes[1, t, j] - f * along)
+                for j in range(tangents):
+                    along = e * past[0, t, j] + f * past[1, t, j]
+                    past[0, t, j] = ratio * (past[0, t, j] - e * along)
+                    past[1, t, j] = ratio * (past[1, t, j] - f * along)
+            if normal:
+                for i in range(tangents):
+                    slopes[i, t, own:] += friction * direction[i] * slopes[tangents, t, own:]
+        if memory and state != STUCK:
+            for i in range(tangents):
+                moved[i] = -slopes[i, t] / stiffness
+                moved[i, i * count : (i + 1) * count] += synthesis[t]
+                kept[i] = -past[i, t] / stiffness
 
 
 @compiled
 def tangent(displacements, numbers, tangents, normal, memory, synthesis, analysis):
     """Forces over a period, and the derivative of their harmonics by those of the displacements.
+
+    Where the slider's place over the period does not depend on where it was before, its derivative is that of the
+    periodic one, from a single period; else it is carried through all periods from rest, as the place itself.
 
     Parameters
     ----------
@@ -130,52 +274,33 @@ def tangent(displacements, numbers, tangents, normal, memory, synthesis, analysi
     result = np.zeros_like(displacements)
     states = np.zeros((contacts, samples), dtype=np.uint8)
     jacobians = np.zeros((contacts, columns * count, columns * count))
-    slopes = np.zeros((columns, samples, columns * count))
-    moved = np.zeros((tangents, columns * count))  # derivative of the slider's place
-    row, rise = np.zeros((tangents, columns * count)), np.zeros(columns * count)
-    z, before, force, direction = np.zeros(columns), np.zeros(columns), np.zeros(columns), np.zeros(columns)
+    slopes, past = np.zeros((columns, samples, columns * count)), np.zeros((tangents, samples, tangents))
+    moved, kept = np.zeros((tangents, columns * count)), np.zeros((tangents, tangents))
+    z, before, force = np.zeros(columns), np.zeros(columns), np.zeros(columns)
     for c in range(contacts):
-        scale = np.max(np.abs(displacements[c]))
-        stiffness, normal_stiffness, friction = numbers[c, TANGENTIAL], numbers[c, NORMAL], numbers[c, FRICTION]
-        z[:] = 0.0
+        d, own = displacements[c], numbers[c]
+        forgets, moving = _balanced(d, z, before, force, result[c], states[c], kept, own, tangents, normal, memory)
+        if memory and moving == 0:
+            for i in range(columns):
+                for j in range(i * count, (i + 1) * count):
+                    jacobians[c, j, j] = own[TANGENTIAL] if i < tangents else own[NORMAL]
+            continue
         moved[:] = 0.0
-        for sweep in range(SWEEPS if memory else 1):
-            before[:] = z
-            for t in range(samples):
-                d = displacements[c, :, t]
-                for i in range(tangents):
-                    direction[i] = stiffness * (d[i] - z[i])
-                state, size = update(d, z, force, numbers[c], tangents, normal, memory)
-                states[c, t] = state
-                result[c, :, t] = force
-                rise[:] = 0.0
-                if normal and state != SEPARATED:
-                    rise[tangents * count : (tangents + 1) * count] = normal_stiffness * synthesis[t]
-                if state != SEPARATED:
-                    for i in range(tangents):
-                        row[i] = -stiffness * moved[i]
-                        row[i, i * count : (i + 1) * count] += stiffness * synthesis[t]
-                if state == SLIPPING:
-                    direction /= size
-                    ratio = (force[0] * direction[0] + (force[1] * direction[1] if tangents == 2 else 0.0)) / size
-                    if tangents == 1:
-                        row[0] = friction * direction[0] * rise
-                    else:
-                        along = direction[0] * row[0] + direction[1] * row[1]
-                        for i in range(2):
-                            row[i] = friction * direction[i] * rise + ratio * (row[i] - direction[i] * along)
-                elif state == SEPARATED:
-                    row[:] = 0.0
-                if memory and state != STUCK:
-                    for i in range(tangents):
-                        moved[i] = -row[i] / stiffness
-                        moved[i, i * count : (i + 1) * count] += synthesis[t]
-                for i in range(tangents):
-                    slopes[i, t] = row[i]
-                if normal:
-                    slopes[tangents, t] = rise
-            if (tangents == 1 and sweep > 0) or (sweep > 0 and _settled(z, before, scale)):
-                break
+        if forgets or not memory:
+            z[:] = before
+            _slopes(d, z, force, states[c], moved, kept, slopes, past, own, tangents, normal, memory, synthesis)
+        else:
+            z[:] = 0.0
+            scale = np.max(np.abs(d))
+            for sweep in range(SWEEPS):
+                before[:] = z
+                _slopes(d, z, force, states[c], moved, kept, slopes, past, own, tangents, normal, memory, synthesis)
+                if sweep > 0 and (tangents == 1 or _settled(z, before, scale)):
+                    break
         for i in range(columns):
             jacobians[c, i * count : (i + 1) * count] = np.dot(analysis, slopes[i])
+        if forgets and memory:
+            _solve(kept, moved)
+            for i in range(tangents):
+                jacobians[c, i * count : (i + 1) * count] += np.dot(np.dot(analysis, past[i]), moved)
     return result, states, jacobians

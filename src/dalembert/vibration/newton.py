@@ -5,17 +5,28 @@ the residual keeps it from jumping between the sides.
 """
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
 from dalembert.vibration.balance import Balance, Evaluation
-from dalembert.vibration.condensation import Condensation, Point
+from dalembert.vibration.condensation import Point
 from dalembert.vibration.harmonic_balance import HarmonicBalance
 from dalembert.vibration.tangents import Tangent, bordered
 
 DAMPINGS = (1.0, 0.5, 0.25, 0.125, 0.03125)
 """Parts of a Newton step that are tried, until the residual falls."""
+PATIENCE, PROGRESS = 10, 0.7
+"""Iterations after which Newton's method is given up if the least residual has not come to this part of itself."""
+COARSE = 1e-6
+"""Residual of the linear system of a step, as part of its right-hand side, where that is iterated."""
 ROUNDING = 100 * np.finfo(float).eps
+
+
+class Condensed(Protocol):
+    """A condensed structure at each value of the parameter of a path, ω or another."""
+
+    def at(self, omega: float, /) -> Point: ...
 
 
 @dataclass(frozen=True)
@@ -77,7 +88,7 @@ class Solution:
 
     def rate(self) -> np.ndarray:
         """dU/dω along the path, (q, coefficients)."""
-        return -self.tangent.solve(self.tangent.slope[:, :, None])[:, :, 0]
+        return -self.tangent.solve(self.tangent.slope[:, :, None], COARSE)[:, :, 0]
 
 
 @dataclass(frozen=True)
@@ -88,7 +99,7 @@ class _Place:
     omega: float
     point: Point
     evaluation: Evaluation
-    tangent: Tangent
+    tangent: Tangent | None
     scale: float
     floor: float
     distance: float
@@ -97,67 +108,72 @@ class _Place:
 
 def correct(
     balance: Balance,
-    condensation: Condensation,
+    condensation: Condensed,
     method: HarmonicBalance,
     unknowns: np.ndarray,
     omega: float,
     plane: Plane | None = None,
     point: Point | None = None,
-    kept: int | None = None,
 ) -> Solution:
-    """Newton's method from a guess, at ω or, with a plane, on that.
+    """Newton's method from a guess, at ω or, with a plane, on that; ``point`` if it is condensed already."""
 
-    ``point`` if it is condensed already; ``kept`` to solve for the first coefficients only, and leave the others.
-    """
-
-    def place(unknowns: np.ndarray, omega: float, point: Point | None) -> _Place:
+    def place(unknowns: np.ndarray, omega: float, point: Point | None, step: bool = True) -> _Place:
         point = condensation.at(omega) if point is None else point
-        evaluation, tangent = balance.linearised(point, unknowns)
+        tangent = balance.tangent(point, unknowns) if step else None
+        linear = balance.linear(point.stiffness, point.force, unknowns)
+        evaluation = balance.residual(linear, unknowns, tangent)
         scale = float(np.linalg.norm(point.force) + np.linalg.norm(evaluation.forces)) or 1.0
         floor = ROUNDING * float(np.abs(point.stiffness).max(initial=0.0)) * float(np.linalg.norm(unknowns))
         distance = 0.0 if plane is None else plane.distance(unknowns, omega)
-        error = float(np.hypot(np.linalg.norm(evaluation.residual[:, :kept]) / scale, distance))
+        error = float(np.hypot(np.linalg.norm(evaluation.residual) / scale, distance))
         return _Place(unknowns, omega, point, evaluation, tangent, scale, floor / scale, distance, error)
 
-    at, iterations, converged = place(unknowns, omega, point), 0, False
+    at, converged = place(unknowns, omega, point), False
+    errors = [at.error]
     while True:
         converged = at.error <= max(method.tolerance, at.floor)
-        if converged or iterations == method.iterations or not np.isfinite(at.error):
+        if converged or len(errors) > method.iterations or _stalls(errors):
             break
-        step = _step(at, plane, kept)
+        step = _step(at, plane)
         if step is None:
             break
         trials = []
         for part in DAMPINGS:
             moved, turned = at.unknowns + part * step[0], at.omega + part * step[1]
-            trials.append(place(moved, turned, at.point if plane is None else None))
+            # Most steps go all the way; after one that does not, the Jacobian is made only where the search ends.
+            trials.append(place(moved, turned, at.point if plane is None else None, step=part == 1.0))
             if trials[-1].error <= (1 - 0.1 * part) * at.error:
                 break
         finite = [trial for trial in trials if np.isfinite(trial.error)]
         if not finite:
             break
         at = min(finite, key=lambda trial: trial.error)
-        iterations += 1
+        at = at if at.tangent is not None else place(at.unknowns, at.omega, at.point)
+        errors.append(at.error)
+    assert at.tangent is not None
     return Solution(
-        at.omega, at.unknowns, at.point, at.evaluation, at.tangent, iterations, at.error, converged,
+        at.omega, at.unknowns, at.point, at.evaluation, at.tangent, len(errors) - 1, at.error, converged,
         balance.series.samples,
     )  # fmt: skip
 
 
-def _step(at: _Place, plane: Plane | None, kept: int | None) -> tuple[np.ndarray, float] | None:
+def _stalls(errors: list[float]) -> bool:
+    """Whether residuals make no more progress: Newton's method goes around between the sides of kinks."""
+    if not np.isfinite(errors[-1]):
+        return True
+    return len(errors) > PATIENCE and min(errors[-PATIENCE:]) > PROGRESS * min(errors[:-PATIENCE])
+
+
+def _step(at: _Place, plane: Plane | None) -> tuple[np.ndarray, float] | None:
     """Newton's step of U and ω; None where the matrix is singular."""
     residual = at.evaluation.residual
+    assert at.tangent is not None
     try:
         if plane is not None:
             scales = plane.size, plane.width, at.scale
-            change, turned = bordered(at.tangent, plane.direction, scales, -residual / at.scale, -at.distance)
+            top = -residual / at.scale
+            change, turned = bordered(at.tangent, plane.direction, scales, top, -at.distance, COARSE)
             return change * plane.size, turned * plane.width
-        if kept is None:
-            return -at.tangent.solve(residual[:, :, None])[:, :, 0], 0.0
-        step = np.zeros(residual.shape)
-        first = residual[:, :kept]
-        matrix = at.tangent.jacobian[:, :kept, :, :kept].reshape(first.size, first.size)
-        step[:, :kept] = -np.linalg.solve(matrix, first.ravel()).reshape(first.shape)
-        return step, 0.0
+        return -at.tangent.solve(residual[:, :, None], COARSE)[:, :, 0], 0.0
     except np.linalg.LinAlgError:
         return None

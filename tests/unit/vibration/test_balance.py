@@ -19,6 +19,7 @@ from dalembert.vibration import (
     StaticForce,
     UserElement,
     VibrationSystem,
+    block_tangent,
     frequency_response,
 )
 from dalembert.vibration import balance as module
@@ -131,13 +132,15 @@ def mixed(to: VibrationSystem) -> None:
     to.add(UserElement("user", ["c.x", "c.y"], lambda u: np.stack([u[0] * u[1] ** 2, u[0] ** 2 * u[1]])))
 
 
-SEPARATE = {name: CASES[name] for name in ("elastic", "elastic-spatial", "rigid", "rigid-spatial")} | {"mixed": mixed}
+SEPARATE = {name: CASES[name] for name in ("elastic", "elastic-spatial", "iwan", "rigid", "rigid-spatial")}
+SEPARATE |= {"mixed": mixed}
 
 
+@pytest.mark.parametrize("direct", [0, 1000], ids=["iterated", "direct"])
 @pytest.mark.parametrize("size", [0.003, 0.1, 1.0])
 @pytest.mark.parametrize("name", SEPARATE)
 def test_the_jacobian_by_its_structure_is_the_dense_one(
-    name: str, size: float, monkeypatch: pytest.MonkeyPatch
+    name: str, size: float, direct: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     problem = equations(system(SEPARATE[name]), HarmonicBalance(harmonics=3, samples=64))
     balance, point = problem.balance(64), problem.condensation.at(1.3)
@@ -145,6 +148,7 @@ def test_the_jacobian_by_its_structure_is_the_dense_one(
     unknowns = rng.normal(size=balance.shape) * size
     _, dense = balance.linearised(point, unknowns)
     monkeypatch.setattr(module, "LARGE", 0)
+    monkeypatch.setattr(block_tangent, "DIRECT", direct)
     _, block = balance.linearised(point, unknowns)
     assert isinstance(dense, DenseTangent)
     assert isinstance(block, BlockTangent)

@@ -1,0 +1,65 @@
+"""A first point of a curve by the path over the force, from little to all of it."""
+
+from dataclasses import dataclass, replace
+from itertools import islice
+
+import numpy as np
+
+from dalembert.vibration.balance import Balance
+from dalembert.vibration.condensation import Point
+from dalembert.vibration.continuation import along
+from dalembert.vibration.harmonic_balance import HarmonicBalance
+from dalembert.vibration.newton import Plane, Solution, correct
+
+FIRST_LOAD = 0.01
+"""Part of the force with which the path begins; contacts that are pressed at all then stick."""
+RESOLUTION = 0.1
+"""Of the path, whose points on the way nobody looks at."""
+MOST_STEPS = 300
+"""Points of the path after which it is given up."""
+
+
+@dataclass(frozen=True)
+class Loading:
+    """The equations at one frequency, with the part of the force that acts in the place of the frequency.
+
+    Parameters
+    ----------
+    balance : Balance
+    method : HarmonicBalance
+    point : Point
+        At the frequency, with all of the force.
+    """
+
+    balance: Balance
+    method: HarmonicBalance
+    point: Point
+
+    def at(self, load: float) -> Point:
+        """The structure with a part of the force, and its derivatives by that."""
+        return replace(
+            self.point, slope=np.zeros_like(self.point.slope),
+            force=load * self.point.force, force_slope=self.point.force,
+        )  # fmt: skip
+
+    def solve(self, unknowns: np.ndarray, load: float, samples: int, plane: Plane | None = None) -> Solution:
+        """Newton's method from a guess."""
+        return correct(self.balance, self, self.method, unknowns, load, plane)
+
+    def first(self, load: float) -> Solution:
+        """From rest."""
+        return self.solve(np.zeros(self.balance.shape), load, self.balance.series.samples)
+
+    def last(self) -> np.ndarray:
+        """Unknowns where the path over the force, past its folds, ends: with all of it, if it gets there."""
+        unknowns = np.zeros(self.balance.shape)
+        # A path may turn back, through none of the force even, before it comes to all of it.
+        for found in islice(along(self, -1.0, 1.0, self.first(FIRST_LOAD)), MOST_STEPS):
+            if found.solution.converged:
+                unknowns = found.solution.unknowns
+        return unknowns
+
+
+def by_force(balance: Balance, method: HarmonicBalance, point: Point) -> np.ndarray:
+    """Unknowns at a frequency, from rest by the path over the force."""
+    return Loading(balance, replace(method, resolution=RESOLUTION), point).last()

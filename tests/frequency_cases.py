@@ -124,7 +124,7 @@ FREQUENCY_CASES: dict[str, Case] = {
     ),
     "a response of which points are not found": Case(
         lambda: frequency_response(
-            chain(), HZ * np.linspace(1.0, 2.2, 25), HarmonicBalance(harmonics=5, samples=256, iterations=4, halvings=0)
+            chain(), HZ * np.linspace(1.0, 2.2, 25), HarmonicBalance(harmonics=5, samples=256, iterations=7, halvings=0)
         ),
         ("points between", "were not found; they are marked", "Crosses: not found.", "Points that were not found"),
     ),

@@ -80,6 +80,8 @@ class Equations:
         other = self.solve(self.balance(samples).series.coefficients(free), omega, samples, point=point)
         if other.converged:
             return other
+        if not self.method.halvings:
+            return min(best, other, key=lambda one: one.error)
         loaded = self.solve(by_force(self.balance(samples), self.method, point), omega, samples, point=point)
         return loaded if loaded.converged else min(best, other, loaded, key=lambda one: one.error)
 

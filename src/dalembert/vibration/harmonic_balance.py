@@ -28,7 +28,8 @@ class HarmonicBalance:
     iterations : int
         Newton iterations after which a point is given up and the step towards it halved.
     halvings : int
-        How often it is halved before the point is marked as not found.
+        How often it is halved before the point is marked as not found. With 0, a first point is not sought along a
+        path over the force either.
     resolution : float
         Largest step of a path between two frequencies, as part of the way.
 

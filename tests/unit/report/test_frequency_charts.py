@@ -126,7 +126,7 @@ def test_the_page_has_the_numbers(curve, tmp_path):
 
 
 def test_points_that_were_not_found_are_crossed_out_between_their_neighbours(tmp_path):
-    method = HarmonicBalance(harmonics=5, samples=256, iterations=4, halvings=0)
+    method = HarmonicBalance(harmonics=5, samples=256, iterations=7, halvings=0)
     curve = frequency_response(chain(), HZ * np.linspace(1.0, 2.2, 25), method)
     lost = traces(charts.frequency_curve(curve, ["m3.x"]))["not found"]
     np.testing.assert_array_equal(lost.x, curve.frequencies[~curve.converged])

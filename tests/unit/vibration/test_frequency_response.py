@@ -16,7 +16,6 @@ from dalembert.vibration import (
     Iwan,
     Rigid,
     StaticForce,
-    UserElement,
     VibrationSystem,
     frequency_response,
 )
@@ -40,10 +39,8 @@ def test_a_curve_is_kept_to_the_bit(tmp_path: Path) -> None:
 
 
 def test_points_that_are_not_found_are_marked_and_the_curve_goes_on() -> None:
-    """Near the resonance a law is asked for a force where it has none."""
-    hard, system = HarmonicBalance(5, samples=128, halvings=0), one_mass()
-    system.add(UserElement("short", ["m"], lambda u: 0.1 * u * np.where(np.abs(u.real) < 2.0, 1.0, np.nan)))
-    curve = frequency_response(system, np.linspace(0.05, 0.3, 6), hard)
+    hard = HarmonicBalance(5, samples=128, iterations=2, halvings=0)
+    curve = frequency_response(one_mass(), np.linspace(0.05, 0.3, 6), hard)
     assert len(curve) == 6
     assert 0 < curve.converged.sum() < 6
     assert np.all(curve.residuals[~curve.converged] > hard.tolerance)

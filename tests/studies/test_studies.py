@@ -47,6 +47,15 @@ def found(study: Study, outcome: Outcome, row: dict[str, Any]) -> float:
         case "work_precision":
             runs: Any = getattr(outcome, "result").rows  # noqa: B009
             return next(run.error for run in runs if (run.method, run.settings) == (row["method"], row["settings"]))
+        case "frequency_response" if quantity == "fold":
+            return float(getattr(outcome, "result").folds[row["number"]])  # noqa: B009
+        case "frequency_response" if "amplitude" in row:
+            curve: Any = getattr(outcome, "result")  # noqa: B009
+            point = int(np.argmin(np.abs(curve.frequencies - row["at"])))
+            assert curve.frequencies[point] == pytest.approx(row["at"], abs=1e-9)
+            return float(curve.amplitude(quantity, row["amplitude"])[point])
+        case "frequency_response":
+            return outcome.best["values"][quantity]
         case "propagate":
             return bounded(study, getattr(outcome, "result"), row)  # noqa: B009
         case "simulate":

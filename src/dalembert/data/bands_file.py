@@ -1,6 +1,7 @@
 """Bands from files."""
 
 from collections.abc import Collection, Mapping
+from dataclasses import replace
 from pathlib import Path
 
 from dalembert.data.bands import Bands
@@ -17,6 +18,7 @@ def read_bands(
     separator: str = ",",
     units: Mapping[str, str] | None = None,
     format: str | None = None,  # noqa: A002
+    frequency: str | None = None,
 ) -> Bands:
     """Bands from a file of any format that :func:`read` knows.
 
@@ -28,7 +30,7 @@ def read_bands(
     columns : mapping of str to (str, str), optional
         Columns of each channel's lower and upper bounds, for example ``{"AB.end.x": ("x_lower", "x_upper")}``. If not
         given, every pair of columns ``name_lower`` and ``name_upper`` is the channel ``name``.
-    separator, units, format
+    separator, units, format, frequency
         As in :func:`read`.
 
     Raises
@@ -51,8 +53,8 @@ def read_bands(
             if isinstance(pair, str) or len(pair) != 2:
                 raise DataError(f"columns, channel {name!r}: {pair!r} was given; expected two names, (lower, upper)")
     names = None if columns is None else [column for pair in columns.values() for column in pair]
-    found = columns_in(path, time, names, separator=separator, units=[*(units or ())], format=format)
-    along, table = found.converted(units)
+    found = columns_in(path, frequency or time, names, separator=separator, units=[*(units or ())], format=format)
+    along, table = replace(found, frequency=found.frequency or frequency is not None).converted(units)
     pairs = _pairs(path, table) if columns is None else columns
     with told_of(path):
         return Bands.of(along, {name: (table[lower], table[upper]) for name, (lower, upper) in pairs.items()})

@@ -1,6 +1,7 @@
 """Measurements from files."""
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +23,7 @@ def read(
     wraps: Iterable[str] = (),
     format: str | None = None,  # noqa: A002
     separator: str = ",",
+    frequency: str | None = None,
 ) -> Measurements:
     """Measurements from a file: CSV, Parquet, MAT (version 5 and 7.3), UFF (dataset 58) or NetCDF.
 
@@ -48,6 +50,8 @@ def read(
         By the file's suffix if not given.
     separator : str
         Of the cells of a CSV file.
+    frequency : str, optional
+        Column of the frequencies along which the samples lie, in place of the times.
 
     Raises
     ------
@@ -68,8 +72,9 @@ def read(
     """
     path = Path(path)
     names = None if columns is None else columns.values()
-    found = columns_in(path, time, names, missing=missing, separator=separator, units=[*(units or ())], format=format)
-    along, table = found.converted(units)
+    options: Any = {"missing": missing, "separator": separator, "units": [*(units or ())], "format": format}
+    found = columns_in(path, frequency or time, names, **options)
+    along, table = replace(found, frequency=found.frequency or frequency is not None).converted(units)
     chosen = {name: name for name in table} if columns is None else columns
     with told_of(path):
         channels = {name: table[column] for name, column in chosen.items()}

@@ -1,6 +1,6 @@
 """Material damping and damping ratios, as matrices."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -27,8 +27,8 @@ class Rayleigh:
         :math:`\beta`, s.
     """
 
-    mass: float = 0.0
-    stiffness: float = 0.0
+    mass: float = field(default=0.0, metadata={"unit": "1/s"})
+    stiffness: float = field(default=0.0, metadata={"unit": "s"})
 
     def matrix(self, mass: Any, stiffness: Any) -> Any:
         """The damping matrix, shape (n, n), sparse where the others are."""
@@ -54,7 +54,7 @@ class Modal:
         By :meth:`matrix`, for a model that is too large or whose mass matrix is not positive definite.
     """
 
-    ratio: float
+    ratio: float = field(metadata={"unit": ""})
 
     def matrix(self, mass: Any, stiffness: Any) -> np.ndarray:
         """The damping matrix, shape (n, n)."""

@@ -1,14 +1,13 @@
-"""Structures of point masses and springs on one axis."""
+"""Structures of point masses and springs."""
 
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from dalembert.errors import InputError, unknown
-from dalembert.structure.dofs import Dofs
+from dalembert.structure.dofs import DIRECTIONS, Dofs
+from dalembert.structure.springs import Spring, with_springs
 from dalembert.structure.structure import Structure
-
-Spring = tuple[str, str | None, float, float]
 
 
 def lumped(masses: Mapping[str, float], springs: Sequence[Spring]) -> Structure:
@@ -17,7 +16,8 @@ def lumped(masses: Mapping[str, float], springs: Sequence[Spring]) -> Structure:
     Parameters
     ----------
     masses : mapping of str to float
-        kg, by name; the degree of freedom of the mass ``"a"`` is ``"a.x"``, or ``"a"`` for short.
+        kg, by name; the degree of freedom of the mass ``"a"`` is ``"a.x"``, or ``"a"`` for short. A mass that moves
+        along several axes is given for each of them: ``"a.x"``, ``"a.y"``.
     springs : sequence of (first, second, stiffness, damping)
         Names of two masses (None for the ground), N/m and N s/m.
 
@@ -33,19 +33,10 @@ def lumped(masses: Mapping[str, float], springs: Sequence[Spring]) -> Structure:
     ([[4.0, -1.0], [-1.0, 1.0]], ('a.x', 'b.x'))
     """
     names = list(masses)
-    places = {name: place for place, name in enumerate(names)}
-    kind = np.result_type(float, *masses.values(), *(value for *_, k, c in springs for value in (k, c)))
-    stiffness, damping = np.zeros((2, len(names), len(names)), dtype=kind)
-    for number, (first, second, k, c) in enumerate(springs):
-        row: dict[int, float] = {}
-        for end, sign in ((first, 1.0), (second, -1.0)):
-            if end is None:
-                continue
-            if end not in masses:
+    for number, spring in enumerate(springs):
+        for end in spring[:2]:
+            if end is not None and end not in masses:
                 raise InputError(unknown("mass", end, names, f"lumped: spring {number + 1}"))
-            row[places[end]] = row.get(places[end], 0.0) + sign
-        block, signs = np.ix_(list(row), list(row)), list(row.values())
-        stiffness[block] += k * np.outer(signs, signs)
-        damping[block] += c * np.outer(signs, signs)
-    mass = np.diag(np.array(list(masses.values()), dtype=kind))
-    return Structure(mass, stiffness, Dofs(tuple(f"{name}.x" for name in names)), damping)
+    dofs = Dofs(tuple(name if name.rpartition(".")[2] in DIRECTIONS else f"{name}.x" for name in names))
+    mass = np.diag(np.array(list(masses.values()), dtype=np.result_type(float, *masses.values())))
+    return with_springs(Structure(mass, np.zeros(mass.shape), dofs, np.zeros(mass.shape)), springs)

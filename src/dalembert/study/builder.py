@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from dalembert.multibody import System
 
 Values = Mapping[str, Any]
+EMPTY: Values = {}
 
 
 @dataclass(frozen=True)
@@ -44,7 +45,7 @@ class SystemBuilder:
         placed: dict[str, Any] = {}
         for table, component in self.model.components:
             where = f"[[model.{table}]] {component.name!r}"
-            placed[component.name] = system.add(_built(component, values, placed, system, where))
+            placed[component.name] = system.add(built(component, values, where, placed, system))
         return system
 
 
@@ -56,21 +57,38 @@ class FunctionBuilder:
     ----------
     function : callable
     arguments : mapping of str to any
+    vibrates : bool
+        Whether it builds a vibrating structure, and not a mechanism.
     """
 
-    function: Callable[..., "System"]
+    function: Callable[..., Any]
     arguments: Mapping[str, Any]
+    vibrates: bool = False
 
-    def __call__(self, **parameters: complex) -> "System":
-        from dalembert.multibody import System
-
+    def __call__(self, **parameters: complex) -> Any:
         system = self.function(**parameters, **self.arguments)
-        if not isinstance(system, System):
+        expected = self._expected
+        if not isinstance(system, expected):
+            more = (
+                "the study is of a structure over frequency, since it has [harmonic_balance] or a task of structures"
+                if self.vibrates
+                else "a function that returns a ForwardModel is named by forward = in [model], and one that returns a "
+                "VibrationSystem needs the table [harmonic_balance]"
+            )
             raise InputError(
-                f"{self.function.__name__} returned a {type(system).__name__}; expected a System; "
-                "a function that returns a ForwardModel is named by forward = in [model]"
+                f"{self.function.__name__} returned a {type(system).__name__}; expected a {expected.__name__}; {more}"
             )
         return system
+
+    @property
+    def _expected(self) -> type:
+        if self.vibrates:
+            from dalembert.vibration import VibrationSystem
+
+            return VibrationSystem
+        from dalembert.multibody import System
+
+        return System
 
 
 def named_values(constants: Mapping[str, float | Expression], parameters: Values) -> dict[str, Any]:
@@ -85,8 +103,15 @@ def named_values(constants: Mapping[str, float | Expression], parameters: Values
     return values
 
 
-def _built(table: KindTable, values: Values, placed: Values, system: Any, where: str) -> Any:
-    """Component or signal of a table."""
+def built(table: KindTable, values: Values, where: str, placed: Values = EMPTY, system: Any = None) -> Any:
+    """What a table describes, once the parameters are known; places are those of a mechanism's bodies.
+
+    >>> from dalembert.structure import Modal
+    >>> from dalembert.study.components import table_of
+    >>> table = table_of(Modal)(kind="Modal", ratio="2*zeta")
+    >>> built(table, {"zeta": 0.005}, "[model.structure], damping")
+    Modal(ratio=0.01)
+    """
     arguments = {
         key: _resolved(given, values, placed, system, f"{where}, {key}") for key, given in table.given().items()
     }
@@ -101,7 +126,7 @@ def _resolved(given: Any, values: Values, placed: Values, system: Any, where: st
         case Place():
             return _place(given, values, placed, system, where)
         case KindTable():
-            return _built(given, values, placed, system, where)
+            return built(given, values, where, placed, system)
         case FunctionReference():
             return given.load()
         case list():

@@ -3,9 +3,10 @@
 import dataclasses
 import inspect
 from functools import cache
-from typing import Any
+from typing import Any, get_args
 
 from dalembert.study.components import settings_of
+from dalembert.study.structure_parts import LinearSpring, LumpedMass
 
 ROLES = {"Body": "body", "Joint": "joint", "Load": "load", "Signal": "signal", "Integrator": "solver"}
 
@@ -25,6 +26,44 @@ def catalogue() -> dict[str, tuple[type, ...]]:
             for role in (ROLES[base.__name__] for base in kind.__mro__[1:] if base.__name__ in ROLES):
                 found[role].append(kind)
     return {role: tuple(kinds) for role, kinds in found.items()}
+
+
+@cache
+def structure_parts() -> dict[str, tuple[type, ...]]:
+    """What a vibrating structure is made of beside its matrices, by the names of the tables, the usual kind first."""
+    from dalembert import vibration
+    from dalembert.vibration.system import Element
+
+    return {
+        "mass": (LumpedMass,),
+        "spring": (LinearSpring, *(kind for kind in get_args(Element) if kind is not vibration.FrictionContact)),
+        "force": (vibration.HarmonicForce, vibration.StaticForce),
+        "contact": (vibration.FrictionContact,),
+    }
+
+
+@cache
+def balance() -> type:
+    """Settings of harmonic balance."""
+    from dalembert.vibration import HarmonicBalance
+
+    return HarmonicBalance
+
+
+@cache
+def laws() -> dict[str, type]:
+    """Laws of friction contacts, by the names that a study file gives them."""
+    from dalembert.vibration.contacts import Law
+
+    return {kind.__name__: kind for kind in get_args(Law)}
+
+
+@cache
+def dampings() -> dict[str, type]:
+    """Kinds of damping of a structure, by the names that a study file gives them."""
+    from dalembert import structure
+
+    return {kind.__name__: kind for kind in (structure.Modal, structure.Rayleigh)}
 
 
 @cache

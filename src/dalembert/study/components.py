@@ -88,7 +88,7 @@ def one_of(tables: Iterable[type[StudyTable]], default: str = "") -> Any:
     return Annotated[reduce(or_, tagged), Discriminator(lambda value: _kind(value, default))]
 
 
-def settings_of(kinds: Mapping[str, type], parts: Mapping[str, Any] | None = None) -> Any:
+def settings_of(kinds: Mapping[str, type], parts: Mapping[str, Any] | None = None, *, varying: bool = False) -> Any:
     """Type of a key that takes the settings of one of several kinds: a name, or a table with ``kind`` and settings.
 
     Parameters
@@ -97,15 +97,17 @@ def settings_of(kinds: Mapping[str, type], parts: Mapping[str, Any] | None = Non
         By the names that a study file gives them.
     parts : mapping of str to type, optional
         As in :func:`table_of`.
+    varying : bool
+        Whether a number may be an expression of parameters; if not, the settings are checked by building them.
     """
-    tables = {name: table_of(target, name, varying=False, parts=parts) for name, target in kinds.items()}
+    tables = {name: table_of(target, name, varying=varying, parts=parts) for name, target in kinds.items()}
     usual = AfterValidator(lambda name: tables[name].model_validate({"kind": name}))
-    return Annotated[
+    key = Annotated[
         Annotated[Literal[tuple(kinds)], usual, Tag("name")]  # pyright: ignore[reportInvalidTypeForm]
         | Annotated[one_of(tables.values()), Tag("table")],
         Discriminator(lambda value: "name" if isinstance(value, str) else "table"),
-        AfterValidator(buildable),
     ]
+    return key if varying else Annotated[key, AfterValidator(buildable)]
 
 
 def buildable(table: KindTable) -> KindTable:

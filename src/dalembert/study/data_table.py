@@ -46,13 +46,22 @@ class FileTable(StudyTable):
     file: DataFile = Field(description="relative to the study file")
     format: Format | None = Field(None, description="by the suffix of the file if not given")
     time: str = Field("t", description="name of the column of times")
+    frequency: str | None = Field(
+        None, description="name of the column of frequencies, where the samples lie along one"
+    )
     units: dict[str, str] = Field({}, description="unit of each column that is not in SI units: case1_x = 'mm'")
     separator: str = Field(",", min_length=1, max_length=1, description="of the cells of a CSV file")
 
     @property
     def how(self) -> dict[str, Any]:
         """Arguments that say how the file is read."""
-        return {"format": self.format, "units": self.units, "separator": self.separator}
+        own = {"format": self.format, "units": self.units, "separator": self.separator}
+        return own if self.frequency is None else {**own, "frequency": self.frequency}
+
+    @property
+    def universal(self) -> bool:
+        """Whether the file is a universal one, which says itself what its samples lie along."""
+        return self.format == "uff" or (self.format is None and self.file.suffix.lower() in SUFFIXES["uff"])
 
 
 class DerivativeTable(StudyTable):

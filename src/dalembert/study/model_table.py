@@ -11,6 +11,7 @@ from dalembert.study.components import one_of, table_of
 from dalembert.study.functions import FunctionName
 from dalembert.study.numbers import number
 from dalembert.study.places import Place
+from dalembert.study.structure_table import PARTS, StructureTable, part_tables, structure_table, wrong_structure
 from dalembert.study.table import Read, StudyTable, problem
 from dalembert.units import is_quantity, si
 
@@ -18,10 +19,10 @@ _TABLES = ("body", "joint", "load")
 
 
 class ModelTable(StudyTable):
-    """The model: bodies, joints and loads, or one Python function.
+    """The model: a mechanism of bodies, joints and loads; a structure with forces and contacts; or a Python function.
 
-    ``function`` maps parameters to a System, as ``body``, ``joint`` and ``load`` tables do; ``forward`` maps the
-    parameters' names and bounds to a ForwardModel of any kind.
+    ``function`` maps parameters to a System or a VibrationSystem, as these tables do; ``forward`` maps the parameters'
+    names and bounds to a ForwardModel of any kind.
     """
 
     file: str | None = Field(None, description="another TOML file, which holds the model's tables")
@@ -35,6 +36,16 @@ class ModelTable(StudyTable):
     body: list[Any] = []
     joint: list[Any] = []
     load: list[Any] = []
+    structure: StructureTable | None = None
+    mass: list[Any] = []
+    spring: list[Any] = []
+    force: list[Any] = []
+    contact: list[Any] = []
+
+    @property
+    def is_structure(self) -> bool:
+        """Whether the tables describe a structure."""
+        return bool(self.mass) or (self.structure is not None and self.structure.source)
 
     @property
     def components(self) -> list[tuple[str, Any]]:
@@ -54,19 +65,30 @@ class ModelTable(StudyTable):
     @model_validator(mode="after")
     def _check(self) -> "ModelTable":
         ways = [name for name in ("function", "forward", "body") if getattr(self, name)]
+        ways += ["mass" if self.mass else "structure"] * self.is_structure
         if len(ways) != 1:
-            given = f"{' and '.join(ways)} are" if ways else "neither body, function nor forward is"
+            given = f"{' and '.join(ways)} are" if ways else "neither body, mass, structure, function nor forward is"
             raise problem(
-                f"{given} given; expected either [[model.body]] tables, or function = 'model.py:name', "
-                "or forward = 'model.py:name'"
+                f"{given} given; expected either the [[model.body]] tables of a mechanism, or the [[model.mass]] "
+                "tables or the [model.structure] of a structure, or function = 'model.py:name', or "
+                "forward = 'model.py:name'"
+            )
+        if not self.is_structure and (self.structure is not None or any(getattr(self, name) for name in PARTS)):
+            given = (
+                "here is a mechanism, whose springs and forces stand in [[model.load]]"
+                if "body" in ways
+                else "here a function gives it"
+            )
+            raise problem(
+                "structure, spring, force and contact belong to a structure of [[model.mass]] tables or of matrices in "
+                f"[model.structure]; {given}"
             )
         if "body" not in ways and (self.joint or self.load or self.gravity or self.driving):
-            raise problem(
-                "joint, load, gravity and driving belong to a model of [[model.body]] tables; here a function gives it"
-            )
-        if "body" in ways and self.arguments:
+            given = "this is a structure" if self.is_structure else "here a function gives it"
+            raise problem(f"joint, load, gravity and driving belong to a model of [[model.body]] tables; {given}")
+        if ("body" in ways or self.is_structure) and self.arguments:
             raise problem("arguments are for a function, and there is none")
-        wrong = [*_repeated(self.components), *_dangling(self.components)]
+        wrong = [*_repeated(self.components), *_dangling(self.components), *wrong_structure(self)]
         if wrong:
             raise problem(*wrong)
         return self
@@ -100,4 +122,6 @@ def model_table() -> type[ModelTable]:
     lists: dict[str, Any] = {
         table: (list[one_of([table_of(target, signal=signal) for target in kinds[table]])], []) for table in _TABLES
     }
+    lists |= {name: (kind, []) for name, kind in part_tables().items()}
+    lists["structure"] = (structure_table() | None, None)
     return create_model("Model", __base__=ModelTable, __doc__=ModelTable.__doc__, **lists)

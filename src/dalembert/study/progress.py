@@ -74,6 +74,8 @@ class Watch:
                 return f"{inside} boxes inside, {boundary} on the boundary, {waiting} to look at", 0, None
             case {"event": "profiled", "parameter": name, "simulations": simulations}:
                 return f"profile of {name} · {simulations} simulations", 0, None
+            case {"event": "following", "begin": begin, "end": end}:
+                return f"following the response from {begin:g} to {end:g} Hz", 0, None
             case {"event": "simulating", "end": end}:
                 return f"simulating to {end:g} s", 0, None
         return "", 0, None

@@ -5,6 +5,7 @@ from functools import cache
 from typing import Annotated, Any
 
 from pydantic import (
+    AfterValidator,
     BeforeValidator,
     Field,
     PlainValidator,
@@ -13,6 +14,8 @@ from pydantic import (
     model_validator,
 )
 
+from dalembert.study.catalogue import balance
+from dalembert.study.components import buildable, table_of
 from dalembert.study.data_table import BandsTable, DataTable
 from dalembert.study.experiments import ExperimentTable, SensorTable, wrong_experiments
 from dalembert.study.model_table import ModelTable, model_table
@@ -43,6 +46,7 @@ class StudyFile(StudyTable):
     parameters: Annotated[dict[str, ParameterTable], BeforeValidator(check_names)] = {}
     model: ModelTable
     solver: Any = None
+    harmonic_balance: Any = None
     data: DataTable | None = None
     bands: BandsTable | None = None
     experiments: list[ExperimentTable] = Field([], description="several experiments in place of [data]")
@@ -58,10 +62,16 @@ class StudyFile(StudyTable):
             given = f"{names} are given" if names else "no task is given"
             raise problem(f"{given}; a study has one task, one of {', '.join(f'[{name}]' for name in TASKS)}")
         (name,) = self.tasks
-        wrong = [*wrong_experiments(self), *TASKS[name].wrong(self)]
+        wrong = [*wrong_experiments(self), *_wrong_settings(self), *TASKS[name].wrong(self)]
         if wrong:
             raise problem(*wrong)
         return self
+
+    @property
+    def vibrates(self) -> bool:
+        """Whether the model is a structure over frequency, and not a mechanism in time."""
+        told = self.harmonic_balance is not None or any(TASKS[name].of_structures for name in self.tasks)
+        return self.model.is_structure or (self.model.function is not None and told)
 
     @property
     def tasks(self) -> Mapping[str, StudyTable]:
@@ -69,11 +79,30 @@ class StudyFile(StudyTable):
         return {name: table for name in TASKS if (table := getattr(self, name, None)) is not None}
 
 
+def _wrong_settings(file: StudyFile) -> list[str]:
+    """Sentences about tables of settings that are not for this model."""
+    wrong = []
+    if file.vibrates and file.solver is not None:
+        wrong.append("[solver] integrates mechanisms; a structure over frequency takes [harmonic_balance], or neither")
+    if file.harmonic_balance is not None and not file.vibrates:
+        wrong.append("[harmonic_balance] is for structures over frequency, and here is another model; leave it out")
+    for where, table in (("[data]", file.data), ("[bands]", file.bands)):
+        if table is None:
+            continue
+        if file.vibrates and table.frequency is None and not table.universal:
+            wrong.append(f"{where}: the key 'frequency' is missing; expected the name of the column of frequencies")
+        if file.model.forward is None and not file.vibrates and table.frequency is not None:
+            wrong.append(f"{where}, frequency: the samples of a mechanism lie along time; name its column by time")
+    return wrong
+
+
 @cache
 def study_file() -> type[StudyFile]:
     """The study file with all the kinds that there are."""
     fields: dict[str, Any] = {name: (task.table() | None, None) for name, task in TASKS.items()}
     fields |= {"model": (model_table(), ...), "solver": (solver() | None, None)}
+    settings: Any = Annotated[table_of(balance(), default=True, varying=False), AfterValidator(buildable)]
+    fields |= {"harmonic_balance": (settings | None, None)}
     return create_model("Study", __base__=StudyFile, __doc__=StudyFile.__doc__, **fields)
 
 

@@ -1,6 +1,6 @@
 """A study that was read and checked: its model, data and task, ready to run."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -12,14 +12,15 @@ from dalembert.errors import InputError
 from dalembert.forward import ForwardModel
 from dalembert.parameters import Parameters
 from dalembert.study.builder import FunctionBuilder, SystemBuilder
+from dalembert.study.experiments import measured_channels
 from dalembert.study.schema import StudyFile
+from dalembert.study.structure_builder import StructureBuilder
 from dalembert.study.table import StudyTable
 
 if TYPE_CHECKING:
     from dalembert.data import Bands, Measurements
-    from dalembert.multibody import System, Trajectory
-
-Builder = SystemBuilder | FunctionBuilder
+    from dalembert.multibody import Trajectory
+    from dalembert.vibration import HarmonicBalance
 
 
 def _plain(value: Any) -> Any:
@@ -32,6 +33,14 @@ def _plain(value: Any) -> Any:
     if isinstance(value, (list, tuple)):
         return [_plain(entry) for entry in value]
     return value if isinstance(value, (int, float, str)) else str(value)
+
+
+def _watched(file: StudyFile) -> Iterator[str]:
+    """Degrees of freedom, nodes or sets whose motion the task or the data name."""
+    for table in file.tasks.values():
+        yield from getattr(table, "observe", None) or ()
+        yield from (channel.partition(" ")[0] for channel in getattr(table, "channels", None) or ())
+    yield from (channel.partition(" ")[0] for channel in measured_channels(file))
 
 
 @dataclass(frozen=True)
@@ -86,15 +95,17 @@ class Study:
 
     @property
     def has_system(self) -> bool:
-        """Whether the model is a mechanism, not a forward model of another kind."""
-        return self.file.model.forward is None
+        """Whether the model is a mechanism, not a structure or a forward model of another kind."""
+        return self.file.model.forward is None and not self.file.vibrates
 
     @cached_property
-    def builder(self) -> Builder:
-        """The model as a function from parameters to a System."""
+    def builder(self) -> Callable[..., Any]:
+        """The model as a function from parameters to a System or a VibrationSystem."""
         model = self.file.model
         if model.function is not None:
-            return FunctionBuilder(model.function.load(), model.resolved_arguments)
+            return FunctionBuilder(model.function.load(), model.resolved_arguments, self.file.vibrates)
+        if model.is_structure:
+            return StructureBuilder(model, self.file.constants, tuple(_watched(self.file)))
         return SystemBuilder(model, self.file.constants)
 
     @property
@@ -102,8 +113,16 @@ class Study:
         """The integrator that the file chooses."""
         return self.file.solver.settings()
 
-    def system(self, vector: np.ndarray | None = None) -> "System":
-        """The mechanism at a parameter vector (parameters,), by default at the first guesses."""
+    @property
+    def balance(self) -> "HarmonicBalance":
+        """How responses over frequency are balanced."""
+        from dalembert.vibration import HarmonicBalance
+
+        given = self.file.harmonic_balance
+        return HarmonicBalance() if given is None else given.settings()
+
+    def system(self, vector: np.ndarray | None = None) -> Any:
+        """The mechanism or the structure at a parameter vector (parameters,), by default at the first guesses."""
         return self.builder(**self.parameters.mapping(self.parameters.start if vector is None else vector))
 
     def motion(self, end: float, vector: np.ndarray | None = None, times: np.ndarray | None = None) -> "Trajectory":
@@ -119,6 +138,11 @@ class Study:
 
             response: Any = TimeResponse(self.builder, self.parameters, channels, samples, solver=self.solver)
             return response
+        if self.file.vibrates:
+            from dalembert.vibration import FrequencyResponse
+
+            curve: Any = FrequencyResponse(self.builder, self.parameters, channels, samples, self.balance)
+            return curve
         reference = self.file.model.forward
         assert reference is not None  # or there is a system
         model = reference.load()(self.parameters, **self.file.model.resolved_arguments)

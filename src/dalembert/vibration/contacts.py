@@ -40,9 +40,9 @@ class Elastic:
         Penetration at which the contact closes, m.
     """
 
-    tangential_stiffness: Number
-    normal_stiffness: Number | None = None
-    gap: Number = 0.0
+    tangential_stiffness: Number = field(metadata={"unit": "N/m"})
+    normal_stiffness: Number | None = field(default=None, metadata={"unit": "N/m"})
+    gap: Number = field(default=0.0, metadata={"unit": "m"})
 
 
 @dataclass(frozen=True)
@@ -61,10 +61,10 @@ class Iwan:
         m.
     """
 
-    stiffnesses: tuple[Number, ...]
+    stiffnesses: tuple[Number, ...] = field(metadata={"unit": "N/m"})
     shares: tuple[Number, ...]
-    normal_stiffness: Number | None = None
-    gap: Number = 0.0
+    normal_stiffness: Number | None = field(default=None, metadata={"unit": "N/m"})
+    gap: Number = field(default=0.0, metadata={"unit": "m"})
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "stiffnesses", tuple(self.stiffnesses))
@@ -99,9 +99,9 @@ class Rigid:
     Lagrangian method" (2019).
     """
 
-    penalty: Number | None = None
+    penalty: Number | None = field(default=None, metadata={"unit": "N/m"})
     kind: str = "displacement"
-    gap: Number = 0.0
+    gap: Number = field(default=0.0, metadata={"unit": "m"})
 
     def __post_init__(self) -> None:
         if self.kind not in RIGID_KINDS:
@@ -156,8 +156,8 @@ class FrictionContact:
     second: str | None = None
     tangential: Sequence[str] = ("x",)
     normal: str | None = None
-    friction: Number = field(kw_only=True)
-    preload: Number = field(default=0.0, kw_only=True)
+    friction: Number = field(kw_only=True, metadata={"unit": ""})
+    preload: Number = field(default=0.0, kw_only=True, metadata={"unit": "N"})
     law: Law = field(default=Rigid(), kw_only=True)
 
     def __post_init__(self) -> None:

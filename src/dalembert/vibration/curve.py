@@ -243,7 +243,7 @@ class FrequencyCurve(Result):
             for name, dimensions in _DIMENSIONS.items()
         }
         names = json.dumps({name: getattr(self, name) for name in _NAMES})
-        provenance = json.dumps(dict(self.provenance), sort_keys=True)
+        provenance = json.dumps(dict(self.provenance))
         return xr.Dataset(variables, attrs={"format": self.FORMAT, "names": names, "provenance": provenance})
 
     @classmethod

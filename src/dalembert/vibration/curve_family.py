@@ -86,9 +86,12 @@ class CurveFamily(Result):
         return float(self.values[np.nanargmin(sizes)])
 
     def reduction(self, dof: str, kind: str = "peak") -> np.ndarray:
-        """By which part each peak is lower than that of the first value, (values,): 1 - peak / first peak."""
+        """By which part each peak is lower than that of the first value, (values,): 1 - peak / first peak.
+
+        NaN where there is no first peak, or no motion at it.
+        """
         sizes = self._sizes(dof, kind)
-        return 1 - sizes / sizes[0]
+        return 1 - sizes / sizes[0] if sizes[0] > 0 else np.full(len(sizes), np.nan)
 
     def envelope(self, dof: str, kind: str = "peak") -> Envelope:
         """The smallest and the largest response of all curves at each frequency that all of them have.

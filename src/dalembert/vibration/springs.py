@@ -26,7 +26,7 @@ class CubicSpring:
     name: str
     first: str
     second: str | None = None
-    stiffness: Number = field(kw_only=True)
+    stiffness: Number = field(kw_only=True, metadata={"unit": "N/m^3"})
 
     def law(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Force and its derivative at displacements."""
@@ -53,8 +53,8 @@ class Gap:
     name: str
     first: str
     second: str | None = None
-    stiffness: Number = field(kw_only=True)
-    gap: Number = field(default=0.0, kw_only=True)
+    stiffness: Number = field(kw_only=True, metadata={"unit": "N/m"})
+    gap: Number = field(default=0.0, kw_only=True, metadata={"unit": "m"})
 
     def __post_init__(self) -> None:
         require_positive(f"gap {self.name!r}: the stiffness", "N/m", self.stiffness)
@@ -85,8 +85,8 @@ class BilinearStop:
     name: str
     first: str
     second: str | None = None
-    stiffness: Number = field(kw_only=True)
-    gap: Number = field(default=0.0, kw_only=True)
+    stiffness: Number = field(kw_only=True, metadata={"unit": "N/m"})
+    gap: Number = field(default=0.0, kw_only=True, metadata={"unit": "m"})
 
     def __post_init__(self) -> None:
         require_positive(f"stop {self.name!r}: the stiffness", "N/m", self.stiffness)

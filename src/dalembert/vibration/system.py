@@ -1,6 +1,6 @@
 """A structure with forces, contacts and springs."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TypeVar
 
 from dalembert.errors import InputError, ModelError
@@ -25,8 +25,8 @@ class HarmonicForce:
     """
 
     dof: str
-    amplitude: Number
-    phase: Number = 0.0
+    amplitude: Number = field(metadata={"unit": "N"})
+    phase: Number = field(default=0.0, metadata={"unit": "rad"})
     harmonic: int = 1
 
     def __post_init__(self) -> None:
@@ -49,7 +49,7 @@ class StaticForce:
     """
 
     dof: str
-    value: Number
+    value: Number = field(metadata={"unit": "N"})
 
 
 Element = FrictionContact | CubicSpring | Gap | BilinearStop | UserElement

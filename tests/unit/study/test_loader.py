@@ -285,7 +285,7 @@ horizon = "growin"
             [
                 "study.toml: [simulate] and [sweep] are given; a study has one task, one of "
                 "[simulate], [identify], [sweep], [propagate], [identify_bands], [identify_set], [design], "
-                "[work_precision]"
+                "[work_precision], [frequency_response]"
             ],
         ),
         (
@@ -293,14 +293,15 @@ horizon = "growin"
             [
                 "study.toml: no task is given; a study has one task, one of "
                 "[simulate], [identify], [sweep], [propagate], [identify_bands], [identify_set], [design], "
-                "[work_precision]"
+                "[work_precision], [frequency_response]"
             ],
         ),
         (('[solver]\nstep = "1 ms"', ""), ["study.toml: the table [solver] is missing; expected at least its step"]),
         (
             ("[model]", '[model]\nfunction = "decay.py:decay"'),
             [
-                "study.toml: [model]: function and body are given; expected either [[model.body]] tables, or "
+                "study.toml: [model]: function and body are given; expected either the [[model.body]] tables of "
+                "a mechanism, or the [[model.mass]] tables or the [model.structure] of a structure, or "
                 "function = 'model.py:name', or forward = 'model.py:name'"
             ],
         ),

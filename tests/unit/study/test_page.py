@@ -13,7 +13,7 @@ TABLES = {
     "Study": ["The tables", "The tasks"],
     "About": ["study"],
     "ParameterTable": [r"parameters\.NAME"],
-    "Model": ["model"],
+    "Model": ["model", "Structures"],
     "GeneralizedAlpha": ["solver"],
     "DataTable": ["data"],
     "DerivativeTable": ["data"],
@@ -30,10 +30,16 @@ TABLES = {
     "IdentifyBands": ["identify_bands"],
     "IdentifySet": ["identify_set"],
     "DesignTable": ["design"],
+    "FrequencyResponseTable": ["frequency_response"],
+    "FamilyTable": ["frequency_response"],
+    "HarmonicBalance": ["harmonic_balance"],
+    "StructureTable": [r"model\.structure"],
+    "ReductionTable": [r"model\.structure"],
     "WorkPrecision": ["work_precision"],
     "Series": ["work_precision"],
     "dalembert__study__numbers__Grid__1": ["Numbers"],
     "dalembert__study__numbers__Grid__2": ["Numbers"],
+    "dalembert__study__numbers__Grid__3": ["Numbers"],
 }
 """Where the page tells of a table that is not one kind of several."""
 
@@ -78,9 +84,7 @@ def _place(name, table):
 
 def _entry(title):
     """Text of the entry of a table such as ``[data]``, or of a section."""
-    pattern = (
-        rf"^## {title}$.*?(?=^## )" if " " in title or title == "Numbers" else rf"^`\[+{title}\]+`.*?(?=^\n`\[|^## )"
-    )
+    pattern = rf"^## {title}$.*?(?=^## )" if title[0].isupper() else rf"^`\[+{title}\]+`.*?(?=^\n`\[|^## )"
     return re.search(pattern, PAGE, flags=re.DOTALL | re.MULTILINE)[0]
 
 

@@ -2,6 +2,7 @@
 
 from dalembert.study.tasks.compare_integrators import CompareIntegrators
 from dalembert.study.tasks.design import Design
+from dalembert.study.tasks.frequency_response import FrequencyResponseTask
 from dalembert.study.tasks.identify import Identify
 from dalembert.study.tasks.identify_bands import IdentifyBands
 from dalembert.study.tasks.identify_set import IdentifySet
@@ -19,6 +20,7 @@ TASKS: dict[str, Task] = {
     "identify_set": IdentifySet(),
     "design": Design(),
     "work_precision": CompareIntegrators(),
+    "frequency_response": FrequencyResponseTask(),
 }
 
 __all__ = ["TASKS", "Outcome", "Task"]

@@ -13,6 +13,7 @@ from dalembert.study.table import Read, StudyTable, checked, problem
 from dalembert.study.tasks.result import ResultOutcome
 from dalembert.study.tasks.simulate import PARTS
 from dalembert.study.tasks.task import Outcome, Task
+from dalembert.study.tasks.wrong import needs_mechanism
 
 if TYPE_CHECKING:
     from dalembert.study.duration import Effort
@@ -81,7 +82,7 @@ class CompareIntegrators(Task):
         ]
         if file.model.forward is not None:
             wrong.append("[work_precision] needs a mechanism; a forward model has no steps")
-        return wrong
+        return [*wrong, *needs_mechanism(file, "work_precision")]
 
     def plan(self, study: "Study") -> str:
         study.system()

@@ -6,13 +6,12 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import numpy as np
 from pydantic import Discriminator, Field, Tag
 
-from dalembert.forward import ForwardModel
 from dalembert.study.intervals import Number
 from dalembert.study.numbers import samples
 from dalembert.study.table import StudyTable
 from dalembert.study.tasks.result import ResultOutcome
 from dalembert.study.tasks.task import Outcome, Task
-from dalembert.study.tasks.wrong import needs_solver, unnamed
+from dalembert.study.tasks.wrong import needs_samples, needs_solver, response, unnamed
 
 if TYPE_CHECKING:
     from dalembert.study.duration import Effort
@@ -33,7 +32,10 @@ class DesignTable(StudyTable):
     """Rank experiments by how well they would tell the parameters, before anything is measured."""
 
     times: samples("s") | None = Field(None, description="times of a mechanism's samples: a list, or a range")  # pyright: ignore[reportInvalidTypeForm]
-    channels: list[str] | None = Field(None, min_length=1, description="what could be measured on a mechanism")
+    frequencies: samples("Hz") | None = Field(None, description="of a structure's response: a list, or a range")  # pyright: ignore[reportInvalidTypeForm]
+    channels: list[str] | None = Field(
+        None, min_length=1, description="what could be measured on a mechanism or a structure"
+    )
     deviations: Deviations = Field(description="standard deviation of the noise: a number, or one for each channel")
     sensors: Sets = Field("singles", description="'singles', 'pairs', 'all', or lists of channels")
     horizons: samples(None) | None = Field(None, description="ends of the measurement; the last sample if not given")  # pyright: ignore[reportInvalidTypeForm]
@@ -51,16 +53,11 @@ class Design(Task):
         table = file.design
         wrong = [] if file.parameters else ["[design] needs at least one [parameters.NAME] table"]
         wrong += unnamed(table.at, file.parameters, "[design.at]")
-        for key in ("times", "channels"):
-            given = getattr(table, key) is not None
-            if file.model.forward is None and not given:
-                wrong.append(f"[design]: the key {key!r} is missing; a mechanism needs it")
-            if file.model.forward is not None and given:
-                wrong.append(f"[design], {key}: a forward model has its own; leave the key out")
+        wrong += needs_samples(file, "design")
         return [*wrong, *needs_solver(file)]
 
     def plan(self, study: "Study") -> str:
-        model = _model(study)
+        model = response(study)
         model.evaluate(_at(study)[None]).only()
         names = [channel.name for channel in model.channels]
         return (
@@ -72,14 +69,14 @@ class Design(Task):
         from dalembert.study.duration import evaluated
 
         count = 1 + len(study.parameters)
-        return evaluated(_model(study), _at(study), count, count)
+        return evaluated(response(study), _at(study), count, count)
 
     def run(self, study: "Study", emit: "Emit") -> Outcome:
         from dalembert.inverse import design
 
         table = study.table
         designs = design(
-            _model(study),
+            response(study),
             _at(study),
             deviations=table.deviations,
             sensors=table.sensors,
@@ -92,11 +89,6 @@ class Design(Task):
         from dalembert.inverse import Designs
 
         return _outcome(study, Designs.load(path))
-
-
-def _model(study: "Study") -> ForwardModel:
-    table = study.table
-    return study.forward(table.channels or (), np.array(table.times or ()))
 
 
 def _at(study: "Study") -> np.ndarray:

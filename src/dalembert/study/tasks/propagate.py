@@ -4,10 +4,8 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 from pydantic import Field, create_model
 
-from dalembert.forward import ForwardModel
 from dalembert.intervals import Box
 from dalembert.study.catalogue import parts, propagation_methods
 from dalembert.study.components import settings_of
@@ -17,7 +15,7 @@ from dalembert.study.numbers import samples
 from dalembert.study.table import StudyTable
 from dalembert.study.tasks.result import ResultOutcome
 from dalembert.study.tasks.task import Outcome, Task
-from dalembert.study.tasks.wrong import needs_solver, unnamed
+from dalembert.study.tasks.wrong import needs_samples, needs_solver, response, unnamed
 
 if TYPE_CHECKING:
     from dalembert.study.duration import Effort
@@ -31,7 +29,8 @@ class PropagateTable(StudyTable):
     """Bound the response over intervals of the parameters."""
 
     times: samples("s") | None = Field(None, description="output times of a mechanism: a list, or a range")  # pyright: ignore[reportInvalidTypeForm]
-    channels: list[str] | None = Field(None, min_length=1, description="outputs of a mechanism")
+    frequencies: samples("Hz") | None = Field(None, description="of a structure's response: a list, or a range")  # pyright: ignore[reportInvalidTypeForm]
+    channels: list[str] | None = Field(None, min_length=1, description="outputs of a mechanism or a structure")
     intervals: dict[str, IntervalKey] = Field(
         {}, description="interval of each parameter; that between its bounds if not given"
     )
@@ -64,12 +63,7 @@ class Propagate(Task):
         table = file.propagate
         wrong = [] if file.parameters else ["[propagate] needs at least one [parameters.NAME] table"]
         wrong += unnamed(table.intervals, file.parameters, "[propagate.intervals]")
-        for key in ("times", "channels"):
-            given = getattr(table, key) is not None
-            if file.model.forward is None and not given:
-                wrong.append(f"[propagate]: the key {key!r} is missing; a mechanism needs it")
-            if file.model.forward is not None and given:
-                wrong.append(f"[propagate], {key}: a forward model has its own; leave the key out")
+        wrong += needs_samples(file, "propagate")
         if table.reference is not None and not table.compare:
             wrong.append("[propagate], reference: nothing is compared; name methods in compare, or leave the key out")
         return [*wrong, *needs_solver(file)]
@@ -78,7 +72,7 @@ class Propagate(Task):
         from dalembert.uncertainty.methods import label
         from dalembert.uncertainty.runs import Runs
 
-        model, box = _model(study), _box(study)
+        model, box = response(study), _box(study)
         model.evaluate(box.middle[None]).only()
         costs = []
         for method in _methods(study):
@@ -97,7 +91,7 @@ class Propagate(Task):
         from dalembert.uncertainty.methods import label
         from dalembert.uncertainty.runs import Runs
 
-        model, box = _model(study), _box(study)
+        model, box = response(study), _box(study)
         known = [method.most(Runs(model, box, label(method))) for method in _methods(study)]
         count = None if None in known else sum(filter(None, known))
         return evaluated(model, box.middle, count, count, TOGETHER)
@@ -105,7 +99,7 @@ class Propagate(Task):
     def run(self, study: "Study", emit: "Emit") -> Outcome:
         from dalembert.uncertainty import as_record, compare, propagate
 
-        model, box, table = _model(study), _box(study), study.table
+        model, box, table = response(study), _box(study), study.table
         *methods, last = _methods(study)
         options: Any = {"seed": table.seed, "on_event": teller(emit, as_record)}
         if table.compare:
@@ -116,11 +110,6 @@ class Propagate(Task):
         from dalembert.uncertainty import Comparison, Propagation
 
         return _outcome(study, (Comparison if study.table.compare else Propagation).load(path))
-
-
-def _model(study: "Study") -> ForwardModel:
-    table = study.table
-    return study.forward(table.channels or (), np.array(table.times or ()))
 
 
 def _box(study: "Study") -> Box:

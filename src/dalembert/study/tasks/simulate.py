@@ -10,6 +10,7 @@ from pydantic import Field, model_validator
 from dalembert.study.numbers import fixed, samples
 from dalembert.study.table import Read, StudyTable, problem
 from dalembert.study.tasks.task import Outcome, Task
+from dalembert.study.tasks.wrong import needs_mechanism
 
 if TYPE_CHECKING:
     from dalembert.study.duration import Effort
@@ -99,6 +100,8 @@ class Simulate(Task):
     def wrong(self, file: Any) -> list[str]:
         if file.model.forward is not None:
             return ["[simulate] needs a mechanism; a forward model is for [identify] and [sweep]"]
+        if file.vibrates:
+            return needs_mechanism(file, "simulate")
         return [] if file.solver else ["the table [solver] is missing; expected at least its step"]
 
     def plan(self, study: "Study") -> str:

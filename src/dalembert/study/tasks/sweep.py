@@ -11,6 +11,7 @@ from pydantic import Discriminator, Field, Tag, model_validator
 from dalembert.errors import DalembertError, InputError, unknown
 from dalembert.files import replacing
 from dalembert.forward import ForwardModel
+from dalembert.parameters import Parameters
 from dalembert.study.numbers import MOST, fixed, samples
 from dalembert.study.table import Read, StudyTable, problem
 from dalembert.study.tasks.task import Outcome, Task
@@ -39,7 +40,7 @@ Along = Annotated[
 class SweepTable(StudyTable):
     """Move one parameter at a time, the others at their first guesses, and look at one instant."""
 
-    at: Annotated[float, Read(fixed(None))] = Field(description="the instant: a time in s")
+    at: Annotated[float, Read(fixed(None))] = Field(description="the instant: a time in s, or a frequency in Hz")
     channels: list[str] = Field(min_length=1)
     sensitivities: bool = Field(True, description="whether to compute the derivatives too")
     over: dict[str, Along] = Field(
@@ -136,7 +137,7 @@ class SweepTask(Task):
         model = _model(study)
         _sample(model, study.table.at)
         _columns(model, study.table.channels)
-        values = {name: len(_values(study, name)) for name in study.table.over}
+        values = {name: len(values_along(study.parameters, name, study.table.over[name])) for name in study.table.over}
         count = sum(values.values())
         each = f", each with {len(study.parameters)} sensitivities" if study.table.sensitivities else ""
         along = ", ".join(f"{name} ({number})" for name, number in values.items())
@@ -145,13 +146,13 @@ class SweepTask(Task):
     def effort(self, study: "Study") -> "Effort":
         from dalembert.study.duration import TOGETHER, evaluated
 
-        count = sum(len(_values(study, name)) for name in study.table.over)
+        count = sum(len(values_along(study.parameters, name, study.table.over[name])) for name in study.table.over)
         count *= 1 + len(study.parameters) if study.table.sensitivities else 1
         return evaluated(_model(study), study.parameters.start, count, count, TOGETHER)
 
     def run(self, study: "Study", emit: "Emit") -> Outcome:
         model = _model(study)
-        total = sum(len(_values(study, name)) for name in study.table.over)
+        total = sum(len(values_along(study.parameters, name, study.table.over[name])) for name in study.table.over)
         curves, done = [], 0
         for name in study.table.over:
             curve = _empty(study, model, name)
@@ -197,18 +198,17 @@ def _columns(model: ForwardModel, channels: list[str]) -> list[int]:
     return [names.index(channel) for channel in channels]
 
 
-def _values(study: "Study", name: str) -> np.ndarray:
+def values_along(parameters: Parameters, name: str, along: BoundsTable | tuple[float, ...]) -> np.ndarray:
     """Values of a parameter, shape (samples,)."""
-    along = study.table.over[name]
     if not isinstance(along, BoundsTable):
         return np.array(along)
-    parameter = next(item for item in study.parameters if item.name == name)
+    parameter = next(item for item in parameters if item.name == name)
     return np.linspace(parameter.lower, parameter.upper, along.count)
 
 
 def _empty(study: "Study", model: ForwardModel, name: str) -> Curve:
     """A curve with NaN where responses will stand."""
-    values = _values(study, name)
+    values = values_along(study.parameters, name, study.table.over[name])
     channels = [model.channels[column] for column in _columns(model, study.table.channels)]
     shape = (len(values), len(channels))
     unit = next(item.unit for item in study.parameters if item.name == name)

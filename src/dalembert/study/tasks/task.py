@@ -2,7 +2,7 @@
 
 from abc import ABC, abstractmethod
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 from dalembert.study.table import StudyTable
 
@@ -44,6 +44,8 @@ class Outcome(Protocol):
 
 class Task(ABC):
     """One thing that a study file can ask for: a table, its meaning, its run and its result."""
+
+    of_structures: ClassVar[bool] = False  # whether it is for structures over frequency alone
 
     @abstractmethod
     def table(self) -> type[StudyTable]:

@@ -3,13 +3,49 @@
 from collections.abc import Collection, Iterable, Mapping
 from typing import Any
 
+import numpy as np
+
 from dalembert.errors import unknown
 
 
 def needs_solver(file: Any) -> list[str]:
     """Sentence about a mechanism without a solver."""
-    missing = file.model.forward is None and file.solver is None
+    missing = file.model.forward is None and file.solver is None and not file.vibrates
     return ["the table [solver] is missing; expected at least its step"] if missing else []
+
+
+def needs_mechanism(file: Any, task: str) -> list[str]:
+    """Sentence about a model that does not move in time."""
+    if file.vibrates:
+        return [f"[{task}] needs a mechanism, and there is a structure; its task is [frequency_response]"]
+    return []
+
+
+def needs_samples(file: Any, task: str) -> list[str]:
+    """Sentences about samples and channels of a response: of a mechanism over time, of a structure over frequency."""
+    table, forward = getattr(file, task), file.model.forward is not None
+    own, other = ("frequencies", "times") if file.vibrates else ("times", "frequencies")
+    model = "a structure" if file.vibrates else "a mechanism"
+    wrong = []
+    for key in (own, "channels"):
+        given = getattr(table, key) is not None
+        if not forward and not given:
+            wrong.append(f"[{task}]: the key {key!r} is missing; {model} needs it")
+        if forward and given:
+            wrong.append(f"[{task}], {key}: a forward model has its own; leave the key out")
+    if getattr(table, other) is not None:
+        wrong.append(
+            f"[{task}], {other}: a forward model has its own; leave the key out"
+            if forward
+            else f"[{task}], {other}: the response of {model} lies along {own}; leave the key out"
+        )
+    return wrong
+
+
+def response(study: Any) -> Any:
+    """The forward model at the samples and channels that the task's table names."""
+    table = study.table
+    return study.forward(table.channels or (), np.array(table.times or table.frequencies or ()))
 
 
 def unmatched(given: Mapping[str, Any] | None, channels: Collection[str], what: str, where: str) -> list[str]:

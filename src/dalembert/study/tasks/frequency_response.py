@@ -1,0 +1,242 @@
+"""Frequency response: periodic responses of a structure over frequency, or a family of them over one parameter."""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from dalembert.errors import InputError, unknown
+from dalembert.study.numbers import fixed, samples
+from dalembert.study.table import Read, StudyTable, problem
+from dalembert.study.tasks.sweep import Along, values_along
+from dalembert.study.tasks.task import Outcome, Task
+from dalembert.study.tasks.wrong import unnamed
+
+if TYPE_CHECKING:
+    from dalembert.study.duration import Effort
+    from dalembert.study.events import Emit
+    from dalembert.study.study import Study
+
+MOST_DRAWN = 6
+"""Degrees of freedom that a figure shows by themselves; of more the report chooses."""
+Frequency = Annotated[float, Read(fixed("Hz"))]
+
+
+class FamilyTable(StudyTable):
+    """A curve for each of several values of one parameter."""
+
+    parameter: str = Field(description="such as a preload; the others keep their first guesses")
+    values: Along = Field(
+        description="a list, a range, or { count = 9 } between the bounds; the first is what reductions are measured by"
+    )
+
+
+class FrequencyResponseTable(StudyTable):
+    """Follow the periodic response of a structure over frequency."""
+
+    frequencies: Annotated[tuple[float, ...], Read(samples("Hz"))] | None = Field(
+        None, description="of the points: a list, or a range"
+    )
+    between: Annotated[list[Frequency], Field(min_length=2, max_length=2)] | None = Field(
+        None, description="two frequencies, from the first to the second with as many points as the curve needs"
+    )
+    continuation: Literal["natural", "arc-length"] = Field(
+        "natural", description="'arc-length' goes past folds, and needs between"
+    )
+    observe: list[str] | None = Field(
+        None, min_length=1, description="degrees of freedom, nodes or sets whose motion is kept; 'm2' or 'm2.x'"
+    )
+    dof: str | None = Field(None, description="whose peak is told; the first observed one if not given")
+    amplitude: str = Field("peak", description="'peak', 'rms', or 'harmonic 1' and so on")
+    stability: bool = Field(False, description="whether to find which points are stable, and where that changes")
+    sweep: FamilyTable | None = Field(None, description="a curve for each value of a parameter")
+
+    @model_validator(mode="after")
+    def _check(self) -> "FrequencyResponseTable":
+        wrong = []
+        if (self.frequencies is None) == (self.between is None):
+            given = "neither frequencies nor between is" if self.between is None else "frequencies and between are both"
+            wrong.append(f"{given} given; expected one of them")
+        if self.continuation == "arc-length" and self.between is None:
+            wrong.append("continuation: a path by arc length finds its own frequencies; give between = [begin, end]")
+        ends = self.between or [1.0, 2.0]
+        for value in (*(self.frequencies or ()), *ends):
+            if not value > 0:
+                wrong.append(f"the frequency {value:g} Hz was given; expected positive ones")
+                break
+        if ends[0] == ends[1]:
+            wrong.append(f"between: {ends[0]:g} Hz was given twice; expected two different frequencies")
+        if wrong:
+            raise problem(*wrong)
+        return self
+
+    @property
+    def along(self) -> Any:
+        """Frequencies as :func:`~dalembert.vibration.frequency_response` takes them."""
+        return tuple(self.between) if self.between is not None else np.array(self.frequencies)
+
+
+@dataclass(frozen=True)
+class Response(Outcome):
+    """A curve, or a family of them."""
+
+    study: "Study" = field(repr=False)
+    result: Any
+
+    @property
+    def success(self) -> bool:
+        return self.result.success
+
+    @property
+    def status(self) -> str:
+        return self.result.status
+
+    @property
+    def summary(self) -> str:
+        told = "".join(f"\n{name}: {value:.6g}" for name, value in self.best.get("values", {}).items())
+        return self.result.summary() + told * (self.study.table.amplitude != "peak")
+
+    @property
+    def best(self) -> dict[str, Any]:
+        table, result = self.study.table, self.result
+        dof = table.dof or result.dofs[0]
+        if table.sweep is None:
+            if not result.converged.any():
+                return {}
+            peak = result.peak(dof, table.amplitude)
+            return {"values": {f"{table.amplitude} of {dof}": peak.amplitude, "at": peak.frequency}}
+        best = result.best(dof, table.amplitude)
+        row = result.values.tolist().index(best)
+        peak, part = result.peaks(dof, table.amplitude)[row], result.reduction(dof, table.amplitude)[row]
+        found = {f"{table.amplitude} of {dof}": peak.amplitude, "at": peak.frequency, "reduction": float(part)}
+        return {"values": {table.sweep.parameter: best, **found}}
+
+    def save(self, path: Path) -> None:
+        self.result.save(path)
+
+    def report(self, path: Path) -> None:
+        from dalembert.report import report
+
+        about = self.study.file.study
+        options: Any = {"dofs": self._drawn(), "amplitude": self.study.table.amplitude}
+        text = self.study.content.decode()
+        report(self.result, path, title=self.study.title, notes=about.description, study=text, **options)
+
+    def _drawn(self) -> tuple[str, ...]:
+        """The degrees of freedom that figures show: the one whose peak is told, or those that were asked for."""
+        table = self.study.table
+        if table.dof is not None:
+            return tuple(name for name in self.result.dofs if table.dof in (name, name.rpartition(".")[0]))
+        return () if table.observe is None or len(self.result.dofs) > MOST_DRAWN else self.result.dofs
+
+
+class FrequencyResponseTask(Task):
+    """The task ``[frequency_response]``."""
+
+    of_structures = True
+
+    def table(self) -> type[StudyTable]:
+        return FrequencyResponseTable
+
+    def wrong(self, file: Any) -> list[str]:
+        if not file.vibrates:
+            return [
+                "[frequency_response] needs a structure: [[model.mass]] tables, matrices in [model.structure], or a "
+                "function that returns a VibrationSystem"
+            ]
+        table = file.frequency_response
+        return (
+            []
+            if table.sweep is None
+            else unnamed([table.sweep.parameter], file.parameters, "[frequency_response], sweep")
+        )
+
+    def plan(self, study: "Study") -> str:
+        from dalembert.vibration.amplitudes import Amplitude
+        from dalembert.vibration.equations import equations
+
+        table, problem = study.table, equations(study.system(), study.balance)
+        problem.condensation  # noqa: B018 (a structure that nothing holds is found here)
+        names = problem.lowered.structure.dofs.names
+        if table.observe is not None:
+            names = [names[row] for row in problem.lowered.structure.rows(_observed(study) or [])]
+        if table.dof is not None and not any(
+            name == table.dof or name.rpartition(".")[0] == table.dof for name in names
+        ):
+            raise InputError(unknown("observed degree of freedom", table.dof, names, "[frequency_response], dof"))
+        Amplitude(table.amplitude, study.balance.orders)
+        points = "as many points as the curve needs" if table.between else f"{len(table.frequencies)} points"
+        ends = table.between or (table.frequencies[0], table.frequencies[-1])
+        way = f"follows the response from {ends[0]:g} to {ends[1]:g} Hz ({points}, {study.balance.harmonics} harmonics)"
+        if table.sweep is None:
+            return f"{way}: 1 simulation"
+        values = _values(study)
+        return f"{way} for {len(values)} values of {table.sweep.parameter}: {len(values)} simulations"
+
+    def effort(self, study: "Study") -> "Effort":
+        from dalembert.study.duration import Effort
+        from dalembert.vibration import frequency_response
+
+        table, system = study.table, study.system()
+        ends = np.array(table.between or (table.frequencies[0], table.frequencies[-1]))
+
+        def once() -> None:
+            frequency_response(system, ends, study.balance, observe=_observed(study))
+
+        once()  # what there is to compile is compiled
+        curves = 1 if table.sweep is None else len(_values(study))
+        count = None if table.between is not None else curves * len(table.frequencies)
+        return Effort(once, 2, count, count, "a point, going by both ends of the curve")
+
+    def run(self, study: "Study", emit: "Emit") -> Outcome:
+        from dalembert.vibration import frequency_response, frequency_responses
+
+        table = study.table
+        options: Any = {
+            "continuation": table.continuation,
+            "observe": _observed(study),
+            "stability": table.stability,
+        }
+        if table.sweep is None:
+            emit("following", begin=float(table.along[0]), end=float(table.along[-1]))
+            return Response(study, frequency_response(study.system(), table.along, study.balance, **options))
+        name, values = table.sweep.parameter, _values(study)
+        unit = next(item.unit for item in study.parameters if item.name == name)
+        fixed = study.parameters.mapping(study.parameters.start)
+
+        def on_curve(row: int, curve: Any, failure: str | None) -> None:
+            found = None if curve is None else int(curve.converged.sum())
+            details = {"parameter": name, "value": float(values[row]), "done": row + 1, "total": len(values)}
+            emit("swept", **details, points=found, failure=failure)
+
+        family = frequency_responses(
+            lambda **given: study.builder(**{**fixed, **given}),
+            name,
+            values,
+            table.along,
+            study.balance,
+            unit=unit,
+            on_curve=on_curve,
+            **options,
+        )
+        return Response(study, family)
+
+    def load(self, study: "Study", path: Path) -> Outcome:
+        from dalembert.vibration import CurveFamily, FrequencyCurve
+
+        return Response(study, (FrequencyCurve if study.table.sweep is None else CurveFamily).load(path))
+
+
+def _observed(study: "Study") -> list[str] | None:
+    """Observed names, with the nodes of sets in the place of these."""
+    names = study.table.observe
+    expanded = getattr(study.builder, "expanded", None)
+    return names if names is None or expanded is None else expanded(names)
+
+
+def _values(study: "Study") -> np.ndarray:
+    """Values of the swept parameter, (values,)."""
+    sweep = study.table.sweep
+    return values_along(study.parameters, sweep.parameter, sweep.values)

@@ -1,0 +1,388 @@
+"""Structures in study files: what is built from their tables, their tasks, and every sentence about what cannot be."""
+
+import re
+
+import numpy as np
+import pytest
+from scipy.io import mmwrite
+from scipy.sparse import coo_array
+
+from dalembert.errors import DalembertError, InputError
+from dalembert.structure import Modal, lumped
+from dalembert.study import load, plan, report_run, run_study
+from dalembert.study.runner import takes
+from dalembert.vibration import (
+    Elastic,
+    FrequencyCurve,
+    FrictionContact,
+    HarmonicBalance,
+    HarmonicForce,
+    VibrationSystem,
+    frequency_response,
+)
+from support import says
+
+PARAMETERS = """
+[parameters]
+mu = { lower = 0.0, upper = 1.0, start = 0.3 }
+preload = { lower = "0 N", upper = "5 N", start = "2 N" }
+[constants]
+k = "1 N/m"
+"""
+MODEL = """
+[model]
+[[model.mass]]
+name = "m1"
+mass = "1 kg"
+[[model.mass]]
+name = "m2"
+mass = "1000 g"
+[[model.spring]]
+first = "m1"
+stiffness = "k"
+damping = 0.02
+[[model.spring]]
+first = "m1"
+second = "m2"
+stiffness = "k"
+damping = 0.02
+[[model.spring]]
+first = "m2"
+stiffness = "0.5*k"
+damping = 0.01
+[[model.force]]
+dof = "m1"
+amplitude = "1 N"
+[[model.contact]]
+name = "slider"
+first = "m2"
+friction = "mu"
+preload = "preload"
+law = { kind = "Elastic", tangential_stiffness = "1.5 N/m" }
+[harmonic_balance]
+harmonics = 5
+samples = 256
+"""
+CURVE = """
+[frequency_response]
+frequencies = { start = 0.12, end = 0.16, count = 5 }
+"""
+WHOLE = PARAMETERS + MODEL + CURVE
+IMPORTED = """
+[model.structure]
+files = { mass = "m.mtx", stiffness = "k.mtx" }
+sets = { ends = ["1", "3"] }
+fixed = ["1"]
+damping = { kind = "Modal", ratio = 0.01 }
+reduction = { modes = 0, masters = ["ends"] }
+[[model.force]]
+dof = "3"
+amplitude = 1.0
+[frequency_response]
+frequencies = [0.1]
+"""
+FUNCTIONS = """
+from dalembert.structure import lumped
+from dalembert.vibration import HarmonicForce, VibrationSystem
+
+def structure(stiffness):
+    return lumped({"m": 1.0}, [("m", None, stiffness, 0.1)])
+
+def system(mu, stiffness):
+    made = VibrationSystem(structure(stiffness))
+    made.add(HarmonicForce("m", 1.0 + mu))
+    return made
+"""
+
+
+def two_masses(mu: float = 0.3, preload: float = 2.0) -> VibrationSystem:
+    springs = [("m1", None, 1.0, 0.02), ("m1", "m2", 1.0, 0.02), ("m2", None, 0.5, 0.01)]
+    system = VibrationSystem(lumped({"m1": 1.0, "m2": 1.0}, springs))
+    system.add(HarmonicForce("m1", 1.0))
+    system.add(FrictionContact("slider", "m2", friction=mu, preload=preload, law=Elastic(1.5)))
+    return system
+
+
+@pytest.fixture
+def write(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "made.py").write_text(FUNCTIONS)
+    stiffness = np.array([[2.0, -1.0, 0.0], [-1.0, 2.0, -1.0], [0.0, -1.0, 1.0]])
+    mmwrite(tmp_path / "m.mtx", coo_array(np.eye(3)))
+    mmwrite(tmp_path / "k.mtx", coo_array(stiffness))
+    mmwrite(tmp_path / "small.mtx", coo_array(np.eye(2)))
+
+    def write(text):
+        path = tmp_path / "study.toml"
+        path.write_text(text)
+        return path
+
+    return write
+
+
+def test_a_structure_of_tables_is_the_one_of_calls(write, tmp_path):
+    study = load(write(WHOLE))
+    assert plan(study) == "follows the response from 0.12 to 0.16 Hz (5 points, 5 harmonics): 1 simulation"
+    assert re.search(r": 5 simulations of .* \(a point, going by both ends of the curve\)\.$", takes(study))
+    folder, outcome = run_study(study, tmp_path / "run")
+    ours = FrequencyCurve.load(folder.result)
+    theirs = frequency_response(two_masses(), np.linspace(0.12, 0.16, 5), HarmonicBalance(5, samples=256))
+    np.testing.assert_array_equal(ours.response, theirs.response)
+    peak = theirs.peak("m1")
+    assert outcome.best == {"values": {"peak of m1.x": peak.amplitude, "at": peak.frequency}}
+    first = folder.report.read_text()
+    folder.report.unlink()
+    report_run(folder)
+    assert folder.report.read_text() == first
+
+
+def test_kinds_of_springs_forces_and_laws(write):
+    more = """
+[[model.spring]]
+kind = "CubicSpring"
+name = "hard"
+first = "m1"
+second = "m2"
+stiffness = "2 N/mm^3"
+[[model.spring]]
+kind = "Gap"
+name = "stop"
+first = "m1"
+stiffness = 3.0
+gap = "1 mm"
+[[model.force]]
+kind = "StaticForce"
+dof = "m1"
+value = "2*mu"
+[[model.contact]]
+name = "second"
+first = "m1"
+second = "m2"
+friction = 0.1
+preload = 1.0
+law = { kind = "Iwan", stiffnesses = [1.0, "2*k"], shares = [0.25, 0.75] }
+[[model.contact]]
+name = "third"
+first = "m1"
+friction = 0.1
+law = { kind = "Rigid", form = "velocity" }
+[harmonic_balance]
+"""
+    system = load(write(WHOLE.replace("[harmonic_balance]\n", more))).system()
+    hard, stop, slider, second, third = system.elements
+    assert (hard.stiffness, hard.second, stop.gap, stop.second) == (2e9, "m2", 1e-3, None)
+    assert [force.__class__.__name__ for force in system.forces] == ["HarmonicForce", "StaticForce"]
+    assert system.forces[1].value == 0.6
+    assert (slider.law.tangential_stiffness, second.law.stiffnesses, third.law.kind) == (1.5, (1.0, 2.0), "velocity")
+
+
+def test_a_mass_may_move_along_several_axes(write):
+    text = WHOLE.replace('mass = "1 kg"', 'mass = "1 kg"\ndirections = ["x", "y"]').replace(
+        'first = "m1"', 'first = "m1.x"'
+    )
+    text = text.replace('dof = "m1"', 'dof = "m1.x"')
+    assert load(write(text)).system().structure.dofs.names == ("m1.x", "m1.y", "m2.x")
+
+
+def test_damping_stands_beside_dampers(write):
+    text = WHOLE.replace(
+        "[model]\n", '[model]\n[model.structure]\ndamping = { kind = "Rayleigh", stiffness = "0.1*mu" }\n', 1
+    )
+    structure = load(write(text)).system().structure
+    own = np.array([[0.04, -0.02], [-0.02, 0.03]])
+    np.testing.assert_allclose(structure.damping, own + 0.03 * structure.stiffness)
+
+
+def test_matrices_of_files_are_clamped_damped_and_reduced(write):
+    study = load(write(IMPORTED))
+    structure = study.system().structure
+    assert structure.dofs.names == ("3.x",)
+    stiffness, mass = 0.5, 1.25  # statically, the free node moves half as much as the end
+    np.testing.assert_allclose([structure.stiffness[0, 0], structure.mass[0, 0]], [stiffness, mass])
+    np.testing.assert_allclose(structure.damping, 2 * 0.01 * np.sqrt(stiffness * mass))
+    assert study.builder.full().size == 2
+    assert structure.with_damping(Modal(0.01)).damping == pytest.approx(structure.damping)
+
+
+def test_a_structure_or_a_system_may_come_from_a_function(write):
+    text = '[model.structure]\nfunction = "made.py:structure"\narguments = { stiffness = 4.0 }\n'
+    force = '[[model.force]]\ndof = "m"\namplitude = 1.0\n'
+    study = load(write(text + force + "[frequency_response]\nfrequencies = [0.1]\n"))
+    assert study.system().structure.stiffness.tolist() == [[4.0]]
+    text = PARAMETERS + '[model]\nfunction = "made.py:system"\narguments = { stiffness = 4.0 }\n'
+    text = text.replace('preload = { lower = "0 N", upper = "5 N", start = "2 N" }\n', "")
+    study = load(write(text + "[frequency_response]\nfrequencies = [0.1]\n"))
+    assert study.system().forces[0].amplitude == 1.3
+    study = load(write(text + '[harmonic_balance]\n[propagate]\nfrequencies = [0.1]\nchannels = ["m peak"]\n'))
+    assert study.forward(["m peak"], np.array([0.1])).coordinate.unit == "Hz"
+
+
+def test_friction_is_identified_from_a_curve_and_bounds_it(write, tmp_path):
+    along = np.linspace(0.11, 0.18, 8)
+    curve = frequency_response(two_masses(0.25, 2.0), along, HarmonicBalance(5, samples=256))
+    rows = [f"{f * 1e3!r},{x!r}" for f, x in zip(along.tolist(), curve.amplitude("m2").tolist(), strict=True)]
+    (tmp_path / "curve.csv").write_text("\n".join(["f,x", *rows]))
+    one = PARAMETERS.replace('preload = { lower = "0 N", upper = "5 N", start = "2 N" }\n', "").replace(
+        'k = "1 N/m"', 'k = "1 N/m"\npreload = "2 N"'
+    )
+    data = '[data]\nfile = "curve.csv"\nfrequency = "f"\nunits = { f = "mHz" }\ncolumns = { "m2 peak" = "x" }\n'
+    _, outcome = run_study(load(write(one + MODEL + data + "[identify]\nstarts = 1\n")), tmp_path / "fit")
+    assert outcome.best["values"]["mu"] == pytest.approx(0.25, rel=1e-6)
+    task = '[propagate]\nfrequencies = [0.14]\nchannels = ["m2 peak"]\nintervals.mu = [0.2, 0.3]\nmethod = "vertex"\n'
+    _, outcome = run_study(load(write(one + MODEL + task)), tmp_path / "bounds")
+    ends = [
+        frequency_response(two_masses(mu), np.array([0.14]), HarmonicBalance(5, samples=256)).amplitude("m2")[0]
+        for mu in (0.2, 0.3)
+    ]
+    assert [outcome.result.lower[0, 0], outcome.result.upper[0, 0]] == pytest.approx(sorted(ends))
+
+
+def refused(write, text) -> str:
+    """The one sentence about what is wrong, from reading or from the plan."""
+    with pytest.raises(DalembertError) as error:
+        plan(load(write(text)))
+    return str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        (
+            ('"mu"\npreload', '"mu - 1"\npreload'),
+            "[[model.contact]] 'slider': the coefficient of friction is -0.7; expected a number that is not negative",
+        ),
+        (
+            ('first = "m2"\nfriction', 'first = "m3"\nfriction'),
+            "contact 'slider': unknown degree of freedom 'm3.x'; did you mean 'm2.x' or 'm1.x'?",
+        ),
+        (('dof = "m1"', 'dof = "m"'), "a force: unknown degree of freedom 'm'; known: m1.x, m2.x"),
+        (
+            ('second = "m2"\nstiffness', 'second = "m4"\nstiffness'),
+            "[[model.spring]]: spring 2: unknown degree of freedom 'm4'; known: m1.x, m2.x",
+        ),
+        (
+            ("samples = 256", "samples = 8"),
+            "study.toml: [harmonic_balance]: HarmonicBalance: 8 samples of a period cannot tell 5 harmonics apart; "
+            "expected at least 11",
+        ),
+        (
+            ('name = "m2"\nmass = "1000 g"', 'name = "m1"\nmass = 2.0'),
+            "study.toml: [model]: 2 masses are called 'm1'; expected different names",
+        ),
+        (
+            ("[harmonic_balance]", "[solver]\nstep = 1e-3\n[harmonic_balance]"),
+            "study.toml: [solver] integrates mechanisms; a structure over frequency takes [harmonic_balance], or "
+            "neither",
+        ),
+        (
+            (CURVE, "[simulate]\nend = 1.0\n"),
+            "study.toml: [simulate] needs a mechanism, and there is a structure; its task is [frequency_response]",
+        ),
+        (
+            (CURVE, '[propagate]\ntimes = [1.0]\nchannels = ["m1 peak"]\n'),
+            "study.toml: [propagate]: the key 'frequencies' is missing; a structure needs it\n"
+            "study.toml: [propagate], times: the response of a structure lies along frequencies; leave the key out",
+        ),
+        (
+            ("frequencies = {", 'continuation = "arc-length"\nfrequencies = {'),
+            "study.toml: [frequency_response]: continuation: a path by arc length finds its own frequencies; give "
+            "between = [begin, end]",
+        ),
+        (
+            ("start = 0.12", "start = 0"),
+            "study.toml: [frequency_response]: the frequency 0 Hz was given; expected positive ones",
+        ),
+        (
+            ("frequencies = {", "between = [0.1, 0.1]\nfrequencies = {"),
+            "study.toml: [frequency_response]: frequencies and between are both given; expected one of them\n"
+            "study.toml: [frequency_response]: between: 0.1 Hz was given twice; expected two different frequencies",
+        ),
+        (
+            ("frequencies = {", 'sweep = { parameter = "preloud", values = [1.0] }\nfrequencies = {'),
+            "study.toml: [frequency_response], sweep: unknown parameter 'preloud'; did you mean 'preload'?",
+        ),
+        (
+            ("frequencies = {", 'dof = "m3"\nfrequencies = {'),
+            "[frequency_response], dof: unknown observed degree of freedom 'm3'; known: m1.x, m2.x",
+        ),
+        (
+            ("frequencies = {", 'amplitude = "harmonic 9"\nfrequencies = {'),
+            "the kind of amplitude is 'harmonic 9'; expected 'peak', 'rms', or 'harmonic K' with K among the harmonics "
+            "kept: 0, 1, 2, 3, 4, 5",
+        ),
+        (
+            ('"1.5 N/m" }', '"1.5 N/m" }\n[[model.body]]\nkind = "PointMass"\nname = "b"\nmass = 1.0'),
+            "study.toml: [model]: body and mass are given; expected either the [[model.body]] tables of a mechanism, "
+            "or the [[model.mass]] tables or the [model.structure] of a structure, or function = 'model.py:name', or "
+            "forward = 'model.py:name'",
+        ),
+        (
+            ("[model]\n", '[model]\ngravity = [0, -9.81]\n'),
+            "study.toml: [model]: joint, load, gravity and driving belong to a model of [[model.body]] tables; this is "
+            "a structure",
+        ),
+        (
+            ("[model]\n", "[model]\n[model.structure]\nfixed = ['m1']\n"),
+            "study.toml: [model.structure]: fixed: there are no matrices here for it; give file, files or function",
+        ),
+        (
+            ("[model]\n", "[model]\n[model.structure]\nfile = 'm.mtx'\n"),
+            "study.toml: [[model.mass]] and the matrices of [model.structure] are both given; expected one of "
+            "them",
+        ),
+    ],
+)  # fmt: skip
+def test_what_does_not_fit_together_is_told(write, change, sentence):
+    assert WHOLE.count(change[0]) == 1
+    assert refused(write, WHOLE.replace(*change)) == sentence
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        (
+            ('"m.mtx"', '"small.mtx"'),
+            "[model.structure]: Structure: the stiffness matrix has shape (3, 3); expected (2, 2), a row for each of "
+            "the 2 degrees of freedom",
+        ),
+        (
+            ('files = { mass = "m.mtx", stiffness', "files = { stifness"),
+            "study.toml: [model.structure]: files: unknown matrix 'stifness'; did you mean 'stiffness'?\n"
+            "study.toml: [model.structure]: files: expected one for the mass and one for the stiffness",
+        ),
+        (
+            ('mass = "m.mtx"', 'mass = "n.mtx"'),
+            "study.toml: [model.structure.files], mass: 'n.mtx' was given, but there is no file {folder}/n.mtx",
+        ),
+        (
+            (
+                'files = { mass = "m.mtx", stiffness = "k.mtx" }',
+                'function = "made.py:system"\narguments = { mu = 0.1, stiffness = 1.0 }',
+            ),
+            "[model.structure]: made.py:system returned a VibrationSystem; expected a Structure",
+        ),
+    ],
+)
+def test_what_is_wrong_with_matrices_is_told(write, tmp_path, change, sentence):
+    assert IMPORTED.count(change[0]) == 1
+    assert refused(write, IMPORTED.replace(*change)) == sentence.format(folder=tmp_path)
+
+
+def test_a_mechanism_is_told_apart_from_a_structure(write):
+    text = "[model]\nfunction = 'made.py:system'\narguments = { stiffness = 1.0, mu = 0.0 }\n"
+    with pytest.raises(
+        InputError,
+        match=says(
+            "system returned a VibrationSystem; expected a System; a function that returns a ForwardModel is named by "
+            "forward = in [model], and one that returns a VibrationSystem needs the table [harmonic_balance]"
+        ),
+    ):
+        plan(load(write(text + "[solver]\nstep = 1e-3\n[simulate]\nend = 1.0\n")))
+    with pytest.raises(
+        InputError,
+        match=says(
+            "structure returned a Structure; expected a VibrationSystem; the study is of a structure over frequency, "
+            "since it has [harmonic_balance] or a task of structures"
+        ),
+    ):
+        plan(load(write(text.replace("system", "structure").replace(", mu = 0.0", "") + CURVE)))

@@ -1,4 +1,4 @@
-"""The command line: ``dalembert run | check | list | report | schema``.
+"""The command line: ``dalembert run | resume | check | list | report | schema``.
 
 Exit codes: 0 done, 1 the solver could not, 2 the input is wrong, 130 stopped by the user.
 """
@@ -15,6 +15,7 @@ from dalembert import __version__
 
 if TYPE_CHECKING:
     from dalembert.study.folder import RunFolder
+    from dalembert.study.tasks.task import Outcome
 
 app = typer.Typer(
     name="dalembert",
@@ -27,6 +28,9 @@ app = typer.Typer(
 DONE, SOLVER_COULD_NOT, INPUT_WRONG, STOPPED = 0, 1, 2, 130
 
 StudyFile = Annotated[Path, typer.Argument(metavar="STUDY.toml", help="The study file.", show_default=False)]
+Run = Annotated[
+    Path, typer.Argument(metavar="RUN", help="Folder of the run, or its name in runs/.", show_default=False)
+]
 
 
 def main() -> None:
@@ -70,14 +74,26 @@ def run(
         read = load(study)
         if seed is not None:
             read = read.with_seed(seed)
-        console = Console(stderr=True, soft_wrap=True)
-        watch = Watch(console, unknowns(read))
-        with watch:
+        with Watch(Console(stderr=True, soft_wrap=True), unknowns(read)) as watch:
             folder, outcome = run_study(read, out, force=force, listener=watch)
-        typer.echo(outcome.summary)
-        typer.echo(f"report: {folder.report}")
-        if not outcome.success:
-            raise typer.Exit(SOLVER_COULD_NOT)
+        _ended(folder, outcome)
+
+
+@app.command()
+def resume(run: Run) -> None:
+    """Go on with a run that was killed or stopped: it ends with the same bits as one that was not."""
+    with _exit_codes():
+        from rich.console import Console
+
+        from dalembert.study import resume_run
+        from dalembert.study.progress import Watch
+        from dalembert.study.runner import unknowns
+
+        _stop_on_terminate()
+        folder = _folder(run)
+        with Watch(Console(stderr=True, soft_wrap=True), unknowns(folder.kept())) as watch:
+            outcome = resume_run(folder, listener=watch)
+        _ended(folder, outcome)
 
 
 @app.command()
@@ -112,9 +128,7 @@ def list_runs(
 
 
 @app.command()
-def report(
-    run: Annotated[Path, typer.Argument(metavar="RUN", help="Folder of the run, or its name in runs/.")],
-) -> None:
+def report(run: Run) -> None:
     """Make the report of a run anew, from its result."""
     with _exit_codes():
         from dalembert.study import report_run
@@ -133,6 +147,14 @@ def schema() -> None:
         typer.echo(json.dumps(json_schema(), indent=2, ensure_ascii=False))
 
 
+def _ended(folder: "RunFolder", outcome: "Outcome") -> None:
+    """Say what a run found, and where its report is."""
+    typer.echo(outcome.summary)
+    typer.echo(f"report: {folder.report}")
+    if not outcome.success:
+        raise typer.Exit(SOLVER_COULD_NOT)
+
+
 def _folder(run: Path) -> "RunFolder":
     from dalembert.study.folder import RunFolder
 
@@ -143,15 +165,15 @@ def _folder(run: Path) -> "RunFolder":
 @contextmanager
 def _exit_codes() -> Iterator[None]:
     """Errors as sentences and exit codes, never as a traceback."""
-    from dalembert.errors import DalembertError, SolveError
+    from dalembert.errors import DalembertError, SolveError, StorageError
 
     try:
         yield
     except DalembertError as error:
-        code = SOLVER_COULD_NOT if isinstance(error, SolveError) else INPUT_WRONG
+        code = SOLVER_COULD_NOT if isinstance(error, SolveError | StorageError) else INPUT_WRONG
         _complain(str(error), code)
-    except KeyboardInterrupt:
-        _complain("stopped; what the run wrote so far is in its folder", STOPPED)
+    except KeyboardInterrupt as stop:
+        _complain(f"stopped; go on by: dalembert resume {stop.args[0]}" if stop.args else "stopped", STOPPED)
     except OSError as error:
         _complain(f"{error.strerror or error}: {error.filename or 'a file of the run'}", SOLVER_COULD_NOT)
 

@@ -24,6 +24,22 @@ class DataError(DalembertError):
     """Measured data with a defect: a NaN, a missing column, a time that goes backwards."""
 
 
+class StorageError(DalembertError):
+    """A file of a run that could not be written: no room, or no right to."""
+
+
+def unwritable(path: object, reason: object) -> StorageError:
+    """Error about a file of a run that could not be written, from what the system says.
+
+    >>> str(unwritable("runs/a/result.nc", "No space left on device")).partition(";")[0]
+    'runs/a/result.nc cannot be written: No space left on device'
+    """
+    return StorageError(
+        f"{path} cannot be written: {reason}; what was written before is whole: see that the disk has room and that "
+        "the folder may be written to, and go on with the run by 'dalembert resume'"
+    )
+
+
 def unknown(what: str, given: str, known: Iterable[str], where: str = "") -> str:
     """Sentence for an unknown name, with the closest known ones.
 

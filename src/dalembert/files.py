@@ -1,5 +1,6 @@
 """Files that are there whole or not at all, whatever happens while they are written."""
 
+import errno
 import os
 import tempfile
 from collections.abc import Iterator
@@ -7,10 +8,13 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from dalembert.errors import DataError, InputError
+from dalembert.errors import DataError, InputError, unwritable
 
 if TYPE_CHECKING:
     from xarray import Dataset
+
+_STORAGE = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EACCES, errno.EPERM)
+"""What the system says of a disk without room, and of a folder that may not be written to."""
 
 
 @contextmanager
@@ -23,6 +27,8 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
     ------
     InputError
         If there is no folder to write to.
+    StorageError
+        If there is no room, or no right to write.
 
     Examples
     --------
@@ -35,7 +41,10 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
     path = Path(path)
     if not path.parent.is_dir():
         raise InputError(f"{path} cannot be written: there is no folder {path.parent}; make it, or choose another path")
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem}-", suffix=path.suffix)
+    try:
+        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem}-", suffix=path.suffix)
+    except OSError as error:
+        raise unwritable(path, error.strerror) from None
     os.close(handle)
     temporary = Path(name)
     try:
@@ -43,9 +52,11 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
         temporary.chmod(0o644)
         _sync(temporary)
         temporary.replace(path)
-    except BaseException:
+    except BaseException as error:
         with suppress(OSError):
             temporary.unlink()
+        if isinstance(error, OSError) and error.errno in _STORAGE:
+            raise unwritable(path, error.strerror) from None
         raise
     _sync(path.parent)
 

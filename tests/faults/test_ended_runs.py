@@ -102,7 +102,7 @@ def test_a_stopped_run_says_so(start, folder, number):
     process.send_signal(number)
     _, errors = process.communicate(timeout=120)
     assert process.returncode == 130
-    assert errors.splitlines()[-1] == "stopped; what the run wrote so far is in its folder"
+    assert errors.splitlines()[-1] == "stopped; go on by: dalembert resume run"
     assert "Traceback" not in errors
     assert folder.state()["state"] == "interrupted"
     assert list(read_events(folder.events))[-1]["state"] == "interrupted"
@@ -125,11 +125,19 @@ def test_a_full_disk_gives_a_sentence(start, folder):
     _, errors = process.communicate(timeout=120)
     assert process.returncode == 1
     assert "Traceback" not in errors
-    assert errors.splitlines()[-1].startswith("File too large")
+    assert errors.splitlines()[-1] == (
+        "run/report.html cannot be written: File too large; what was written before is whole: see that the disk has "
+        "room and that the folder may be written to, and go on with the run by 'dalembert resume'"
+    )
     assert folder.state()["state"] == "failed"
     assert folder.result.stat().st_size > 0
     assert not folder.report.exists()
     assert not [path.name for path in folder.path.iterdir() if path.name.startswith(".")]
+    command = [COMMAND, "resume", "run"]
+    resumed = subprocess.run(command, cwd=folder.path.parent, capture_output=True, text=True, check=True)
+    assert "report: run/report.html" in resumed.stdout
+    assert folder.state()["state"] == "finished"
+    assert not folder.checkpoint.exists()
 
 
 def test_killed_at_any_moment_the_state_is_whole(start, folder):

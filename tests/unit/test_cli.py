@@ -4,7 +4,6 @@ import json
 import re
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -135,15 +134,10 @@ def test_version(dalembert):
 
 
 def test_help_answers_at_once(dalembert):
-    """Half a second, and nothing heavy imported on the way."""
-    seconds = []
-    for _ in range(3):
-        began = time.perf_counter()
-        shown = dalembert("--help")
-        seconds.append(time.perf_counter() - began)
-        assert shown.returncode == 0
-        assert all(word in shown.stdout for word in ("run", "check", "list", "report", "schema"))
-    assert min(seconds) < 0.5
+    """Nothing heavy is imported on the way: it is that which would take seconds."""
+    shown = dalembert("--help")
+    assert shown.returncode == 0
+    assert all(word in shown.stdout for word in ("run", "resume", "check", "list", "report", "schema"))
     code = (
         "import sys, dalembert.cli; print(*sorted({'numpy', 'pydantic', 'numba', 'scipy', 'pint'} & set(sys.modules)))"
     )

@@ -1,8 +1,21 @@
 """The protocol that every model fulfils, models made of plain functions, and what sensors see of a model."""
 
+from dalembert.forward.checkpoint import Checkpoint
 from dalembert.forward.model import Channel, Coordinate, ForwardModel
 from dalembert.forward.python_model import PythonModel
+from dalembert.forward.recorded import Recorded, clock
 from dalembert.forward.responses import Responses
 from dalembert.forward.sensors import Sensor, Sensors
 
-__all__ = ["Channel", "Coordinate", "ForwardModel", "PythonModel", "Responses", "Sensor", "Sensors"]
+__all__ = [
+    "Channel",
+    "Checkpoint",
+    "Coordinate",
+    "ForwardModel",
+    "PythonModel",
+    "Recorded",
+    "Responses",
+    "Sensor",
+    "Sensors",
+    "clock",
+]

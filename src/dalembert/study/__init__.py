@@ -2,8 +2,8 @@
 
 from dalembert.study.folder import RunFolder
 from dalembert.study.loader import load
-from dalembert.study.runner import plan, report_run, run_study
+from dalembert.study.runner import plan, report_run, resume_run, run_study
 from dalembert.study.schema import json_schema
 from dalembert.study.study import Study
 
-__all__ = ["RunFolder", "Study", "json_schema", "load", "plan", "report_run", "run_study"]
+__all__ = ["RunFolder", "Study", "json_schema", "load", "plan", "report_run", "resume_run", "run_study"]

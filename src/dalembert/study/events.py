@@ -1,4 +1,4 @@
-"""The stream of events of a run: one JSON line each, the same for progress bar, list and resume."""
+"""The stream of events of a run: one JSON line each, the same for progress bar, list, resume and studio."""
 
 import json
 import math
@@ -12,8 +12,13 @@ from typing import Any, Self
 
 import numpy as np
 
+from dalembert.errors import unwritable
+
 Event = dict[str, Any]
 Emit = Callable[..., None]
+
+OF_THE_RUN = "run-"
+"""How the kinds of events begin that tell of the run itself; the others tell of what it does."""
 
 
 @dataclass
@@ -26,31 +31,49 @@ class EventLog:
         ``events.jsonl``; a last line that a kill cut short is removed when the log is opened again.
     listeners : tuple of callables
         Each is called with every event.
+
+    Notes
+    -----
+    A run that is resumed does again what it did, in the same order: as many events as the log has of what a run does
+    are handed to listeners, and not written a second time.
     """
 
     path: Path
     listeners: tuple[Callable[[Event], None], ...] = ()
     number: int = field(default=0, init=False)
+    known: int = field(default=0, init=False)
 
     def __enter__(self) -> Self:
         self.number = _repair(self.path)
-        self._file = self.path.open("a", encoding="utf-8", newline="\n")
+        self.known = sum(not event["event"].startswith(OF_THE_RUN) for event in read_events(self.path))
+        self._file = os.open(self.path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o644)
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._file.close()
+        os.close(self._file)
 
     def emit(self, kind: str, **details: Any) -> None:
         """Write one event; it is in the file when this returns."""
         event = {"n": self.number, "at": datetime.now(UTC).isoformat(timespec="milliseconds"), "event": kind}
         event |= {key: _plain(value) for key, value in details.items()}
-        self.number += 1
-        self._file.write(json.dumps(event, ensure_ascii=False, allow_nan=False) + "\n")
-        self._file.flush()
+        if self.known and not kind.startswith(OF_THE_RUN):
+            self.known -= 1
+        else:
+            self._write(event)
         for listener in self.listeners:
             listener(event)
+
+    def _write(self, event: Event) -> None:
+        self.number += 1
+        line = (json.dumps(event, ensure_ascii=False, allow_nan=False) + "\n").encode()
+        try:
+            written = os.write(self._file, line)
+        except OSError as error:
+            raise unwritable(self.path, error.strerror) from None
+        if written < len(line):
+            raise unwritable(self.path, "no room for a whole line")
 
 
 def teller(emit: Emit, as_record: Callable[[Any], dict[str, Any]]) -> Callable[[Any], None]:

@@ -21,6 +21,7 @@ FAILED = "failed"  # the solver could not
 INPUT = "input"  # what was given cannot run
 INTERRUPTED = "interrupted"  # stopped by the user
 KILLED = "killed"  # never written: the process of a running run is gone
+RESUMABLE = (KILLED, INTERRUPTED, FAILED)
 
 
 @dataclass(frozen=True)
@@ -59,9 +60,21 @@ class RunFolder:
         return self.path / "report.html"
 
     @property
+    def checkpoint(self) -> Path:
+        """What the model has answered so far, while the run is not finished."""
+        return self.path / "checkpoint"
+
+    @property
     def is_run(self) -> bool:
         """Whether this is a run's folder."""
         return self._state.is_file()
+
+    @property
+    def is_remnant(self) -> bool:
+        """Whether a run was killed here before it began: it left nothing but copies of what was given."""
+        given = {"lock", "study.toml", "settings.json", "inputs", "inputs.json"}
+        names = {entry.name for entry in self.path.iterdir() if not entry.name.startswith(".")}
+        return "lock" in names <= given
 
     @property
     def _state(self) -> Path:
@@ -126,6 +139,20 @@ class RunFolder:
         finally:
             lock.release()
 
+    def clear(self) -> None:
+        """Remove all that a run left."""
+        with self.locked():
+            for entry in self.path.iterdir():
+                if entry.is_dir():
+                    shutil.rmtree(entry)
+                elif entry.name != "lock":
+                    entry.unlink()
+
+    def tidy(self) -> None:
+        """Remove files that were being written when a process was killed."""
+        for entry in self.path.glob(".*-*"):
+            entry.unlink()
+
     def _is_locked(self) -> bool:
         from filelock import FileLock, Timeout
 
@@ -171,19 +198,19 @@ def _empty(folder: RunFolder, force: bool) -> None:
         raise InputError(f"{folder.path} is a file; expected a folder for the run")
     if not any(folder.path.iterdir()):
         return
+    if folder.is_remnant:
+        folder.clear()
+        return
     if not folder.is_run:
         raise InputError(f"{folder.path} holds files that are no run's; choose an empty or new folder with --out")
     state = folder.state()["state"]
     if not force:
+        resume = f"go on with it by 'dalembert resume {folder.path}', " if state in RESUMABLE else ""
         raise InputError(
-            f"{folder.path} holds a run ({state}); give --force to replace it, or choose another folder with --out"
+            f"{folder.path} holds a run ({state}); {resume}give --force to replace it, or choose another folder with "
+            "--out"
         )
-    with folder.locked():
-        for entry in folder.path.iterdir():
-            if entry.is_dir():
-                shutil.rmtree(entry)
-            elif entry.name != "lock":
-                entry.unlink()
+    folder.clear()
 
 
 def _write_json(path: Path, content: Any) -> None:

@@ -2,12 +2,15 @@
 
 import traceback
 from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 from time import perf_counter
 
 from dalembert import __version__
-from dalembert.errors import DalembertError, InputError, SolveError
+from dalembert.errors import DalembertError, InputError, SolveError, StorageError
 from dalembert.files import write_text
+from dalembert.forward import Checkpoint
 from dalembert.study.duration import duration
 from dalembert.study.events import Event, EventLog
 from dalembert.study.folder import FAILED, FINISHED, INPUT, INTERRUPTED, RUNNING, RunFolder, new_folder
@@ -15,6 +18,10 @@ from dalembert.study.study import Study
 from dalembert.study.tasks import TASKS, Outcome
 
 Listener = Callable[[Event], None]
+
+
+class Stopped(KeyboardInterrupt):
+    """The user stopped a run; its argument is the run's folder."""
 
 
 def run_study(
@@ -46,27 +53,74 @@ def run_study(
         What stopped the run; the folder's state says the same.
     """
     folder = new_folder(study.name, out, force=force)
-    about = {"study": study.name, "title": study.title, "task": study.task, "version": __version__}
-    with folder.locked(), EventLog(folder.events, (listener,) if listener else ()) as log:
+    with folder.locked():
         folder.keep(study)
+        return folder, _executed(study, folder, "run-started", listener)
+
+
+def resume_run(folder: RunFolder, *, listener: Listener | None = None) -> Outcome:
+    """Go on with a run that was killed, stopped, or could not go on; it ends as if it had not been.
+
+    The study does again what it did; whatever its model answered before comes from the checkpoint.
+
+    Parameters
+    ----------
+    folder : RunFolder
+    listener : callable, optional
+        Called with each event, those of before included.
+
+    Raises
+    ------
+    InputError
+        If the run has finished, is going on, or was begun with another version of the package.
+    DalembertError
+        What stopped the run; the folder's state says the same.
+    """
+    state = folder.state()
+    if state["state"] == RUNNING:
+        raise InputError(f"{folder.path}: the run is going on; wait for it, or stop it")
+    if state["state"] == FINISHED:
+        raise InputError(
+            f"{folder.path}: the run has finished, so there is nothing to resume; make its report anew by "
+            f"'dalembert report {folder.path}'"
+        )
+    if state.get("version") != __version__:
+        raise InputError(
+            f"{folder.path}: the run was begun with dalembert {state.get('version')}, and this is {__version__}: what "
+            "both compute may differ; run the study again, or resume it with the version that began it"
+        )
+    with folder.locked():
+        folder.tidy()
+        return _executed(folder.kept(), folder, "run-resumed", listener)
+
+
+def _executed(study: Study, folder: RunFolder, beginning: str, listener: Listener | None) -> Outcome:
+    """Do what a study says in a folder that is held, and say so in its state and its events."""
+    about = {"study": study.name, "title": study.title, "task": study.task, "version": __version__}
+    with EventLog(folder.events, (listener,) if listener else ()) as log:
         folder.set_state(RUNNING, **about)
         began = perf_counter()
         try:
-            log.emit("run-started", **about)
-            outcome = TASKS[study.task].run(study, log.emit)
+            log.emit(beginning, **about)
+            with Checkpoint(folder.checkpoint) as checkpoint:
+                outcome = TASKS[study.task].run(replace(study, checkpoint=checkpoint), log.emit)
             outcome.save(folder.result)
             outcome.report(folder.report)
         except BaseException as error:
             state, message = _ending(error)
-            if state == FAILED and not isinstance(error, DalembertError):
-                write_text(folder.path / "error.txt", traceback.format_exc())
-            log.emit("run-ended", state=state, message=message)
-            folder.set_state(state, message=message, **about)
+            with suppress(StorageError):  # the error itself says it, and a run without a state was killed
+                if state == FAILED and not isinstance(error, DalembertError):
+                    write_text(folder.path / "error.txt", traceback.format_exc())
+                log.emit("run-ended", state=state, message=message)
+                folder.set_state(state, message=message, **about)
+            if isinstance(error, KeyboardInterrupt):
+                raise Stopped(folder.path) from None
             raise
         state = FINISHED if outcome.success else FAILED
         log.emit("run-ended", state=state, message=outcome.status, seconds=round(perf_counter() - began, 3))
         folder.set_state(state, message=outcome.status, best=outcome.best, **about)
-    return folder, outcome
+        folder.checkpoint.unlink(missing_ok=True)
+    return outcome
 
 
 def plan(study: Study) -> str:
@@ -110,5 +164,5 @@ def _ending(error: BaseException) -> tuple[str, str]:
     if isinstance(error, KeyboardInterrupt):
         return INTERRUPTED, "stopped by the user"
     if isinstance(error, DalembertError):
-        return (FAILED if isinstance(error, SolveError) else INPUT), str(error)
+        return (FAILED if isinstance(error, SolveError | StorageError) else INPUT), str(error)
     return FAILED, f"{type(error).__name__}: {error}"

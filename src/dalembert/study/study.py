@@ -1,7 +1,8 @@
 """A study that was read and checked: its model, data and task, ready to run."""
 
+import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -9,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dalembert.errors import InputError
-from dalembert.forward import ForwardModel
+from dalembert.forward import Checkpoint, ForwardModel, Recorded
 from dalembert.parameters import Parameters
 from dalembert.study.builder import FunctionBuilder, SystemBuilder
 from dalembert.study.experiments import measured_channels
@@ -59,6 +60,8 @@ class Study:
         The other files that it names.
     name : str
         Name of its run folder.
+    checkpoint : Checkpoint, optional
+        Where the answers of its models are kept.
     """
 
     path: Path
@@ -66,6 +69,7 @@ class Study:
     file: StudyFile
     files: Mapping[str, Path]
     name: str
+    checkpoint: Checkpoint | None = field(default=None, repr=False, compare=False)
 
     @property
     def title(self) -> str:
@@ -133,6 +137,13 @@ class Study:
 
     def forward(self, channels: Sequence[str], samples: np.ndarray) -> ForwardModel:
         """The model between parameters and channels, at samples of its coordinate."""
+        model = self._forward(channels, samples)
+        if self.checkpoint is None:
+            return model
+        varied = _plain({"constants": self.file.constants, "arguments": self.file.model.arguments})
+        return Recorded(model, self.checkpoint, json.dumps(varied, sort_keys=True))
+
+    def _forward(self, channels: Sequence[str], samples: np.ndarray) -> ForwardModel:
         if self.has_system:
             from dalembert.multibody import TimeResponse
 

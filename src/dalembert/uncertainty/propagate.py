@@ -1,10 +1,9 @@
 """Bounds of a response over a box of parameters."""
 
 from collections.abc import Mapping
-from time import perf_counter
 
 from dalembert.errors import InputError, unknown
-from dalembert.forward import ForwardModel
+from dalembert.forward import ForwardModel, clock
 from dalembert.forward.provenance import provenance
 from dalembert.intervals import Box, Interval
 from dalembert.uncertainty.events import Began, Ended, OnEvent
@@ -67,7 +66,7 @@ def propagate(
     runs = Runs(model, box, label(chosen), on_event)
     runs.most = chosen.most(runs)
     runs.tell(Began(runs.method, runs.most))
-    began = perf_counter()
+    began = clock(model)
     found = chosen.bound(runs, seed)
     result = Propagation(
         coordinate=model.coordinate,
@@ -85,7 +84,7 @@ def propagate(
         failures=tuple(runs.failures),
         success=found.success,
         status=_status(found, runs),
-        seconds=perf_counter() - began,
+        seconds=clock(model) - began,
         provenance=provenance(
             model, chosen, seed=seed, intervals={name: [i.lower, i.upper] for name, i in box.items()}
         ),

@@ -36,7 +36,8 @@ def test_a_line_cut_short_is_left_out_and_then_replaced(tmp_path):
         file.write('{"n": 2, "event": "c')
     assert [event["event"] for event in read_events(path)] == ["a", "b"]
     with EventLog(path) as log:
-        log.emit("d")
+        for kind in "abd":
+            log.emit(kind)
     assert [(event["n"], event["event"]) for event in read_events(path)] == [(0, "a"), (1, "b"), (2, "d")]
 
 
@@ -52,3 +53,18 @@ def test_the_last_progress_is_found_at_the_end_of_a_long_file(tmp_path):
     assert event is not None
     assert event["best"] == 1.0 / 3000
     assert last_progress(path, tail=300) is None
+
+
+def test_a_resumed_run_tells_again_what_it_does_and_writes_only_what_is_new(tmp_path):
+    path, heard = tmp_path / "events.jsonl", []
+    with EventLog(path) as log:
+        for kind in ("run-started", "iteration", "iteration"):
+            log.emit(kind)
+    with EventLog(path, (lambda event: heard.append(event["event"]),)) as log:
+        for kind in ("run-resumed", "iteration", "iteration", "iteration", "run-ended"):
+            log.emit(kind)
+    assert heard == ["run-resumed", "iteration", "iteration", "iteration", "run-ended"]
+    written = [(event["n"], event["event"]) for event in read_events(path)]
+    assert written == list(
+        enumerate(["run-started", "iteration", "iteration", "run-resumed", "iteration", "run-ended"])
+    )

@@ -1,14 +1,13 @@
 """Intervals of parameters from bands of a response."""
 
 from collections.abc import Iterable
-from time import perf_counter
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from dalembert.data import Bands
 from dalembert.errors import InputError, unknown
-from dalembert.forward import ForwardModel
+from dalembert.forward import ForwardModel, clock
 from dalembert.forward.provenance import provenance
 from dalembert.intervals import Box
 from dalembert.inverse.bands.band_fit import BandFit
@@ -89,7 +88,7 @@ def identify_bands(
     >>> print(identify_bands(decay, bands).box)
     rate [0.8, 1.2]
     """
-    began = perf_counter()
+    began = clock(model)
     chosen = _method(method)
     unknowns = unknowns_of(model.parameters, intervals)
     journal = Journal(len(bands.coordinate.values), on_event)
@@ -125,7 +124,7 @@ def identify_bands(
         status=status(problem, found),
         method=chosen.name,
         simulations=journal.simulations,
-        seconds=perf_counter() - began,
+        seconds=clock(model) - began,
         provenance=provenance(
             model,
             chosen,

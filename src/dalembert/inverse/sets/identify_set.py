@@ -1,14 +1,13 @@
 """All parameters that are consistent with measurements of bounded error."""
 
 from collections.abc import Mapping
-from time import perf_counter
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from dalembert.data import Measurements
 from dalembert.errors import InputError, unknown
-from dalembert.forward import ForwardModel
+from dalembert.forward import ForwardModel, clock
 from dalembert.forward.provenance import provenance
 from dalembert.intervals import Box
 from dalembert.inverse.events import Finished, OnEvent
@@ -93,7 +92,7 @@ def identify_set(
     >>> print(found.outer)
     rate [0.946996, 1.05604]
     """
-    began = perf_counter()
+    began = clock(model)
     columns = columns_of(model, data)
     check_finite(data)
     check_samples(model, data)
@@ -127,7 +126,7 @@ def identify_set(
         surrogate_error=surrogate.error.reshape(errors.shape),
         resolution=resolution,
         runs=journal.simulations,
-        seconds=perf_counter() - began,
+        seconds=clock(model) - began,
         success=paving.finished and believed,
         status=status(
             data,

@@ -1,0 +1,144 @@
+"""A model whose answers are kept, and given again without computing when the same is asked."""
+
+import hashlib
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from time import perf_counter
+
+import numpy as np
+
+from dalembert.errors import SolveError
+from dalembert.forward.checkpoint import Checkpoint
+from dalembert.forward.model import Channel, Coordinate, ForwardModel
+from dalembert.forward.responses import Responses
+from dalembert.parameters import Parameters
+
+TOGETHER = 64
+"""Vectors of a batch that are computed between two records."""
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """A forward model that answers from a checkpoint what it holds, and adds to it what it does not.
+
+    Whatever method asks, and however long it has run: begun anew after it was killed, it is told the same answers, bit
+    for bit, and so takes the same way, in little time until it comes to what was not computed yet.
+
+    Parameters
+    ----------
+    model : ForwardModel
+        Its answer to a vector must not depend on the others of a batch.
+    checkpoint : Checkpoint
+    label : str
+        Tells this model from others in the same checkpoint, beside its fingerprint.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> from dalembert.forward import PythonModel
+    >>> asked = []
+    >>> def decay(rate):
+    ...     asked.append(rate)
+    ...     return np.exp(-rate * np.linspace(0, 1, 3))
+    >>> model = PythonModel(decay, {"rate": (0.1, 2.0)}, ["x"], np.linspace(0, 1, 3))
+    >>> with Checkpoint(Path(tempfile.mkdtemp()) / "checkpoint") as checkpoint:
+    ...     recorded = Recorded(model, checkpoint)
+    ...     first, second = (recorded.evaluate(np.array([[1.0], [1.5]])).values for _ in range(2))
+    >>> len(asked), bool((first == second).all())
+    (2, True)
+    """
+
+    model: ForwardModel
+    checkpoint: Checkpoint
+    label: str = ""
+
+    @property
+    def parameters(self) -> Parameters:
+        return self.model.parameters
+
+    @property
+    def channels(self) -> tuple[Channel, ...]:
+        return self.model.channels
+
+    @property
+    def coordinate(self) -> Coordinate:
+        return self.model.coordinate
+
+    @property
+    def fingerprint(self) -> str:
+        return self.model.fingerprint
+
+    def evaluate(self, vectors: np.ndarray) -> Responses:
+        """Responses of a batch: those that are known, and then the others, kept as they come."""
+        vectors = np.atleast_2d(np.asarray(vectors, dtype=float))
+        values = np.full((len(vectors), len(self.coordinate.values), len(self.channels)), np.nan)
+        failures: list[str | None] = [None] * len(vectors)
+        keys, missing = [self._key("evaluate", vector) for vector in vectors], []
+        for row, key in enumerate(keys):
+            known = self.checkpoint.recall(key)
+            if known is None:
+                missing.append(row)
+            else:
+                values[row], failures[row] = known[0], _text(known[1])
+        for begin in range(0, len(missing), TOGETHER):
+            rows, began = missing[begin : begin + TOGETHER], perf_counter()
+            found = self.model.evaluate(vectors[rows])
+            seconds = (perf_counter() - began) / len(rows)
+            for row, own, failure in zip(rows, found.values, found.failures, strict=True):
+                self.checkpoint.keep(keys[row], (own, _bytes(failure)), seconds)
+                values[row], failures[row] = own, failure
+        return Responses(values, tuple(failures))
+
+    def jacobian(self, vector: np.ndarray) -> np.ndarray:
+        """Derivative of the response, (samples, channels, parameters)."""
+        return self._once("jacobian", vector, lambda: (self.model.jacobian(vector),))[0]
+
+    def linearise(self, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Response (samples, channels) and its jacobian (samples, channels, parameters)."""
+        values, jacobian = self._once("linearise", vector, lambda: self.model.linearise(vector))
+        return values, jacobian
+
+    def first(self, samples: int) -> "Recorded":
+        """The same model, cut to its first ``samples`` samples."""
+        return Recorded(self.model.first(samples), self.checkpoint, self.label)
+
+    def _once(self, what: str, vector: np.ndarray, compute: Callable[[], Sequence[np.ndarray]]) -> Sequence[np.ndarray]:
+        """Arrays that are known or computed; a solver that could not go on says so again."""
+        key = self._key(what, np.asarray(vector, dtype=float))
+        known = self.checkpoint.recall(key)
+        if known is not None and len(known) == 1 and known[0].dtype == np.uint8:
+            raise SolveError(_text(known[0]) or "")
+        if known is None:
+            began = perf_counter()
+            try:
+                known = compute()
+            except SolveError as error:
+                self.checkpoint.keep(key, (_bytes(str(error)),), perf_counter() - began)
+                raise
+            self.checkpoint.keep(key, known, perf_counter() - began)
+        return known
+
+    def _key(self, what: str, vector: np.ndarray) -> bytes:
+        """Hash of all that an answer depends on."""
+        return hashlib.sha256(self._asked + what.encode() + np.ascontiguousarray(vector).tobytes()).digest()
+
+    @cached_property
+    def _asked(self) -> bytes:
+        text = "\n".join((self.label, self.fingerprint, *(channel.name for channel in self.channels)))
+        return hashlib.sha256(text.encode() + self.coordinate.values.tobytes()).digest()
+
+
+def clock(model: ForwardModel) -> float:
+    """Seconds on a clock that also counts what a run computed before it was killed and resumed."""
+    return perf_counter() + (model.checkpoint.spared if isinstance(model, Recorded) else 0.0)
+
+
+def _bytes(text: str | None) -> np.ndarray:
+    """A text as an array; an empty one for none."""
+    return np.frombuffer((text or "").encode(), np.uint8)
+
+
+def _text(array: np.ndarray) -> str | None:
+    return array.tobytes().decode() or None

@@ -26,10 +26,12 @@ _MODULES = (
 )
 
 _NAMES = {
-    "errors": "DalembertError InputError ModelError SolveError DataError",
+    "errors": "DalembertError InputError ModelError SolveError DataError StorageError",
     "parameters": "Parameter Parameters",
     "intervals": "Box Interval",
-    "forward": "Channel Coordinate ForwardModel PythonModel Responses Sensor Sensors",
+    "forward": """
+        Channel Checkpoint Coordinate Distributed ForwardModel PythonModel Recorded Responses Sensor Sensors on_cluster
+    """,
     "optimize": "Firefly ImprovedParticleSwarm LeastSquares Minimiser ParticleSwarm ResponseSensitivity",
     "surrogate": "Adaptive ChebyshevPolynomial Surrogate Tensor TotalDegree",
     "structure": """

@@ -32,6 +32,11 @@ Run = Annotated[
     Path, typer.Argument(metavar="RUN", help="Folder of the run, or its name in runs/.", show_default=False)
 ]
 
+Cluster = Annotated[
+    str | None,
+    typer.Option(metavar="ADDRESS", help="Scheduler of a Dask cluster for the simulations: tcp://HOST:8786."),
+]
+
 
 def main() -> None:
     """Run the command line."""
@@ -61,6 +66,7 @@ def run(
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace the run that is in the folder.")] = False,
     seed: Annotated[int | None, typer.Option(min=0, help="Seed of all random numbers, instead of the study's.")] = None,
+    cluster: Cluster = None,
 ) -> None:
     """Do what a study says, in a run folder of its own."""
     with _exit_codes():
@@ -75,12 +81,12 @@ def run(
         if seed is not None:
             read = read.with_seed(seed)
         with Watch(Console(stderr=True, soft_wrap=True), unknowns(read)) as watch:
-            folder, outcome = run_study(read, out, force=force, listener=watch)
+            folder, outcome = run_study(read, out, force=force, listener=watch, executor=cluster)
         _ended(folder, outcome)
 
 
 @app.command()
-def resume(run: Run) -> None:
+def resume(run: Run, cluster: Cluster = None) -> None:
     """Go on with a run that was killed or stopped: it ends with the same bits as one that was not."""
     with _exit_codes():
         from rich.console import Console
@@ -92,7 +98,7 @@ def resume(run: Run) -> None:
         _stop_on_terminate()
         folder = _folder(run)
         with Watch(Console(stderr=True, soft_wrap=True), unknowns(folder.kept())) as watch:
-            outcome = resume_run(folder, listener=watch)
+            outcome = resume_run(folder, listener=watch, executor=cluster)
         _ended(folder, outcome)
 
 

@@ -1,6 +1,7 @@
 """The protocol that every model fulfils, models made of plain functions, and what sensors see of a model."""
 
 from dalembert.forward.checkpoint import Checkpoint
+from dalembert.forward.distributed import Distributed, Executor, on_cluster
 from dalembert.forward.model import Channel, Coordinate, ForwardModel
 from dalembert.forward.python_model import PythonModel
 from dalembert.forward.recorded import Recorded, clock
@@ -11,6 +12,8 @@ __all__ = [
     "Channel",
     "Checkpoint",
     "Coordinate",
+    "Distributed",
+    "Executor",
     "ForwardModel",
     "PythonModel",
     "Recorded",
@@ -18,4 +21,5 @@ __all__ = [
     "Sensor",
     "Sensors",
     "clock",
+    "on_cluster",
 ]

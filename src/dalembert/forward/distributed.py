@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from copy import copy
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -26,6 +26,8 @@ PARTS = 4
 """Parts of a batch a thread of the cluster: enough that few wait at the end, and each worth its message."""
 WAIT = 10.0
 """Seconds until a cluster that does not answer is given up."""
+
+_connected: "dict[str, Client]" = {}
 
 
 @dataclass(frozen=True)
@@ -76,12 +78,13 @@ class Distributed:
         vectors = np.atleast_2d(np.asarray(vectors, dtype=float))
         if len(vectors) < 2:
             return self.model.evaluate(vectors)
-        threads = max(1, sum(self.client.nthreads().values()))
+        workers: Any = self.client.nthreads()
+        threads = max(1, sum(workers.values()))
         parts = np.array_split(vectors, min(len(vectors), PARTS * threads))
         with self._sent() as sent:
             asked = self.client.map(_answered, [sent] * len(parts), parts, pure=False, retries=RETRIES)
             try:
-                answers = self.client.gather(asked)
+                answers: Any = self.client.gather(asked)
             except DalembertError:
                 raise
             except KeyboardInterrupt:
@@ -124,36 +127,48 @@ class Distributed:
         yield self.client.submit(cloudpickle.loads, content, key=key)
 
 
-def on_cluster(model: ForwardModel, address: "str | Client") -> Distributed:
+Executor: TypeAlias = "str | Client | None"
+"""Where batches are computed: at the address of a scheduler, by a client of Dask's, or in this process."""
+
+
+def on_cluster(model: ForwardModel, executor: Executor) -> ForwardModel:
     """A model whose batches go to a Dask cluster.
 
     Parameters
     ----------
     model : ForwardModel
-    address : str or distributed.Client
-        Such as ``"tcp://10.0.0.1:8786"``, or a client of any of Dask's clusters.
+    executor : str or distributed.Client, optional
+        Such as ``"tcp://10.0.0.1:8786"``, or a client of any of Dask's clusters; the model itself without one.
 
     Raises
     ------
     InputError
         Where Dask is not installed, or no scheduler answers.
     """
-    return Distributed(model, connected(address) if isinstance(address, str) else address)
+    if executor is None:
+        return model
+    return Distributed(model, connected(executor) if isinstance(executor, str) else executor)
 
 
 def connected(address: str) -> "Client":
-    """A client of the scheduler at an address."""
+    """A client of the scheduler at an address: the same one as long as it is connected."""
+    known = _connected.get(address)
+    if known is not None and known.status == "running":
+        return known
     try:
         from distributed import Client
     except ImportError:
-        raise InputError("a cluster needs Dask, which is not installed; run: pip install 'dalembert[cluster]'") from None
+        raise InputError(
+            "a cluster needs Dask, which is not installed; run: pip install 'dalembert[cluster]'"
+        ) from None
     try:
-        return Client(address, timeout=WAIT, set_as_default=False)
+        _connected[address] = Client(address, timeout=WAIT, set_as_default=False)
     except (OSError, ValueError) as error:
         raise InputError(
             f"no scheduler of Dask answers at {address!r} within {WAIT:g} s ({error}); expected an address such as "
             "'tcp://10.0.0.1:8786', as 'dask scheduler' says it when it starts"
         ) from None
+    return _connected[address]
 
 
 def _answered(model: ForwardModel, vectors: np.ndarray) -> tuple[np.ndarray, tuple[str | None, ...]]:

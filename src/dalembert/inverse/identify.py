@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from dalembert.data import Measurements
 from dalembert.errors import DalembertError, InputError, SolveError, unknown
-from dalembert.forward import ForwardModel
+from dalembert.forward import Executor, ForwardModel, on_cluster
 from dalembert.forward.provenance import provenance
 from dalembert.inverse.estimate import Estimate, estimate
 from dalembert.inverse.events import Finished, OnEvent
@@ -45,6 +45,7 @@ def identify(
     validation: float | str | Sequence[str] | None = None,
     shooting: MultipleShooting | None = None,
     on_event: OnEvent | None = None,
+    executor: Executor = None,
 ) -> Fit:
     """Parameters p of a model that make its response R(p) agree with measurements: least Σ W (R(p) − data)².
 
@@ -87,6 +88,8 @@ def identify(
         Least squares in segments that must meet, in place of the growing horizon: for chaotic motion.
     on_event : callable, optional
         Called with each event (see :mod:`dalembert.inverse.events`) as it happens.
+    executor : str or distributed.Client, optional
+        Address of a Dask cluster, such as ``"tcp://10.0.0.1:8786"``, or a client of one, to which batches go.
 
     Returns
     -------
@@ -138,7 +141,7 @@ def identify(
         raise InputError(unknown("horizon", str(horizon), [name for name in HORIZONS if name]))
     if spread not in SPREADS:
         raise InputError(unknown("spread", str(spread), SPREADS))
-    model, data, weights, parts = _joined(model, data, weights)
+    model, data, weights, parts = _joined(_placed(model, executor), data, weights)
     given = data.deviations is not None and weights is None
     journal = Journal(len(data.coordinate.values), on_event)
     posed = replace(pose(model, data, weights, journal), loss=loss_of(loss, loss_scale, known=given))
@@ -264,6 +267,13 @@ def _told(problem: Problem, at: Linearisation | None, fitness: float, known: boo
     plain = replace(problem, loss=None)
     counted = plain.residual(at.response)[problem.weights.ravel() > 0]
     return estimate(plain.slopes(at, scale), scale, problem.loss.variance(counted, freedom))
+
+
+def _placed(model: ForwardModel | Sequence[Experiment], executor: Executor) -> ForwardModel | Sequence[Experiment]:
+    """The model, or the model of each experiment, where its batches are computed."""
+    if isinstance(model, Sequence):
+        return [replace(item, model=on_cluster(item.model, executor)) for item in model]
+    return on_cluster(model, executor)
 
 
 def _joined(

@@ -10,7 +10,7 @@ from time import perf_counter
 from dalembert import __version__
 from dalembert.errors import DalembertError, InputError, SolveError, StorageError
 from dalembert.files import write_text
-from dalembert.forward import Checkpoint
+from dalembert.forward import Checkpoint, Executor
 from dalembert.study.duration import duration
 from dalembert.study.events import Event, EventLog
 from dalembert.study.folder import FAILED, FINISHED, INPUT, INTERRUPTED, RUNNING, RunFolder, new_folder
@@ -30,6 +30,7 @@ def run_study(
     *,
     force: bool = False,
     listener: Listener | None = None,
+    executor: Executor = None,
 ) -> tuple[RunFolder, Outcome]:
     """Do what a study says.
 
@@ -42,6 +43,8 @@ def run_study(
         Replace the run that is there.
     listener : callable, optional
         Called with each event.
+    executor : str or distributed.Client, optional
+        Address of a Dask cluster, or a client of one, to which batches of simulations go.
 
     Returns
     -------
@@ -55,10 +58,10 @@ def run_study(
     folder = new_folder(study.name, out, force=force)
     with folder.locked():
         folder.keep(study)
-        return folder, _executed(study, folder, "run-started", listener)
+        return folder, _executed(replace(study, executor=executor), folder, "run-started", listener)
 
 
-def resume_run(folder: RunFolder, *, listener: Listener | None = None) -> Outcome:
+def resume_run(folder: RunFolder, *, listener: Listener | None = None, executor: Executor = None) -> Outcome:
     """Go on with a run that was killed, stopped, or could not go on; it ends as if it had not been.
 
     The study does again what it did; whatever its model answered before comes from the checkpoint.
@@ -68,6 +71,8 @@ def resume_run(folder: RunFolder, *, listener: Listener | None = None) -> Outcom
     folder : RunFolder
     listener : callable, optional
         Called with each event, those of before included.
+    executor : str or distributed.Client, optional
+        As of :func:`run_study`; the run need not have begun there.
 
     Raises
     ------
@@ -91,7 +96,7 @@ def resume_run(folder: RunFolder, *, listener: Listener | None = None) -> Outcom
         )
     with folder.locked():
         folder.tidy()
-        return _executed(folder.kept(), folder, "run-resumed", listener)
+        return _executed(replace(folder.kept(), executor=executor), folder, "run-resumed", listener)
 
 
 def _executed(study: Study, folder: RunFolder, beginning: str, listener: Listener | None) -> Outcome:

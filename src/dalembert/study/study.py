@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dalembert.errors import InputError
-from dalembert.forward import Checkpoint, ForwardModel, Recorded
+from dalembert.forward import Checkpoint, Executor, ForwardModel, Recorded, on_cluster
 from dalembert.parameters import Parameters
 from dalembert.study.builder import FunctionBuilder, SystemBuilder
 from dalembert.study.experiments import measured_channels
@@ -62,6 +62,8 @@ class Study:
         Name of its run folder.
     checkpoint : Checkpoint, optional
         Where the answers of its models are kept.
+    executor : str or distributed.Client, optional
+        Where batches of its models are computed.
     """
 
     path: Path
@@ -70,6 +72,7 @@ class Study:
     files: Mapping[str, Path]
     name: str
     checkpoint: Checkpoint | None = field(default=None, repr=False, compare=False)
+    executor: Executor = field(default=None, repr=False, compare=False)
 
     @property
     def title(self) -> str:
@@ -137,7 +140,7 @@ class Study:
 
     def forward(self, channels: Sequence[str], samples: np.ndarray) -> ForwardModel:
         """The model between parameters and channels, at samples of its coordinate."""
-        model = self._forward(channels, samples)
+        model = on_cluster(self._forward(channels, samples), self.executor)
         if self.checkpoint is None:
             return model
         varied = _plain({"constants": self.file.constants, "arguments": self.file.model.arguments})

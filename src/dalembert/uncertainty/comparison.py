@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from dalembert.errors import DalembertError, InputError
-from dalembert.forward import ForwardModel
+from dalembert.forward import Executor, ForwardModel, on_cluster
 from dalembert.results import Result
 from dalembert.uncertainty.events import OnEvent
 from dalembert.uncertainty.found import Method
@@ -123,6 +123,7 @@ def compare(
     reference: Method | str = "optimise",
     seed: int = 0,
     on_event: OnEvent | None = None,
+    executor: Executor = None,
 ) -> Comparison:
     """Bounds by several methods over the same box, and how far each lies from a reference.
 
@@ -133,6 +134,8 @@ def compare(
     methods : sequence of str or settings
         The reference is added if it is not among them.
     reference : str or settings
+    executor : str or distributed.Client, optional
+        Address of a Dask cluster, such as ``"tcp://10.0.0.1:8786"``, or a client of one, to which batches go.
 
     Returns
     -------
@@ -156,6 +159,7 @@ def compare(
     taylor 0.0 1.0
     scan 1.0 0.0
     """
+    model = on_cluster(model, executor)
     chosen, known = [method_of(method) for method in methods], method_of(reference)
     chosen += [known] if known not in chosen else []
     labels = [label(method) for method in chosen]

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 from dalembert.errors import InputError, unknown
-from dalembert.forward import ForwardModel, clock
+from dalembert.forward import Executor, ForwardModel, clock, on_cluster
 from dalembert.forward.provenance import provenance
 from dalembert.intervals import Box, Interval
 from dalembert.uncertainty.events import Began, Ended, OnEvent
@@ -22,6 +22,7 @@ def propagate(
     *,
     seed: int = 0,
     on_event: OnEvent | None = None,
+    executor: Executor = None,
 ) -> Propagation:
     """Bounds of every channel at every sample, while each parameter is anywhere in its interval.
 
@@ -38,6 +39,8 @@ def propagate(
         All random numbers follow from it.
     on_event : callable, optional
         Called with each event (see :mod:`dalembert.uncertainty.events`) as it happens.
+    executor : str or distributed.Client, optional
+        Address of a Dask cluster, such as ``"tcp://10.0.0.1:8786"``, or a client of one, to which batches go.
 
     Returns
     -------
@@ -62,6 +65,7 @@ def propagate(
     >>> bands.kind, bands.runs
     ('inner bound', 2)
     """
+    model = on_cluster(model, executor)
     chosen, box = method_of(method), box_of(model, intervals)
     runs = Runs(model, box, label(chosen), on_event)
     runs.most = chosen.most(runs)

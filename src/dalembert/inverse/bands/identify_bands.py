@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from dalembert.data import Bands
 from dalembert.errors import InputError, unknown
-from dalembert.forward import ForwardModel, clock
+from dalembert.forward import Executor, ForwardModel, clock, on_cluster
 from dalembert.forward.provenance import provenance
 from dalembert.intervals import Box
 from dalembert.inverse.bands.band_fit import BandFit
@@ -34,6 +34,7 @@ def identify_bands(
     weights: ArrayLike | None = None,
     seed: int = 0,
     on_event: OnEvent | None = None,
+    executor: Executor = None,
 ) -> BandFit:
     """Intervals of a model's parameters over which its response has given bounds.
 
@@ -56,6 +57,8 @@ def identify_bands(
         All random numbers follow from it.
     on_event : callable, optional
         Called with each event (see :mod:`dalembert.inverse.events`) as it happens.
+    executor : str or distributed.Client, optional
+        Address of a Dask cluster, such as ``"tcp://10.0.0.1:8786"``, or a client of one, to which batches go.
 
     Returns
     -------
@@ -89,7 +92,7 @@ def identify_bands(
     rate [0.8, 1.2]
     """
     began = clock(model)
-    chosen = _method(method)
+    model, chosen = on_cluster(model, executor), _method(method)
     unknowns = unknowns_of(model.parameters, intervals)
     journal = Journal(len(bands.coordinate.values), on_event)
     problem = pose(model, bands, weights, unknowns, journal)

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from dalembert.data import Measurements
 from dalembert.errors import InputError, unknown
-from dalembert.forward import ForwardModel, clock
+from dalembert.forward import Executor, ForwardModel, clock, on_cluster
 from dalembert.forward.provenance import provenance
 from dalembert.intervals import Box
 from dalembert.inverse.events import Finished, OnEvent
@@ -36,6 +36,7 @@ def identify_set(
     most_boxes: int = 200_000,
     seed: int = 0,
     on_event: OnEvent | None = None,
+    executor: Executor = None,
 ) -> ParameterSet:
     """The set of all parameters p, within their bounds, with ``|R(p) − data| ≤ error`` at every sample and channel.
 
@@ -58,6 +59,8 @@ def identify_set(
         All random numbers follow from it.
     on_event : callable, optional
         Called with each event (see :mod:`dalembert.inverse.events`) as it happens.
+    executor : str or distributed.Client, optional
+        Address of a Dask cluster, such as ``"tcp://10.0.0.1:8786"``, or a client of one, to which batches go.
 
     Returns
     -------
@@ -93,6 +96,7 @@ def identify_set(
     rate [0.946996, 1.05604]
     """
     began = clock(model)
+    model = on_cluster(model, executor)
     columns = columns_of(model, data)
     check_finite(data)
     check_samples(model, data)

@@ -1,0 +1,141 @@
+"""What is refused when a run is to be resumed, and what a run leaves for it."""
+
+import json
+
+import numpy as np
+import pytest
+
+from dalembert.errors import InputError, SolveError, StorageError
+from dalembert.forward import Checkpoint, PythonModel, Recorded
+from dalembert.study import RunFolder, load, resume_run, run_study
+from dalembert.study.folder import new_folder
+from dalembert.study.runner import Stopped
+from support import says
+
+MODEL = """
+import numpy as np
+from pathlib import Path
+from dalembert.forward import PythonModel
+
+def decay(parameters):
+    return PythonModel(response, parameters, ["x"], np.linspace(0, 1, 3))
+
+def response(rate):
+    if not Path("go").exists():
+        raise KeyboardInterrupt
+    return np.exp(-rate * np.linspace(0, 1, 3))
+"""
+STUDY = """
+[parameters]
+rate = { lower = 0.5, upper = 2.0 }
+[model]
+forward = "decay.py:decay"
+[propagate]
+method = "vertex"
+"""
+
+
+@pytest.fixture
+def study(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "decay.py").write_text(MODEL)
+    (tmp_path / "decay.toml").write_text(STUDY)
+    return load(tmp_path / "decay.toml")
+
+
+@pytest.fixture
+def stopped(study, tmp_path):
+    """The folder of a run that the user stopped."""
+    with pytest.raises(Stopped) as stop:
+        run_study(study)
+    (tmp_path / "go").touch()
+    return RunFolder(stop.value.args[0])
+
+
+def test_a_stopped_run_goes_on(stopped):
+    assert stopped.state()["state"] == "interrupted"
+    assert stopped.checkpoint.is_file()
+    assert resume_run(stopped).success
+    assert stopped.state()["state"] == "finished"
+    assert not stopped.checkpoint.exists()
+    kinds = [json.loads(line)["event"] for line in stopped.events.read_text().splitlines()]
+    assert kinds[0] == "run-started"
+    assert kinds.count("run-resumed") == 1
+
+
+def test_a_finished_run_is_not_resumed(stopped):
+    resume_run(stopped)
+    sentence = (
+        f"{stopped.path}: the run has finished, so there is nothing to resume; make its report anew by "
+        f"'dalembert report {stopped.path}'"
+    )
+    with pytest.raises(InputError, match=says(sentence)):
+        resume_run(stopped)
+
+
+def test_a_run_of_another_version_is_not_resumed(stopped):
+    state = stopped.path / "state.json"
+    state.write_text(json.dumps(json.loads(state.read_text()) | {"version": "0.0.1"}))
+    with pytest.raises(InputError, match=r"begun with dalembert 0\.0\.1, and this is .*: what both compute may differ"):
+        resume_run(stopped)
+
+
+def test_a_run_that_goes_on_is_not_resumed(stopped):
+    stopped.set_state("running", version="")
+    with stopped.locked(), pytest.raises(InputError, match="the run is going on; wait for it, or stop it"):
+        resume_run(stopped)
+
+
+def test_the_folder_of_a_stopped_run_says_how_to_go_on(stopped):
+    sentence = (
+        f"{stopped.path} holds a run (interrupted); go on with it by 'dalembert resume {stopped.path}', give --force "
+        "to replace it, or choose another folder with --out"
+    )
+    with pytest.raises(InputError, match=says(sentence)):
+        new_folder("decay", stopped.path)
+
+
+def test_what_a_run_left_that_was_killed_before_it_began_is_taken_over(study, tmp_path):
+    left = tmp_path / "left"
+    left.mkdir()
+    for name in ("lock", "study.toml", ".settings-abc.json"):
+        (left / name).touch()
+    (tmp_path / "go").touch()
+    folder, _ = run_study(study, left)
+    assert folder.state()["state"] == "finished"
+    assert not (left / ".settings-abc.json").exists()
+
+
+def test_failures_are_kept_too(tmp_path):
+    asked = []
+
+    def fails(rate):
+        asked.append(float(np.real(rate)))
+        if np.real(rate) > 1:
+            raise SolveError("too fast")
+        return np.exp(-rate * np.linspace(0, 1, 3))
+
+    model = PythonModel(fails, {"rate": (0.1, 2.0)}, ["x"], np.linspace(0, 1, 3))
+    for _ in range(2):
+        with Checkpoint(tmp_path / "checkpoint") as checkpoint:
+            recorded = Recorded(model, checkpoint)
+            assert recorded.evaluate(np.array([[0.5], [1.5]])).failures == (None, "SolveError: too fast")
+            with pytest.raises(SolveError, match="too fast"):
+                recorded.linearise(np.array([1.5]))
+            values, slopes = recorded.linearise(np.array([0.5]))
+            assert recorded.jacobian(np.array([0.5])).tobytes() == slopes.tobytes()
+            assert recorded.first(2).evaluate(np.array([[0.5]])).values.tobytes() == values[:2].tobytes()
+    once = len(asked)
+    assert asked.count(1.5) == 2
+    with Checkpoint(tmp_path / "checkpoint") as checkpoint:
+        Recorded(model, checkpoint, "another").evaluate(np.array([[0.5]]))
+        assert checkpoint.spared == 0
+        Recorded(model, checkpoint).evaluate(np.array([[0.5]]))
+        assert checkpoint.spared > 0
+    assert len(asked) == once + 1
+
+
+def test_a_file_that_is_no_checkpoint(tmp_path):
+    (tmp_path / "checkpoint").write_text("something else" * 100)
+    with pytest.raises(StorageError, match="cannot be written: file is not a database"):
+        Checkpoint(tmp_path / "checkpoint")

@@ -1,0 +1,169 @@
+"""Batches on a Dask cluster: a real scheduler and real workers, as processes on the loopback."""
+
+import os
+import socket
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import dalembert as da
+from dalembert.errors import InputError
+from dalembert.study import load, run_study
+from flexible_pendulum import tip
+from support import says
+
+DASK = Path(sys.executable).with_name("dask")
+QUIET = dict(stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+TIMES = np.linspace(0, 1, 11)
+
+
+@pytest.fixture(scope="module")
+def address():
+    """A scheduler's address."""
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    command = [DASK, "scheduler", "--host", "127.0.0.1", "--port", str(port), "--no-dashboard"]
+    with subprocess.Popen(command, **QUIET) as scheduler:
+        yield f"tcp://127.0.0.1:{port}"
+        scheduler.kill()
+
+
+@pytest.fixture(scope="module")
+def worker(address):
+    """Start one more worker, a process of one thread."""
+    started = []
+
+    def start() -> subprocess.Popen:
+        limits = ["--nthreads", "1", "--memory-limit", "0", "--no-dashboard", "--no-nanny"]
+        here = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path.endswith("src"))}
+        started.append(subprocess.Popen([DASK, "worker", address, *limits], env=here, **QUIET))
+        return started[-1]
+
+    yield start
+    for process in started:
+        process.kill()
+        process.wait()
+
+
+@pytest.fixture(scope="module")
+def client(address, worker):
+    from distributed import Client
+
+    first, second = worker(), worker()
+    with Client(address, timeout=60, set_as_default=False) as client:
+        client.wait_for_workers(2, timeout=60)
+        yield client
+    assert first.poll() is second.poll() is None
+
+
+def slowly(rate):
+    time.sleep(0.05)
+    if rate > 1.9:
+        raise RuntimeError("too fast")
+    return np.exp(-rate * TIMES)
+
+
+@pytest.fixture
+def decay():
+    return da.PythonModel(slowly, {"rate": (0.1, 2.0)}, ["x"], TIMES)
+
+
+def test_a_mechanism_answers_the_same_bits(client):
+    model = tip({"theta1": (0.6, 1.0), "theta2": (0.4, 0.65)}, end=0.5)
+    low, high = model.parameters.lower, model.parameters.upper
+    vectors = low + np.random.default_rng(0).random((24, len(low))) * (high - low)
+    here, there = model.evaluate(vectors), da.on_cluster(model, client).evaluate(vectors)
+    assert there.values.tobytes() == here.values.tobytes()
+    assert there.failures == here.failures == (None,) * 24
+
+
+def test_a_failed_sample_is_marked_and_the_others_return(client, decay):
+    vectors = np.linspace(0.1, 2.0, 12)[:, None]
+    here, there = decay.evaluate(vectors), da.on_cluster(decay, client).evaluate(vectors)
+    assert there.failures == here.failures
+    assert here.failures[-1] == "RuntimeError: too fast"
+    np.testing.assert_array_equal(there.values, here.values)
+
+
+def test_a_worker_that_is_killed_costs_a_retry(client, worker, decay):
+    lost = worker()
+    client.wait_for_workers(3, timeout=60)
+    vectors = np.linspace(0.1, 1.8, 60)[:, None]
+    model = da.on_cluster(decay, client)
+    from concurrent.futures import ThreadPoolExecutor
+
+    with ThreadPoolExecutor(1) as pool:
+        asked = pool.submit(model.evaluate, vectors)
+        time.sleep(0.3)
+        assert not asked.done()
+        lost.kill()
+        there = asked.result(timeout=120)
+    np.testing.assert_array_equal(there.values, decay.evaluate(vectors).values)
+
+
+def test_methods_take_an_executor(client, address):
+    decay = da.PythonModel(lambda rate: np.exp(-rate * TIMES), {"rate": (0.1, 2.0)}, ["x"], TIMES)
+    here = da.propagate(decay, {"rate": (0.5, 1.0)}, "chebyshev")
+    there = da.propagate(decay, {"rate": (0.5, 1.0)}, "chebyshev", executor=client)
+    assert there.lower.tobytes() == here.lower.tobytes()
+    data = da.Measurements.of(TIMES, {"x": np.exp(-0.7 * TIMES)})
+    fits = [da.identify(decay, data, executor=executor) for executor in (None, client, address)]
+    assert len({fit.values.tobytes() for fit in fits}) == 1
+    swarm = da.ParticleSwarm(particles=6, iterations=5)
+    sets = [da.identify(decay, data, method=swarm, seed=2, executor=executor) for executor in (None, client)]
+    assert sets[0].values.tobytes() == sets[1].values.tobytes()
+
+
+STUDY = """
+[parameters]
+rate = { lower = 0.1, upper = 2.0 }
+[model]
+forward = "decay.py:decay"
+[propagate]
+method = { kind = "monte-carlo", runs = 40 }
+"""
+MODEL = """
+import numpy as np
+from dalembert.forward import PythonModel
+from beside import TIMES
+
+def decay(parameters):
+    return PythonModel(lambda rate: np.exp(-rate * TIMES), parameters, ["x"], TIMES)
+"""
+
+
+def test_a_study_with_files_of_its_own_runs_on_a_cluster(client, tmp_path, monkeypatch):
+    (tmp_path / "decay.py").write_text(MODEL)
+    (tmp_path / "beside.py").write_text("import numpy as np\nTIMES = np.linspace(0, 1, 5)\n")
+    (tmp_path / "study.toml").write_text(STUDY)
+    monkeypatch.delitem(sys.modules, "beside", raising=False)
+    study = load(tmp_path / "study.toml")
+    (_, here), (_, there) = (
+        run_study(study, tmp_path / name, executor=own) for name, own in (("a", None), ("b", client))
+    )
+    assert here.result.lower.tobytes() == there.result.lower.tobytes()
+
+
+def test_an_address_without_a_scheduler(monkeypatch, decay):
+    monkeypatch.setattr("dalembert.forward.distributed.WAIT", 0.2)
+    with pytest.raises(InputError, match=r"no scheduler of Dask answers at 'tcp://127\.0\.0\.1:9' within 0\.2 s"):
+        da.on_cluster(decay, "tcp://127.0.0.1:9")
+
+
+def test_without_dask_it_says_what_to_install(monkeypatch, decay):
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    sentence = "a cluster needs Dask, which is not installed; run: pip install 'dalembert[cluster]'"
+    with pytest.raises(InputError, match=says(sentence)):
+        da.on_cluster(decay, "tcp://127.0.0.1:8786")
+
+
+def test_a_model_that_cannot_be_sent(client, tmp_path):
+    with (tmp_path / "log").open("w") as log:
+        model = da.PythonModel(lambda rate: log.write("") + rate * TIMES, {"rate": (0.1, 2.0)}, ["x"], TIMES)
+        with pytest.raises(InputError, match=r"the model cannot be sent to the cluster: .*must not hold open files"):
+            da.on_cluster(model, client).evaluate(np.array([[1.0], [1.5]]))

@@ -1,7 +1,18 @@
 """The systems of the published references for friction in frequency."""
 
-from dalembert.structure import lumped
-from dalembert.vibration import CubicSpring, Elastic, FrictionContact, Gap, HarmonicForce, Rigid, VibrationSystem
+import numpy as np
+
+from dalembert.structure import Dofs, Structure, lumped
+from dalembert.vibration import (
+    CubicSpring,
+    Elastic,
+    FrictionContact,
+    Gap,
+    HarmonicForce,
+    Rigid,
+    StaticForce,
+    VibrationSystem,
+)
 
 
 def one_mass() -> VibrationSystem:
@@ -42,4 +53,34 @@ def duffing() -> VibrationSystem:
     system = VibrationSystem(lumped({"m": 1.0}, [("m", None, 1.0, 0.05)]))
     system.add(HarmonicForce("m", 0.18))
     system.add(CubicSpring("cubic", "m", stiffness=0.1))
+    return system
+
+
+def pressed(size: float, normal: float = 0.1) -> VibrationSystem:
+    """A mass that a constant force presses on the ground and another one drives, along it and, in part, into it."""
+    damping = np.diag([2 * 0.05 * np.sqrt(12), 2 * 0.1 * np.sqrt(100)])
+    system = VibrationSystem(Structure(np.eye(2), np.diag([12.0, 21.0]), Dofs(("m.x", "m.z")), damping))
+    system.add(StaticForce("m.z", 100.0))
+    system.add(HarmonicForce("m.x", size))
+    system.add(HarmonicForce("m.z", normal * size))
+    law = Elastic(5.0, normal_stiffness=21.0)
+    system.add(FrictionContact("foot", "m", normal="z", friction=0.85, law=law))
+    return system
+
+
+def massless_foot(law: Elastic | Rigid) -> VibrationSystem:
+    """The one mass again, with the slider's spring in the structure: a foot without mass rubs on the ground."""
+    springs = [("m", None, 1.0, 0.04), ("m", "foot", 0.8, 0.0)]
+    system = VibrationSystem(lumped({"m": 1.0, "foot": 0.0}, springs))
+    system.add(HarmonicForce("m", 1.0))
+    system.add(FrictionContact("slider", "foot", friction=0.5, preload=2.0, law=law))
+    return system
+
+
+def heavy_foot(law: Elastic | Rigid) -> VibrationSystem:
+    """Two masses, the second of which rubs on the ground, well damped."""
+    springs = [("m1", None, 1.0, 0.1), ("m1", "m2", 1.0, 0.1), ("m2", None, 0.5, 0.05)]
+    system = VibrationSystem(lumped({"m1": 1.0, "m2": 1.0}, springs))
+    system.add(HarmonicForce("m1", 1.0))
+    system.add(FrictionContact("slider", "m2", friction=0.5, preload=1.0, law=law))
     return system

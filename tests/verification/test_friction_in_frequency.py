@@ -107,8 +107,8 @@ def test_a_rigid_contact_forgets_its_penalty_as_harmonics_are_added(record_evide
     source = "the law itself, which knows no penalty"
     for number, size in zip(harmonics, spread, strict=True):
         record_evidence(
-            f"rigid contact, {number} harmonics: largest change of the response, as part of it, by a penalty over three "
-            "decades",
+            f"rigid contact, {number} harmonics: largest change of the response, as part of it, by a penalty over "
+            "three decades",
             0.0, size, tolerance=2.5 / number**2, topic=TOPIC, source=source,
         )  # fmt: skip
     record_evidence(

@@ -23,19 +23,25 @@ EVENTS = "integration from one change of stick and slip to the next"
 
 
 @pytest.mark.parametrize(
-    ("system", "omega", "mass"),
-    [(one_mass(), 1.12, "m"), (two_masses(), 0.88, "m2"), (chain(), 1.625, "m3"), (duffing(), 1.2, "m")],
+    ("system", "omegas", "mass"),
+    [
+        (one_mass(), [1.12], "m"),
+        (two_masses(), [0.88], "m2"),
+        (chain(), [*np.arange(0.8, 1.6, 0.1), 1.625], "m3"),
+        (duffing(), [0.8, 1.0, 1.1, 1.2], "m"),
+    ],
     ids=["one mass", "two masses", "three masses", "Duffing"],
 )
-def test_the_references_in_time(record_evidence, request, system: VibrationSystem, omega: float, mass: str) -> None:
-    curve = frequency_response(system, np.array([omega]) / TURN, HarmonicBalance(29, samples=2048))
-    comparison = compare_in_time(system, curve, points=[0], method=Newmark(4096), way="shooting")
+def test_the_references_in_time(record_evidence, request, system: VibrationSystem, omegas: list, mass: str) -> None:
+    """At the last of the frequencies, on the branch on which they lead there."""
+    curve = frequency_response(system, np.array(omegas) / TURN, HarmonicBalance(29, samples=2048))
+    comparison = compare_in_time(system, curve, points=[len(curve) - 1], method=Newmark(4096), way="shooting")
     assert comparison.converged.all()
     row = curve.dofs.index(f"{mass}.x")
     record_evidence(
-        f"reference system {request.node.callspec.id}, 29 harmonics: largest displacement at {omega} rad/s",
+        f"reference system {request.node.callspec.id}, 29 harmonics: largest displacement at {omegas[-1]} rad/s",
         comparison.time[0, row], comparison.balance[0, row],
-        tolerance=1e-5, topic=TOPIC, source=IN_TIME, unit="m", relative=True,
+        tolerance=2e-5, topic=TOPIC, source=IN_TIME, unit="m", relative=True,
     )  # fmt: skip
 
 
@@ -106,7 +112,7 @@ def off(moved: np.ndarray, motion: np.ndarray) -> float:
 
 
 @pytest.mark.parametrize(
-    ("kind", "penalty", "leading", "most"), [("velocity", None, 0.1, 79), ("displacement", 15.0, 0.6, 39)]
+    ("kind", "penalty", "leading", "most"), [("velocity", None, 0.1, 79), ("displacement", 15.0, 0.7, 39)]
 )
 def test_rigid_friction_with_long_sticking(
     record_evidence, sticking: tuple[np.ndarray, float], kind: str, penalty: float | None, leading: float, most: int
@@ -134,7 +140,7 @@ def test_rigid_friction_with_long_sticking(
 
 def test_the_elastic_law_in_time_tends_to_the_rigid_one(record_evidence, sticking: tuple[np.ndarray, float]) -> None:
     motion, _ = sticking
-    errors, stiffnesses = [], (15.0, 150.0, 1500.0)
+    errors, stiffnesses = [], (500.0, 1500.0, 5000.0)
     for stiffness in stiffnesses:
         system = heavy_foot(Elastic(stiffness))
         own = steady_state(system, OMEGA / TURN, Newmark(4 * INSTANTS, 0.8))
@@ -142,5 +148,5 @@ def test_the_elastic_law_in_time_tends_to_the_rigid_one(record_evidence, stickin
         errors.append(off(own.displacements[::4], motion))
     record_evidence(
         "elastic contact in time beside the rigid one: order in the inverse of its stiffness",
-        1.0, -np.polyfit(np.log(stiffnesses), np.log(errors), 1)[0], tolerance=0.2, topic=TOPIC, source=EVENTS,
+        1.0, -np.polyfit(np.log(stiffnesses), np.log(errors), 1)[0], tolerance=0.1, topic=TOPIC, source=EVENTS,
     )  # fmt: skip

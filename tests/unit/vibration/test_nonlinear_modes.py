@@ -9,7 +9,7 @@ from dalembert.errors import InputError, SolveError
 from dalembert.structure import lumped
 from dalembert.vibration import Backbone, FrictionContact, Gap, HarmonicBalance, StaticForce, VibrationSystem, backbone
 from support import says
-from vibrating_systems import duffing, two_masses
+from vibrating_systems import chain, duffing, two_masses
 
 METHOD = HarmonicBalance(5)
 
@@ -50,6 +50,28 @@ def test_the_largest_motion_is_the_measure_unless_another_is_named() -> None:
     assert backbone(two_masses(), np.array([0.1]), 1, METHOD, dof="m2.x").dof == "m2.x"
 
 
+def test_a_path_between_two_amplitudes_holds_its_ends_and_agrees_with_given_amplitudes() -> None:
+    path = backbone(duffing(), (0.1, 3.0), method=METHOD)
+    assert path.converged.all()
+    assert (path.amplitudes[0], path.amplitudes[-1]) == (0.1, 3.0)
+    given = backbone(duffing(), path.amplitudes, method=METHOD)
+    np.testing.assert_allclose(given.frequencies, path.frequencies, rtol=1e-8)
+    np.testing.assert_allclose(given.damping, path.damping, rtol=1e-7)
+
+
+def test_a_path_leads_through_the_begin_of_slip() -> None:
+    path = backbone(two_masses(), (0.1, 10.0), method=METHOD)
+    assert path.converged.all()
+    assert path.amplitudes[-1] == 10.0
+    assert path.damping.max() > 5 * path.damping[0]
+
+
+def test_given_amplitudes_do_not_jump_to_another_mode() -> None:
+    given = backbone(chain(), np.array([0.6, 0.9, 1.1]), method=METHOD)
+    np.testing.assert_array_equal(given.converged, [True, False, False])
+    assert "not found: 0.9 m, 1.1 m" in given.summary()
+
+
 def free() -> VibrationSystem:
     system = VibrationSystem(lumped({"a": 1.0, "b": 1.0}, [("a", "b", 1.0, 0.0)]))
     system.add(StaticForce("a", 1.0))
@@ -61,6 +83,13 @@ def free() -> VibrationSystem:
     ("system", "amplitudes", "options", "error", "sentence"),
     [
         (duffing(), [-1.0], {}, InputError, "backbone: the amplitudes are [-1.0]; expected positive numbers in m"),
+        (
+            duffing(),
+            (1.0, 1.0),
+            {},
+            InputError,
+            "backbone: the ends are (1.0, 1.0); expected two different amplitudes in m",
+        ),
         (
             duffing(),
             [1.0],

@@ -40,7 +40,7 @@ def frequency_response(
     Parameters
     ----------
     system : VibrationSystem
-    frequencies : array, shape (points,), or (begin, end)
+    frequencies : array, shape (points,), or pair of float
         Hz, positive. A tuple of two: points between them, as dense as the curve needs.
     method : HarmonicBalance, optional
     continuation : {"natural", "arc-length"}

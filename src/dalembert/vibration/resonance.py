@@ -59,7 +59,7 @@ def track_resonance(
     parameter : str
     values : sequence of float
         In the order in which the peak is followed.
-    start : (begin, end), or FrequencyCurve
+    start : pair of float, or FrequencyCurve
         Hz, around the peak at the first value, where one curve is followed to find it; or a curve at that value.
     method : HarmonicBalance, optional
     dof : str

@@ -76,7 +76,10 @@ class Equations:
         best = self.solve(rest, omega, samples, point=point)
         if best.converged:
             return best
-        free = np.linalg.solve(point.stiffness, point.force[:, :, None])[:, :, 0]
+        try:
+            free = np.linalg.solve(point.stiffness, point.force[:, :, None])[:, :, 0]
+        except np.linalg.LinAlgError:  # springs without a linear part hold the structure
+            free = (np.linalg.pinv(point.stiffness) @ point.force[:, :, None])[:, :, 0]
         other = self.solve(self.balance(samples).series.coefficients(free), omega, samples, point=point)
         if other.converged:
             return other

@@ -26,8 +26,6 @@ SHIFT = 0.7
 """Where the pencil is inverted, in parts of ω: a place where no exponent lies, as that would double in 0.16 periods."""
 INFINITE = 1e-7
 """Inverse of the distance from there, in parts of ω, below which an exponent belongs to a coordinate without mass."""
-CENTRAL = 0.6
-"""Harmonics by which a disturbance's centre may lie beside the mean; at 0.5 one and its copy are alike."""
 COPY = 1e-3
 """Difference, in parts of ω, in which an exponent is another's copy."""
 
@@ -48,7 +46,7 @@ def hill(problem: Equations, solution: Solution) -> np.ndarray:
     pencil = _pencil(system, _padded(linear, own.series), _padded(solution.unknowns, own.series), solution.omega)
     values, vectors = _eigenvalues(pencil)
     centres = _centres(vectors.reshape(-1, every.count, len(values)), system.matrices[1])
-    return _distinct(values, centres)
+    return _distinct(values, centres, 2 * int(np.linalg.matrix_rank(system.matrices[1], hermitian=True)))
 
 
 def _padded(coefficients: np.ndarray, series: Fourier) -> np.ndarray:
@@ -97,6 +95,7 @@ def _centres(vectors: np.ndarray, mass: np.ndarray) -> np.ndarray:
     for order in range((vectors.shape[1] + 1) // 2):
         cosine = vectors[:, max(2 * order - 1, 0)]
         sine = vectors[:, 2 * order] if order else np.zeros_like(cosine)
+        cosine = cosine if order else np.sqrt(2) * cosine  # the mean comes on both sides
         for side in (1, -1):  # p = Σ p_h exp(i h τ) has p_h = (cosine - i sine)/2, and p_-h with the other sign
             part = cosine - side * 1j * sine
             energy = np.einsum("ik,ik->k", part.conj(), mass @ part).real
@@ -104,14 +103,13 @@ def _centres(vectors: np.ndarray, mass: np.ndarray) -> np.ndarray:
     return np.abs(weights) / np.where(total > 0, total, 1.0)
 
 
-def _distinct(values: np.ndarray, centres: np.ndarray) -> np.ndarray:
-    """Exponents about the mean, each once, the fastest growing first."""
+def _distinct(values: np.ndarray, centres: np.ndarray, count: int) -> np.ndarray:
+    """As many exponents as there are states, those about the mean, each once; the fastest growing first."""
     kept: list[complex] = []
     for number in np.argsort(centres, kind="stable"):
-        if centres[number] > CENTRAL:
-            break
         turns = [(values[number] - other) / 1j for other in kept]
         if not any(abs(turn - np.round(turn.real)) < COPY and abs(turn) > 0.5 for turn in turns):
             kept.append(complex(values[number]))
-    order = sorted(kept, key=lambda value: (-value.real, abs(value.imag), value.imag))
-    return np.array(order)
+        if len(kept) == count:
+            break
+    return np.array(sorted(kept, key=lambda value: (-value.real, abs(value.imag), value.imag)))

@@ -40,7 +40,7 @@ def backbone(
     ----------
     system : VibrationSystem
         Its harmonic forces are left out.
-    amplitudes : array, shape (points,), or (begin, end)
+    amplitudes : array, shape (points,), or (first, last)
         Of the first harmonic of ``dof``, m, positive. A tuple of two: the path between them by arc length, past places
         where the amplitude turns back, with points as dense as it needs. An array: from each to the next.
     mode : int

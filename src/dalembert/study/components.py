@@ -110,6 +110,11 @@ def settings_of(kinds: Mapping[str, type], parts: Mapping[str, Any] | None = Non
     return key if varying else Annotated[key, AfterValidator(buildable)]
 
 
+def buildable_table(target: type) -> Any:
+    """Type of a key that takes the settings of one kind, which need not be named, checked by building them."""
+    return Annotated[table_of(target, default=True, varying=False), AfterValidator(buildable)]
+
+
 def buildable(table: KindTable) -> KindTable:
     """The table itself, once its dataclass has been built from it."""
     table.settings()

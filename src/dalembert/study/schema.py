@@ -5,7 +5,6 @@ from functools import cache
 from typing import Annotated, Any
 
 from pydantic import (
-    AfterValidator,
     BeforeValidator,
     Field,
     PlainValidator,
@@ -15,7 +14,7 @@ from pydantic import (
 )
 
 from dalembert.study.catalogue import balance
-from dalembert.study.components import buildable, table_of
+from dalembert.study.components import buildable_table
 from dalembert.study.data_table import BandsTable, DataTable
 from dalembert.study.experiments import ExperimentTable, SensorTable, wrong_experiments
 from dalembert.study.model_table import ModelTable, model_table
@@ -101,8 +100,7 @@ def study_file() -> type[StudyFile]:
     """The study file with all the kinds that there are."""
     fields: dict[str, Any] = {name: (task.table() | None, None) for name, task in TASKS.items()}
     fields |= {"model": (model_table(), ...), "solver": (solver() | None, None)}
-    settings: Any = Annotated[table_of(balance(), default=True, varying=False), AfterValidator(buildable)]
-    fields |= {"harmonic_balance": (settings | None, None)}
+    fields |= {"harmonic_balance": (buildable_table(balance()) | None, None)}
     return create_model("Study", __base__=StudyFile, __doc__=StudyFile.__doc__, **fields)
 
 

@@ -132,6 +132,11 @@ class Study:
         """The mechanism or the structure at a parameter vector (parameters,), by default at the first guesses."""
         return self.builder(**self.parameters.mapping(self.parameters.start if vector is None else vector))
 
+    def along(self, name: str) -> Callable[..., Any]:
+        """The model as a function of one parameter, the others at their first guesses."""
+        others = self.parameters.mapping(self.parameters.start)
+        return lambda **given: self.builder(**{**others, name: given[name]})
+
     def motion(self, end: float, vector: np.ndarray | None = None, times: np.ndarray | None = None) -> "Trajectory":
         """The mechanism's motion until ``end`` (s) at a parameter vector."""
         from dalembert.multibody import simulate

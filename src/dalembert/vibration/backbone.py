@@ -98,6 +98,16 @@ class Backbone(Result):
             raise InputError(unknown("observed degree of freedom", dof, self.dofs))
         return Amplitude(kind, self.orders).of(self.shapes[:, self.dofs.index(name)])
 
+    @property
+    def success(self) -> bool:
+        """Whether every one was found."""
+        return bool(self.converged.all())
+
+    @property
+    def status(self) -> str:
+        """How many were found, in a sentence."""
+        return self.summary().partition("\n")[0]
+
     def summary(self) -> str:
         """A few lines: points, and the ranges of frequency, damping and energy."""
         found = self.converged
@@ -127,7 +137,7 @@ class Backbone(Result):
         }
         variables["shapes"] = (("point", "dof", "coefficient"), self.shapes, {"units": "m"})
         names = json.dumps({name: getattr(self, name) for name in _NAMES})
-        provenance = json.dumps(dict(self.provenance), sort_keys=True)
+        provenance = json.dumps(dict(self.provenance))
         return xr.Dataset(variables, attrs={"format": self.FORMAT, "names": names, "provenance": provenance})
 
     @classmethod

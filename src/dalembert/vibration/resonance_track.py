@@ -67,6 +67,16 @@ class ResonanceTrack(Result):
             raise InputError("no peak was found, so none is the smallest; begin nearer to it, or with a whole curve")
         return float(self.values[np.nanargmin(self.amplitudes)])
 
+    @property
+    def success(self) -> bool:
+        """Whether every one was found."""
+        return bool(self.converged.all())
+
+    @property
+    def status(self) -> str:
+        """How many were found, in a sentence."""
+        return self.summary().partition("\n")[0]
+
     def summary(self) -> str:
         """A few lines: peaks found, the smallest and the largest, and what they cost."""
         found = self.converged
@@ -93,7 +103,7 @@ class ResonanceTrack(Result):
             name: (("value",), getattr(self, name), {"units": units[name]} if name in units else {}) for name in _ARRAYS
         }
         names = json.dumps({name: getattr(self, name) for name in _NAMES})
-        provenance = json.dumps(dict(self.provenance), sort_keys=True)
+        provenance = json.dumps(dict(self.provenance))
         return xr.Dataset(variables, attrs={"format": self.FORMAT, "names": names, "provenance": provenance})
 
     @classmethod

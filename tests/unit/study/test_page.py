@@ -32,6 +32,10 @@ TABLES = {
     "DesignTable": ["design"],
     "FrequencyResponseTable": ["frequency_response"],
     "FamilyTable": ["frequency_response"],
+    "CompareInTimeTable": ["frequency_response"],
+    "Newmark": ["frequency_response"],
+    "TrackResonanceTable": ["track_resonance"],
+    "BackboneTable": ["backbone"],
     "HarmonicBalance": ["harmonic_balance"],
     "StructureTable": [r"model\.structure"],
     "ReductionTable": [r"model\.structure"],
@@ -40,6 +44,7 @@ TABLES = {
     "dalembert__study__numbers__Grid__1": ["Numbers"],
     "dalembert__study__numbers__Grid__2": ["Numbers"],
     "dalembert__study__numbers__Grid__3": ["Numbers"],
+    "dalembert__study__numbers__Grid__4": ["Numbers"],
 }
 """Where the page tells of a table that is not one kind of several."""
 

@@ -237,6 +237,51 @@ def test_friction_is_identified_from_a_curve_and_bounds_it(write, tmp_path):
     assert [outcome.result.lower[0, 0], outcome.result.upper[0, 0]] == pytest.approx(sorted(ends))
 
 
+@pytest.mark.parametrize(
+    ("task", "told", "numbers"),
+    [
+        (
+            '[track_resonance]\nparameter = "preload"\nvalues = [2.0, 3.0]\nbetween = [0.1, 0.2]\ndof = "m2"\n',
+            "follows the peak of m2 (peak) over 2 values of preload, 2 to 3: 2 simulations",
+            {"preload", "peak of m2.x", "at"},
+        ),
+        (
+            "[backbone]\namplitudes = [0.5, 1.0, 2.0]\n",
+            "follows mode 1 from 0.5 to 2 m (3 amplitudes): 1 simulation",
+            {"frequency at first", "frequency at last", "largest damping"},
+        ),
+        (
+            "[backbone]\nbetween = [0.5, 1.0]\nmode = 2\n",
+            "follows mode 2 from 0.5 to 1 m (as many amplitudes as it needs): 1 simulation",
+            {"frequency at first", "frequency at last", "largest damping"},
+        ),
+        (
+            CURVE
+            + "backbone = { amplitudes = [0.5, 1.0] }\ncompare_in_time = { frequencies = [0.13], way = 'shooting', "
+            "method = { steps_per_period = 64 } }\n",
+            "follows the response from 0.12 to 0.16 Hz (5 points, 5 harmonics): 1 simulation",
+            {"peak of m1.x", "at"},
+        ),
+        (
+            CURVE + 'sweep = { parameter = "preload", values = { count = 3 } }\ndof = "m2"\namplitude = "rms"\n',
+            "follows the response from 0.12 to 0.16 Hz (5 points, 5 harmonics) for 3 values of preload: 3 simulations",
+            {"preload", "rms of m2", "at", "reduction"},
+        ),
+    ],
+)
+def test_each_task_runs_and_its_report_is_made_anew(write, tmp_path, task, told, numbers):
+    study = load(write(PARAMETERS + MODEL + task))
+    assert plan(study) == told
+    assert takes(study)
+    folder, outcome = run_study(study, tmp_path / "run")
+    assert outcome.success
+    assert set(outcome.best["values"]) == numbers
+    first = folder.report.read_text()
+    folder.report.unlink()
+    report_run(folder)
+    assert folder.report.read_text() == first
+
+
 def refused(write, text) -> str:
     """The one sentence about what is wrong, from reading or from the plan."""
     with pytest.raises(DalembertError) as error:
@@ -300,6 +345,19 @@ def refused(write, text) -> str:
         (
             ("frequencies = {", 'sweep = { parameter = "preloud", values = [1.0] }\nfrequencies = {'),
             "study.toml: [frequency_response], sweep: unknown parameter 'preloud'; did you mean 'preload'?",
+        ),
+        (
+            (CURVE, "[backbone]\nbetween = [0.0, 1.0]\n"),
+            "study.toml: [backbone]: the amplitude 0 m was given; expected positive ones",
+        ),
+        (
+            (CURVE, "[backbone]\n"),
+            "study.toml: [backbone]: neither amplitudes nor between is given; expected one of them",
+        ),
+        (
+            (CURVE, CURVE + 'compare_in_time = {}\nsweep = { parameter = "preload", values = [1.0] }\n'),
+            "study.toml: [frequency_response], compare_in_time: it belongs to one curve, and sweep makes several; "
+            "leave one of them out",
         ),
         (
             ("frequencies = {", 'dof = "m3"\nfrequencies = {'),

@@ -1,5 +1,6 @@
 """The tasks that a study file can ask for, by the names of their tables."""
 
+from dalembert.study.tasks.backbone import BackboneTask
 from dalembert.study.tasks.compare_integrators import CompareIntegrators
 from dalembert.study.tasks.design import Design
 from dalembert.study.tasks.frequency_response import FrequencyResponseTask
@@ -10,6 +11,7 @@ from dalembert.study.tasks.propagate import Propagate
 from dalembert.study.tasks.simulate import Simulate
 from dalembert.study.tasks.sweep import SweepTask
 from dalembert.study.tasks.task import Outcome, Task
+from dalembert.study.tasks.track_resonance import TrackResonance
 
 TASKS: dict[str, Task] = {
     "simulate": Simulate(),
@@ -21,6 +23,8 @@ TASKS: dict[str, Task] = {
     "design": Design(),
     "work_precision": CompareIntegrators(),
     "frequency_response": FrequencyResponseTask(),
+    "track_resonance": TrackResonance(),
+    "backbone": BackboneTask(),
 }
 
 __all__ = ["TASKS", "Outcome", "Task"]

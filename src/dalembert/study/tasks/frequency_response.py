@@ -5,14 +5,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import Field, create_model, model_validator
 
 from dalembert.errors import InputError, unknown
 from dalembert.study.numbers import fixed, samples
 from dalembert.study.table import Read, StudyTable, problem
+from dalembert.study.tasks import beside_curve
+from dalembert.study.tasks.backbone import BackboneTable
+from dalembert.study.tasks.beside_curve import beside, compare_in_time_table
 from dalembert.study.tasks.sweep import Along, values_along
 from dalembert.study.tasks.task import Outcome, Task
-from dalembert.study.tasks.wrong import unnamed
+from dalembert.study.tasks.wrong import needs_structure, unnamed
 
 if TYPE_CHECKING:
     from dalembert.study.duration import Effort
@@ -51,6 +54,8 @@ class FrequencyResponseTable(StudyTable):
     dof: str | None = Field(None, description="whose peak is told; the first observed one if not given")
     amplitude: str = Field("peak", description="'peak', 'rms', or 'harmonic 1' and so on")
     stability: bool = Field(False, description="whether to find which points are stable, and where that changes")
+    compare_in_time: Any = None
+    backbone: BackboneTable | None = Field(None, description="a nonlinear mode beside the curve")
     sweep: FamilyTable | None = Field(None, description="a curve for each value of a parameter")
 
     @model_validator(mode="after")
@@ -84,6 +89,7 @@ class Response(Outcome):
 
     study: "Study" = field(repr=False)
     result: Any
+    told: dict[str, Any] = field(default_factory=dict)
 
     @property
     def success(self) -> bool:
@@ -96,7 +102,8 @@ class Response(Outcome):
     @property
     def summary(self) -> str:
         told = "".join(f"\n{name}: {value:.6g}" for name, value in self.best.get("values", {}).items())
-        return self.result.summary() + told * (self.study.table.amplitude != "peak")
+        more = "".join(f"\n\n{one.summary()}" for one in self.told.values())
+        return self.result.summary() + told * (self.study.table.amplitude != "peak") + more
 
     @property
     def best(self) -> dict[str, Any]:
@@ -115,12 +122,13 @@ class Response(Outcome):
 
     def save(self, path: Path) -> None:
         self.result.save(path)
+        beside_curve.save(self.told, path)
 
     def report(self, path: Path) -> None:
         from dalembert.report import report
 
         about = self.study.file.study
-        options: Any = {"dofs": self._drawn(), "amplitude": self.study.table.amplitude}
+        options: Any = {"dofs": self._drawn(), "amplitude": self.study.table.amplitude, **self.told}
         text = self.study.content.decode()
         report(self.result, path, title=self.study.title, notes=about.description, study=text, **options)
 
@@ -138,20 +146,22 @@ class FrequencyResponseTask(Task):
     of_structures = True
 
     def table(self) -> type[StudyTable]:
-        return FrequencyResponseTable
+        compared = compare_in_time_table() | None, Field(None, description="points of the curve in time")
+        fields: dict[str, Any] = {"compare_in_time": compared}
+        doc = FrequencyResponseTable.__doc__
+        return create_model("FrequencyResponseTable", __base__=FrequencyResponseTable, __doc__=doc, **fields)
 
     def wrong(self, file: Any) -> list[str]:
-        if not file.vibrates:
-            return [
-                "[frequency_response] needs a structure: [[model.mass]] tables, matrices in [model.structure], or a "
-                "function that returns a VibrationSystem"
-            ]
         table = file.frequency_response
-        return (
-            []
-            if table.sweep is None
-            else unnamed([table.sweep.parameter], file.parameters, "[frequency_response], sweep")
-        )
+        wrong = needs_structure(file, "frequency_response")
+        if table.sweep is not None:
+            wrong += unnamed([table.sweep.parameter], file.parameters, "[frequency_response], sweep")
+            wrong += [
+                f"[frequency_response], {key}: it belongs to one curve, and sweep makes several; leave one of them out"
+                for key in ("compare_in_time", "backbone")
+                if getattr(table, key) is not None
+            ]
+        return wrong
 
     def plan(self, study: "Study") -> str:
         from dalembert.vibration.amplitudes import Amplitude
@@ -201,10 +211,11 @@ class FrequencyResponseTask(Task):
         }
         if table.sweep is None:
             emit("following", begin=float(table.along[0]), end=float(table.along[-1]))
-            return Response(study, frequency_response(study.system(), table.along, study.balance, **options))
+            system = study.system()
+            curve = frequency_response(system, table.along, study.balance, **options)
+            return Response(study, curve, beside(study, curve, system))
         name, values = table.sweep.parameter, _values(study)
         unit = next(item.unit for item in study.parameters if item.name == name)
-        fixed = study.parameters.mapping(study.parameters.start)
 
         def on_curve(row: int, curve: Any, failure: str | None) -> None:
             found = None if curve is None else int(curve.converged.sum())
@@ -212,7 +223,7 @@ class FrequencyResponseTask(Task):
             emit("swept", **details, points=found, failure=failure)
 
         family = frequency_responses(
-            lambda **given: study.builder(**{**fixed, **given}),
+            study.along(name),
             name,
             values,
             table.along,
@@ -226,7 +237,8 @@ class FrequencyResponseTask(Task):
     def load(self, study: "Study", path: Path) -> Outcome:
         from dalembert.vibration import CurveFamily, FrequencyCurve
 
-        return Response(study, (FrequencyCurve if study.table.sweep is None else CurveFamily).load(path))
+        kind = FrequencyCurve if study.table.sweep is None else CurveFamily
+        return Response(study, kind.load(path), beside_curve.load(path))
 
 
 def _observed(study: "Study") -> list[str] | None:

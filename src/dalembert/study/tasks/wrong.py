@@ -21,6 +21,16 @@ def needs_mechanism(file: Any, task: str) -> list[str]:
     return []
 
 
+def needs_structure(file: Any, task: str) -> list[str]:
+    """Sentence about a model that is no structure over frequency."""
+    if file.vibrates:
+        return []
+    return [
+        f"[{task}] needs a structure: [[model.mass]] tables, matrices in [model.structure], or a function that returns "
+        "a VibrationSystem"
+    ]
+
+
 def needs_samples(file: Any, task: str) -> list[str]:
     """Sentences about samples and channels of a response: of a mechanism over time, of a structure over frequency."""
     table, forward = getattr(file, task), file.model.forward is not None

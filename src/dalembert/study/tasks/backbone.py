@@ -1,0 +1,104 @@
+"""Backbone: frequency and damping of a nonlinear mode over its amplitude."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from dalembert.study.numbers import fixed, samples
+from dalembert.study.table import Read, StudyTable, problem
+from dalembert.study.tasks.result import ResultOutcome
+from dalembert.study.tasks.task import Outcome, Task
+from dalembert.study.tasks.wrong import needs_structure
+
+if TYPE_CHECKING:
+    from dalembert.study.duration import Effort
+    from dalembert.study.events import Emit
+    from dalembert.study.study import Study
+
+
+class BackboneTable(StudyTable):
+    """Follow a nonlinear mode of a structure over its amplitude."""
+
+    amplitudes: Annotated[tuple[float, ...], Read(samples("m"))] | None = Field(
+        None, description="of the first harmonic of dof: a list, or a range"
+    )
+    between: Annotated[list[Annotated[float, Read(fixed("m"))]], Field(min_length=2, max_length=2)] | None = Field(
+        None, description="two amplitudes, from the first to the second past places where the amplitude turns back"
+    )
+    mode: int = Field(1, ge=1, description="number among the linear modes at rest, where loaded contacts stick")
+    dof: str | None = Field(
+        None, description="by which the amplitude is measured; the one that moves most if not given"
+    )
+
+    @model_validator(mode="after")
+    def _check(self) -> "BackboneTable":
+        if (self.amplitudes is None) == (self.between is None):
+            given = "neither amplitudes nor between is" if self.between is None else "amplitudes and between are both"
+            raise problem(f"{given} given; expected one of them")
+        if not min(self.given) > 0:
+            raise problem(f"the amplitude {min(self.given):g} m was given; expected positive ones")
+        return self
+
+    @property
+    def given(self) -> tuple[float, ...]:
+        """The amplitudes, or the two ends."""
+        return tuple(self.amplitudes or self.between or ())
+
+    def follow(self, study: "Study", system: Any) -> Any:
+        """The mode of a system."""
+        from dalembert.vibration import backbone
+
+        along = self.given if self.amplitudes is None else np.array(self.given)
+        return backbone(system, along, self.mode, study.balance, dof=self.dof)
+
+
+class BackboneTask(Task):
+    """The task ``[backbone]``."""
+
+    of_structures = True
+
+    def table(self) -> type[StudyTable]:
+        return BackboneTable
+
+    def wrong(self, file: Any) -> list[str]:
+        return needs_structure(file, "backbone")
+
+    def plan(self, study: "Study") -> str:
+        from dalembert.vibration.equations import equations
+
+        table = study.table
+        equations(study.system(), study.balance)
+        count = "as many amplitudes as it needs" if table.between else f"{len(table.given)} amplitudes"
+        return f"follows mode {table.mode} from {table.given[0]:g} to {table.given[-1]:g} m ({count}): 1 simulation"
+
+    def effort(self, study: "Study") -> "Effort":
+        from dalembert.study.duration import Effort
+        from dalembert.vibration import backbone
+
+        table = study.table
+        count = None if table.between else len(table.given)
+
+        def once() -> None:
+            backbone(study.system(), np.array(table.given[:1]), table.mode, study.balance, dof=table.dof)
+
+        once()  # what there is to compile is compiled
+        return Effort(once, 1, count, count, "the first amplitude")
+
+    def run(self, study: "Study", emit: "Emit") -> Outcome:
+        return _outcome(study, study.table.follow(study, study.system()))
+
+    def load(self, study: "Study", path: Path) -> Outcome:
+        from dalembert.vibration import Backbone
+
+        return _outcome(study, Backbone.load(path))
+
+
+def _outcome(study: "Study", found: Any) -> Outcome:
+    """Outcome of a mode, with its frequencies at both ends and its largest damping."""
+    if not found.converged.any():
+        return ResultOutcome(study, found, {})
+    frequencies = found.frequencies[found.converged]
+    ends = {"frequency at first": float(frequencies[0]), "frequency at last": float(frequencies[-1])}
+    return ResultOutcome(study, found, {"values": ends | {"largest damping": float(np.nanmax(found.damping))}})

@@ -1,0 +1,68 @@
+"""What a study may ask for beside a response over frequency: points of it in time, and a nonlinear mode."""
+
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from pydantic import Field, create_model
+
+from dalembert.study.components import buildable_table
+from dalembert.study.numbers import samples
+from dalembert.study.table import Read, StudyTable
+
+if TYPE_CHECKING:
+    from dalembert.study.study import Study
+
+COMPARISON, BACKBONE = "time_comparison", "backbone"
+"""What there may be beside a curve: options of a report, and names of files beside the result, ``NAME.nc``."""
+
+
+class CompareInTimeTable(StudyTable):
+    """Points of a curve beside integration in time."""
+
+    frequencies: Annotated[tuple[float, ...], Read(samples("Hz"))] | None = Field(
+        None, description="the nearest points are taken; the largest response and some spread ones if not given"
+    )
+    way: Literal["long run", "shooting"] = Field("long run", description="how the periodic motion is found")
+    method: Any = None
+
+
+@cache
+def compare_in_time_table() -> type[CompareInTimeTable]:
+    """The table with the settings of the integration."""
+    from dalembert.vibration import Newmark
+
+    method = buildable_table(Newmark) | None, Field(None, description="settings of the integration")
+    fields: dict[str, Any] = {"method": method}
+    return create_model("CompareInTimeTable", __base__=CompareInTimeTable, __doc__=CompareInTimeTable.__doc__, **fields)
+
+
+def beside(study: "Study", curve: Any, system: Any) -> dict[str, Any]:
+    """What the task's table asks for beside a curve."""
+    from dalembert.vibration import compare_in_time
+
+    table, told = study.table, {}
+    if table.compare_in_time is not None and curve.converged.any():
+        asked = table.compare_in_time
+        method = None if asked.method is None else asked.method.settings()
+        told[COMPARISON] = compare_in_time(
+            system, curve, frequencies=asked.frequencies, method=method, way=asked.way, kind=table.amplitude
+        )
+    if table.backbone is not None:
+        told[BACKBONE] = table.backbone.follow(study, system)
+    return told
+
+
+def save(told: dict[str, Any], result: Path) -> None:
+    """Write each beside the result."""
+    for name, one in told.items():
+        one.save(result.with_name(f"{name}.nc"))
+
+
+def load(result: Path) -> dict[str, Any]:
+    """What was written beside a result."""
+    from dalembert.vibration import Backbone, TimeComparison
+
+    kinds = {COMPARISON: TimeComparison, BACKBONE: Backbone}
+    paths = {name: result.with_name(f"{name}.nc") for name in kinds}
+    return {name: kind.load(paths[name]) for name, kind in kinds.items() if paths[name].is_file()}

@@ -1,0 +1,104 @@
+"""Track resonance: the peak of a response over a parameter, without whole curves."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import numpy as np
+from pydantic import Field
+
+from dalembert.study.numbers import fixed
+from dalembert.study.table import Read, StudyTable
+from dalembert.study.tasks.result import ResultOutcome
+from dalembert.study.tasks.sweep import Along, values_along
+from dalembert.study.tasks.task import Outcome, Task
+from dalembert.study.tasks.wrong import needs_structure, unnamed
+
+if TYPE_CHECKING:
+    from dalembert.study.duration import Effort
+    from dalembert.study.events import Emit
+    from dalembert.study.study import Study
+
+
+class TrackResonanceTable(StudyTable):
+    """Follow the peak of a response over a parameter."""
+
+    parameter: str = Field(description="such as a preload or the level of a force; the others keep their first guesses")
+    values: Along = Field(description="in their order: a list, a range, or { count = 9 } between the bounds")
+    between: Annotated[list[Annotated[float, Read(fixed("Hz"))]], Field(min_length=2, max_length=2)] = Field(
+        description="frequencies around the peak at the first value"
+    )
+    dof: str = Field(description="whose peak is followed: 'm2', or 'm2.x'")
+    amplitude: str = Field("peak", description="'peak', 'rms', or 'harmonic 1' and so on")
+
+
+class TrackResonance(Task):
+    """The task ``[track_resonance]``."""
+
+    of_structures = True
+
+    def table(self) -> type[StudyTable]:
+        return TrackResonanceTable
+
+    def wrong(self, file: Any) -> list[str]:
+        where = "[track_resonance], parameter"
+        return needs_structure(file, "track_resonance") + unnamed(
+            [file.track_resonance.parameter], file.parameters, where
+        )
+
+    def plan(self, study: "Study") -> str:
+        from dalembert.vibration.amplitudes import Amplitude
+        from dalembert.vibration.equations import equations
+
+        table, lowered = study.table, equations(study.system(), study.balance).lowered
+        lowered.structure.dofs.index(table.dof)
+        Amplitude(table.amplitude, study.balance.orders)
+        values = _values(study)
+        return (
+            f"follows the peak of {table.dof} ({table.amplitude}) over {len(values)} values of {table.parameter}, "
+            f"{values[0]:g} to {values[-1]:g}: {len(values)} simulations"
+        )
+
+    def effort(self, study: "Study") -> "Effort":
+        from dalembert.study.duration import Effort
+
+        count = len(_values(study))
+        _track(study, _values(study)[:1])  # what there is to compile is compiled
+        return Effort(lambda: _track(study, _values(study)[:1]), 1, count, count, "the peak at the first value")
+
+    def run(self, study: "Study", emit: "Emit") -> Outcome:
+        return _outcome(study, _track(study, _values(study)))
+
+    def load(self, study: "Study", path: Path) -> Outcome:
+        from dalembert.vibration import ResonanceTrack
+
+        return _outcome(study, ResonanceTrack.load(path))
+
+
+def _values(study: "Study") -> np.ndarray:
+    """Values of the parameter, (values,)."""
+    return values_along(study.parameters, study.table.parameter, study.table.values)
+
+
+def _track(study: "Study", values: np.ndarray) -> Any:
+    from dalembert.vibration import track_resonance
+
+    table, name = study.table, study.table.parameter
+    return track_resonance(
+        study.along(name),
+        name,
+        values,
+        tuple(table.between),
+        study.balance,
+        dof=table.dof,
+        kind=table.amplitude,
+        unit=next(item.unit for item in study.parameters if item.name == name),
+    )
+
+
+def _outcome(study: "Study", track: Any) -> Outcome:
+    """Outcome of a track, with its smallest peak."""
+    if not track.converged.any():
+        return ResultOutcome(study, track, {})
+    best, row = track.best(), int(np.nanargmin(track.amplitudes))
+    peak = {f"{track.kind} of {track.dof}": float(track.amplitudes[row]), "at": float(track.frequencies[row])}
+    return ResultOutcome(study, track, {"values": {track.parameter: best, **peak}})

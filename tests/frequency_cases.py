@@ -5,7 +5,18 @@ from typing import Any
 
 import numpy as np
 
-from dalembert.structure import Dofs, Structure, lumped
+from dalembert.structure import (
+    Dofs,
+    Material,
+    Modal,
+    Structure,
+    box,
+    craig_bampton,
+    eigenmodes,
+    lumped,
+    mode_shapes,
+    solid,
+)
 from dalembert.vibration import (
     Elastic,
     FrequencyCurve,
@@ -16,6 +27,7 @@ from dalembert.vibration import (
     VibrationSystem,
     backbone,
     compare_in_time,
+    deformation,
     frequency_response,
     frequency_responses,
     track_resonance,
@@ -86,6 +98,26 @@ def _track(values: list[float], start: tuple[float, float], **settings: Any) -> 
     )
 
 
+def strip() -> VibrationSystem:
+    """A clamped strip with three feet that rub on the ground, reduced."""
+    full = solid(box((0.4, 0.1, 0.004), (6, 2, 1)), Material(210e9, 0.3, 7800.0)).fixed("left")
+    assert full.nodes is not None
+    feet = [full.nodes.nearest(place) for place in ((0.4, 0.0, 0.0), (0.4, 0.1, 0.0), (0.2, 0.05, 0.0))]
+    system = VibrationSystem(craig_bampton(full, feet, modes=6).with_damping(Modal(0.01)))
+    system.add(HarmonicForce(f"{feet[0]}.z", 2.0))
+    for number, foot in enumerate(feet, 1):
+        law = Elastic(1e4, 1e4)
+        contact = FrictionContact(f"foot {number}", foot, normal="z", friction=0.5, preload=2.0, law=law)
+        system.add(contact)
+    return system
+
+
+def _shaken() -> tuple[FrequencyCurve, Any]:
+    system = strip()
+    curve = frequency_response(system, np.linspace(60.0, 90.0, 7), FEW)
+    return curve, {"deformation": deformation(system, curve)}
+
+
 FREQUENCY_CASES: dict[str, Case] = {
     # ── forced response ─────────────────────────────────────────────────────────────────────────────────────────────
     "a response with friction": Case(
@@ -110,7 +142,10 @@ FREQUENCY_CASES: dict[str, Case] = {
     ),
     "a response of many masses": Case(
         lambda: frequency_response(_row(8), AROUND, FEW),
-        ("Drawn are the degrees of freedom that move most; the table has all 8 observed.", "Mean of all contacts."),
+        (
+            "Drawn are 6 degrees of freedom of the 8 observed, in the table those that move most.",
+            "Mean of all contacts.",
+        ),
         ("contact-shares",),
         {"amplitude": "rms"},
     ),
@@ -200,5 +235,30 @@ FREQUENCY_CASES: dict[str, Case] = {
     ),
     "a resonance that is not found": Case(
         lambda: _track([12.0, 0.0], (0.7 * HZ, 1.4 * HZ), iterations=2, halvings=0), ("! incomplete",)
+    ),
+    # ── shapes ──────────────────────────────────────────────────────────────────────────────────────────────────────
+    "a response with its deformed shape": Case(
+        _shaken,
+        (
+            "Displacements drawn",
+            "times as large as they are; thin lines: at rest.",
+            "Filled: the state at the phase shown; ring: the state held for longest;",
+            "% of all that friction takes, most of all.",
+        ),
+        ("frequency-curve", "deformation", "interface-map"),
+    ),
+    "a deformed shape alone": Case(
+        lambda: _shaken()[1]["deformation"],
+        ("The motion of the whole structure at one point of a response over frequency.", "slower than real"),
+        ("deformation", "interface-map"),
+    ),
+    "mode shapes": Case(
+        lambda: mode_shapes(strip().structure, eigenmodes(strip().structure, 13)),
+        (
+            "13 natural frequencies and shapes of the undamped structure.",
+            "The slider goes through the modes; thin lines: at rest; dark: nodal lines.",
+            "Drawn are the first 12.",
+        ),
+        ("mode-shapes",),
     ),
 }

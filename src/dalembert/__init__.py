@@ -35,9 +35,9 @@ _NAMES = {
     "optimize": "Firefly ImprovedParticleSwarm LeastSquares Minimiser ParticleSwarm ResponseSensitivity",
     "surrogate": "Adaptive ChebyshevPolynomial Surrogate Tensor TotalDegree",
     "structure": """
-        Dofs EigenModes Material Modal Nodes Patch Rayleigh ReducedStructure ReductionErrors
-        Structure box combine craig_bampton eigenmodes foot_pairs lumped pairs patched_plate plate
-        read_structure similarity solid tie write_structure
+        Dofs EigenModes Material Modal ModeShapes Nodes Patch Rayleigh ReducedStructure ReductionErrors
+        Structure box combine craig_bampton eigenmodes foot_pairs lumped mode_shapes node_motion pairs
+        patched_plate plate read_structure similarity solid tie write_structure
     """,
     "data": "Bands Measurements derivative read read_bands read_csv read_mat read_netcdf read_parquet read_uff",
     "inverse": """
@@ -62,6 +62,7 @@ _NAMES = {
         CubicSpring Gap BilinearStop UserElement HarmonicBalance FrequencyCurve FrequencyResponse frequency_response
         Backbone ResonanceTrack backbone floquet_multipliers track_resonance
         CurveFamily frequency_responses
+        Deformation deformation
         Newmark PeriodicMotion TimeComparison compare_in_time steady_state
     """,
 }

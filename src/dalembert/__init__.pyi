@@ -113,6 +113,7 @@ from dalembert.structure import Dofs as Dofs
 from dalembert.structure import EigenModes as EigenModes
 from dalembert.structure import Material as Material
 from dalembert.structure import Modal as Modal
+from dalembert.structure import ModeShapes as ModeShapes
 from dalembert.structure import Nodes as Nodes
 from dalembert.structure import Patch as Patch
 from dalembert.structure import Rayleigh as Rayleigh
@@ -125,6 +126,8 @@ from dalembert.structure import craig_bampton as craig_bampton
 from dalembert.structure import eigenmodes as eigenmodes
 from dalembert.structure import foot_pairs as foot_pairs
 from dalembert.structure import lumped as lumped
+from dalembert.structure import mode_shapes as mode_shapes
+from dalembert.structure import node_motion as node_motion
 from dalembert.structure import pairs as pairs
 from dalembert.structure import patched_plate as patched_plate
 from dalembert.structure import plate as plate
@@ -153,6 +156,7 @@ from dalembert.vibration import Backbone as Backbone
 from dalembert.vibration import BilinearStop as BilinearStop
 from dalembert.vibration import CubicSpring as CubicSpring
 from dalembert.vibration import CurveFamily as CurveFamily
+from dalembert.vibration import Deformation as Deformation
 from dalembert.vibration import Elastic as Elastic
 from dalembert.vibration import FrequencyCurve as FrequencyCurve
 from dalembert.vibration import FrequencyResponse as FrequencyResponse
@@ -171,6 +175,7 @@ from dalembert.vibration import UserElement as UserElement
 from dalembert.vibration import VibrationSystem as VibrationSystem
 from dalembert.vibration import backbone as backbone
 from dalembert.vibration import compare_in_time as compare_in_time
+from dalembert.vibration import deformation as deformation
 from dalembert.vibration import floquet_multipliers as floquet_multipliers
 from dalembert.vibration import frequency_response as frequency_response
 from dalembert.vibration import frequency_responses as frequency_responses

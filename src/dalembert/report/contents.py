@@ -9,7 +9,7 @@ from dalembert.report.charts.correlation import unknowns
 from dalembert.report.charts.methods import reference
 from dalembert.report.charts.resonance_peaks import value_text
 from dalembert.report.each import each
-from dalembert.report.focus import family_dofs
+from dalembert.report.focus import Look, family_dofs
 from dalembert.report.needs import (
     BandFitLike,
     ComparisonLike,
@@ -22,7 +22,9 @@ from dalembert.report.needs import (
 from dalembert.report.needs_frequency import (
     BackboneLike,
     CurveFamilyLike,
+    DeformationLike,
     FrequencyCurveLike,
+    ModeShapesLike,
     ResonanceTrackLike,
     TimeComparisonLike,
 )
@@ -34,6 +36,7 @@ from dalembert.report.sections import (
     Bounds,
     Comparison,
     Consistent,
+    Deformed,
     Designing,
     Diagnostics,
     Estimates,
@@ -47,6 +50,7 @@ from dalembert.report.sections import (
     Intervals,
     InTime,
     Methods,
+    Modes,
     Motion,
     NonlinearMode,
     Predicting,
@@ -83,6 +87,8 @@ Result = (
     | TimeComparisonLike
     | BackboneLike
     | ResonanceTrackLike
+    | DeformationLike
+    | ModeShapesLike
 )
 
 
@@ -101,6 +107,7 @@ def contents(
     amplitude: str = "peak",
     time_comparison: TimeComparisonLike | None = None,
     backbone: BackboneLike | None = None,
+    deformation: DeformationLike | None = None,
 ) -> list[Section]:
     """Sections of a report in reading order; the first is the headline.
 
@@ -137,10 +144,16 @@ def contents(
         case WorkPrecisionLike():
             sections = [headline.of_work_precision(result, title, notes), Integrators(result)]
         case FrequencyCurveLike():
-            own = [vibration_headlines.of_frequency_curve(result, dofs, amplitude, title, notes)]
+            look = Look.of(result, dofs, amplitude) if result.converged.any() else None
+            own = [vibration_headlines.of_frequency_curve(result, look, title, notes)]
             beside = [InTime(time_comparison, result)] if time_comparison is not None else []
             modes = [NonlinearMode(backbone)] if backbone is not None else []
-            sections = [*own, *_vibrating(result, dofs, amplitude, backbone), *modes, *beside, Balance(result)]
+            after = [*_deformed(deformation), *modes, *beside, Balance(result)]
+            sections = [*own, *_vibrating(look, backbone), *after]
+        case DeformationLike():
+            sections = [vibration_headlines.of_deformation(result, title, notes), Deformed(result)]
+        case ModeShapesLike():
+            sections = [vibration_headlines.of_modes(result, title, notes), Modes(result)]
         case TimeComparisonLike():
             sections = [vibration_headlines.of_time_comparison(result, title, notes), InTime(result)]
         case BackboneLike():
@@ -150,7 +163,7 @@ def contents(
         case CurveFamilyLike():
             looked = dofs or family_dofs(result, amplitude)
             own = [vibration_headlines.of_family(result, looked, amplitude, title, notes)]
-            sections = [*own, *_family(result, looked, amplitude)]
+            sections = [*own, *_family(result, looked, amplitude), *_deformed(deformation)]
         case TrajectoryLike():
             moving = each(result)
             shown = [*_motion(moving, points), Diagnostics(moving)]
@@ -166,14 +179,16 @@ def contents(
     return [*sections, Provenance(facts, study)] if facts or study else sections
 
 
-def _vibrating(
-    curve: FrequencyCurveLike, dofs: tuple[str, ...], amplitude: str, backbone: BackboneLike | None
-) -> list[Section]:
+def _vibrating(look: Look | None, backbone: BackboneLike | None) -> list[Section]:
     """The sections on a response over frequency, where any of it was found."""
-    if not curve.converged.any():
+    if look is None:
         return []
-    elements = [Friction(curve, dofs, amplitude)] if curve.coordinates else []
-    return [ForcedResponse(curve, dofs, amplitude, backbone), *elements, Harmonics(curve, dofs, amplitude)]
+    elements = [Friction(look)] if look.curve.coordinates else []
+    return [ForcedResponse(look, backbone), *elements, Harmonics(look)]
+
+
+def _deformed(deformation: DeformationLike | None) -> list[Section]:
+    return [] if deformation is None else [Deformed(deformation)]
 
 
 def _family(family: CurveFamilyLike, dofs: tuple[str, ...], amplitude: str) -> list[Section]:
@@ -182,7 +197,7 @@ def _family(family: CurveFamilyLike, dofs: tuple[str, ...], amplitude: str) -> l
         return []
     best = best_curve(family, dofs[0], amplitude)
     lead = f"With {family.parameter} = {value_text(family, family.best(dofs[0], amplitude))}, "
-    contacts = [Friction(best, dofs[:1], amplitude, lead)] if best.coordinates else []
+    contacts = [Friction(Look.of(best, dofs[:1], amplitude), lead)] if best.coordinates else []
     return [Family(family, dofs, amplitude), *contacts]
 
 

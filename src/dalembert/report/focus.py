@@ -1,6 +1,7 @@
 """What of a response over frequency is looked at: which degrees of freedom, which contacts, which point."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -29,35 +30,49 @@ def size_label(kind: str) -> str:
     return {"peak": "amplitude", "rms": "rms"}.get(kind, f"amplitude of {kind}")
 
 
-def largest(curve: FrequencyCurveLike, dof: str, kind: str = "peak") -> float:
-    """Largest amplitude of a degree of freedom among the points that were found; 0 if none was."""
-    return float(np.nanmax(curve.amplitude(dof, kind)[curve.converged], initial=0.0))
+@dataclass(frozen=True, eq=False)
+class Look:
+    """What of a curve is looked at.
+
+    Parameters
+    ----------
+    curve : FrequencyCurve
+        With at least one point that was found.
+    dofs : tuple of str
+    kind : str
+        Of amplitude.
+    dof : str
+        The one of the dofs that moves most.
+    point : int
+        Its peak.
+    """
+
+    curve: FrequencyCurveLike
+    dofs: tuple[str, ...]
+    kind: str
+    dof: str
+    point: int
+
+    @classmethod
+    def of(cls, curve: FrequencyCurveLike, dofs: Sequence[str] = (), kind: str = "peak") -> "Look":
+        """At degrees of freedom that are given, or those that move most; the peak is that of the first to move most."""
+        chosen = tuple(dofs) or movers(curve)
+        sizes = {dof: np.where(curve.converged, curve.amplitude(dof, kind), np.nan) for dof in chosen}
+        dof = max(sizes, key=lambda name: float(np.nanmax(sizes[name])))
+        return cls(curve, chosen, kind, dof, int(np.nanargmax(sizes[dof])))
 
 
-def chosen_dofs(curve: FrequencyCurveLike, dofs: Sequence[str] | None = None, kind: str = "peak") -> tuple[str, ...]:
-    """The degrees of freedom given, or those that move most, displacements before rotations and modes."""
-    if dofs:
-        return tuple(dofs)
+def movers(curve: FrequencyCurveLike, most: int = MOST) -> tuple[str, ...]:
+    """The degrees of freedom that move most, by their rms; displacements before rotations and modes."""
     kinds = [[dof for dof in curve.dofs if unit_of(dof) == unit] for unit in dict.fromkeys(UNITS.values())]
     own = next(filter(None, kinds), list(curve.dofs))
-    moving = set(foremost({dof: largest(curve, dof, kind) for dof in own}))
-    return tuple(dof for dof in own if dof in moving)
-
-
-def main_dof(curve: FrequencyCurveLike, dofs: Sequence[str] | None = None, kind: str = "peak") -> str:
-    """The one of some degrees of freedom that moves most, the first where several do."""
-    return max(chosen_dofs(curve, dofs, kind), key=lambda dof: largest(curve, dof, kind))
+    return foremost({dof: float(np.nanmax(curve.amplitude(dof, "rms")[curve.converged])) for dof in own}, most)
 
 
 def family_dofs(family: CurveFamilyLike, kind: str = "peak") -> tuple[str, ...]:
     """The degree of freedom that moves most in the first curve there is; none where there is none."""
     found = (curve for curve in family.curves if curve is not None and curve.converged.any())
-    return next(((main_dof(curve, kind=kind),) for curve in found), ())
-
-
-def at_peak(curve: FrequencyCurveLike, dof: str, kind: str = "peak") -> int:
-    """Number of the point with the largest amplitude."""
-    return int(np.nanargmax(np.where(curve.converged, curve.amplitude(dof, kind), np.nan)))
+    return next(((Look.of(curve, kind=kind).dof,) for curve in found), ())
 
 
 def foremost(sizes: dict[str, float], most: int = MOST) -> tuple[str, ...]:

@@ -18,7 +18,7 @@ from dalembert.files import write_text
 from dalembert.report.contents import Result, contents
 from dalembert.report.look import DARK, FONT, LIGHT, exchanged, template
 from dalembert.report.needs import TrajectoryLike
-from dalembert.report.needs_frequency import BackboneLike, TimeComparisonLike
+from dalembert.report.needs_frequency import BackboneLike, DeformationLike, TimeComparisonLike
 from dalembert.report.needs_telling import PredictionLike, ProfilesLike
 from dalembert.report.plot import SAFE
 
@@ -39,6 +39,7 @@ def report(
     amplitude: str = "peak",
     time_comparison: TimeComparisonLike | None = None,
     backbone: BackboneLike | None = None,
+    deformation: DeformationLike | None = None,
 ) -> Path:
     """Write an HTML report that opens offline in any browser, in its light or dark, and asks nothing of the network.
 
@@ -73,6 +74,8 @@ def report(
         Points of a response over frequency beside integration in time, for a section of its report.
     backbone : Backbone, optional
         A nonlinear mode, drawn with a response over frequency and for a section of its report.
+    deformation : Deformation, optional
+        The whole structure at one point of a response over frequency, for a section of its report.
 
     Returns
     -------
@@ -99,6 +102,7 @@ def report(
         amplitude=amplitude,
         time_comparison=time_comparison,
         backbone=backbone,
+        deformation=deformation,
     )
     environment = _environment()
     scripts = [Markup(get_plotlyjs()), Markup(_packaged("page.js"))]

@@ -7,6 +7,8 @@ from dalembert.structure.eigenmodes import EigenModes, eigenmodes, similarity
 from dalembert.structure.joining import combine, pairs, tie
 from dalembert.structure.lumped import lumped
 from dalembert.structure.material import Material
+from dalembert.structure.mode_shapes import ModeShapes, mode_shapes
+from dalembert.structure.node_motion import node_motion
 from dalembert.structure.nodes import Nodes
 from dalembert.structure.patched_plate import Patch, foot_pairs, patched_plate
 from dalembert.structure.plate import plate
@@ -19,6 +21,7 @@ __all__ = [
     "EigenModes",
     "Material",
     "Modal",
+    "ModeShapes",
     "Nodes",
     "Patch",
     "Rayleigh",
@@ -31,6 +34,8 @@ __all__ = [
     "eigenmodes",
     "foot_pairs",
     "lumped",
+    "mode_shapes",
+    "node_motion",
     "pairs",
     "patched_plate",
     "plate",

@@ -96,7 +96,7 @@ def tie(structure: Structure, joined: Sequence[tuple[str, str]]) -> Structure:
     structure : Structure
     joined : sequence of (kept node, node)
         The second one of each pair moves with the first, in every direction that both have, and leaves the structure;
-        in sets of nodes the first takes its place.
+        in sets of nodes and faces the first takes its place.
 
     Raises
     ------
@@ -122,7 +122,9 @@ def tie(structure: Structure, joined: Sequence[tuple[str, str]]) -> Structure:
     nodes = structure.nodes
     if nodes is not None:
         sets = {name: tuple(dict.fromkeys(keeper.get(node, node) for node in own)) for name, own in nodes.sets.items()}
-        nodes = replace(nodes, sets=sets)
+        rows = {name: row for row, name in enumerate(nodes.names)}
+        own = np.array([rows[keeper.get(name, name)] for name in nodes.names], dtype=int)
+        nodes = replace(nodes, sets=sets, faces=None if nodes.faces is None else own[nodes.faces])
     return replace(
         structure,
         mass=tied(structure.mass),

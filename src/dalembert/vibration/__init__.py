@@ -4,6 +4,7 @@ from dalembert.vibration.backbone import Backbone
 from dalembert.vibration.contacts import Elastic, FrictionContact, Iwan, Rigid
 from dalembert.vibration.curve import FrequencyCurve, Peak
 from dalembert.vibration.curve_family import CurveFamily, Envelope, frequency_responses
+from dalembert.vibration.deformation import Deformation, deformation
 from dalembert.vibration.floquet import floquet_multipliers
 from dalembert.vibration.forward_model import FrequencyResponse
 from dalembert.vibration.frequency_response import frequency_response
@@ -23,6 +24,7 @@ __all__ = [
     "BilinearStop",
     "CubicSpring",
     "CurveFamily",
+    "Deformation",
     "Elastic",
     "Envelope",
     "FrequencyCurve",
@@ -43,6 +45,7 @@ __all__ = [
     "VibrationSystem",
     "backbone",
     "compare_in_time",
+    "deformation",
     "floquet_multipliers",
     "frequency_response",
     "frequency_responses",

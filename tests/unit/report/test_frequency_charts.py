@@ -5,17 +5,21 @@ import pytest
 
 from dalembert.errors import InputError
 from dalembert.report import charts, figures, report
-from dalembert.report.focus import at_peak, chosen_dofs, main_dof
+from dalembert.report.charts.contact_states import COLOURS, STATES
+from dalembert.report.focus import Look, movers
+from dalembert.report.prefixes import prefixed
+from dalembert.structure import eigenmodes, mode_shapes
 from dalembert.vibration import (
     HarmonicBalance,
     Newmark,
     backbone,
     compare_in_time,
+    deformation,
     frequency_response,
     frequency_responses,
     track_resonance,
 )
-from frequency_cases import damped
+from frequency_cases import damped, strip
 from pages import read_page
 from support import says
 from vibrating_systems import chain, duffing, two_masses
@@ -86,7 +90,7 @@ def test_what_is_unstable_is_dashed():
 
 
 def test_the_loop_encloses_the_energy_of_a_period(curve):
-    point = at_peak(curve, "m2.x")
+    point = Look.of(curve, ["m2.x"]).point
     (loop,) = charts.hysteresis(curve, point).data
     assert loop.name == "slider.x"
     area = -np.sum((loop.y[1:] + loop.y[:-1]) / 2 * -np.diff(loop.x))
@@ -94,7 +98,7 @@ def test_the_loop_encloses_the_energy_of_a_period(curve):
 
 
 def test_states_over_a_period_and_over_frequency(curve):
-    point = at_peak(curve, "m2.x")
+    point = Look.of(curve, ["m2.x"]).point
     (states,) = charts.contact_states(curve, point).data
     np.testing.assert_array_equal(states.z, curve.states[point])
     assert list(states.y) == ["slider"]
@@ -118,7 +122,7 @@ def test_the_page_has_the_numbers(curve, tmp_path):
     peak = curve.peak("m2", "harmonic 1")
     assert (float(row[1]), float(row[2])) == (peak.amplitude, peak.frequency)
     (contact,) = page.table("contacts")[1:]
-    point = at_peak(curve, "m2.x", "harmonic 1")
+    point = Look.of(curve, ["m2.x"], "harmonic 1").point
     assert float(contact[4]) == curve.dissipated("slider.x")[point]
     assert sum(map(float, contact[1:4])) == pytest.approx(100.0)
     sizes = {row[0]: float(row[1]) for row in page.table("harmonics")[1:]}
@@ -141,8 +145,8 @@ def test_a_curve_of_which_nothing_was_found_has_its_diagnostics_alone():
 
 
 def test_the_degree_of_freedom_that_moves_most_is_looked_at(curve):
-    assert chosen_dofs(curve) == ("m1.x", "m2.x")
-    assert main_dof(curve) == max(curve.dofs, key=lambda dof: curve.amplitude(dof).max())
+    assert movers(curve) == ("m1.x", "m2.x")
+    assert Look.of(curve).dof == max(curve.dofs, key=lambda dof: curve.amplitude(dof).max())
 
 
 @pytest.fixture(scope="module")
@@ -208,3 +212,44 @@ def test_a_resonance_over_a_parameter(tmp_path):
     assert list(drawn["smallest, at 8 N"].y) == [track.amplitudes.min()]
     rows = read_page(track.report(tmp_path / "a.html")).table("resonance")
     assert rows[0] == ["preload (N)", "peak (m)", "at frequency (Hz)", "points balanced"]
+
+
+@pytest.fixture(scope="module")
+def shape():
+    system = strip()
+    method = HarmonicBalance(harmonics=3, samples=256)
+    return deformation(system, frequency_response(system, np.linspace(60.0, 90.0, 7), method))
+
+
+def test_the_deformed_shape_goes_through_its_period(shape):
+    figure = charts.deformation(shape)
+    outline, body = figure.data
+    assert len(figure.frames) == 24
+    motion = shape.motion(np.array([np.pi]))[0]
+    largest = np.linalg.norm(shape.motion(2 * np.pi * np.arange(24) / 24), axis=2).max(axis=0)
+    factor = 0.1 * np.linalg.norm(np.ptp(shape.places, axis=0)) / largest.max()
+    np.testing.assert_allclose(figure.frames[12].data[0].z, shape.places[:, 2] + factor * motion[:, 2], atol=1e-6)
+    assert len(body.i) == 2 * len(shape.faces)
+    np.testing.assert_allclose(np.max(body.intensity), prefixed(largest.max(), "m")[0] * largest.max(), rtol=1e-6)
+    assert np.isnan(outline.x[2::3]).all()
+    assert figure.layout.meta["labels"][12] == "180"
+    assert figure.layout.meta["endless"]
+
+
+def test_the_interface_map_shows_the_state_of_each_phase(shape):
+    figure = charts.interface_map(shape)
+    colours = np.array([COLOURS[state] for state in STATES])
+    (contacts,) = (trace for trace in figure.data if trace.text is not None)
+    np.testing.assert_allclose(contacts.x, shape.contact_places[:, 0])
+    assert list(contacts.marker.color) == list(colours[shape.states[:, 0]])
+    assert list(figure.frames[8].data[0].marker.color) == list(colours[shape.states[:, 16]])
+    assert figure.layout.xaxis.title.text == "x (m)"
+
+
+def test_modes_are_drawn_one_after_another():
+    structure = strip().structure
+    modes = mode_shapes(structure, eigenmodes(structure, 3))
+    figure = charts.mode_shapes(modes)
+    assert [frame.name for frame in figure.frames] == ["0", "1", "2"]
+    assert figure.layout.meta["labels"][0] == f"1: {modes.frequencies[0]:.6g} Hz"
+    np.testing.assert_allclose(figure.frames[1].data[0].intensity, np.linalg.norm(modes.shapes[1], axis=1), rtol=1e-6)

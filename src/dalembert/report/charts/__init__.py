@@ -6,6 +6,7 @@ from dalembert.report.charts.contact_states import contact_shares, contact_state
 from dalembert.report.charts.convergence import convergence
 from dalembert.report.charts.correlation import correlation
 from dalembert.report.charts.curve_family import curve_family
+from dalembert.report.charts.deformation import deformation
 from dalembert.report.charts.designs import horizons, ranking
 from dalembert.report.charts.dissipation import dissipation
 from dalembert.report.charts.energies import energies
@@ -13,10 +14,12 @@ from dalembert.report.charts.frequency_curve import frequency_curve
 from dalembert.report.charts.gaps import gaps
 from dalembert.report.charts.harmonic_content import harmonic_content
 from dalembert.report.charts.hysteresis import hysteresis
+from dalembert.report.charts.interface_map import interface_map
 from dalembert.report.charts.intervals import intervals
 from dalembert.report.charts.l_curve import l_curve
 from dalembert.report.charts.mechanism import mechanism
 from dalembert.report.charts.methods import differences, methods
+from dalembert.report.charts.mode_shapes import mode_shapes
 from dalembert.report.charts.newton import newton
 from dalembert.report.charts.parameters import parameters
 from dalembert.report.charts.paving import paving
@@ -42,6 +45,7 @@ __all__ = [
     "convergence",
     "correlation",
     "curve_family",
+    "deformation",
     "differences",
     "dissipation",
     "energies",
@@ -51,10 +55,12 @@ __all__ = [
     "harmonic_content",
     "horizons",
     "hysteresis",
+    "interface_map",
     "intervals",
     "l_curve",
     "mechanism",
     "methods",
+    "mode_shapes",
     "newton",
     "parameters",
     "paving",

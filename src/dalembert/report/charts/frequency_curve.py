@@ -8,7 +8,7 @@ import plotly.graph_objects as go
 
 from dalembert.report.charts.backbone import backbone_line
 from dalembert.report.charts.logarithm import logarithmic, positive
-from dalembert.report.focus import chosen_dofs, main_dof, marked, size_label, unit_of, unstable
+from dalembert.report.focus import marked, movers, size_label, unit_of, unstable
 from dalembert.report.look import LIGHT, plain, themed
 from dalembert.report.needs_frequency import BackboneLike, FrequencyCurveLike
 from dalembert.report.prefixes import prefixed
@@ -52,7 +52,7 @@ def frequency_curve(
     InputError
         For a degree of freedom that was not observed, or another kind.
     """
-    chosen = chosen_dofs(curve, dofs, kind)
+    chosen = tuple(dofs or movers(curve))
     sizes = {dof: curve.amplitude(dof, kind) for dof in chosen}
     factor, unit = scale(sizes)
     figure = go.Figure()
@@ -68,7 +68,8 @@ def frequency_curve(
         )
     _lost(figure, curve, {dof: factor * size for dof, size in sizes.items()})
     if mode is not None:
-        figure.add_trace(backbone_line(mode, main_dof(curve, chosen, kind), kind, factor))
+        most = max(sizes, key=lambda dof: float(np.nanmax(sizes[dof], initial=0.0)))
+        figure.add_trace(backbone_line(mode, most, kind, factor))
     themed(figure, title, height=440)
     figure.update_xaxes(title="frequency (Hz)")
     return figure.update_yaxes(title=labelled(size_label(kind), unit), **_axis(figure)).update_layout(showlegend=True)

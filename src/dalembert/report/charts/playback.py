@@ -111,5 +111,14 @@ def controls(playback: Playback) -> dict[str, Any]:
                 "pad": {"t": 4},
             }
         ],
-        "meta": {"labels": playback.labels, "seconds": playback.seconds, "pace": playback.pace},
+        "meta": {
+            "labels": playback.labels,
+            "seconds": playback.seconds,
+            "pace": playback.pace,
+            "before": "t = ",
+            "after": " s",
+            "asks": "Time in seconds",
+            "endless": False,
+            "redraw": False,
+        },
     }

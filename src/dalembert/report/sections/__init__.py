@@ -4,6 +4,7 @@ from dalembert.report.sections.balance import Balance
 from dalembert.report.sections.bounds import Bounds
 from dalembert.report.sections.comparison import Comparison
 from dalembert.report.sections.consistent import Consistent
+from dalembert.report.sections.deformed import Deformed
 from dalembert.report.sections.designing import Designing
 from dalembert.report.sections.diagnostics import Diagnostics
 from dalembert.report.sections.estimates import Estimates
@@ -19,6 +20,7 @@ from dalembert.report.sections.in_time import InTime
 from dalembert.report.sections.integrators import Integrators
 from dalembert.report.sections.intervals import Intervals
 from dalembert.report.sections.methods import Methods
+from dalembert.report.sections.modes import Modes
 from dalembert.report.sections.motion import Motion
 from dalembert.report.sections.nonlinear_mode import NonlinearMode
 from dalembert.report.sections.predicting import Predicting
@@ -36,6 +38,7 @@ __all__ = [
     "Bounds",
     "Comparison",
     "Consistent",
+    "Deformed",
     "Designing",
     "Diagnostics",
     "Estimates",
@@ -51,6 +54,7 @@ __all__ = [
     "Integrators",
     "Intervals",
     "Methods",
+    "Modes",
     "Motion",
     "NonlinearMode",
     "Predicting",

@@ -7,7 +7,7 @@ import numpy as np
 
 from dalembert.report import charts
 from dalembert.report.digits import shown
-from dalembert.report.focus import at_peak, chosen_dofs, marked, size_label, unit_of, unstable
+from dalembert.report.focus import Look, marked, movers, size_label, unit_of, unstable
 from dalembert.report.needs_frequency import BackboneLike, FrequencyCurveLike
 from dalembert.report.plot import Plot
 from dalembert.report.quantities import labelled
@@ -15,6 +15,7 @@ from dalembert.report.sections.findings import Findings
 from dalembert.report.table import Table, cell
 
 MOST_NAMED = 4
+MOST_ROWS = 20
 
 
 @dataclass(frozen=True)
@@ -22,14 +23,12 @@ class ForcedResponse(Findings):
     """The curve of the degrees of freedom looked at, and a table of the peaks of all."""
 
     heading: ClassVar[str] = "Forced response"
-    curve: FrequencyCurveLike
-    dofs: tuple[str, ...] = ()
-    kind: str = "peak"
+    look: Look
     mode: BackboneLike | None = None
 
     @property
     def sentences(self) -> tuple[str, ...]:
-        curve = self.curve
+        curve = self.look.curve
         folds = [shown(float(curve.frequencies[point])) for point in marked(curve).get("fold", [])]
         told = []
         if folds:
@@ -45,32 +44,33 @@ class ForcedResponse(Findings):
                 f"{int(bad.sum())} of {len(bad)} points, between {shown(float(between.min()))} and "
                 f"{shown(float(between.max()))} Hz, are unstable: the structure does not stay in these motions."
             )
-        left = [dof for dof in curve.dofs if dof not in chosen_dofs(curve, self.dofs, self.kind)]
-        if left:
+        if len(self.look.dofs) < len(curve.dofs):
+            observed = f"of the {len(curve.dofs)} observed"
             told.append(
-                f"Drawn are the degrees of freedom that move most; the table has all {len(curve.dofs)} observed."
+                f"Drawn are {len(self.look.dofs)} degrees of freedom {observed}, in the table those that move most."
             )
         return tuple(told)
 
     @property
     def wide(self) -> tuple[Plot, ...]:
         how = "Each point is a periodic motion."
-        how += " Symbols: where the path turns back or changes its stability." if marked(self.curve) else ""
-        how += " Dashed: unstable motions." if unstable(self.curve).any() else ""
-        how += " Crosses: not found." if not self.curve.converged.all() else ""
+        how += " Symbols: where the path turns back or changes its stability." if marked(self.look.curve) else ""
+        how += " Dashed: unstable motions." if unstable(self.look.curve).any() else ""
+        how += " Crosses: not found." if not self.look.curve.converged.all() else ""
         how += " Dotted: the nonlinear mode without force." if self.mode is not None else ""
-        figure = charts.frequency_curve(self.curve, self.dofs, kind=self.kind, mode=self.mode)
+        figure = charts.frequency_curve(self.look.curve, self.look.dofs, kind=self.look.kind, mode=self.mode)
         return (Plot("frequency-curve", figure, how),)
 
     @property
     def tables(self) -> tuple[Table, ...]:
-        return (_peaks(self.curve, self.kind), *_events(self.curve, chosen_dofs(self.curve, self.dofs, self.kind)))
+        return (_peaks(self.look), *_events(self.look.curve, self.look.dofs))
 
 
-def _peaks(curve: FrequencyCurveLike, kind: str) -> Table:
-    rows = []
-    for dof in curve.dofs:
-        peak, point = curve.peak(dof, kind), at_peak(curve, dof, kind)
+def _peaks(look: Look) -> Table:
+    curve, kind, rows = look.curve, look.kind, []
+    tabled = {*look.dofs, *(curve.dofs if len(curve.dofs) <= MOST_ROWS else movers(curve, MOST_ROWS))}
+    for dof in filter(tabled.__contains__, curve.dofs):
+        peak, point = curve.peak(dof, kind), Look.of(curve, [dof], kind).point
         first = curve.amplitude(dof, f"harmonic {curve.orders[int(curve.orders[0] == 0)]}")[point]
         rows.append(
             (

@@ -8,7 +8,7 @@ import numpy as np
 from dalembert.report import charts
 from dalembert.report.charts.contact_states import shares
 from dalembert.report.digits import shown
-from dalembert.report.focus import at_peak, dissipation_of, main_dof, of_contacts, of_springs
+from dalembert.report.focus import Look, dissipation_of, of_contacts, of_springs
 from dalembert.report.look import plain
 from dalembert.report.needs_frequency import FrequencyCurveLike
 from dalembert.report.plot import Plot
@@ -23,19 +23,13 @@ class Friction(Findings):
     """Hysteresis loops, states and energies of contacts, and the forces of springs, at the peak."""
 
     heading: ClassVar[str] = "Contacts and springs"
-    curve: FrequencyCurveLike
-    dofs: tuple[str, ...] = ()
-    kind: str = "peak"
+    look: Look
     lead: str = ""
 
     @property
-    def point(self) -> int:
-        return at_peak(self.curve, main_dof(self.curve, self.dofs, self.kind), self.kind)
-
-    @property
     def sentences(self) -> tuple[str, ...]:
-        curve, point = self.curve, self.point
-        at = f"the peak of {main_dof(curve, self.dofs, self.kind)} at {shown(float(curve.frequencies[point]))} Hz"
+        curve, point = self.look.curve, self.look.point
+        at = f"the peak of {self.look.dof} at {shown(float(curve.frequencies[point]))} Hz"
         if not curve.contacts:
             return (_after(self.lead, f"Drawn for {at}."),)
         part = {name: float(share.mean()) for name, share in shares(curve.states[point]).items()}
@@ -49,20 +43,20 @@ class Friction(Findings):
 
     @property
     def wide(self) -> tuple[Plot, ...]:
-        if not self.curve.contacts:
+        if not self.look.curve.contacts:
             return ()
-        at = _at(self.curve, self.point)
+        at = _at(self.look.curve, self.look.point)
         return (
             Plot(
                 "contact-states",
-                charts.contact_states(self.curve, self.point, title=f"Contact states over a period at {at}"),
+                charts.contact_states(self.look.curve, self.look.point, title=f"Contact states over a period at {at}"),
                 "A row for each contact; phase 0 is the crest of a force without phase.",
             ),
         )
 
     @property
     def pairs(self) -> tuple[Plot, ...]:
-        curve, point, at = self.curve, self.point, _at(self.curve, self.point)
+        curve, point, at = self.look.curve, self.look.point, _at(self.look.curve, self.look.point)
         found = []
         if curve.contacts:
             loops = charts.hysteresis(curve, point, title=f"Hysteresis loops at {at}")
@@ -81,7 +75,7 @@ class Friction(Findings):
 
     @property
     def tables(self) -> tuple[Table, ...]:
-        curve, point = self.curve, self.point
+        curve, point = self.look.curve, self.look.point
         if not curve.contacts:
             return ()
         parts, energies = shares(curve.states[point]), dissipation_of(curve)

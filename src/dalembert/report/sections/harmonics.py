@@ -6,8 +6,7 @@ from typing import ClassVar
 from dalembert.report import charts
 from dalembert.report.charts.harmonic_content import by_order
 from dalembert.report.digits import shown
-from dalembert.report.focus import at_peak, main_dof, unit_of
-from dalembert.report.needs_frequency import FrequencyCurveLike
+from dalembert.report.focus import Look, unit_of
 from dalembert.report.plot import Plot
 from dalembert.report.quantities import labelled
 from dalembert.report.sections.findings import Findings
@@ -22,18 +21,12 @@ class Harmonics(Findings):
     """Amplitude of each harmonic over frequency, and at the peak."""
 
     heading: ClassVar[str] = "Harmonics"
-    curve: FrequencyCurveLike
-    dofs: tuple[str, ...] = ()
-    kind: str = "peak"
-
-    @property
-    def dof(self) -> str:
-        return main_dof(self.curve, self.dofs, self.kind)
+    look: Look
 
     @property
     def _peak(self) -> dict[int, float]:
-        point = at_peak(self.curve, self.dof, self.kind)
-        return {order: float(size[point]) for order, size in by_order(self.curve, self.dof).items()}
+        sizes = by_order(self.look.curve, self.look.dof)
+        return {order: float(size[self.look.point]) for order, size in sizes.items()}
 
     @property
     def sentences(self) -> tuple[str, ...]:
@@ -50,7 +43,7 @@ class Harmonics(Findings):
     @property
     def wide(self) -> tuple[Plot, ...]:
         how = "Harmonics that stay below a millionth of the largest are left out."
-        return (Plot("harmonic-content", charts.harmonic_content(self.curve, self.dof), how),)
+        return (Plot("harmonic-content", charts.harmonic_content(self.look.curve, self.look.dof), how),)
 
     @property
     def tables(self) -> tuple[Table, ...]:
@@ -64,5 +57,5 @@ class Harmonics(Findings):
             )
             for order, size in sizes.items()
         ]
-        columns = ("part of the motion", labelled("amplitude", unit_of(self.dof)), "of the largest (%)")
-        return (Table("harmonics", f"Harmonics of {self.dof} at its peak", columns, rows),)
+        columns = ("part of the motion", labelled("amplitude", unit_of(self.look.dof)), "of the largest (%)")
+        return (Table("harmonics", f"Harmonics of {self.look.dof} at its peak", columns, rows),)

@@ -6,19 +6,21 @@ import numpy as np
 
 from dalembert.report.charts.resonance_peaks import value_text
 from dalembert.report.digits import counted, shown
-from dalembert.report.focus import main_dof, unit_of
+from dalembert.report.focus import Look, unit_of
 from dalembert.report.needs_frequency import (
     BackboneLike,
     CurveFamilyLike,
+    DeformationLike,
     FrequencyCurveLike,
+    ModeShapesLike,
     ResonanceTrackLike,
     TimeComparisonLike,
 )
-from dalembert.report.sections.headline import Fact, Headline
+from dalembert.report.sections.headline import MOST_VALUES, Fact, Headline
 
 
 def of_frequency_curve(
-    curve: FrequencyCurveLike, dofs: tuple[str, ...], kind: str, title: str | None, notes: Sequence[str]
+    curve: FrequencyCurveLike, look: Look | None, title: str | None, notes: Sequence[str]
 ) -> Headline:
     """Headline of a response over frequency."""
     found, points = int(curve.converged.sum()), len(curve.converged)
@@ -31,7 +33,7 @@ def of_frequency_curve(
         "they are marked, and the curve goes on beside them."
     )
     facts = [
-        *([Fact(*_largest(curve, main_dof(curve, dofs, kind), kind))] if found else []),
+        *([] if look is None else [Fact(*_largest(curve, look.dof, look.kind))]),
         Fact("harmonics", _orders(curve.orders)),
         Fact("Newton iterations a point", shown(float(np.mean(curve.iterations)), digits=3)),
         Fact("samples of a period", counted(int(np.max(curve.samples)))),
@@ -103,6 +105,25 @@ def of_track(track: ResonanceTrackLike, title: str | None, notes: Sequence[str])
     status = f"The peak was found at {int(found.sum())} of {len(found)} values of {track.parameter}."
     verdict = "tracked" if found.all() else "incomplete"
     return Headline(title or f"Resonance over {track.parameter}", verdict, bool(found.all()), status, facts, notes)
+
+
+def of_deformation(shape: DeformationLike, title: str | None, notes: Sequence[str]) -> Headline:
+    """Headline of a deformed shape."""
+    facts = [
+        Fact("frequency", f"{shown(shape.frequency)} Hz"),
+        Fact("nodes", counted(len(shape.places))),
+        *([Fact("contacts", counted(len(shape.contacts)))] if shape.contacts else []),
+    ]
+    status = "The motion of the whole structure at one point of a response over frequency."
+    return Headline(title or "Deformed shape", "computed", True, status, facts, notes)
+
+
+def of_modes(modes: ModeShapesLike, title: str | None, notes: Sequence[str]) -> Headline:
+    """Headline of free vibrations."""
+    frequencies = [float(value) for value in modes.frequencies]
+    facts = [Fact(f"mode {number}", f"{shown(value)} Hz") for number, value in enumerate(frequencies[:MOST_VALUES], 1)]
+    status = f"{len(frequencies)} natural frequencies and shapes of the undamped structure."
+    return Headline(title or "Modes", "computed", True, status, facts, notes)
 
 
 def _percent(part: float) -> str:

@@ -25,13 +25,15 @@
       Object.assign(layout.margin, { l: 44, r: 8 });
       layout.template.layout.font.size = 11;
     }
-    if (layout.meta?.labels) { // equal axes: no higher than the motion needs
+    if (layout.scene) place.style.height = `${Math.round(Math.min(520, Math.max(320, place.clientWidth)))}px`;
+    else if (layout.meta?.labels) { // equal axes: no higher than the motion needs
       const [width, height] = ["xaxis", "yaxis"].map((name) => layout[name].range[1] - layout[name].range[0]);
       const needed = (place.clientWidth - 60) * height / width + 150;
       place.style.height = `${Math.round(Math.min(520, Math.max(300, needed)))}px`;
     }
     if (coarse) { // a finger on a figure scrolls the page
       layout.dragmode = false;
+      if (layout.scene) layout.scene.dragmode = false;
       for (const name of Object.keys(layout)) if (/^[xy]axis/.test(name)) layout[name].fixedrange = true;
     }
     const config = {
@@ -50,15 +52,15 @@
   function player(box) {
     const place = document.getElementById(box.dataset.for);
     const [button, slider, output] = ["button", "input", "output"].map((tag) => box.querySelector(tag));
-    const { labels, seconds } = JSON.parse(document.querySelector(`[data-for="${place.id}"].figure`).textContent).layout.meta;
+    const { labels, seconds, before, after, endless, redraw } = JSON.parse(document.querySelector(`[data-for="${place.id}"].figure`).textContent).layout.meta;
     let began = null;
 
     function show(number) {
       const frame = place.frames[number];
       slider.value = number;
-      output.textContent = `t = ${labels[number]} s`;
-      slider.setAttribute("aria-valuetext", `${labels[number]} seconds`);
-      const still = { mode: "immediate", frame: { duration: 0, redraw: false }, transition: { duration: 0 } };
+      output.textContent = `${before}${labels[number]}${after}`;
+      slider.setAttribute("aria-valuetext", `${labels[number]}${after === " s" ? " seconds" : after}`);
+      const still = { mode: "immediate", frame: { duration: 0, redraw }, transition: { duration: 0 } };
       return Plotly.animate(place, { data: frame.data, traces: frame.traces }, still).catch(() => {});
     }
     function turn(on) {
@@ -70,9 +72,10 @@
     }
     function tick(now) {
       if (began === null) return;
-      const number = Math.min(labels.length - 1, Math.floor((now - began) / (1000 * seconds) * labels.length));
-      const shown = number === Number(slider.value) ? Promise.resolve() : show(Math.max(number, 0));
-      if (number >= labels.length - 1) return turn(false);
+      const since = Math.max(0, Math.floor((now - began) / (1000 * seconds) * labels.length));
+      const number = endless ? since % labels.length : Math.min(labels.length - 1, since);
+      const shown = number === Number(slider.value) ? Promise.resolve() : show(number);
+      if (!endless && number >= labels.length - 1) return turn(false);
       shown.then(() => requestAnimationFrame(tick));
     }
     button.addEventListener("click", () => turn(began === null));

@@ -1,0 +1,104 @@
+"""Shapes of free vibrations at the nodes of a structure, to be drawn."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from dalembert.results import Result
+from dalembert.structure.eigenmodes import EigenModes
+from dalembert.structure.node_motion import known_nodes, node_motion
+from dalembert.structure.structure import Structure
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+
+@dataclass(frozen=True, eq=False)
+class ModeShapes(Result):
+    """Free vibrations of a structure at its nodes, as :func:`mode_shapes` returns them.
+
+    Parameters
+    ----------
+    frequencies : array, shape (modes,)
+        Hz.
+    places : array, shape (nodes, 3)
+        m.
+    faces : array of int, shape (faces, 3 or 4)
+        Rows of ``places``; none where the structure has none.
+    shapes : array, shape (modes, nodes, 3)
+        The largest displacement of each is 1.
+    """
+
+    FORMAT: ClassVar[str] = "dalembert mode shapes 1"
+
+    frequencies: np.ndarray
+    places: np.ndarray
+    faces: np.ndarray
+    shapes: np.ndarray
+
+    def summary(self) -> str:
+        """A line: the frequencies."""
+        return "modes at " + ", ".join(f"{value:.6g}" for value in self.frequencies) + " Hz"
+
+    def to_xarray(self) -> "Dataset":
+        """Everything as an :class:`xarray.Dataset`, with units as attributes."""
+        import xarray as xr
+
+        variables = {
+            "frequencies": (("mode",), self.frequencies, {"units": "Hz"}),
+            "places": (("node", "axis"), self.places, {"units": "m"}),
+            "faces": (("face", "corner"), self.faces),
+            "shapes": (("mode", "node", "axis"), self.shapes),
+        }
+        return xr.Dataset(variables, attrs={"format": self.FORMAT})
+
+    @classmethod
+    def from_xarray(cls, dataset: "Dataset") -> "ModeShapes":
+        """The shapes that :meth:`to_xarray` turned into a dataset."""
+        return cls(*(dataset[name].values for name in ("frequencies", "places", "faces", "shapes")))
+
+
+def mode_shapes(structure: Structure, modes: EigenModes) -> ModeShapes:
+    """Shapes of modes at the nodes of a structure.
+
+    Parameters
+    ----------
+    structure : Structure
+        With nodes; of a reduced one the nodes of the full one.
+    modes : EigenModes
+        Of the structure.
+
+    Raises
+    ------
+    InputError
+        For a structure that does not say where its nodes are.
+
+    Examples
+    --------
+    >>> from dalembert.structure import Material, eigenmodes, plate
+    >>> square = plate((0.4, 0.4), 2e-3, Material(210e9, 0.3, 7800.0), (4, 4)).fixed("edge")
+    >>> shown = mode_shapes(square, eigenmodes(square, 2))
+    >>> shown.shapes.shape, float(abs(shown.shapes).max())
+    ((2, 25, 3), 1.0)
+    """
+    nodes, motion = known_nodes(structure), node_motion(structure, modes.shapes)
+    kept, faces = drawn_nodes(motion, nodes.faces)
+    shapes = np.moveaxis(motion[kept], -1, 0)
+    largest = np.linalg.norm(shapes, axis=2).max(axis=1)
+    return ModeShapes(modes.frequencies, nodes.places[kept], faces, shapes / largest[:, None, None])
+
+
+def drawn_nodes(motion: np.ndarray, faces: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
+    """Rows of the nodes to draw, and the faces between them: corners of faces, or all that move where there are none.
+
+    Parameters
+    ----------
+    motion : array, shape (nodes, 3, ...)
+    faces : array of int, shape (faces, 3 or 4), optional
+    """
+    if faces is not None and len(faces):
+        kept, corners = np.unique(faces, return_inverse=True)
+        return kept, corners.reshape(faces.shape)
+    moving = np.any(motion.reshape(len(motion), -1) != 0, axis=1)
+    return np.flatnonzero(moving), np.zeros((0, 4), dtype=int)

@@ -115,9 +115,15 @@ class InTime:
         return spectral(self.lowered.structure, self.omega)
 
     @cached_property
+    def places(self) -> np.ndarray:
+        """Row of the lowered system that each column of a cell, and each row of a spring, sees: (rows,) of these."""
+        cells = [block.rows.ravel() for block in self.lowered.blocks]
+        return np.concatenate([np.zeros(0, dtype=int), *cells, *(own for own, _ in self.lowered.springs)])
+
+    @cached_property
     def seen(self) -> np.ndarray:
         """What elements see of the modes, (rows, modes)."""
-        return np.ascontiguousarray(self.lowered.matrix @ self.spectral.shapes)
+        return np.ascontiguousarray((self.lowered.matrix @ self.spectral.shapes)[self.places])
 
     @cached_property
     def forces(self) -> np.ndarray:
@@ -127,8 +133,8 @@ class InTime:
         samples = series.synthesis @ (np.real(self.lowered.loads(series)).T @ self.spectral.shapes)
         return np.ascontiguousarray(np.roll(samples, -1, axis=0))
 
-    def modes(self, scheme: Scheme) -> Modes:
-        """Arrays of the structure for a method."""
+    def arrays(self, scheme: Scheme) -> tuple[Modes, Elements]:
+        """Arrays of the structure for a method, and of the elements with matched stiffnesses."""
         own, seen = self.spectral, self.seen
         ratio = (1 - scheme.alpha_f) / (1 - scheme.alpha_m)
         by_place, by_velocity = scheme.beta * scheme.step**2 * ratio, scheme.gamma * scheme.step * ratio
@@ -137,22 +143,27 @@ class InTime:
         if len(solver):
             solver = np.linalg.inv(np.diag(own.mass + by_place * own.stiffness) + by_velocity * own.coupled)
         pushed = solver @ seen.T if len(solver) else inverse[:, None] * seen.T
-        return Modes(
+        compliance = by_place * (seen @ pushed)
+        elements, shifts = _matched(self.elements, np.diag(compliance))
+        modes = Modes(
             own.mass, own.damping, own.stiffness, inverse, own.coupled, solver, seen, np.ascontiguousarray(pushed),
-            np.ascontiguousarray(by_place * (seen @ pushed)), self.forces,
+            np.ascontiguousarray(compliance - np.diag(shifts)), self.forces,
         )  # fmt: skip
+        return modes, elements
 
     @cached_property
     def elements(self) -> Elements:
         """Arrays of the elements."""
         blocks, springs = self.lowered.blocks, self.lowered.springs
-        rows, numbers = [np.zeros((0, 3), dtype=int)], [np.zeros((0, 5))]
+        rows, numbers, at = [np.zeros((0, 3), dtype=int)], [np.zeros((0, 5))], 0
         for block in blocks:
-            rows.append(np.pad(block.rows, ((0, 0), (0, 3 - block.rows.shape[1]))))
+            own = at + np.arange(block.rows.size).reshape(block.rows.shape)
+            at += block.rows.size
+            rows.append(np.pad(own, ((0, 0), (0, 3 - block.rows.shape[1]))))
             numbers.append(block.numbers.astype(float))
             if block.kind != ELASTIC:
                 numbers[-1][:, [TANGENTIAL, NORMAL]] *= self.stand_in
-        plain = [(places[0], element) for places, element in springs if not isinstance(element, UserElement)]
+        plain = [(own[0], element) for own, element in self._springs if not isinstance(element, UserElement)]
         return Elements(
             rows=np.concatenate(rows),
             tangents=np.array([block.tangents for block in blocks for _ in block.rows], dtype=np.int64),
@@ -167,8 +178,42 @@ class InTime:
 
     def users(self, failures: list[Exception]) -> Any:
         """The laws of the user's, callable from compiled code; what they raise is kept, and the run ends."""
-        laws = [(places, element.law) for places, element in self.lowered.springs if isinstance(element, UserElement)]
-        return _C_FUNCTION(_trampoline(laws, len(self.lowered.row_names), failures))
+        laws = [(own, element.law) for own, element in self._springs if isinstance(element, UserElement)]
+        return _C_FUNCTION(_trampoline(laws, len(self.places), failures))
+
+    @property
+    def _springs(self) -> list[tuple[np.ndarray, Any]]:
+        """Rows of their own of the elements without memory, after those of the cells."""
+        sizes = [len(own) for own, _ in self.lowered.springs]
+        first = len(self.places) - sum(sizes) + np.cumsum([0, *sizes])
+        return [
+            (np.arange(begin, begin + size), element)
+            for begin, size, (_, element) in zip(first, sizes, self.lowered.springs, strict=False)
+        ]
+
+
+def _matched(elements: Elements, compliance: np.ndarray) -> tuple[Elements, np.ndarray]:
+    r"""Elements whose cells have the stiffness of what is behind them, and what that shifts their displacements by.
+
+    A cell of stiffness k at u says of its force what one of stiffness :math:`\rho` says at
+    :math:`u + (1/\rho - 1/k) \lambda`. With :math:`1/\rho = y + 1/k` and y the compliance of a step behind it, a
+    single contact is solved at once, whatever k is.
+
+    Returns
+    -------
+    elements : Elements
+    shifts : array, shape (rows,)
+        :math:`1/\rho - 1/k`; 0 where there is no cell.
+    """
+    numbers, shifts = elements.numbers.copy(), np.zeros(len(compliance))
+    for own, rows, tangents, normal in zip(numbers, elements.rows, elements.tangents, elements.normal, strict=True):
+        behind = compliance[rows[:tangents]].max()
+        shifts[rows[:tangents]] = behind
+        own[TANGENTIAL] = 1 / (behind + 1 / own[TANGENTIAL])
+        if normal:
+            shifts[rows[tangents]] = compliance[rows[tangents]]
+            own[NORMAL] = 1 / (compliance[rows[tangents]] + 1 / own[NORMAL])
+    return elements._replace(numbers=numbers), shifts
 
 
 def _trampoline(

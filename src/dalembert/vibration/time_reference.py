@@ -22,7 +22,7 @@ from dalembert.vibration.shooting import shoot
 from dalembert.vibration.system import VibrationSystem
 from dalembert.vibration.threads import one_thread
 from dalembert.vibration.time_lowering import InTime
-from dalembert.vibration.time_steps import LOST, Modes, Record, Scheme, State, advance, react, settle
+from dalembert.vibration.time_steps import LOST, Elements, Modes, Record, Scheme, State, advance, react, settle
 
 LONG_RUN, SHOOTING = "long run", "shooting"
 WARMING = 5
@@ -95,6 +95,8 @@ def steady_state(
         ended = run.long(state, method.periods, method.tolerance) if way == LONG_RUN else run.shot(state)
     shapes = problem.spectral.shapes[rows]
     record = Record(*(np.roll(own, 1, axis=0) for own in ended.record))
+    summed = np.zeros((method.steps_per_period, len(lowered.row_names)))
+    np.add.at(summed.T, problem.places, record.forces.T)
     versions = {"version": dalembert.__version__, "numpy": np.__version__, "scipy": scipy.__version__}
     return PeriodicMotion(
         dofs=tuple(lowered.structure.dofs.names[row] for row in rows),
@@ -103,8 +105,8 @@ def steady_state(
         frequency=float(frequency),
         times=np.arange(method.steps_per_period) / (frequency * method.steps_per_period),
         displacements=record.modes @ shapes.T,
-        relative=record.displacements,
-        forces=record.forces,
+        relative=record.modes @ (lowered.matrix @ problem.spectral.shapes).T,
+        forces=summed,
         states=record.states,
         periods=ended.periods,
         residual=ended.change,
@@ -136,8 +138,12 @@ class _Run:
         return self.problem.users(self.failures)
 
     @cached_property
+    def _arrays(self) -> tuple[Modes, Elements]:
+        return self.problem.arrays(self._scheme)
+
+    @property
     def _modes(self) -> Modes:
-        return self.problem.modes(self._scheme)
+        return self._arrays[0]
 
     @cached_property
     def _scheme(self) -> Scheme:
@@ -155,7 +161,7 @@ class _Run:
         steps = self.method.steps_per_period
         waves = synthesis(curve.orders, 2 * np.pi * np.arange(1, steps + 1) / steps)
         rates = Fourier(curve.orders, steps).derivative.T @ waves[-1]
-        sliders, seen = self._sliders(), np.asarray(self.problem.lowered.matrix @ x)
+        sliders, seen = self._sliders(), np.asarray(self.problem.lowered.matrix @ x)[self.problem.places]
         settle(self.problem.elements, self._users, np.ascontiguousarray(waves @ seen.T), sliders)
         places = np.stack([x @ waves[-1], self.problem.omega * (x @ rates)], axis=1)
         place, velocity = np.linalg.solve(self.problem.spectral.shapes, places).T
@@ -163,7 +169,7 @@ class _Run:
 
     def long(self, state: State, most: int, tolerance: float) -> _Ended:
         """Period after period."""
-        elements, modes = self.problem.elements, self._modes
+        modes, elements = self._arrays
         steps, rows = self.method.steps_per_period, len(modes.seen)
         record = Record(
             np.empty((steps, len(modes.mass))), np.empty((steps, rows)), np.empty((steps, rows)),

@@ -6,8 +6,10 @@ With w the auxiliary accelerations of generalized-alpha (Arnold and Bruels 2007;
     (1 - alpha_m) w_1 + alpha_m w_0 = (1 - alpha_f) a_1 + alpha_f a_0,   M a_1 + C v_1 + K x_1 + L^T lambda_1 = f_1
 
 holds at the end of each step. With S = M + g C + b K, where v_1 and x_1 change by g and b with a_1, the displacements u
-that the elements see obey u + b L S⁻¹ L^T lambda(u) = u_0, which Newton's method solves: as many equations as there are
-coordinates of elements, linear between changes of the contacts' states.
+that the elements see obey u + b L S⁻¹ L^T lambda = u_0. Each row of L is seen by one element. A cell of friction is
+given the stiffness rho that matches the compliance behind it, and d = u + (1/rho - 1/k) lambda, at which it says of
+lambda what its own stiffness k says at u. Newton's method solves d + (b L S⁻¹ L^T - 1/rho + 1/k) lambda(d) = u_0: as
+many equations as there are rows, linear between changes of the contacts' states.
 """
 
 from typing import NamedTuple
@@ -16,6 +18,7 @@ import numpy as np
 
 from dalembert.vibration.friction_law import (
     FRICTION,
+    LOAD,
     NORMAL,
     SEPARATED,
     SLIPPING,
@@ -37,7 +40,7 @@ that of the other and back, from where it sticks not."""
 BOLD = 30
 """Iterations after which steps are halved."""
 ACCURACY = 1e-13
-"""Last change of the elements' displacements, as part of the largest one."""
+"""Last change of the elements' displacements, as part of the largest one, and of those that a preload brings."""
 
 
 class Scheme(NamedTuple):
@@ -55,7 +58,8 @@ class Modes(NamedTuple):
 
     ``mass``, ``damping``, ``stiffness`` and ``inverse`` (S⁻¹) are diagonals (n,); where modes are coupled by damping,
     ``coupled`` and ``solver`` are whole matrices of C and S⁻¹ instead, else empty. ``seen`` (rows, n) is L, ``pushed``
-    (n, rows) S⁻¹ L^T, ``compliance`` (rows, rows) b L S⁻¹ L^T; ``force`` (steps, n) acts at the steps' ends.
+    (n, rows) S⁻¹ L^T, ``compliance`` (rows, rows) b L S⁻¹ L^T - 1/rho + 1/k; ``force`` (steps, n) acts at the steps'
+    ends.
     """
 
     mass: np.ndarray
@@ -99,7 +103,7 @@ class State(NamedTuple):
 class Record(NamedTuple):
     """At the ends of the last period's steps.
 
-    Modes (steps, n), elements' displacements and forces (steps, rows), states of the contacts (steps, contacts).
+    Modes (steps, n), shifted displacements and forces of elements (steps, rows), states of contacts (steps, contacts).
     """
 
     modes: np.ndarray
@@ -191,9 +195,12 @@ def _product(diagonal, whole, x):
 
 @compiled
 def _balance(modes, elements, users, u, start, state, moved, force, slopes, kept, states):
-    """Solve u + compliance · force(u) = start from a guess; ``kept`` is an inverse that served before. If found."""
+    """Solve u + compliance · force(u) = start, u shifted, from a guess; ``kept`` is an inverse of before. If found."""
     rows = len(u)
     scale = max(np.max(np.abs(start)), np.max(np.abs(u)))
+    for c in range(len(elements.normal)):
+        if elements.normal[c]:
+            scale = max(scale, elements.numbers[c, LOAD] / elements.numbers[c, NORMAL])
     before, last = np.inf, False
     for iteration in range(NEWTON):
         if iteration == ASTRAY:

@@ -110,7 +110,7 @@ def test_slopes_of_the_elements_are_those_of_their_forces() -> None:
     stop, cubic = BilinearStop("stop", "b.x", stiffness=6.0, gap=0.3), CubicSpring("cubic", "a.x", stiffness=0.7)
     lowered = lower(rubbing(PLANE, law, stop, cubic, Gap("gap", "a.y", stiffness=2.0, gap=0.1))).real
     problem = InTime(lowered, 1.0, 16, 1.0)
-    users, rows, rng = problem.users([]), len(lowered.row_names), np.random.default_rng(3)
+    users, rows, rng = problem.users([]), len(problem.places), np.random.default_rng(3)
     states = set()
     for _ in range(40):
         u, sliders = rng.normal(size=rows), rng.normal(size=(1, 2)) * 0.3
@@ -147,6 +147,24 @@ def test_a_massless_foot_and_a_rigid_contact_are_integrated() -> None:
     alone = steady_state(one_mass(), 1.12 / TURN, Newmark(1024))
     assert motion.amplitude("m") == pytest.approx(alone.amplitude("m"), rel=2e-5)
     assert motion.dofs == ("m.x",)
+
+
+def test_stiff_contacts_in_two_directions_are_solved_in_every_step() -> None:
+    """As they grow stiffer, the motion tends to that with rigid ones."""
+    sizes = []
+    for stiffening in (1e2, 1e3, 1e4):
+        system = VibrationSystem(rubbing(PLANE).structure)
+        for dof, size, phase in (("a.x", 6.0, 0.0), ("a.y", 2.0, 0.2), ("b.x", 1.0, 0.0)):
+            system.add(HarmonicForce(dof, size, phase=phase))
+        for foot in ("left", "right"):
+            law = Elastic(16.0 * stiffening)
+            system.add(FrictionContact(foot, "a", tangential=("x", "y"), friction=0.6, preload=4.0, law=law))
+        motion = steady_state(system, 0.45, Newmark(1024, 0.5))
+        assert motion.converged
+        assert set(np.unique(motion.states)) == {1, 2}
+        sizes.append(motion.amplitude("a.x"))
+    assert abs(sizes[1] - sizes[2]) < 0.2 * abs(sizes[0] - sizes[1])
+    assert sizes[1] == pytest.approx(sizes[2], rel=1e-2)
 
 
 def test_a_branch_is_kept_where_there_are_several() -> None:

@@ -5,7 +5,18 @@ from importlib import import_module
 
 from benchmarks import page
 
-NAMES = ("steps", "chains", "sensitivities", "batches", "cluster", "identification", "swarms", "collocation", "startup")
+NAMES = (
+    "steps",
+    "chains",
+    "sensitivities",
+    "batches",
+    "cluster",
+    "identification",
+    "swarms",
+    "collocation",
+    "digits",
+    "startup",
+)
 
 
 def main(chosen: list[str]) -> int:

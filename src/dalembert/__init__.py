@@ -50,7 +50,7 @@ _NAMES = {
         Force Torque Spring TorsionSpring UserForce
         Step Harmonic Polynomial Table Custom
         Augmented Automatic Baumgarte Collocation EnergyMomentum GaussNewton GeneralizedAlpha OdeSolver Partitioning
-        Projection Radau5 RungeKutta4 Variational
+        Projection RadauIIA RungeKutta4 Variational
         TimeResponse Trajectory WorkPrecision simulate equilibrium modes work_precision
     """,
     "uncertainty": """

@@ -81,7 +81,7 @@ from dalembert.multibody import Polynomial as Polynomial
 from dalembert.multibody import PrescribedMotion as PrescribedMotion
 from dalembert.multibody import PrismaticJoint as PrismaticJoint
 from dalembert.multibody import Projection as Projection
-from dalembert.multibody import Radau5 as Radau5
+from dalembert.multibody import RadauIIA as RadauIIA
 from dalembert.multibody import RevoluteJoint as RevoluteJoint
 from dalembert.multibody import RigidBar as RigidBar
 from dalembert.multibody import RigidBody as RigidBody

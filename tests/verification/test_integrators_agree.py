@@ -37,8 +37,8 @@ def soft_pendulum() -> mb.System:
 
 
 MODELS = {
-    "engine": (engine, ("slider.centre.x", "crank.end.y", "big end.force_x"), mb.Radau5(tolerance=1e-11)),
-    "soft beam": (soft_pendulum, ("bar.end.x", "bar.end.y"), mb.Radau5(tolerance=1e-8)),
+    "engine": (engine, ("slider.centre.x", "crank.end.y", "big end.force_x"), mb.RadauIIA(tolerance=1e-11)),
+    "soft beam": (soft_pendulum, ("bar.end.x", "bar.end.y"), mb.RadauIIA(tolerance=1e-8)),
 }
 RIGID = {
     "generalized-alpha": (mb.GeneralizedAlpha(step=2e-4), 2e-5),

@@ -9,7 +9,7 @@ from dalembert.multibody.integrators.energy_momentum import EnergyMomentum
 from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha
 from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.ode_solver import OdeSolver
-from dalembert.multibody.integrators.radau5 import Radau5
+from dalembert.multibody.integrators.radau_iia import RadauIIA
 from dalembert.multibody.integrators.runge_kutta import RungeKutta4
 from dalembert.multibody.integrators.stabilisation import Augmented, Baumgarte, Partitioning, Projection
 from dalembert.multibody.integrators.variational import Variational
@@ -54,7 +54,7 @@ __all__ = [
     "PrescribedMotion",
     "PrismaticJoint",
     "Projection",
-    "Radau5",
+    "RadauIIA",
     "RevoluteJoint",
     "RigidBar",
     "RigidBody",

@@ -8,13 +8,15 @@ from dalembert.multibody.callbacks import in_complex_numbers
 from dalembert.multibody.integrators.automatic import Automatic
 from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha
 from dalembert.multibody.integrators.integrator import Integrator
+from dalembert.multibody.integrators.matrices import damps
 from dalembert.multibody.integrators.run import make_problem
+from dalembert.multibody.kernels import joints
 from dalembert.multibody.lowering import Lowered
 from dalembert.multibody.system import System
 from dalembert.multibody.trajectory import Trajectory
 
 _ADAPTIVE_OUTPUTS = 1001
-_ROOM = 20_000_000  # numbers up to which the states of all steps are kept, for the work of loads and losses
+_ROOM = 20_000_000  # numbers up to which the states of all steps are kept, where loads and losses may do work
 
 
 def simulate(
@@ -66,7 +68,8 @@ def simulate(
         if steps is None:
             steps = np.linspace(0.0, end, _ADAPTIVE_OUTPUTS)
         times = steps if times is None else checked(times, end)
-        grid = np.union1d(times, steps) if len(steps) * len(lowered.x) < _ROOM else times
+        worked = _works(lowered) and len(steps) * len(lowered.x) < _ROOM
+        grid = np.union1d(times, steps if worked else 0.0)
         (result,) = solver.integrate([lowered], (), make_problem(lowered, grid), end)
     if result.reason:
         raise SolveError(result.reason)
@@ -81,6 +84,12 @@ def prepared(system: System, end: float, solver: Integrator) -> tuple[Lowered, I
         refuse_redundancy(lowered)
     refuse_kinks(lowered, end)
     return lowered, solver
+
+
+def _works(lowered: Lowered) -> bool:
+    """Whether loads, losses or prescribed motions may do work."""
+    driven = np.any(lowered.structure.meta["joints"][:, 0] >= joints.MOTION_X)
+    return bool(driven) or damps(lowered) or len(lowered.structure.index["loads"]) > 0
 
 
 def integrator(given: Integrator | str | None, end: float) -> Integrator:

@@ -9,7 +9,7 @@ from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha
 from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.ode_solver import OdeSolver
 from dalembert.multibody.integrators.problem import Problem
-from dalembert.multibody.integrators.radau5 import Radau5
+from dalembert.multibody.integrators.radau_iia import RadauIIA
 from dalembert.multibody.integrators.run import Run
 from dalembert.multibody.integrators.stabilisation import Partitioning
 from dalembert.multibody.lowering import Lowered
@@ -23,7 +23,7 @@ class Automatic(Integrator):
     """Chooses the integrator by the mechanism.
 
     Where all bodies are rigid nothing oscillates faster than the motion, and a high order takes long steps:
-    :class:`Radau5`; with redundant constraints :class:`OdeSolver`, which finds multipliers for them. Beams and cables
+    :class:`RadauIIA`; with redundant constraints :class:`OdeSolver`, which finds multipliers for them. Beams and cables
     bring frequencies that nobody wants to follow: :class:`GeneralizedAlpha` damps them, and its step, adaptive here,
     costs little. The page "Which integrator" has the measurements behind this rule.
 
@@ -39,7 +39,7 @@ class Automatic(Integrator):
     >>> bar = system.add(RigidBar("bar", length=1.0, mass=1.0))
     >>> pin = system.add(RevoluteJoint("pin", system.ground, bar.start))
     >>> simulate(system, end=1.0, solver="auto").solver
-    Radau5(tolerance=1e-06, step=None, newton_tolerance=1e-14, most_steps=10000000)
+    RadauIIA(tolerance=1e-06, step=None, stages=5, newton_tolerance=1e-14, most_steps=10000000)
     """
 
     tolerance: float = field(default=1e-6, metadata={"unit": ""})
@@ -55,7 +55,7 @@ class Automatic(Integrator):
         known = redundancy(lowered)
         if known.rank < known.count:
             return OdeSolver("DOP853", self.tolerance, self.tolerance, Partitioning())
-        return Radau5(tolerance=self.tolerance)
+        return RadauIIA(tolerance=self.tolerance)
 
     def integrate(
         self,

@@ -7,8 +7,8 @@ import numpy as np
 from dalembert.multibody.integrators.lifting import set_signals
 from dalembert.multibody.kernels import beam, cable
 from dalembert.multibody.kernels.assembly import tangent
-from dalembert.multibody.kernels.compiled import compiled, kernel
-from dalembert.multibody.kernels.linear import BAND, DENSE, Factors, Layout, factorise, padded, storage
+from dalembert.multibody.kernels.compiled import compiled, inlined, kernel
+from dalembert.multibody.kernels.linear import BAND, DENSE, Factors, Layout, factorise, padded, solve, storage
 from dalembert.multibody.kernels.model import Slots
 from dalembert.multibody.kernels.motion import clear
 from dalembert.multibody.lowering import Lowered
@@ -35,7 +35,8 @@ class Matrices(NamedTuple):
 
     ``mass``, ``damping`` and ``stiffness`` are the derivatives of the equations of motion by accelerations, velocities
     and coordinates; with the stiffness stand those of the constraints and by the multipliers. ``rigid`` is factorised
-    [M, J^T; J, 0], ``real`` and ``double`` are [M + C/s + K/s^2, J^T; J, 0] for a real s and for a complex one.
+    [M, J^T; J, 0], ``real`` and ``doubles`` are [M + C/s + K/s^2, J^T; J, 0] for a real s and for complex ones (their
+    arrays have one more leading axis).
     ``heavy`` are the numbers of the entries that have a mass, as many as its last entry says.
     """
 
@@ -45,7 +46,7 @@ class Matrices(NamedTuple):
     stiffness: np.ndarray
     rigid: Factors
     real: Factors
-    double: Factors
+    doubles: Factors
 
 
 def pattern_of(structure: Structure) -> Pattern:
@@ -77,12 +78,16 @@ def damps(lowered: Lowered) -> bool:
 
 
 @compiled
-def room(pattern):
-    """Room for the matrices of a motion."""
-    entries = len(pattern.rows)
+def room(pattern, pairs):
+    """Room for the matrices of a motion, with as many complex systems as ``pairs``."""
+    entries, layout = len(pattern.rows), pattern.double_layout
+    doubles = Factors(
+        np.zeros((pairs, layout.lead * layout.size)), np.zeros((pairs, layout.size), np.int64),
+        np.zeros((pairs, layout.size), np.int64), np.zeros((pairs, layout.size + 3 * layout.reach)),
+    )  # fmt: skip
     return Matrices(
         np.zeros(entries + 1, np.int64), np.zeros(entries), np.zeros(entries), np.zeros(entries),
-        storage(pattern.layout), storage(pattern.layout), storage(pattern.double_layout),
+        storage(pattern.layout), storage(pattern.layout), doubles,
     )  # fmt: skip
 
 
@@ -129,11 +134,19 @@ def factorise_real(n, pattern, matrices, s):
     return factorise(pattern.layout, matrices.real)
 
 
+@inlined
+def _double(matrices, p):
+    """Complex system ``p``."""
+    stack = matrices.doubles
+    return Factors(stack.matrix[p], stack.pivots[p], stack.tops[p], stack.buffer[p])
+
+
 @kernel
-def factorise_complex(n, pattern, matrices, s):
-    """Factorise [M + C/s + K/s^2, J^T; J, 0] for a complex s; whether it is regular."""
+def factorise_complex(n, pattern, matrices, p, s):
+    """Factorise [M + C/s + K/s^2, J^T; J, 0] for a complex s as system ``p``; whether it is regular."""
     first, second = 1.0 / s, 1.0 / (s * s)
-    matrix, double = matrices.double.matrix, pattern.double
+    factors, double = _double(matrices, p), pattern.double
+    matrix = factors.matrix
     clear(matrix)
     for e in range(len(pattern.rows)):
         value, turned = matrices.stiffness[e], 0.0
@@ -144,7 +157,13 @@ def factorise_complex(n, pattern, matrices, s):
         matrix[double[1, e]] = -turned
         matrix[double[2, e]] = turned
         matrix[double[3, e]] = value
-    return factorise(pattern.double_layout, matrices.double)
+    return factorise(pattern.double_layout, factors)
+
+
+@kernel
+def solve_complex(pattern, matrices, p, given, answer):
+    """Solve with the complex system ``p``: real parts, then imaginary ones."""
+    solve(pattern.double_layout, _double(matrices, p), given, answer)
 
 
 @kernel

@@ -7,6 +7,7 @@ import numpy as np
 from dalembert.multibody.integrators import energy_balance as balance
 from dalembert.multibody.integrators import midpoint_step as midpoint
 from dalembert.multibody.integrators.consistent import accelerate
+from dalembert.multibody.integrators.ends import append, ends
 from dalembert.multibody.integrators.lifting import set_signals
 from dalembert.multibody.integrators.matrices import factorise_real, renew, room, weigh_masses
 from dalembert.multibody.integrators.outputs import record
@@ -15,7 +16,7 @@ from dalembert.multibody.integrators.settling import VELOCITIES, settle, settle_
 from dalembert.multibody.kernels.compiled import compiled, kernel, template
 from dalembert.multibody.kernels.linear import storage
 from dalembert.multibody.kernels.model import select, workspace
-from dalembert.multibody.kernels.motion import Motion, copy, row, still
+from dalembert.multibody.kernels.motion import copy, row, still
 
 _AGED = 0.05  # contraction at which the next step begins with new matrices
 _HALVINGS = 8  # of a step that Newton's iteration does not converge on
@@ -42,12 +43,12 @@ def _read(n, s, new):
 @template
 def _differentiate(
     problem, pattern, matrices, directions, rigid, strength, h, t, target, within, s, new, moved, slopes, denergies,
-    dolds, dnews, ds, push, b, e, ahead, dual_works, lifted,
+    dold, dnews, ds, push, b, e, ahead, dual_works, lifted,
 ):  # fmt: skip
     """Derivatives of a step along all directions."""
     n = problem.n
     for d in range(len(dnews.x)):
-        tilted, dold, dnew = select(directions, d), row(dolds, d), row(dnews, d)
+        tilted, dnew = select(directions, d), row(dnews, d)
         copy(dnew, dold)
         set_signals(tilted, t + 0.5 * h, within, dual_works[0])
         set_signals(tilted, target, within, dual_works[1])
@@ -71,13 +72,11 @@ def integrate(problem, pattern, edges, settings, rigid, model, dual, directions,
     N + 1) are filled at ``problem.times``.
     """
     n, width = problem.n, len(start.x)
-    old, new, between, dbetween = still(width), still(width), still(width), still(width)
+    new, between, dold, dbetween = still(width), still(width), still(width), still(width)
+    last, weights = ends(np.int64(2), dstates), np.zeros((4, 2, 3))
     copy(start, new)
-    dolds = Motion(
-        np.zeros_like(dstates.x), np.zeros_like(dstates.x), np.zeros_like(dstates.x), np.zeros_like(dstates.x)
-    )
     works, dual_works = (workspace(model), workspace(model)), (workspace(dual), workspace(dual))
-    matrices, exact = room(pattern), storage(problem.exact_layout)
+    matrices, exact = room(pattern, np.int64(0)), storage(problem.exact_layout)
     s, ds = np.zeros((midpoint.ROWS, width)), np.zeros((midpoint.ROWS, width))
     slope, slopes = np.zeros((2, width)), np.zeros((len(dstates.x), 2, width))
     b, ahead = midpoint.buffers(width)
@@ -107,11 +106,13 @@ def integrate(problem, pattern, edges, settings, rigid, model, dual, directions,
         stale, fresh, made = True, True, 0.0
         slope[:] = 0.0
         slopes[:] = 0.0
+        last.known[0] = 0
+        append(t, new, dstates, True, last)
         while True:
             while due < len(problem.times) and problem.times[due] <= t + 1e-9 * h:
                 written = record(
-                    problem, pattern, matrices, model, directions, h, t - h, within, old, new, dolds, dstates, out,
-                    dout, due, between, dbetween, moved, works[0], dual_works[0], lifted,
+                    problem, pattern, matrices, False, model, dual, directions, last, within, out, dout, due, between,
+                    dbetween, weights, moved, works[0], dual_works[0], lifted,
                 )  # fmt: skip
                 if not written:
                     return NEWTON_FAILED, problem.times[due], 0
@@ -153,15 +154,15 @@ def integrate(problem, pattern, edges, settings, rigid, model, dual, directions,
                     level += 1
                 continue
             midpoint.learn(n, new, s, slope)
-            copy(new, old)
             copy(between, new)
             energy += gain
             for k in range(n):
                 speed = max(speed, abs(s[midpoint.VM, k]) / problem.scale[k])
             _differentiate(
                 problem, pattern, matrices, directions, rigid, strength, h, t, target, within, s, new, moved, slopes,
-                denergies, dolds, dstates, ds, push, b, e, ahead, dual_works, lifted,
+                denergies, dold, dstates, ds, push, b, e, ahead, dual_works, lifted,
             )  # fmt: skip
+            append(target, new, dstates, True, last)
             if log.counts[0] < len(log.iterations):
                 log.iterations[log.counts[0]] = iterations
                 log.ends[log.counts[0]] = target

@@ -1,55 +1,42 @@
-"""One step of Radau IIA with three stages for the stabilised equations of Gear, Gupta and Leimkuhler.
+"""One step of Radau IIA for the stabilised equations of Gear, Gupta and Leimkuhler.
 
 With u = D (q - q0) and a = D (v - v0), D = A^-1 / h the differentiation of the collocation polynomial, each stage
 fulfils M (u - v) + J^T m = 0, the equations of motion, the constraints and their rates. Newton's iteration is split. As
 the multipliers m only weigh velocities against inertia, their part in the equations of motion joins that of lambda; so
-the coordinates need one real and one complex system of the size of the mechanism (Hairer and Wanner 1996, IV.8), and
-the velocities then follow by a projection at each stage.
+the coordinates need one real system of the size of the mechanism and a complex one for each two other stages (Hairer
+and Wanner 1996, IV.8), and the velocities then follow by a projection at each stage.
 """
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from dalembert.multibody.integrators.matrices import add_inertia, add_product, factorise_complex, factorise_real
+from dalembert.multibody.integrators.lifting import set_signals
+from dalembert.multibody.integrators.matrices import (
+    add_inertia,
+    add_product,
+    factorise_complex,
+    factorise_real,
+    solve_complex,
+)
 from dalembert.multibody.integrators.settling import weigh, weigh_along
 from dalembert.multibody.kernels.assembly import constraint_rates, residual, residual_here
-from dalembert.multibody.kernels.compiled import compiled, kernel
+from dalembert.multibody.kernels.compiled import compiled, inlined, kernel, template
 from dalembert.multibody.kernels.dual import STEP
 from dalembert.multibody.kernels.linear import solve
-from dalembert.multibody.kernels.motion import Motion
+from dalembert.multibody.kernels.model import Work
 
-_R6 = np.sqrt(6.0)
-C = np.array([(4 - _R6) / 10, (4 + _R6) / 10, 1.0])
-_POWERS = C[:, None] ** np.arange(3)
-A = (C[:, None] ** np.arange(1, 4) / np.arange(1, 4)) @ np.linalg.inv(_POWERS)
-INVERSE = np.linalg.inv(A)
-
-
-def _split() -> tuple[float, complex, np.ndarray]:
-    """Eigenvalues of A^-1 and its real block form T: A^-1 T = T diag(g, [a, -b; b, a])."""
-    eigen: Any = np.linalg.eig(INVERSE)
-    values, vectors = eigen
-    own = int(np.argmin(np.abs(values.imag)))
-    pair = int(np.argmax(values.imag))
-    columns = [vectors[:, own].real, vectors[:, pair].real, -vectors[:, pair].imag]
-    return float(values[own].real), complex(values[pair]), np.array(columns).T
-
-
-REAL, COMPLEX, T = _split()
-TI = np.linalg.inv(T)
-# Weights of the three stages in the difference to the embedded method of order 3 (Hairer and Wanner 1996, IV.8.19).
-ERROR = np.array([-13 - 7 * _R6, -13 + 7 * _R6, -1.0]) / (3 * REAL)
 _CLOSED = 1e-15  # violation against the largest scale that is rounding
 _NOISE = 1e-13  # part of a step's way below which the ratio of two corrections says nothing
 # Relative corrections that stop to shrink are rounding below the first size, and below the second one if a nearly
 # singular position magnifies it.
 _ROUNDING, _MAGNIFIED = 1e-12, 1e-9
 _MOST_ITERATIONS = 14
+_VISIBLE = 0.03  # part of the tolerance from which corrections hardly change the estimated error
 
 
 class Stages(NamedTuple):
-    """States of the three stages, each array (3, N + 1).
+    """States of the stages, each array (stages, N + 1).
 
     Rates ``u`` of the coordinates' polynomial and ``a`` of the velocities' one, from which follow what coordinates and
     velocities are ahead of the start of the step, ``dx`` and ``dv``, and unknowns ``x`` and velocities ``v`` (the other
@@ -67,53 +54,85 @@ class Stages(NamedTuple):
 
 
 class Buffers(NamedTuple):
-    """Residuals ``motion``, ``weighed`` and ``rate`` (3, N + 1), corrections ``dx`` and ``dm``, some vectors."""
+    """Residuals ``motion``, ``weighed`` and ``rate`` (stages, N + 1), corrections, some vectors.
+
+    ``place``, ``pace`` and ``pull`` are the corrections of coordinates (and multipliers), of their rates and of the
+    rates of the velocities, and before them the same along the eigenvectors of A.
+    """
 
     motion: np.ndarray
     weighed: np.ndarray
     rate: np.ndarray
-    dx: np.ndarray
-    dm: np.ndarray
+    place: np.ndarray
+    pace: np.ndarray
+    pull: np.ndarray
+    moved: np.ndarray
     given: np.ndarray
     answer: np.ndarray
     lifted: np.ndarray
 
 
 @compiled
-def stages(width):
+def stages(count, width):
     """Stages at rest."""
     return Stages(
-        np.zeros((3, width)), np.zeros((3, width)), np.zeros((3, width)), np.zeros((3, width)),
-        np.zeros((3, width)), np.zeros((3, width)), np.zeros((3, width)),
+        np.zeros((count, width)), np.zeros((count, width)), np.zeros((count, width)), np.zeros((count, width)),
+        np.zeros((count, width)), np.zeros((count, width)), np.zeros((count, width)),
     )  # fmt: skip
 
 
 @compiled
-def copies(states):
-    """A stack of states of the same shape, at rest."""
-    return Motion(np.zeros_like(states.x), np.zeros_like(states.x), np.zeros_like(states.x), np.zeros_like(states.x))
-
-
-@compiled
-def buffers(width):
+def buffers(count, width):
     """Room for a step."""
     return Buffers(
-        np.zeros((3, width)), np.zeros((3, width)), np.zeros((3, width)), np.zeros((3, width)), np.zeros((3, width)),
+        np.zeros((count, width)), np.zeros((count, width)), np.zeros((count, width)), np.zeros((count, width)),
+        np.zeros((count, width)), np.zeros((count, width)), np.zeros((count, width)),
         np.zeros(2 * width), np.zeros(2 * width), np.zeros((10, width), np.complex128),
     )  # fmt: skip
 
 
+@template
+def at_stage(work, signals, i):
+    """Room of one component with the signals of a stage."""
+    return Work(work.x, work.v, work.a, work.r, signals[i], work.real, work.matrix)
+
+
 @kernel
-def factorise(n, pattern, matrices, h):
+def listen(method, model, t, h, target, within, work, signals):
+    """Evaluate the signals at the stages."""
+    for i in range(len(method.c)):
+        time = target if i == len(method.c) - 1 else t + method.c[i] * h
+        set_signals(model, time, within, at_stage(work, signals, i))
+
+
+@kernel
+def factorise(n, method, pattern, matrices, h):
     """Factorise the systems of a step; whether they are regular."""
-    return factorise_real(n, pattern, matrices, REAL / h) and factorise_complex(n, pattern, matrices, COMPLEX / h)
+    if not factorise_real(n, pattern, matrices, method.real / h):
+        return False
+    for p in range(len(method.pairs)):
+        if not factorise_complex(n, pattern, matrices, p, method.pairs[p] / h):
+            return False
+    return True
+
+
+@inlined
+def _combine(weights, factor, source, count, target):
+    """target = factor * weights source, for the first ``count`` unknowns of all stages."""
+    for i in range(len(weights)):
+        for k in range(count):
+            target[i, k] = 0.0
+        for j in range(len(weights)):
+            weight = factor * weights[i, j]
+            for k in range(count):
+                target[i, k] += weight * source[j, k]
 
 
 @kernel
-def begin(n, h, start, s):
+def begin(n, h, method, start, s):
     """Stages of a start: coordinates and velocities by their rates, multipliers held."""
-    for i in range(3):
-        t = C[i] * h
+    for i in range(len(method.c)):
+        t = method.c[i] * h
         for k in range(len(start.x)):
             s.m[i, k] = 0.0
             s.x[i, k] = start.x[k]
@@ -124,175 +143,181 @@ def begin(n, h, start, s):
 @kernel
 def go_back(past, s):
     """Stages of the step before, as the prediction kept them."""
-    for i in range(3):
+    for i in range(len(past.x)):
         for k in range(s.x.shape[1]):
             s.x[i, k], s.u[i, k], s.a[i, k] = past.x[i, k], past.u[i, k], past.a[i, k]
 
 
 @kernel
-def go_on(n, h, before, earlier, past, s, weights):
-    """Stages by the polynomial through those of the step before, and of the one earlier (0: without) in ``past``.
-
-    They took ``before`` and ``earlier`` seconds; ``weights`` (4, 6) is room. The stages before are then in ``past``.
-    """
-    count = 3 if earlier == 0.0 else 6
-    nodes = weights[3]
-    for j in range(3):
-        nodes[j], nodes[3 + j] = (C[j] - 1.0) * before, (C[j] - 1.0) * earlier - before
-    for i in range(3):
-        for j in range(count):
+def _extrapolate(method, h, before, earlier, more, nodes, weights):
+    """Weights (stages, stages + more) of the stages before, and of the last ``more`` of those earlier."""
+    count = len(method.c)
+    for j in range(count):
+        nodes[j] = (method.c[j] - 1.0) * before
+    for j in range(more):
+        nodes[count + j] = (method.c[count - more + j] - 1.0) * earlier - before
+    for i in range(count):
+        for j in range(count + more):
             weight = 1.0
-            for k in range(count):
+            for k in range(count + more):
                 if k != j:
-                    weight *= (C[i] * h - nodes[k]) / (nodes[j] - nodes[k])
+                    weight *= (method.c[i] * h - nodes[k]) / (nodes[j] - nodes[k])
             weights[i, j] = weight
-    for k in range(s.x.shape[1]):
-        x0, x1, x2 = s.x[0, k], s.x[1, k], s.x[2, k]
-        u0, u1, u2 = s.u[0, k], s.u[1, k], s.u[2, k]
-        a0, a1, a2 = s.a[0, k], s.a[1, k], s.a[2, k]
-        for i in range(3):
-            w0, w1, w2 = weights[i, 0], weights[i, 1], weights[i, 2]
-            s.m[i, k] = 0.0
-            if k < n:
-                s.u[i, k] = w0 * u0 + w1 * u1 + w2 * u2
-                s.a[i, k] = w0 * a0 + w1 * a1 + w2 * a2
-            else:
-                s.x[i, k] = w0 * x0 + w1 * x1 + w2 * x2
-            for j in range(count - 3):
-                weight = weights[i, 3 + j]
-                if k < n:
-                    s.u[i, k] += weight * past.u[j, k]
-                    s.a[i, k] += weight * past.a[j, k]
-                else:
-                    s.x[i, k] += weight * past.x[j, k]
-        past.x[0, k], past.x[1, k], past.x[2, k] = x0, x1, x2
-        past.u[0, k], past.u[1, k], past.u[2, k] = u0, u1, u2
-        past.a[0, k], past.a[1, k], past.a[2, k] = a0, a1, a2
 
 
 @kernel
-def integrate_stages(n, h, start, s):
-    """States of the stages by the rates."""
-    for i in range(3):
-        d0, d1, d2 = h * A[i, 0], h * A[i, 1], h * A[i, 2]
+def go_on(n, h, method, before, earlier, past, s, b, weights):
+    """Stages by the polynomial through those of the step before, and of the one earlier (0: without) in ``past``.
+
+    They took ``before`` and ``earlier`` seconds; ``weights`` (stages + 1, 2 stages) is room. The stages before are then
+    in ``past``.
+    """
+    count = len(method.c)
+    more = 0 if earlier == 0.0 else method.more
+    _extrapolate(method, h, before, earlier, more, weights[count], weights)
+    width = s.x.shape[1]
+    for i in range(count):
+        for k in range(width):
+            s.m[i, k] = 0.0
+            b.place[i, k] = b.pace[i, k] = b.pull[i, k] = 0.0
+        for j in range(count):
+            weight = weights[i, j]
+            for k in range(width):
+                b.place[i, k] += weight * s.x[j, k]
+                b.pace[i, k] += weight * s.u[j, k]
+                b.pull[i, k] += weight * s.a[j, k]
+        for j in range(more):
+            weight, early = weights[i, count + j], count - more + j
+            for k in range(width):
+                b.place[i, k] += weight * past.x[early, k]
+                b.pace[i, k] += weight * past.u[early, k]
+                b.pull[i, k] += weight * past.a[early, k]
+    go_back(s, past)
+    for i in range(count):
+        for k in range(width):
+            s.x[i, k], s.u[i, k], s.a[i, k] = b.place[i, k], b.pace[i, k], b.pull[i, k]
+
+
+@inlined
+def _integrate_velocities(n, h, method, start, s):
+    _combine(method.a, h, s.a, n, s.dv)
+    for i in range(len(method.c)):
         for k in range(n):
-            s.dx[i, k] = d0 * s.u[0, k] + d1 * s.u[1, k] + d2 * s.u[2, k]
-            s.dv[i, k] = d0 * s.a[0, k] + d1 * s.a[1, k] + d2 * s.a[2, k]
-            s.x[i, k] = start.x[k] + s.dx[i, k]
             s.v[i, k] = start.v[k] + s.dv[i, k]
 
 
 @kernel
-def _rates_of(values, k, h):
-    """Rates at the stages of the polynomial that is zero at the start and has ``values[:, k]`` at the stages."""
-    x0, x1, x2 = values[0, k] / h, values[1, k] / h, values[2, k] / h
-    return (
-        INVERSE[0, 0] * x0 + INVERSE[0, 1] * x1 + INVERSE[0, 2] * x2,
-        INVERSE[1, 0] * x0 + INVERSE[1, 1] * x1 + INVERSE[1, 2] * x2,
-        INVERSE[2, 0] * x0 + INVERSE[2, 1] * x1 + INVERSE[2, 2] * x2,
-    )
+def integrate_stages(n, h, method, start, s):
+    """States of the stages by the rates."""
+    _combine(method.a, h, s.u, n, s.dx)
+    for i in range(len(method.c)):
+        for k in range(n):
+            s.x[i, k] = start.x[k] + s.dx[i, k]
+    _integrate_velocities(n, h, method, start, s)
 
 
 @kernel
-def _correct_coordinates(n, size, pattern, matrices, h, b):
-    """Corrections ``dx`` of the stages' coordinates and multipliers by the residuals ``motion`` and ``weighed``."""
-    g, w, given, answer = b.motion, b.weighed, b.given, b.answer
-    real, pair = REAL / h, COMPLEX / h
-    square, own = pair * pair, real * real
-    for k in range(size):
-        if k < n:  # what the velocities lack in weight acts as an inertial force
-            w0, w1, w2 = w[0, k], w[1, k], w[2, k]
-            for i in range(3):
-                g[i, k] += (INVERSE[i, 0] * w0 + INVERSE[i, 1] * w1 + INVERSE[i, 2] * w2) / h
-        g0, g1, g2 = g[0, k], g[1, k], g[2, k]
-        for i in range(3):
-            g[i, k] = TI[i, 0] * g0 + TI[i, 1] * g1 + TI[i, 2] * g2
-        if k >= n:
-            turned = square * complex(g[1, k], g[2, k])
-            g[0, k], g[1, k], g[2, k] = own * g[0, k], turned.real, turned.imag
-        given[k] = g[0, k]
+def _correct_coordinates(n, size, method, pattern, matrices, h, b):
+    """Corrections of the stages' coordinates, multipliers and rates by the residuals ``motion`` and ``weighed``."""
+    given, answer = b.given, b.answer
+    _combine(method.back, 1.0, b.motion, size, b.place)
+    _combine(method.back, 1.0, b.weighed, n, b.pace)
+    real = method.real / h
+    square = real * real
+    for k in range(size):  # what the velocities lack in weight acts as an inertial force
+        given[k] = b.place[0, k] + real * b.pace[0, k] if k < n else square * b.place[0, k]
     solve(pattern.layout, matrices.real, given, answer)
     for k in range(size):
-        g[0, k] = answer[k] / own if k < n else answer[k]
-        given[k], given[size + k] = g[1, k], g[2, k]
-    solve(pattern.double_layout, matrices.double, given, answer)
-    for k in range(size):
-        z = complex(answer[k], answer[size + k])
         if k < n:
-            z /= square
-        g0 = g[0, k]
-        for i in range(3):
-            b.dx[i, k] = T[i, 0] * g0 + T[i, 1] * z.real + T[i, 2] * z.imag
-
-
-@kernel
-def _take_coordinates(n, size, h, start, b, s):
-    """Take ``dx`` off the stages; velocities follow the coordinates."""
-    for k in range(size):
-        if k < n:
-            rates = _rates_of(b.dx, k, h)
-            for i in range(3):
-                s.u[i, k] -= rates[i]
-                b.dm[i, k] = rates[i]
-            rates = _rates_of(b.dm, k, h)
-            for i in range(3):
-                s.a[i, k] -= rates[i]
+            b.place[0, k], b.pace[0, k], b.pull[0, k] = answer[k] / square, answer[k] / real, answer[k]
         else:
-            for i in range(3):
-                s.x[i, k] -= b.dx[i, k]
-    integrate_stages(n, h, start, s)
+            b.place[0, k] = answer[k]
+    for p in range(len(method.pairs)):
+        pair, i, j = method.pairs[p] / h, 2 * p + 1, 2 * p + 2
+        double = pair * pair
+        for k in range(size):
+            z = complex(b.place[i, k], b.place[j, k])
+            z = z + pair * complex(b.pace[i, k], b.pace[j, k]) if k < n else double * z
+            given[k], given[size + k] = z.real, z.imag
+        solve_complex(pattern, matrices, p, given, answer)
+        for k in range(size):
+            z = complex(answer[k], answer[size + k])
+            if k < n:
+                b.pull[i, k], b.pull[j, k] = z.real, z.imag
+                z /= pair
+                b.pace[i, k], b.pace[j, k] = z.real, z.imag
+                z /= pair
+            b.place[i, k], b.place[j, k] = z.real, z.imag
 
 
 @kernel
-def _take_velocities(n, size, pattern, matrices, h, start, b, s):
-    """Move the stages' velocities onto the constraints; ``dx`` becomes the size of the whole correction."""
-    for i in range(3):
+def _take_coordinates(n, size, h, method, start, b, s):
+    """Take the corrections off the stages; ``moved`` becomes that of the coordinates."""
+    _combine(method.t, 1.0, b.place, size, b.moved)
+    _combine(method.t, 1.0, b.pace, n, b.place)
+    _combine(method.t, 1.0, b.pull, n, b.pace)
+    for i in range(len(method.c)):
+        for k in range(n):
+            s.u[i, k] -= b.place[i, k]
+            s.a[i, k] -= b.pace[i, k]
+        for k in range(n, size):
+            s.x[i, k] -= b.moved[i, k]
+    integrate_stages(n, h, method, start, s)
+
+
+@kernel
+def _take_velocities(n, size, method, pattern, matrices, h, start, b, s):
+    """Move the stages' velocities onto the constraints; ``moved`` becomes the size of the whole correction."""
+    for i in range(len(method.c)):
         for k in range(size):
             b.given[k] = -b.weighed[i, k] if k < n else b.rate[i, k]
         solve(pattern.layout, matrices.rigid, b.given, b.answer)
         for k in range(size):
-            b.dm[i, k] = b.answer[k]
+            b.place[i, k] = b.answer[k]
             if k < n:
-                b.dx[i, k] = abs(b.dx[i, k]) + h * abs(b.answer[k])
+                b.moved[i, k] = abs(b.moved[i, k]) + h * abs(b.answer[k])
             else:
                 s.m[i, k] += b.answer[k]
-    for k in range(size):
-        rates = _rates_of(b.dm, k, h)
-        for i in range(3):
-            if k < n:
-                s.a[i, k] -= rates[i]
-            else:
-                s.x[i, k] -= rates[i]
-    integrate_stages(n, h, start, s)
+    _combine(method.inverse, 1.0 / h, b.place, size, b.pace)
+    for i in range(len(method.c)):
+        for k in range(n):
+            s.a[i, k] -= b.pace[i, k]
+        for k in range(n, size):
+            s.x[i, k] -= b.pace[i, k]
+    _integrate_velocities(n, h, method, start, s)
 
 
 @kernel
-def _largest(n, scale, dx):
+def _largest(n, scale, moves):
     """Largest correction of a coordinate against its scale, and which one."""
     norm, worst = 0.0, 0
-    for i in range(3):
+    for i in range(len(moves)):
         for k in range(n):
-            moved = abs(dx[i, k]) / scale[k]
+            moved = abs(moves[i, k]) / scale[k]
             if norm == norm and not moved <= norm:  # the first that is not a number stays
                 norm, worst = moved, k
     return norm, worst
 
 
 @kernel
-def converge(problem, pattern, matrices, model, works, h, start, s, b, tolerance, least):
+def converge(
+    problem, method, pattern, matrices, model, damped, work, signals, h, start, s, b, tolerance, speed, limit,
+):  # fmt: skip
     """Newton's iteration on the stages: whether it converged, iterations, last contraction, unknown that moved most.
 
-    Corrections end at ``tolerance`` times the way that the coordinates go in the step, and at least ``least``, in parts
-    of their scales. The stages are given as predicted, with their integrals.
+    Corrections end at ``tolerance`` times the way that the coordinates go in the step, by ``speed`` (1/s) at least, in
+    parts of their scales. The stages are given as predicted, with their integrals. It also
+    ends where the estimated error of the step is certain to be larger than ``limit``.
     """
-    n, size = problem.n, len(start.x) - 1
+    n, size, count = problem.n, len(start.x) - 1, len(method.c)
     before, norm, rate, worst = 0.0, 1.0, 1.0, 0
-    closed = 0.0
+    closed, seen = 0.0, False
     for k in range(n):
         closed = max(closed, _CLOSED * problem.scale[k])
     for iteration in range(1, _MOST_ITERATIONS + 1):
-        for i in range(3):
-            residual_here(model, n, s.x[i], s.v[i], s.a[i], works[i], 1.0, b.motion[i])
+        for i in range(count):
+            own = at_stage(work, signals, i)
+            residual_here(model, n, s.x[i], s.v[i], s.a[i], own, 1.0, b.motion[i])
             for k in range(n, size):  # rounding would come back as velocities, 1/h times as large
                 if abs(b.motion[i, k]) <= closed:
                     b.motion[i, k] = 0.0
@@ -300,14 +325,14 @@ def converge(problem, pattern, matrices, model, works, h, start, s, b, tolerance
                 b.given[k] = s.u[i, k] - s.v[i, k]
             for k in range(n, size + 1):
                 b.given[k] = s.m[i, k]
-            weigh(model, n, pattern, matrices, s.x[i], b.given, works[i], b.weighed[i])
-        _correct_coordinates(n, size, pattern, matrices, h, b)
-        _take_coordinates(n, size, h, start, b, s)
-        for i in range(3):
-            constraint_rates(model, n, s.x[i], s.v[i], s.a[i], works[i], b.rate[i], b.given)
-        _take_velocities(n, size, pattern, matrices, h, start, b, s)
-        norm, worst = _largest(n, problem.scale, b.dx)
-        way = max(least, _largest(n, problem.scale, s.dx)[0])
+            weigh(model, n, pattern, matrices, s.x[i], b.given, own, b.weighed[i])
+        _correct_coordinates(n, size, method, pattern, matrices, h, b)
+        _take_coordinates(n, size, h, method, start, b, s)
+        for i in range(count):
+            constraint_rates(model, n, s.x[i], s.v[i], s.a[i], at_stage(work, signals, i), b.rate[i], b.given)
+        _take_velocities(n, size, method, pattern, matrices, h, start, b, s)
+        norm, worst = _largest(n, problem.scale, b.moved)
+        way = max(h * speed, _largest(n, problem.scale, s.dx)[0])
         if iteration > 1 and norm > _NOISE * way:
             rate = norm / before
         if not norm < 1e100 or (iteration > 2 and rate > 2.0 and norm > 1e-9):
@@ -317,19 +342,23 @@ def converge(problem, pattern, matrices, model, works, h, start, s, b, tolerance
         if iteration > 2 and norm <= _ROUNDING and norm > 0.5 * before:
             return True, iteration, rate, worst
         before = norm
+        if not seen and norm <= _VISIBLE * limit * min(1.0, h * speed):
+            seen = True
+            if estimate(problem, method, pattern, matrices, damped, h, start, s, b, speed) > 1.1 * limit:
+                return True, iteration, rate, worst
     return norm <= _MAGNIFIED, iteration, rate, worst
 
 
 @compiled
-def converge_along(problem, pattern, matrices, tilted, works, h, s, dstart, ds, b):
+def converge_along(problem, method, pattern, matrices, tilted, work, signals, h, s, dstart, ds, b):
     """Derivatives ``ds`` of the converged stages along a direction, by the same iteration on imaginary parts."""
-    n, size = problem.n, len(dstart.x) - 1
+    n, size, count = problem.n, len(dstart.x) - 1, len(method.c)
     at = b.lifted
-    begin(n, h, dstart, ds)
-    integrate_stages(n, h, dstart, ds)
+    begin(n, h, method, dstart, ds)
+    integrate_stages(n, h, method, dstart, ds)
     before = 0.0
     for _ in range(4 * _MOST_ITERATIONS):
-        for i in range(3):
+        for i in range(count):
             for k in range(size + 1):
                 at[0, k] = complex(s.x[i, k], STEP * ds.x[i, k])
                 at[1, k] = complex(s.v[i, k], STEP * ds.v[i, k])
@@ -337,21 +366,22 @@ def converge_along(problem, pattern, matrices, tilted, works, h, s, dstart, ds, 
                 at[3, k] = complex(s.u[i, k] - s.v[i, k], STEP * (ds.u[i, k] - ds.v[i, k]))
                 if k >= n:
                     at[3, k] = complex(s.m[i, k], STEP * ds.m[i, k])
-            residual(tilted, n, at[0], at[1], at[2], works[i], 1.0, at[4])
-            weigh_along(tilted, n, at[0], at[3], works[i], at[7:], at[5])
+            own = at_stage(work, signals, i)
+            residual(tilted, n, at[0], at[1], at[2], own, 1.0, at[4])
+            weigh_along(tilted, n, at[0], at[3], own, at[7:], at[5])
             for k in range(size + 1):
                 b.motion[i, k], b.weighed[i, k] = at[4, k].imag / STEP, at[5, k].imag / STEP
-        _correct_coordinates(n, size, pattern, matrices, h, b)
-        _take_coordinates(n, size, h, dstart, b, ds)
-        for i in range(3):
+        _correct_coordinates(n, size, method, pattern, matrices, h, b)
+        _take_coordinates(n, size, h, method, dstart, b, ds)
+        for i in range(count):
             for k in range(size + 1):
                 at[0, k] = complex(s.x[i, k], STEP * ds.x[i, k])
                 at[1, k] = complex(s.v[i, k], STEP * ds.v[i, k])
-            constraint_rates(tilted, n, at[0], at[1], at[2], works[i], at[4], at[5])
+            constraint_rates(tilted, n, at[0], at[1], at[2], at_stage(work, signals, i), at[4], at[5])
             for k in range(size + 1):
                 b.rate[i, k] = at[4, k].imag / STEP
-        _take_velocities(n, size, pattern, matrices, h, dstart, b, ds)
-        norm = _largest(n, problem.scale, b.dx)[0]
+        _take_velocities(n, size, method, pattern, matrices, h, dstart, b, ds)
+        norm = _largest(n, problem.scale, b.moved)[0]
         length = _largest(n, problem.scale, ds.dx)[0]
         if norm <= 1e-14 * length or not norm < 1e100 or (norm <= 1e-10 * length and norm > 0.5 * before):
             break
@@ -359,28 +389,34 @@ def converge_along(problem, pattern, matrices, tilted, works, h, s, dstart, ds, 
 
 
 @kernel
-def estimate(problem, pattern, matrices, damped, h, start, s, b, speed):
-    """Estimated error of a step, as a part of the scales: of coordinates, and of velocities against ``speed``, 1/s."""
+def estimate(problem, method, pattern, matrices, damped, h, start, s, b, speed):
+    """Estimated error of a step, as a part of the scales: of coordinates, and of velocities against ``speed``, 1/s.
+
+    It is the difference to the method of the order of the stages that also weighs the rates at the start, by the
+    reciprocal of the real eigenvalue (Hairer and Wanner 1996, IV.8.18).
+    """
     n, size = problem.n, len(start.x) - 1
-    s1 = REAL / h
+    real = method.real / h
     q, v, given, answer = b.weighed[0], b.weighed[1], b.given, b.answer
     for k in range(n):
-        q[k], v[k] = start.v[k] / s1, start.a[k] / s1
-        for i in range(3):
-            q[k] += ERROR[i] * s.dx[i, k]
-            v[k] += ERROR[i] * s.dv[i, k]
+        q[k], v[k] = start.v[k], start.a[k]
+        for i in range(len(method.c)):
+            q[k] -= method.start[i] * s.u[i, k]
+            v[k] -= method.start[i] * s.a[i, k]
+        q[k] /= real
+        v[k] /= real
     for k in range(size):
         given[k] = 0.0
         if k < n:
-            v[k] = v[k] / s1 + q[k]
+            v[k] = v[k] / real + q[k]
     add_inertia(pattern, matrices, v, given)
     if damped:
-        add_product(n, pattern, matrices.damping, q, 1.0 / s1, given)
+        add_product(n, pattern, matrices.damping, q, 1.0 / real, given)
     solve(pattern.layout, matrices.real, given, answer)
     error = 0.0
     for k in range(n):
         error = max(error, abs(answer[k]) / problem.scale[k])
-        v[k] = s1 * (answer[k] - q[k])
+        v[k] = real * (answer[k] - q[k])
         given[k] = 0.0
     add_inertia(pattern, matrices, v, given)
     solve(pattern.layout, matrices.rigid, given, answer)

@@ -25,7 +25,7 @@ class Variational(Integrator):
     and losses. So momenta that the mechanism's symmetries conserve stay to rounding, and the energy of a conservative
     mechanism swings about its value without drift for as long as the step resolves the motion. Coordinates and
     velocities fulfil their constraints at each step, accelerations and multipliers follow from the equations of motion,
-    and between steps as with :class:`Radau5`: the constraints hold at all three levels to rounding.
+    and between steps as with :class:`RadauIIA`: the constraints hold at all three levels to rounding.
 
     Parameters
     ----------

@@ -15,7 +15,7 @@ FIRST_LOAD = 0.01
 """Part of the force with which the path begins; contacts that are pressed at all then stick."""
 RESOLUTION = 0.1
 """Of the path, whose points on the way nobody looks at."""
-MOST_STEPS = 300
+MOST_STEPS = 120
 """Points of the path after which it is given up."""
 
 

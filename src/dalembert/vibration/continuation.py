@@ -17,6 +17,8 @@ EASY = 4
 """Newton iterations that a step may take and the next still be longer."""
 SHORTEST = 1e-7
 """Step, as part of the longest, at which a path is given up."""
+STILL = 1e-3
+"""Motion, as part of what the forces would cause on the stiffness of the structure alone, that counts as none."""
 MOST_POINTS = 20_000
 
 
@@ -150,7 +152,7 @@ class Path:
 
     @property
     def size(self) -> float:
-        return float(np.linalg.norm(self.known.unknowns)) or 1.0
+        return _size(self.known)
 
     def step(self, equations: Problem, length: float) -> tuple[Solution, np.ndarray | None]:
         """The point some length on, and the direction there in the scales of here, or None if it is not found."""
@@ -163,9 +165,15 @@ class Path:
         return solution, direction_at(solution, self.direction, self.width, self.size)
 
 
+def _size(known: Solution) -> float:
+    """Size of the unknowns; where all contacts stick and these are rounding, a part of what the forces could move."""
+    force, stiffness = np.linalg.norm(known.point.force), np.abs(known.point.stiffness).max(initial=0.0)
+    return max(float(np.linalg.norm(known.unknowns)), STILL * float(force / (stiffness or 1.0))) or 1.0
+
+
 def direction_at(known: Solution, before: np.ndarray, width: float, size: float | None = None) -> np.ndarray:
     """Unit tangent of the curve in scaled unknowns, to the same side as the one before."""
-    size = size or float(np.linalg.norm(known.unknowns)) or 1.0
+    size = size or _size(known)
     scale = float(np.linalg.norm(known.point.force) + np.linalg.norm(known.evaluation.forces)) or 1.0
     change, turned = bordered(known.tangent, before, (size, width, scale), np.zeros_like(known.unknowns), 1.0)
     tangent = np.append(change, turned)

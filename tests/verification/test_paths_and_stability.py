@@ -213,6 +213,23 @@ def test_a_slider_forgets_in_its_own_time(record_evidence) -> None:
         )  # fmt: skip
 
 
+def test_a_rigid_contact_of_a_massless_foot_is_as_stable_as_the_elastic_one(record_evidence) -> None:
+    springs = [("m", None, 1.0, 0.04), ("m", "foot", 0.8, 0.0)]
+    foot = VibrationSystem(lumped({"m": 1.0, "foot": 0.0}, springs))
+    foot.add(HarmonicForce("m", 1.0))
+    foot.add(FrictionContact("slider", "foot", friction=0.5, preload=2.0, law=Rigid()))
+    method, frequencies = HarmonicBalance(7, samples=512), np.array([1.12, 1.3]) / TURN
+    rigid, elastic = (frequency_response(system, frequencies, method) for system in (foot, one_mass()))
+    differences = [
+        np.abs(floquet_multipliers(foot, rigid, point)[:2] - floquet_multipliers(one_mass(), elastic, point)[:2])
+        for point in range(2)
+    ]
+    record_evidence(
+        "rigid contact of a massless foot beside the elastic law: Floquet multipliers", 0.0, np.max(differences),
+        tolerance=1e-9, topic=TOPIC, source="elastic law with the same stiffness", noisy=True,
+    )  # fmt: skip
+
+
 @pytest.mark.parametrize("law", [Elastic(1.5), Rigid()], ids=["elastic", "rigid"])
 def test_a_structure_that_only_friction_makes_nonlinear_is_stable_everywhere(law: Elastic | Rigid) -> None:
     """Friction takes energy from any disturbance: two motions of one system under one force come no farther apart."""

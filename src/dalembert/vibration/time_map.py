@@ -81,15 +81,29 @@ def monodromy(system: Uncondensed, linear: np.ndarray, unknowns: np.ndarray, ome
     laws, held = _laws(system, unknowns), _held(system, linear, unknowns)
     n, samples = len(mass), system.series.samples
     states = 2 * n + laws.memory.shape[2]
+    starts = _changes(laws, held)
+    lengths = np.diff(np.append(starts, samples))
     result, chunk = np.eye(states), max(1, MEMORY // (states * (n + len(held.rows))))
     begins = held.active & ~np.roll(held.active, 1, axis=0)
-    for first in range(0, samples, chunk):
-        steps = np.arange(first, min(first + chunk, samples))
-        for t, step in zip(steps, _steps(system, laws, held, light, 2 * np.pi / omega / samples, steps), strict=True):
+    for first in range(0, len(starts), chunk):
+        steps = starts[first : first + chunk]
+        made = _steps(system, laws, held, light, 2 * np.pi / omega / samples, steps)
+        for t, step, length in zip(steps, made, lengths[first : first + chunk], strict=True):
             if begins[t].any():
                 result[n : 2 * n] = _stopped(mass, result[n : 2 * n], held.rows[held.active[t]], light)
-            result = step @ result
+            result = np.linalg.matrix_power(step, int(length)) @ result
     return result
+
+
+def _changes(laws: Laws, held: Held) -> np.ndarray:
+    """Samples from which steps are others than before; between them friction in one direction repeats the same."""
+    samples = len(held.active)
+    begun = np.zeros(samples, dtype=bool)
+    begun[0] = True
+    ended = (np.roll(laws.stiffness, 1, axis=0), np.roll(laws.release, 1, axis=0))  # where the step before ended
+    for values in (laws.reaction, laws.memory, laws.following, laws.keeping, *ended, held.active, held.push):
+        begun |= np.any((values != np.roll(values, 1, axis=0)).reshape(samples, -1), axis=1)
+    return np.flatnonzero(begun)
 
 
 def _steps(system: Uncondensed, laws: Laws, held: Held, light: np.ndarray, h: float, steps: np.ndarray) -> np.ndarray:

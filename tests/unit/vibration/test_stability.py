@@ -5,9 +5,23 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from dalembert.errors import InputError
 from dalembert.files import write_dataset
-from dalembert.vibration import FrequencyCurve, HarmonicBalance, frequency_response
-from vibrating_systems import duffing, one_mass
+from dalembert.structure import Dofs, Structure
+from dalembert.vibration import (
+    CubicSpring,
+    Elastic,
+    FrequencyCurve,
+    FrictionContact,
+    HarmonicBalance,
+    HarmonicForce,
+    StaticForce,
+    VibrationSystem,
+    floquet_multipliers,
+    frequency_response,
+)
+from support import says
+from vibrating_systems import duffing, one_mass, two_masses
 
 TURN = 2 * np.pi
 METHOD = HarmonicBalance(5)
@@ -56,3 +70,56 @@ def test_a_slider_is_stable_and_points_that_are_not_found_are_not_judged() -> No
     hard = HarmonicBalance(5, samples=128, iterations=2, halvings=0)
     curve = frequency_response(one_mass(), np.linspace(0.05, 0.3, 6), hard, stability=True)
     np.testing.assert_array_equal(curve.stable, np.where(curve.converged, 1, -1))
+
+
+def test_with_given_frequencies_the_first_point_behind_a_change_is_marked() -> None:
+    omegas = np.linspace(1.3, 1.1, 11)
+    curve = frequency_response(pushed(), omegas / TURN, HarmonicBalance(9), stability=True)
+    (kind, point), *others = curve.markers
+    assert (kind, others) == ("period doubling", [])
+    np.testing.assert_array_equal(curve.stable, np.arange(11) < point)
+    assert omegas[point] < 1.2279 < omegas[point - 1]
+
+
+def pushed() -> VibrationSystem:
+    """The oscillator of the verification whose period doubles below 1.2279 rad/s."""
+    structure = Structure(np.eye(1), np.zeros((1, 1)), Dofs(("m.x",)), damping=np.array([[0.05]]))
+    system = VibrationSystem(structure)
+    system.add(StaticForce("m", 0.03))
+    system.add(HarmonicForce("m", 0.16))
+    system.add(CubicSpring("cubic", "m", stiffness=1.0))
+    return system
+
+
+def sharing() -> VibrationSystem:
+    structure = Structure(np.ones((2, 2)), np.diag([1.0, 2.0]), Dofs(("a.x", "b.x")), damping=0.1 * np.eye(2))
+    system = VibrationSystem(structure)
+    system.add(HarmonicForce("a", 1.0))
+    system.add(FrictionContact("foot", "a", friction=0.3, preload=1.0, law=Elastic(1.0)))
+    return system
+
+
+def test_the_map_over_a_period_needs_masses_of_their_own() -> None:
+    sentence = (
+        "stability: some degrees of freedom with contacts have a mass only together with others; give each a mass"
+    )
+    with pytest.raises(InputError, match=says(sentence)):
+        frequency_response(sharing(), np.array([0.1]), METHOD, stability=True)
+
+
+def test_multipliers_are_refused_where_they_make_no_sense(duffings_curve: FrequencyCurve) -> None:
+    sentence = "floquet_multipliers: unknown way 'times map'; did you mean 'time map'?"
+    with pytest.raises(InputError, match=says(sentence)):
+        floquet_multipliers(duffing(), duffings_curve, 0, "times map")
+    sentence = (
+        "frequency_response: the start has unknowns of shape (1, 11) and harmonics (0, 1, 2, 3, 4, 5); the system has "
+        "(2, 11) and (0, 1, 2, 3, 4, 5); start from a curve of the same system"
+    )
+    with pytest.raises(InputError, match=says(sentence)):
+        floquet_multipliers(both(), duffings_curve, 0)
+
+
+def both() -> VibrationSystem:
+    system = two_masses()
+    system.add(CubicSpring("cubic", "m1", stiffness=1.0))
+    return system

@@ -243,7 +243,7 @@ FREQUENCY_CASES: dict[str, Case] = {
             "Displacements drawn",
             "times as large as they are; thin lines: at rest.",
             "Filled: the state at the phase shown; ring: the state held for longest;",
-            "% of all that friction takes, most of all.",
+            "Of all the energy that friction takes, foot",
         ),
         ("frequency-curve", "deformation", "interface-map"),
     ),

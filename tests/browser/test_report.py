@@ -1,5 +1,8 @@
 """The report in a real browser: drawn, silent, dark where asked, and moving."""
 
+from types import SimpleNamespace
+
+import numpy as np
 import pytest
 
 from dalembert.report import figures, report
@@ -160,3 +163,26 @@ def test_the_inside_of_a_band_is_faint_and_follows_the_page(chromium, tmp_path, 
 def test_reports_on_intervals_fit_a_phone(chromium, tmp_path, make):
     tab = chromium.open(report(make(), tmp_path / "a.html"), width=400, height=800, touch=True)
     assert tab.run("[innerWidth, document.documentElement.scrollWidth]") == [400, 400]
+
+
+def test_a_film_of_a_period_goes_on_without_end(chromium, tmp_path):
+    phases = np.arange(64)
+    states = np.where(phases < 32, 1, 2).astype(np.uint8)[None]
+    shape = SimpleNamespace(
+        frequency=10.0,
+        places=np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]),
+        faces=np.array([[0, 1, 2, 3]]),
+        contacts=("foot",),
+        contact_places=np.array([[0.5, 0.5, 0.0]]),
+        states=states,
+        energies=np.array([1.0]),
+        motion=lambda phases: np.cos(phases)[:, None, None] * np.array([[0, 0, 0], [0, 0, 1], [0, 0, 2], [0, 0, 1]]),
+    )
+    tab = chromium.open(report(shape, tmp_path / "a.html"))
+    fill = "document.querySelector('#figure-interface-map .scatterlayer .trace:last-child .point').style.fill"
+    assert tab.run(fill) == _colour(LIGHT.series[0])
+    tab.run("document.querySelector('.player[data-for=figure-interface-map] button').click()")
+    tab.until(f"{fill} === '{_colour(LIGHT.series[1])}'")
+    tab.until(f"{fill} === '{_colour(LIGHT.series[0])}'")
+    pressed = "document.querySelector('.player[data-for=figure-interface-map] button').getAttribute('aria-pressed')"
+    assert tab.run(pressed) == "true"

@@ -1,5 +1,11 @@
 """What a channel measures, and in which unit, read from the last word of its name."""
 
+import re
+
+from dalembert.report.focus import size_label, unit_of
+
+SIZE = re.compile(r"(?P<dof>.+) (?P<kind>peak|rms|harmonic \d+)")
+"""Channels of responses over frequency."""
 QUANTITIES = {
     "x": ("position", "m"),
     "y": ("position", "m"),
@@ -28,6 +34,8 @@ def quantity(channel: str, unit: str = "") -> str:
     --------
     >>> quantity("AB.end.x"), quantity("O.torque"), quantity("gauge 7", "V")
     ('position (m)', 'torque (N m)', 'response (V)')
+    >>> quantity("A.x peak"), quantity("m2 rms"), quantity("A.rx harmonic 1")
+    ('amplitude (m)', 'rms (m)', 'amplitude of harmonic 1 (rad)')
     """
     return labelled(*_known(channel, unit))
 
@@ -45,6 +53,9 @@ def derivative(channel: str, along: str, unit: str = "") -> str:
 
 
 def _known(channel: str, unit: str) -> tuple[str, str]:
+    size = SIZE.fullmatch(channel)
+    if size:
+        return size_label(size["kind"]), unit_of(size["dof"])
     return QUANTITIES.get(channel.rpartition(".")[2], ("response", unit))
 
 

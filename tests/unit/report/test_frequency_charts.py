@@ -3,13 +3,18 @@
 import numpy as np
 import pytest
 
+from dalembert.data import Measurements
 from dalembert.errors import InputError
+from dalembert.forward import Coordinate
+from dalembert.inverse import identify
 from dalembert.report import charts, figures, report
 from dalembert.report.charts.contact_states import COLOURS, STATES
 from dalembert.report.focus import Look, movers
 from dalembert.report.prefixes import prefixed
 from dalembert.structure import eigenmodes, mode_shapes
+from dalembert.uncertainty import Vertex, propagate
 from dalembert.vibration import (
+    FrequencyResponse,
     HarmonicBalance,
     Newmark,
     backbone,
@@ -225,14 +230,16 @@ def test_the_deformed_shape_goes_through_its_period(shape):
     figure = charts.deformation(shape)
     outline, body = figure.data
     assert len(figure.frames) == 24
-    motion = shape.motion(np.array([np.pi]))[0]
+    labels = figure.layout.meta["labels"]
+    deflections = np.abs(shape.motion(2 * np.pi * np.arange(24) / 24)).max(axis=(1, 2))
+    assert labels[0] == f"{15 * deflections.argmax()}"  # it begins with the largest deflection
+    motion = shape.motion(np.array([np.deg2rad(float(labels[12]))]))[0]
     largest = np.linalg.norm(shape.motion(2 * np.pi * np.arange(24) / 24), axis=2).max(axis=0)
     factor = 0.1 * np.linalg.norm(np.ptp(shape.places, axis=0)) / largest.max()
     np.testing.assert_allclose(figure.frames[12].data[0].z, shape.places[:, 2] + factor * motion[:, 2], atol=1e-6)
     assert len(body.i) == 2 * len(shape.faces)
     np.testing.assert_allclose(np.max(body.intensity), prefixed(largest.max(), "m")[0] * largest.max(), rtol=1e-6)
     assert np.isnan(outline.x[2::3]).all()
-    assert figure.layout.meta["labels"][12] == "180"
     assert figure.layout.meta["endless"]
 
 
@@ -253,3 +260,21 @@ def test_modes_are_drawn_one_after_another():
     assert [frame.name for frame in figure.frames] == ["0", "1", "2"]
     assert figure.layout.meta["labels"][0] == f"1: {modes.frequencies[0]:.6g} Hz"
     np.testing.assert_allclose(figure.frames[1].data[0].intensity, np.linalg.norm(modes.shapes[1], axis=1), rtol=1e-6)
+
+
+def test_a_fit_over_frequency_has_its_labels(tmp_path):
+    model = FrequencyResponse(damped, {"preload": (1.0, 6.0)}, ["m2 peak", "m1 rms"], HZ * np.linspace(0.8, 1.1, 13))
+    truth = model.evaluate(np.array([3.0])).values[0]
+    data = Measurements.of(
+        Coordinate("frequency", "Hz", model.frequencies), {"m2 peak": truth[:, 0], "m1 rms": truth[:, 1]}
+    )
+    fit = identify(model, data, starts=1, start=[2.5])
+    found = figures(fit)
+    first, second = found["responses-1"], found["responses-2"]
+    assert first.layout.yaxis.title.text == "amplitude (m)"
+    assert first.layout.yaxis2.title.text == "residual (m)"
+    assert second.layout.yaxis.title.text == "rms (m)"
+    assert first.layout.xaxis2.title.text == "frequency (Hz)"
+    assert read_page(fit.report(tmp_path / "a.html")).table("responses")[0][0] == "frequency (Hz)"
+    band = figures(propagate(model, {"preload": (2.9, 3.1)}, Vertex()))["bands-1"]
+    assert (band.layout.yaxis.title.text, band.layout.xaxis2.title.text) == ("amplitude (m)", "frequency (Hz)")

@@ -83,7 +83,8 @@ def edges(places: np.ndarray, faces: np.ndarray) -> np.ndarray:
 def space(figure: go.Figure, positions: np.ndarray) -> go.Figure:
     """Equal axes that hold positions (..., 3), m."""
     low, high = (turn(positions.reshape(-1, 3), axis=0) for turn in (np.min, np.max))
-    margin = 0.02 * float(np.max(high - low)) or 1.0
+    longest = float(np.max(high - low)) or 1.0
+    low, high = low - 0.02 * longest, high + 0.02 * longest
     axis: dict[str, Any] = {
         "gridcolor": LIGHT.grid,
         "color": LIGHT.muted,
@@ -94,15 +95,12 @@ def space(figure: go.Figure, positions: np.ndarray) -> go.Figure:
     figure.update_layout(
         scene={
             **{
-                f"{name}axis": {
-                    **axis,
-                    "title": f"{name} (m)",
-                    "range": [float(low[at] - margin), float(high[at] + margin)],
-                }
+                f"{name}axis": {**axis, "title": f"{name} (m)", "range": [float(low[at]), float(high[at])]}
                 for at, name in enumerate("xyz")
             },
-            "aspectmode": "data",
-            "camera": {"eye": {"x": 1.3, "y": -1.75, "z": 1.15}, "center": {"x": 0, "y": 0, "z": -0.15}},
+            "aspectmode": "manual",
+            "aspectratio": {name: float((high - low)[at]) / longest for at, name in enumerate("xyz")},
+            "camera": {"eye": {"x": 0.8, "y": -1.25, "z": 0.85}, "center": {"x": 0, "y": 0, "z": -0.08}},
         },
         margin={"l": 0, "r": 0, "b": 0},
     )

@@ -35,6 +35,9 @@ def deformation(shape: DeformationLike, *, title: str | None = None) -> go.Figur
     along = np.flatnonzero(moving.max(axis=(0, 1), initial=0.0) > STILL * moving.max(initial=0.0))
     count = FEW_FRAMES if len(shape.places) * max(len(along), 1) > MANY else FRAMES
     motion = shape.motion(2 * np.pi * np.arange(count) / count)
+    first = int(np.abs(motion).max(axis=(1, 2), initial=0.0).argmax())  # the largest deflection, to be seen in print
+    order = np.roll(np.arange(count), -first)
+    motion = motion[order]
     sizes = np.linalg.norm(motion, axis=2).max(axis=0)
     factor, unit = prefixed(float(sizes.max(initial=0.0)), "m")
     positions = shape.places + magnification(shape.places, sizes) * motion
@@ -49,7 +52,7 @@ def deformation(shape: DeformationLike, *, title: str | None = None) -> go.Figur
         for number, frame in enumerate(positions)
     ]
     themed(figure, title or f"Deformed shape at {shown(shape.frequency)} Hz", height=520)
-    labels = [f"{360 * number / count:.0f}" for number in range(count)]
+    labels = [f"{360 * number / count:.0f}" for number in order]
     film = Film(labels, SECONDS, "phase", "°", slowness(shape.frequency), endless=True)
     return space(figure, np.concatenate([positions.reshape(-1, 3), shape.places])).update_layout(**film.controls())
 

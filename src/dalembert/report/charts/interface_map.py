@@ -13,7 +13,8 @@ from dalembert.report.prefixes import prefixed
 
 FRAMES = 32
 SMALLEST, LARGEST = 9, 22
-"""Diameters of contacts, by the energy that they take."""
+"""Diameters of contacts, by the energy that they take; half as large where there are many."""
+MANY = 16
 
 
 def interface_map(shape: DeformationLike, *, title: str | None = None) -> go.Figure:
@@ -37,6 +38,7 @@ def interface_map(shape: DeformationLike, *, title: str | None = None) -> go.Fig
     energies = np.clip(np.asarray(shape.energies), 0.0, None)
     most = float(energies.max(initial=0.0))
     sizes = SMALLEST + (LARGEST - SMALLEST) * np.sqrt(energies / most if most > 0 else energies)
+    sizes = sizes if len(sizes) <= MANY else sizes / 2
     factor, unit = prefixed(most, "J")
     phases = np.arange(FRAMES) * np.asarray(shape.states).shape[1] // FRAMES
     colours = np.array([COLOURS[state] for state in STATES])
@@ -55,7 +57,7 @@ def interface_map(shape: DeformationLike, *, title: str | None = None) -> go.Fig
         marker={
             "size": sizes,
             "color": colours[shape.states[:, 0]],
-            "line": {"width": 3, "color": rings[longest]},
+            "line": {"width": 3 if len(sizes) <= MANY else 1.5, "color": rings[longest]},
             "opacity": 1,
         },
         text=text,
@@ -76,7 +78,7 @@ def interface_map(shape: DeformationLike, *, title: str | None = None) -> go.Fig
     low, high = points.min(axis=0), points.max(axis=0)
     margin = 0.06 * float((high - low).max())
     across, up = ("xyz"[axis] for axis in wide)
-    figure.update_xaxes(title=f"{across} (m)", range=[low[0] - margin, high[0] + margin])
+    figure.update_xaxes(title=f"{across} (m)", range=[low[0] - margin, high[0] + margin], constrain="domain")
     figure.update_yaxes(title=f"{up} (m)", range=[low[1] - margin, high[1] + margin], scaleanchor="x", scaleratio=1)
     labels = [f"{360 * number / FRAMES:.0f}" for number in range(FRAMES)]
     film = Film(labels, SECONDS, "phase", "°", slowness(shape.frequency), endless=True)

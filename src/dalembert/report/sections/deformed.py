@@ -41,4 +41,4 @@ class Deformed(Findings):
             return ()
         most = int(energies.argmax())
         part = shown(100 * float(energies[most] / energies.sum()), digits=3)
-        return (f"The contact {self.shape.contacts[most]} takes {part} % of all that friction takes, most of all.",)
+        return (f"Of all the energy that friction takes, {self.shape.contacts[most]} takes most, {part} %.",)

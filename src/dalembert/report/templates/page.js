@@ -24,6 +24,8 @@
     if (narrow) {
       Object.assign(layout.margin, { l: 44, r: 8 });
       layout.template.layout.font.size = 11;
+      const eye = layout.scene?.camera.eye;
+      for (const axis in eye) eye[axis] *= 1.35;
     }
     if (layout.scene) place.style.height = `${Math.round(Math.min(520, Math.max(320, place.clientWidth)))}px`;
     else if (layout.meta?.labels) { // equal axes: no higher than the motion needs

@@ -14,6 +14,7 @@ from dalembert.results import Result
 from dalembert.vibration.curve import FrequencyCurve
 from dalembert.vibration.newmark import Newmark
 from dalembert.vibration.system import VibrationSystem
+from dalembert.vibration.threads import one_thread
 from dalembert.vibration.time_reference import LONG_RUN, steady_state
 
 if TYPE_CHECKING:
@@ -170,7 +171,7 @@ def compare_in_time(
         sizes = [motion.amplitude(dof, kind) for dof in curve.dofs]
         return sizes, motion.periods, motion.residual, motion.converged
 
-    with ThreadPoolExecutor(cores()) as pool:
+    with one_thread(), ThreadPoolExecutor(cores()) as pool:
         runs = list(pool.map(run, chosen.tolist()))
     sizes, periods, residuals, converged = zip(*runs, strict=True)
     return TimeComparison(

@@ -37,6 +37,16 @@ class ModeShapes(Result):
     faces: np.ndarray
     shapes: np.ndarray
 
+    @property
+    def success(self) -> bool:
+        """True: what cannot be found is an error."""
+        return True
+
+    @property
+    def status(self) -> str:
+        """The frequencies, in a sentence."""
+        return self.summary()
+
     def summary(self) -> str:
         """A line: the frequencies."""
         return "modes at " + ", ".join(f"{value:.6g}" for value in self.frequencies) + " Hz"

@@ -181,6 +181,7 @@ class FrequencyCurve(Result):
         rows = slice(max(top - 4, 0), top + 5)
         near = np.column_stack([frequency[rows], harmonics[rows]])
         lengths = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(harmonics[rows], axis=0), axis=1)))
+        lengths = lengths / (lengths[-1] or 1.0)  # as parts of the way: a spline through few points solves for them
         kept = np.append(True, np.diff(lengths) > 0)
         spline, place = CubicSpline(lengths[kept], near[kept]), lengths[top - rows.start]
         inner = lengths[top - rows.start - 1], lengths[top - rows.start + 1]

@@ -145,37 +145,28 @@ class CurveFamily(Result):
         return "\n".join(lines)
 
     def to_xarray(self) -> "Dataset":
-        """Everything as an :class:`xarray.Dataset`: the points of all curves one after the other, and their counts."""
+        """Everything as an :class:`xarray.Dataset`: those of each curve end in its number, ``_0``."""
         import xarray as xr
 
-        kept = [curve.to_xarray() for curve in self.curves if curve is not None]
-        points = xr.concat(kept, "point", combine_attrs="drop") if kept else xr.Dataset()
-        counts = [-1 if curve is None else len(curve) for curve in self.curves]
+        kept = {row: curve.to_xarray() for row, curve in enumerate(self.curves) if curve is not None}
+        numbered = [one.rename({name: f"{name}_{row}" for name in (*one.dims, *one)}) for row, one in kept.items()]
         attributes = {
             "format": self.FORMAT,
             "parameter": self.parameter,
             "failures": json.dumps(self.failures),
-            "curves": json.dumps([dict(one.attrs) for one in kept]),
+            "curves": json.dumps({row: dict(one.attrs) for row, one in kept.items()}),
         }
-        family = {"values": ("value", self.values, {"units": self.unit}), "counts": ("value", np.array(counts))}
-        return points.assign(family).assign_attrs(attributes)
+        values = xr.Dataset({"values": ("value", self.values, {"units": self.unit})}, attrs=attributes)
+        return xr.merge([values, *numbered], combine_attrs="override")
 
     @classmethod
     def from_xarray(cls, dataset: "Dataset") -> "CurveFamily":
         """The family that :meth:`to_xarray` turned into a dataset."""
-        attributes, first = iter(json.loads(dataset.attrs["curves"])), 0
-        points = dataset.drop_vars(["values", "counts"])
-        curves: list[FrequencyCurve | None] = []
-        for count in dataset["counts"].values.tolist():
-            if count < 0:
-                curves.append(None)
-                continue
-            own = points.isel(point=slice(first, first + count)).assign_attrs(next(attributes))
-            curves.append(FrequencyCurve.from_xarray(own))
-            first += count
+        kept = json.loads(dataset.attrs["curves"])
         given = dataset["values"]
+        curves = tuple(_curve(dataset, str(row), kept.get(str(row))) for row in range(len(given)))
         failures = tuple(json.loads(dataset.attrs["failures"]))
-        return cls(dataset.attrs["parameter"], given.attrs["units"], given.values, tuple(curves), failures)
+        return cls(dataset.attrs["parameter"], given.attrs["units"], given.values, curves, failures)
 
     def _sizes(self, dof: str, kind: str) -> np.ndarray:
         return np.array([peak.amplitude for peak in self.peaks(dof, kind)])
@@ -260,6 +251,15 @@ def frequency_responses(
         raise errors[0]
     failures = tuple(None if error is None else str(error) for error in errors)
     return CurveFamily(parameter, unit, given, tuple(curves), failures)
+
+
+def _curve(dataset: "Dataset", row: str, attributes: dict[str, Any] | None) -> FrequencyCurve | None:
+    """The curve whose variables end in a number."""
+    if attributes is None:
+        return None
+    own = dataset[[name for name in dataset if str(name).rpartition("_")[2] == row]]
+    names = {name: str(name).rpartition("_")[0] for name in (*own, *own.dims)}
+    return FrequencyCurve.from_xarray(own.rename(names).assign_attrs(attributes))
 
 
 def _passes(along: np.ndarray, sizes: np.ndarray, frequencies: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:

@@ -285,7 +285,7 @@ horizon = "growin"
             [
                 "study.toml: [simulate] and [sweep] are given; a study has one task, one of "
                 "[simulate], [identify], [sweep], [propagate], [identify_bands], [identify_set], [design], "
-                "[work_precision], [frequency_response], [track_resonance], [backbone]"
+                "[work_precision], [frequency_response], [track_resonance], [backbone], [modes]"
             ],
         ),
         (
@@ -293,7 +293,7 @@ horizon = "growin"
             [
                 "study.toml: no task is given; a study has one task, one of "
                 "[simulate], [identify], [sweep], [propagate], [identify_bands], [identify_set], [design], "
-                "[work_precision], [frequency_response], [track_resonance], [backbone]"
+                "[work_precision], [frequency_response], [track_resonance], [backbone], [modes]"
             ],
         ),
         (('[solver]\nstep = "1 ms"', ""), ["study.toml: the table [solver] is missing; expected at least its step"]),

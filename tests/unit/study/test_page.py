@@ -36,6 +36,7 @@ TABLES = {
     "Newmark": ["frequency_response"],
     "TrackResonanceTable": ["track_resonance"],
     "BackboneTable": ["backbone"],
+    "ModesTable": ["modes"],
     "HarmonicBalance": ["harmonic_balance"],
     "StructureTable": [r"model\.structure"],
     "ReductionTable": [r"model\.structure"],

@@ -8,10 +8,11 @@ from scipy.io import mmwrite
 from scipy.sparse import coo_array
 
 from dalembert.errors import DalembertError, InputError
-from dalembert.structure import Modal, lumped
+from dalembert.structure import Modal, eigenmodes, lumped
 from dalembert.study import load, plan, report_run, run_study
 from dalembert.study.runner import takes
 from dalembert.vibration import (
+    Deformation,
     Elastic,
     FrequencyCurve,
     FrictionContact,
@@ -87,6 +88,10 @@ from dalembert.vibration import HarmonicForce, VibrationSystem
 
 def structure(stiffness):
     return lumped({"m": 1.0}, [("m", None, stiffness, 0.1)])
+
+def plate():
+    from dalembert.structure import Material, plate
+    return plate((0.4, 0.4), 2e-3, Material(210e9, 0.3, 7800.0), (4, 4)).fixed("edge")
 
 def system(mu, stiffness):
     made = VibrationSystem(structure(stiffness))
@@ -282,6 +287,27 @@ def test_each_task_runs_and_its_report_is_made_anew(write, tmp_path, task, told,
     assert folder.report.read_text() == first
 
 
+def test_modes_and_motion_of_a_structure_with_nodes_are_drawn(write, tmp_path):
+    text = '[model.structure]\nfunction = "made.py:plate"\ndamping = { kind = "Modal", ratio = 0.01 }\n'
+    study = load(write(text + "[modes]\ncount = 3\n"))
+    assert plan(study) == "finds the lowest 3 of 36 modes: 1 simulation"
+    folder, outcome = run_study(study, tmp_path / "modes")
+    square = study.system().structure
+    assert outcome.best["values"]["mode 1"] == pytest.approx(eigenmodes(square, 1).frequencies[0])
+    middle = square.nodes.nearest((0.2, 0.2))
+    force = f'[[model.force]]\ndof = "{middle}.z"\namplitude = 1.0\n'
+    along = f'frequencies = [100.0, 110.0, 120.0]\nobserve = ["{middle}"]\ndof = "{middle}.z"\n'
+    folder, _ = run_study(load(write(text + force + "[frequency_response]\n" + along)), tmp_path / "curve")
+    assert Deformation.load(folder.path / "deformation.nc").frequency in (100.0, 110.0, 120.0)
+    first = folder.report.read_text()
+    report_run(folder)
+    assert folder.report.read_text() == first
+    folder, _ = run_study(
+        load(write(text + force + "[frequency_response]\ndeformed = false\n" + along)), tmp_path / "plain"
+    )
+    assert not (folder.path / "deformation.nc").exists()
+
+
 def refused(write, text) -> str:
     """The one sentence about what is wrong, from reading or from the plan."""
     with pytest.raises(DalembertError) as error:
@@ -349,6 +375,11 @@ def refused(write, text) -> str:
         (
             (CURVE, "[backbone]\nbetween = [0.0, 1.0]\n"),
             "study.toml: [backbone]: the amplitude 0 m was given; expected positive ones",
+        ),
+        (
+            (CURVE, "[modes]\n"),
+            "[modes] draws the shapes, and the structure does not say where its nodes are; let a function of "
+            "[model.structure] or [model] give it nodes",
         ),
         (
             (CURVE, "[backbone]\n"),

@@ -29,6 +29,13 @@ def damped(preload: float) -> VibrationSystem:
     return system
 
 
+def free_or_damped(preload: float) -> VibrationSystem:
+    """Without a load there is no contact at all."""
+    system = damped(preload)
+    system.elements = system.elements if preload else []
+    return system
+
+
 def hardening(force: float) -> VibrationSystem:
     system = VibrationSystem(lumped({"m": 1.0}, [("m", None, 1.0, 0.05)]))
     system.add(HarmonicForce("m", force))
@@ -56,8 +63,9 @@ def test_each_curve_is_that_of_its_value() -> None:
     ]
 
 
-def test_a_family_is_kept_to_the_bit(tmp_path) -> None:
-    family = frequency_responses(damped, "preload", [0.0, -1.0, 2.0], (0.12, 0.25), METHOD, unit="N")
+@pytest.mark.parametrize("builder", [damped, free_or_damped])
+def test_a_family_is_kept_to_the_bit(tmp_path, builder) -> None:
+    family = frequency_responses(builder, "preload", [0.0, -1.0, 2.0], (0.12, 0.25), METHOD, unit="N")
     family.save(tmp_path / "family.nc")
     again = CurveFamily.load(tmp_path / "family.nc")
     assert (again.parameter, again.unit, again.failures) == (family.parameter, family.unit, family.failures)

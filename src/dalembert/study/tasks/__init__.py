@@ -7,6 +7,7 @@ from dalembert.study.tasks.frequency_response import FrequencyResponseTask
 from dalembert.study.tasks.identify import Identify
 from dalembert.study.tasks.identify_bands import IdentifyBands
 from dalembert.study.tasks.identify_set import IdentifySet
+from dalembert.study.tasks.modes import Modes
 from dalembert.study.tasks.propagate import Propagate
 from dalembert.study.tasks.simulate import Simulate
 from dalembert.study.tasks.sweep import SweepTask
@@ -25,6 +26,7 @@ TASKS: dict[str, Task] = {
     "frequency_response": FrequencyResponseTask(),
     "track_resonance": TrackResonance(),
     "backbone": BackboneTask(),
+    "modes": Modes(),
 }
 
 __all__ = ["TASKS", "Outcome", "Task"]

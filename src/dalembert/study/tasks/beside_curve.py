@@ -1,9 +1,10 @@
-"""What a study may ask for beside a response over frequency: points of it in time, and a nonlinear mode."""
+"""What stands beside a response over frequency: its motion at the peak, points of it in time, a nonlinear mode."""
 
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
+import numpy as np
 from pydantic import Field, create_model
 
 from dalembert.study.components import buildable_table
@@ -13,7 +14,7 @@ from dalembert.study.table import Read, StudyTable
 if TYPE_CHECKING:
     from dalembert.study.study import Study
 
-COMPARISON, BACKBONE = "time_comparison", "backbone"
+COMPARISON, BACKBONE, DEFORMATION = "time_comparison", "backbone", "deformation"
 """What there may be beside a curve: options of a report, and names of files beside the result, ``NAME.nc``."""
 
 
@@ -41,7 +42,7 @@ def beside(study: "Study", curve: Any, system: Any) -> dict[str, Any]:
     """What the task's table asks for beside a curve."""
     from dalembert.vibration import compare_in_time
 
-    table, told = study.table, {}
+    table, told = study.table, _deformed(study, curve, system)
     if table.compare_in_time is not None and curve.converged.any():
         asked = table.compare_in_time
         method = None if asked.method is None else asked.method.settings()
@@ -53,6 +54,27 @@ def beside(study: "Study", curve: Any, system: Any) -> dict[str, Any]:
     return told
 
 
+def beside_family(study: "Study", family: Any) -> dict[str, Any]:
+    """The same beside curves over a parameter: the motion at the smallest of their peaks."""
+    table, found = study.table, [curve is not None and curve.converged.any() for curve in family.curves]
+    if not any(found):
+        return {}
+    best = family.best(table.dof or family.dofs[0], table.amplitude)
+    system = study.along(family.parameter)(**{family.parameter: best})
+    return _deformed(study, family.curves[family.values.tolist().index(best)], system)
+
+
+def _deformed(study: "Study", curve: Any, system: Any) -> dict[str, Any]:
+    """The motion at the point with the largest amplitude, where it can be drawn."""
+    from dalembert.vibration import deformation
+
+    table = study.table
+    if not table.deformed or system.structure.nodes is None or not curve.converged.any():
+        return {}
+    sizes = curve.amplitude(table.dof or curve.dofs[0], table.amplitude)
+    return {DEFORMATION: deformation(system, curve, int(np.nanargmax(np.where(curve.converged, sizes, np.nan))))}
+
+
 def save(told: dict[str, Any], result: Path) -> None:
     """Write each beside the result."""
     for name, one in told.items():
@@ -61,8 +83,8 @@ def save(told: dict[str, Any], result: Path) -> None:
 
 def load(result: Path) -> dict[str, Any]:
     """What was written beside a result."""
-    from dalembert.vibration import Backbone, TimeComparison
+    from dalembert.vibration import Backbone, Deformation, TimeComparison
 
-    kinds = {COMPARISON: TimeComparison, BACKBONE: Backbone}
+    kinds = {DEFORMATION: Deformation, COMPARISON: TimeComparison, BACKBONE: Backbone}
     paths = {name: result.with_name(f"{name}.nc") for name in kinds}
     return {name: kind.load(paths[name]) for name, kind in kinds.items() if paths[name].is_file()}

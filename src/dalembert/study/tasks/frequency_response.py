@@ -12,7 +12,7 @@ from dalembert.study.numbers import fixed, samples
 from dalembert.study.table import Read, StudyTable, problem
 from dalembert.study.tasks import beside_curve
 from dalembert.study.tasks.backbone import BackboneTable
-from dalembert.study.tasks.beside_curve import beside, compare_in_time_table
+from dalembert.study.tasks.beside_curve import beside, beside_family, compare_in_time_table
 from dalembert.study.tasks.sweep import Along, values_along
 from dalembert.study.tasks.task import Outcome, Task
 from dalembert.study.tasks.wrong import needs_structure, unnamed
@@ -54,6 +54,10 @@ class FrequencyResponseTable(StudyTable):
     dof: str | None = Field(None, description="whose peak is told; the first observed one if not given")
     amplitude: str = Field("peak", description="'peak', 'rms', or 'harmonic 1' and so on")
     stability: bool = Field(False, description="whether to find which points are stable, and where that changes")
+    deformed: bool = Field(
+        True,
+        description="whether the report draws the motion at the peak, where the structure says where its nodes are",
+    )
     compare_in_time: Any = None
     backbone: BackboneTable | None = Field(None, description="a nonlinear mode beside the curve")
     sweep: FamilyTable | None = Field(None, description="a curve for each value of a parameter")
@@ -232,7 +236,7 @@ class FrequencyResponseTask(Task):
             on_curve=on_curve,
             **options,
         )
-        return Response(study, family)
+        return Response(study, family, beside_family(study, family))
 
     def load(self, study: "Study", path: Path) -> Outcome:
         from dalembert.vibration import CurveFamily, FrequencyCurve

@@ -9,6 +9,7 @@ from dalembert.structure import (
     Dofs,
     Material,
     Modal,
+    ReducedStructure,
     Structure,
     box,
     craig_bampton,
@@ -30,6 +31,7 @@ from dalembert.vibration import (
     deformation,
     frequency_response,
     frequency_responses,
+    steady_state,
     track_resonance,
 )
 from report_case import Case
@@ -98,9 +100,17 @@ def _track(values: list[float], start: tuple[float, float], **settings: Any) -> 
     )
 
 
+def _full() -> Structure:
+    return solid(box((0.4, 0.1, 0.004), (6, 2, 1)), Material(210e9, 0.3, 7800.0)).fixed("left")
+
+
+def _reduced() -> ReducedStructure:
+    return craig_bampton(_full(), "right", modes=6)
+
+
 def strip() -> VibrationSystem:
     """A clamped strip with three feet that rub on the ground, reduced."""
-    full = solid(box((0.4, 0.1, 0.004), (6, 2, 1)), Material(210e9, 0.3, 7800.0)).fixed("left")
+    full = _full()
     assert full.nodes is not None
     feet = [full.nodes.nearest(place) for place in ((0.4, 0.0, 0.0), (0.4, 0.1, 0.0), (0.2, 0.05, 0.0))]
     system = VibrationSystem(craig_bampton(full, feet, modes=6).with_damping(Modal(0.01)))
@@ -260,5 +270,24 @@ FREQUENCY_CASES: dict[str, Case] = {
             "Drawn are the first 12.",
         ),
         ("mode-shapes",),
+    ),
+    "a reduced structure": Case(
+        lambda: _reduced().errors(_full(), 5),
+        ("The lowest modes of the reduced structure beside", "% too high, and their shapes are similar by"),
+        ("reduction-errors",),
+    ),
+    "a response of a reduced structure": Case(
+        lambda: (frequency_response(_turning(), AROUND, FEW), {"reduction": _reduced().errors(_full(), 5)}),
+        ("What is zero to rounding is not drawn.",),
+        ("frequency-curve", "reduction-errors"),
+    ),
+    "a periodic motion in time": Case(
+        lambda: steady_state(two_masses(), 0.9 * HZ, Newmark(steps_per_period=128)),
+        ("The motion repeats itself.", "The last period of the integration."),
+        ("periodic-motion", "loops-in-time"),
+    ),
+    "a motion in time that is not periodic": Case(
+        lambda: steady_state(two_masses(), 0.9 * HZ, Newmark(steps_per_period=64, periods=2)),
+        ("The motion does not repeat itself yet.",),
     ),
 }

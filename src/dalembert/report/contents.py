@@ -25,6 +25,8 @@ from dalembert.report.needs_frequency import (
     DeformationLike,
     FrequencyCurveLike,
     ModeShapesLike,
+    PeriodicMotionLike,
+    ReductionErrorsLike,
     ResonanceTrackLike,
     TimeComparisonLike,
 )
@@ -53,9 +55,11 @@ from dalembert.report.sections import (
     Modes,
     Motion,
     NonlinearMode,
+    Period,
     Predicting,
     Profiling,
     Provenance,
+    Reduction,
     Search,
     Section,
     Shooting,
@@ -89,6 +93,8 @@ Result = (
     | ResonanceTrackLike
     | DeformationLike
     | ModeShapesLike
+    | PeriodicMotionLike
+    | ReductionErrorsLike
 )
 
 
@@ -108,6 +114,7 @@ def contents(
     time_comparison: TimeComparisonLike | None = None,
     backbone: BackboneLike | None = None,
     deformation: DeformationLike | None = None,
+    reduction: ReductionErrorsLike | None = None,
 ) -> list[Section]:
     """Sections of a report in reading order; the first is the headline.
 
@@ -148,10 +155,15 @@ def contents(
             own = [vibration_headlines.of_frequency_curve(result, look, title, notes)]
             beside = [InTime(time_comparison, result)] if time_comparison is not None else []
             modes = [NonlinearMode(backbone)] if backbone is not None else []
-            after = [*_deformed(deformation), *modes, *beside, Balance(result)]
+            reduced = [Reduction(reduction)] if reduction is not None else []
+            after = [*_deformed(deformation), *modes, *beside, *reduced, Balance(result)]
             sections = [*own, *_vibrating(look, backbone), *after]
         case DeformationLike():
             sections = [vibration_headlines.of_deformation(result, title, notes), Deformed(result)]
+        case PeriodicMotionLike():
+            sections = [vibration_headlines.of_period(result, title, notes), Period(result)]
+        case ReductionErrorsLike():
+            sections = [vibration_headlines.of_reduction(result, title, notes), Reduction(result)]
         case ModeShapesLike():
             sections = [vibration_headlines.of_modes(result, title, notes), Modes(result)]
         case TimeComparisonLike():
@@ -164,6 +176,7 @@ def contents(
             looked = dofs or family_dofs(result, amplitude)
             own = [vibration_headlines.of_family(result, looked, amplitude, title, notes)]
             sections = [*own, *_family(result, looked, amplitude), *_deformed(deformation)]
+            sections += [Reduction(reduction)] if reduction is not None else []
         case TrajectoryLike():
             moving = each(result)
             shown = [*_motion(moving, points), Diagnostics(moving)]

@@ -15,7 +15,7 @@ def figures(result: Result, **options: Any) -> dict[str, go.Figure]:
     result : Fit, Trajectory, FrequencyCurve, Propagation, Comparison, BandFit, ParameterSet, Profiles …
     **options
         ``trajectory``, ``points``, ``truth``, ``profiles``, ``prediction``, ``dofs``, ``amplitude``,
-        ``time_comparison``, ``backbone`` and ``deformation``, as in :func:`dalembert.report.report`.
+        ``time_comparison``, ``backbone``, ``deformation`` and ``reduction``, as in :func:`dalembert.report.report`.
 
     Returns
     -------

@@ -18,7 +18,7 @@ from dalembert.files import write_text
 from dalembert.report.contents import Result, contents
 from dalembert.report.look import DARK, FONT, LIGHT, exchanged, template
 from dalembert.report.needs import TrajectoryLike
-from dalembert.report.needs_frequency import BackboneLike, DeformationLike, TimeComparisonLike
+from dalembert.report.needs_frequency import BackboneLike, DeformationLike, ReductionErrorsLike, TimeComparisonLike
 from dalembert.report.needs_telling import PredictionLike, ProfilesLike
 from dalembert.report.plot import SAFE
 
@@ -40,6 +40,7 @@ def report(
     time_comparison: TimeComparisonLike | None = None,
     backbone: BackboneLike | None = None,
     deformation: DeformationLike | None = None,
+    reduction: ReductionErrorsLike | None = None,
 ) -> Path:
     """Write an HTML report that opens offline in any browser, in its light or dark, and asks nothing of the network.
 
@@ -76,6 +77,8 @@ def report(
         A nonlinear mode, drawn with a response over frequency and for a section of its report.
     deformation : Deformation, optional
         The whole structure at one point of a response over frequency, for a section of its report.
+    reduction : ReductionErrors, optional
+        What the reduction of the structure changes, for a section of its report.
 
     Returns
     -------
@@ -103,6 +106,7 @@ def report(
         time_comparison=time_comparison,
         backbone=backbone,
         deformation=deformation,
+        reduction=reduction,
     )
     environment = _environment()
     scripts = [Markup(get_plotlyjs()), Markup(_packaged("page.js"))]

@@ -11,7 +11,7 @@ from dalembert.report import charts, figures, report
 from dalembert.report.charts.contact_states import COLOURS, STATES
 from dalembert.report.focus import Look, movers
 from dalembert.report.prefixes import prefixed
-from dalembert.structure import eigenmodes, mode_shapes
+from dalembert.structure import ReductionErrors, eigenmodes, mode_shapes
 from dalembert.uncertainty import Vertex, propagate
 from dalembert.vibration import (
     FrequencyResponse,
@@ -22,6 +22,7 @@ from dalembert.vibration import (
     deformation,
     frequency_response,
     frequency_responses,
+    steady_state,
     track_resonance,
 )
 from frequency_cases import damped, strip
@@ -278,3 +279,20 @@ def test_a_fit_over_frequency_has_its_labels(tmp_path):
     assert read_page(fit.report(tmp_path / "a.html")).table("responses")[0][0] == "frequency (Hz)"
     band = figures(propagate(model, {"preload": (2.9, 3.1)}, Vertex()))["bands-1"]
     assert (band.layout.yaxis.title.text, band.layout.xaxis2.title.text) == ("amplitude (m)", "frequency (Hz)")
+
+
+def test_a_period_in_time_is_drawn_as_it_is():
+    motion = steady_state(two_masses(), 0.9 * HZ, Newmark(steps_per_period=128))
+    drawn = traces(charts.periodic_motion(motion))
+    np.testing.assert_array_equal(drawn["m2.x"].y, motion.motion("m2"))
+    np.testing.assert_allclose(drawn["m2.x"].x, 360 * np.arange(128) / 128)
+    (loop,) = charts.loops_in_time(motion).data
+    np.testing.assert_array_equal(loop.y[:-1], motion.forces[:, 0])
+    assert (loop.x[0], loop.y[0]) == (loop.x[-1], loop.y[-1])
+
+
+def test_errors_of_a_reduction_are_in_percent():
+    errors = ReductionErrors(np.array([10.0, 20.0]), np.array([10.1, 20.0]), np.array([0.99, 1.0]))
+    frequency, similarity = charts.reduction_errors(errors).data
+    np.testing.assert_allclose(frequency.y, [1.0, np.nan])
+    np.testing.assert_allclose(similarity.y, [0.01, np.nan])

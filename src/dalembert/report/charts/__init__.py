@@ -23,9 +23,11 @@ from dalembert.report.charts.mode_shapes import mode_shapes
 from dalembert.report.charts.newton import newton
 from dalembert.report.charts.parameters import parameters
 from dalembert.report.charts.paving import paving
+from dalembert.report.charts.periodic_motion import loops_in_time, periodic_motion
 from dalembert.report.charts.points_found import points_found
 from dalembert.report.charts.prediction import prediction
 from dalembert.report.charts.profile import profile
+from dalembert.report.charts.reduction_errors import reduction_errors
 from dalembert.report.charts.residual_bands import residual_bands
 from dalembert.report.charts.resonance_peaks import family_peaks, resonance_track
 from dalembert.report.charts.responses import responses
@@ -58,16 +60,19 @@ __all__ = [
     "interface_map",
     "intervals",
     "l_curve",
+    "loops_in_time",
     "mechanism",
     "methods",
     "mode_shapes",
     "newton",
     "parameters",
     "paving",
+    "periodic_motion",
     "points_found",
     "prediction",
     "profile",
     "ranking",
+    "reduction_errors",
     "residual_bands",
     "resonance_track",
     "responses",

@@ -23,9 +23,11 @@ from dalembert.report.sections.methods import Methods
 from dalembert.report.sections.modes import Modes
 from dalembert.report.sections.motion import Motion
 from dalembert.report.sections.nonlinear_mode import NonlinearMode
+from dalembert.report.sections.period import Period
 from dalembert.report.sections.predicting import Predicting
 from dalembert.report.sections.profiling import Profiling
 from dalembert.report.sections.provenance import Provenance
+from dalembert.report.sections.reduction import Reduction
 from dalembert.report.sections.search import Search
 from dalembert.report.sections.section import Section
 from dalembert.report.sections.shooting import Shooting
@@ -57,9 +59,11 @@ __all__ = [
     "Modes",
     "Motion",
     "NonlinearMode",
+    "Period",
     "Predicting",
     "Profiling",
     "Provenance",
+    "Reduction",
     "Search",
     "Section",
     "Shooting",

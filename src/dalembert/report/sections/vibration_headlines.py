@@ -13,6 +13,8 @@ from dalembert.report.needs_frequency import (
     DeformationLike,
     FrequencyCurveLike,
     ModeShapesLike,
+    PeriodicMotionLike,
+    ReductionErrorsLike,
     ResonanceTrackLike,
     TimeComparisonLike,
 )
@@ -124,6 +126,30 @@ def of_modes(modes: ModeShapesLike, title: str | None, notes: Sequence[str]) -> 
     facts = [Fact(f"mode {number}", f"{shown(value)} Hz") for number, value in enumerate(frequencies[:MOST_VALUES], 1)]
     status = f"{len(frequencies)} natural frequencies and shapes of the undamped structure."
     return Headline(title or "Modes", "computed", True, status, facts, notes)
+
+
+def of_reduction(errors: ReductionErrorsLike, title: str | None, notes: Sequence[str]) -> Headline:
+    """Headline of a reduction's errors."""
+    facts = [
+        Fact("modes compared", counted(len(errors.full))),
+        Fact("largest error of a frequency", _percent(np.max(errors.relative))),
+        Fact("least similarity of a shape", shown(float(np.min(errors.similarity)), digits=4)),
+    ]
+    status = "The lowest modes of the reduced structure beside those of the full one."
+    return Headline(title or "Reduction", "compared", True, status, facts, notes)
+
+
+def of_period(motion: PeriodicMotionLike, title: str | None, notes: Sequence[str]) -> Headline:
+    """Headline of a periodic motion in time."""
+    facts = [
+        Fact("frequency", f"{shown(motion.frequency)} Hz"),
+        Fact("periods", counted(motion.periods)),
+        Fact("change over the last one", shown(motion.residual, digits=2)),
+        Fact("steps of a period", counted(len(motion.times))),
+    ]
+    status = "The motion repeats itself." if motion.converged else "The motion does not repeat itself yet."
+    verdict = "periodic" if motion.converged else "not periodic"
+    return Headline(title or "Periodic motion", verdict, motion.converged, status, facts, notes)
 
 
 def _percent(part: float) -> str:

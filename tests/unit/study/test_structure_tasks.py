@@ -308,6 +308,40 @@ def test_modes_and_motion_of_a_structure_with_nodes_are_drawn(write, tmp_path):
     assert not (folder.path / "deformation.nc").exists()
 
 
+def test_a_point_that_is_not_found_is_marked_and_the_curve_goes_on(write, tmp_path):
+    text = WHOLE.replace("samples = 256", "samples = 256\niterations = 3\nhalvings = 0")
+    folder, outcome = run_study(load(write(text)), tmp_path / "run")
+    curve = FrequencyCurve.load(folder.result)
+    lost = ~curve.converged
+    assert 0 < lost.sum() < 5
+    assert not outcome.success
+    residuals = ", ".join(
+        f"{value:.6g} Hz ({error:.1e})"
+        for value, error in zip(curve.frequencies[lost].tolist(), curve.residuals[lost].tolist(), strict=True)
+    )
+    told = f"{5 - lost.sum()} of 5 points found; not found, with residuals as part of the forces: {residuals}"
+    assert outcome.status == told
+    assert folder.state()["message"] == told
+    assert folder.report.is_file()
+
+
+def test_a_structure_that_nothing_holds_is_refused(write):
+    text = """
+[[model.mass]]
+name = "m"
+mass = 1.0
+[[model.force]]
+dof = "m"
+amplitude = 1.0
+[frequency_response]
+frequencies = [1.0]
+"""
+    assert refused(write, text) == (
+        "the structure can move freely without a spring or a contact that holds it, so its mean position is not "
+        "determined; clamp it, or keep odd harmonics only (odd_only=True) where the motion is symmetric"
+    )
+
+
 def refused(write, text) -> str:
     """The one sentence about what is wrong, from reading or from the plan."""
     with pytest.raises(DalembertError) as error:

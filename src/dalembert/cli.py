@@ -1,4 +1,4 @@
-"""The command line: ``dalembert run | resume | check | list | report | schema``.
+"""The command line: ``dalembert run | resume | check | list | report | studio | schema``.
 
 Exit codes: 0 done, 1 the solver could not, 2 the input is wrong, 130 stopped by the user.
 """
@@ -140,6 +140,33 @@ def report(run: Run) -> None:
         from dalembert.study import report_run
 
         typer.echo(f"report: {report_run(_folder(run))}")
+
+
+@app.command()
+def studio(
+    folder: Annotated[Path, typer.Argument(help="Folder with studies/ and runs/; made as needed.")] = Path(),
+    host: Annotated[
+        str, typer.Option(help="Address to listen at; beyond this machine a token is needed.")
+    ] = "127.0.0.1",
+    port: Annotated[int, typer.Option(min=0, max=65535, help="0 takes a free one.")] = 8080,
+    token: Annotated[str, typer.Option(help="Secret that a browser must know; made if needed.")] = "",
+    browser: Annotated[bool, typer.Option(help="Open the page in a browser.")] = True,
+) -> None:
+    """Studies and runs in a browser: edit, start, watch, compare."""
+    with _exit_codes():
+        from dalembert.errors import InputError
+
+        try:
+            import nicegui  # noqa: F401
+        except ImportError:
+            raise InputError(
+                "the studio needs NiceGUI, which is not installed; run: pip install 'dalembert[studio]'"
+            ) from None
+        from dalembert.studio import serve
+
+        if not folder.is_dir():
+            raise InputError(f"there is no folder {folder}; make it, or name another")
+        serve(folder, host, port, token, browser)
 
 
 @app.command()

@@ -1,5 +1,6 @@
 """Chromium by its DevTools protocol over a pipe: messages are JSON, each ended by a zero byte."""
 
+import base64
 import json
 import os
 import select
@@ -20,7 +21,7 @@ OPTIONS = (
     "--disable-sync",
     "--remote-debugging-pipe",
 )
-PATIENCE = 60.0
+PATIENCE = 120.0
 LAUNCH = """
 import fcntl, os, sys
 there = [fcntl.fcntl(int(pipe), fcntl.F_DUPFD, 10) for pipe in sys.argv[1:3]]
@@ -54,6 +55,13 @@ class Chromium:
         self, path: Path, *, width: int = 1200, height: int = 900, scheme: str = "light", touch: bool = False
     ) -> "Tab":
         """A new tab with a file in it, once it says that its figures are drawn."""
+        tab = self.tab(width=width, height=height, scheme=scheme, touch=touch)
+        tab.send("Page.navigate", url=path.as_uri())
+        tab.until("document.documentElement?.dataset.ready === 'yes'")
+        return tab
+
+    def tab(self, *, width: int = 1200, height: int = 900, scheme: str = "light", touch: bool = False) -> "Tab":
+        """A new tab, with nothing in it."""
         target = self.send("Target.createTarget", url="about:blank")["targetId"]
         session = self.send("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
         tab = Tab(self, session)
@@ -62,8 +70,6 @@ class Chromium:
         tab.send("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
         tab.send("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=touch)
         tab.send("Emulation.setTouchEmulationEnabled", enabled=touch)
-        tab.send("Page.navigate", url=path.as_uri())
-        tab.until("document.documentElement?.dataset.ready === 'yes'")
         return tab
 
     def send(self, method: str, session: str | None = None, **parameters: Any) -> dict[str, Any]:
@@ -112,9 +118,18 @@ class Tab:
     def until(self, script: str) -> None:
         """Wait until a script says true."""
         end = time.monotonic() + PATIENCE
-        while not self.run(script):
+        while not self._asked(script):
             assert time.monotonic() < end, f"never came true: {script}"
             time.sleep(0.05)
+
+    def _asked(self, script: str) -> Any:
+        """Value of a script; nothing while one page gives way to another."""
+        try:
+            return self.run(script)
+        except AssertionError as error:
+            if "navigated" in str(error) or "context" in str(error):
+                return None
+            raise
 
     def press(self, key: str) -> None:
         """Press and release a key."""
@@ -123,6 +138,31 @@ class Tab:
         code = {"Tab": 9, "Enter": 13, "Space": 32, "End": 35, "Home": 36, "ArrowRight": 39}[key]
         for kind in ("keyDown", "keyUp"):
             self.send("Input.dispatchKeyEvent", type=kind, key=name, code=key, text=text, windowsVirtualKeyCode=code)
+
+    def click(self, script: str) -> None:
+        """Click with the mouse in the middle of an element that a script finds."""
+        self.until(f"Boolean({script})")
+        place = self.run(
+            f"(() => {{ const found = {script}; found.scrollIntoView({{block: 'center'}}); "
+            "const box = found.getBoundingClientRect(); "
+            "return [box.x + box.width / 2, box.y + box.height / 2] })()"
+        )
+        for kind in ("mousePressed", "mouseReleased"):
+            self.send("Input.dispatchMouseEvent", type=kind, x=place[0], y=place[1], button="left", clickCount=1)
+
+    def write(self, text: str) -> None:
+        """Write a text where the focus is."""
+        self.send("Input.insertText", text=text)
+
+    def upload(self, selector: str, path: Path) -> None:
+        """Choose a file for an input."""
+        root = self.send("DOM.getDocument")["root"]["nodeId"]
+        node = self.send("DOM.querySelector", nodeId=root, selector=selector)["nodeId"]
+        self.send("DOM.setFileInputFiles", files=[str(path)], nodeId=node)
+
+    def picture(self, path: Path) -> None:
+        """The page as a PNG."""
+        path.write_bytes(base64.b64decode(self.send("Page.captureScreenshot", captureBeyondViewport=True)["data"]))
 
     @property
     def complaints(self) -> list[str]:

@@ -16,6 +16,22 @@ from dalembert.study.study import Study
 LARGEST = 10_000_000  # bytes; a study of this size is some other file
 
 
+class StudyError(InputError):
+    """A study file with mistakes.
+
+    Parameters
+    ----------
+    message : str
+        One line a mistake.
+    mistakes : list of (tuple of str or int, str)
+        The place of each, by its tables, keys and numbers of entries, and its sentence.
+    """
+
+    def __init__(self, message: str, mistakes: list[tuple[tuple[str | int, ...], str]]) -> None:
+        super().__init__(message)
+        self.mistakes = mistakes
+
+
 def load(
     path: str | Path, *, name: str = "", folder: Path | None = None, files: Mapping[str, Path] | None = None
 ) -> Study:
@@ -45,11 +61,9 @@ def load(
     try:
         file = study_file().model_validate(document, context=context)
     except ValidationError as error:
-        lines = [
-            f"{shared if shared and place[:1] == ('model',) else path.name}: {text}"
-            for place, text in mistakes(error, document, context)
-        ]
-        raise InputError("\n".join(dict.fromkeys(lines))) from None
+        found = mistakes(error, document, context)
+        lines = [f"{shared if shared and place[:1] == ('model',) else path.name}: {text}" for place, text in found]
+        raise StudyError("\n".join(dict.fromkeys(lines)), found) from None
     return Study(path, content, file, dict(context.used), name or file.study.name or path.stem)
 
 

@@ -1,4 +1,4 @@
-"""What a user sees of a run while it goes on: a live line on a terminal, now and then a line elsewhere."""
+"""What a user sees of a run while it goes on: on a terminal a live line, elsewhere now and then a line."""
 
 from dataclasses import dataclass, field
 from time import monotonic
@@ -14,51 +14,36 @@ _EVERY = 2.0  # s between plain lines
 
 
 @dataclass
-class Watch:
-    """Listener of a run's events that prints how far it is.
+class Told:
+    """How far a run is, in words, from its events.
 
     Parameters
     ----------
-    console : Console
     names : tuple of str
         Names of the unknowns, for the best values.
+    last : (str, int, int or None)
+        The last text, and how much is done of how much, where that is known.
     """
 
-    console: Console
     names: tuple[str, ...] = ()
-    _live: Progress | None = field(default=None, init=False)
+    last: tuple[str, int, int | None] = ("", 0, None)
     _best: float = field(default=float("inf"), init=False)
     _values: list[float] = field(default_factory=list, init=False)
-    _next: float = field(default=0.0, init=False)
+    _samples: int | None = field(default=None, init=False)
 
-    def __enter__(self) -> Self:
-        if self.console.is_terminal:
-            columns = SpinnerColumn(), TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn()
-            self._live = Progress(*columns, console=self.console, transient=True)
-            self._live.start()
-            self._live.add_task("starting", total=None)
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        if self._live is not None:
-            self._live.stop()
-
-    def __call__(self, event: Event) -> None:
+    def take(self, event: Event) -> bool:
+        """Take in an event; whether it told anything."""
         text, done, total = self._told(event)
-        if not text:
-            return
-        if self._live is not None:
-            self._live.update(self._live.task_ids[0], description=text, completed=done, total=total)
-        elif monotonic() >= self._next:
-            self._next = monotonic() + _EVERY
-            self.console.print(text, markup=False, highlight=False)
+        if text:
+            self.last = text, done, total
+        return bool(text)
 
     def _told(self, event: Event) -> tuple[str, int, int | None]:
         """Text of an event, and how much is done of how much."""
         match event:
             case {"event": "iteration", "best": best, "values": values, "start": start, "simulations": simulations}:
+                if event.get("samples") != self._samples:  # a fitness over more samples is another one
+                    self._samples, self._best = event.get("samples"), float("inf")
                 if best is not None and best < self._best:
                     self._best, self._values = best, values
                 return f"start {start + 1} · {simulations} simulations · {self._found}", 0, None
@@ -84,3 +69,48 @@ class Watch:
     def _found(self) -> str:
         pairs = zip(self.names, self._values, strict=False)
         return f"best {self._best:.4g} · " + ", ".join(f"{name} = {value:.6g}" for name, value in pairs)
+
+
+@dataclass
+class Watch:
+    """Listener of a run's events that prints how far it is.
+
+    Parameters
+    ----------
+    console : Console
+    names : tuple of str
+        Names of the unknowns, for the best values.
+    """
+
+    console: Console
+    names: tuple[str, ...] = ()
+    _live: Progress | None = field(default=None, init=False)
+    _next: float = field(default=0.0, init=False)
+    _told: Told = field(init=False)
+
+    def __post_init__(self) -> None:
+        self._told = Told(self.names)
+
+    def __enter__(self) -> Self:
+        if self.console.is_terminal:
+            columns = SpinnerColumn(), TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn()
+            self._live = Progress(*columns, console=self.console, transient=True)
+            self._live.start()
+            self._live.add_task("starting", total=None)
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self._live is not None:
+            self._live.stop()
+
+    def __call__(self, event: Event) -> None:
+        if not self._told.take(event):
+            return
+        text, done, total = self._told.last
+        if self._live is not None:
+            self._live.update(self._live.task_ids[0], description=text, completed=done, total=total)
+        elif monotonic() >= self._next:
+            self._next = monotonic() + _EVERY
+            self.console.print(text, markup=False, highlight=False)

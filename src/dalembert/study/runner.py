@@ -1,5 +1,6 @@
 """Run a study in a folder of its own: events while it runs, then a result and a report, and its state throughout."""
 
+import os
 import traceback
 from collections.abc import Callable
 from contextlib import suppress
@@ -103,7 +104,7 @@ def _executed(study: Study, folder: RunFolder, beginning: str, listener: Listene
     """Do what a study says in a folder that is held, and say so in its state and its events."""
     about = {"study": study.name, "title": study.title, "task": study.task, "version": __version__}
     with EventLog(folder.events, (listener,) if listener else ()) as log:
-        folder.set_state(RUNNING, **about)
+        folder.set_state(RUNNING, **about, process=os.getpid())
         began = perf_counter()
         try:
             log.emit(beginning, **about)

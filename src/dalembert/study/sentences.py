@@ -44,12 +44,13 @@ def mistakes(error: ValidationError, document: Any, context: Context) -> list[tu
     found = []
     for entry in error.errors(include_url=False):
         path, table = _follow(document, entry["loc"])
+        where = path
         if entry["type"] == "extra_forbidden":
-            *path, key = path
+            *where, key = path
             texts = [unknown("key", str(key), context.known_keys(table))]
         else:
             texts = _texts(entry)
-        found += [(tuple(path), _placed(document, path, text)) for text in texts]
+        found += [(tuple(path), _placed(document, where, text)) for text in texts]
     return found
 
 

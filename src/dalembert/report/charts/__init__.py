@@ -17,6 +17,7 @@ from dalembert.report.charts.hysteresis import hysteresis
 from dalembert.report.charts.interface_map import interface_map
 from dalembert.report.charts.intervals import intervals
 from dalembert.report.charts.l_curve import l_curve
+from dalembert.report.charts.measured import measured
 from dalembert.report.charts.mechanism import mechanism
 from dalembert.report.charts.methods import differences, methods
 from dalembert.report.charts.mode_shapes import mode_shapes
@@ -61,6 +62,7 @@ __all__ = [
     "intervals",
     "l_curve",
     "loops_in_time",
+    "measured",
     "mechanism",
     "methods",
     "mode_shapes",

@@ -1,0 +1,40 @@
+"""Figures of runs that go on, and of runs side by side."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import plotly.graph_objects as go
+
+from dalembert.report.charts.logarithm import logarithmic, positive
+from dalembert.report.look import LIGHT, plain, themed
+
+NEUTRAL = "#76818f"
+"""Readable on a light and on a dark page."""
+
+
+def convergence(curves: Mapping[str, Sequence[tuple[float, float]]]) -> go.Figure:
+    """Best value so far over the number of simulations, a line a run.
+
+    Parameters
+    ----------
+    curves : mapping of str to sequence of (simulations, best)
+        By the runs' names.
+    """
+    figure = go.Figure()
+    for place, (name, points) in enumerate(curves.items()):
+        x, y = np.array(points, dtype=float).reshape(-1, 2).T
+        line = {"color": LIGHT.series[place % len(LIGHT.series)], "width": 2}
+        figure.add_scatter(x=x, y=positive(y), name=plain(name), mode="lines", line=line)
+    themed(figure, "", height=320)
+    figure.update_xaxes(title="simulations", rangemode="tozero")
+    figure.update_yaxes(title="best fitness so far", **logarithmic(figure))
+    return on_any_page(figure.update_layout(showlegend=len(curves) > 1))
+
+
+def on_any_page(figure: go.Figure) -> go.Figure:
+    """The figure without a ground of its own, for a light and for a dark page."""
+    clear = "rgba(0,0,0,0)"
+    figure.update_layout(paper_bgcolor=clear, plot_bgcolor=clear, font_color=NEUTRAL)
+    figure.update_layout(margin={"l": 60, "r": 10, "t": 20, "b": 45})
+    grid = {"gridcolor": "rgba(118,129,143,0.25)", "linecolor": NEUTRAL, "zerolinecolor": "rgba(118,129,143,0.4)"}
+    return figure.update_xaxes(grid).update_yaxes(grid)

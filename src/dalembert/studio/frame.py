@@ -1,0 +1,47 @@
+"""What all pages share: head, way about, colours, and how messages are shown."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from nicegui import ui
+
+from dalembert import __version__
+from dalembert.report.look import LIGHT
+
+STATES = {"finished": "positive", "running": "primary", "interrupted": "warning", "killed": "warning"}
+"""Colour of a state's badge; that of an error for the others."""
+WAYS = (("Runs", "/"), ("New study", "/new"))
+
+
+@contextmanager
+def frame(title: str) -> Iterator[None]:
+    """A page with the head on top; what is made in the block is its content."""
+    ui.page_title(f"{title} · dalembert")
+    ui.colors(primary=LIGHT.series[0])
+    main = ui.column().classes("w-full max-w-6xl mx-auto p-2 sm:p-4 gap-4").props("role=main id=main")
+    ui.skip_link("Skip to the content", target=main)
+    with ui.header().classes("items-center gap-x-6 gap-y-1 py-2").props("role=banner"):
+        ui.link("dalembert", "/").classes("text-white no-underline text-lg font-bold")
+        with ui.row().classes("gap-4").props("role=navigation"):
+            for name, path in WAYS:
+                ui.link(name, path).classes("text-white")
+        ui.space()
+        ui.label(__version__).classes("text-xs opacity-80 max-sm:hidden")
+    with main:
+        ui.label(title).classes("text-2xl font-bold break-words max-w-full").props("role=heading aria-level=1")
+        yield
+
+
+def badge(state: str) -> ui.badge:
+    """A run's state, in words and in colour."""
+    return ui.badge(state, color=STATES.get(state, "negative")).props("role=status")
+
+
+def complain(error: Exception) -> None:
+    """Show an error as a message that stays until it is read."""
+    ui.notify(str(error), type="negative", multi_line=True, close_button="Close", timeout=0)
+
+
+def button(text: str, on_click: Callable[[], object], *, icon: str, colour: str = "primary") -> ui.button:
+    """A button in the studio's look."""
+    return ui.button(text, on_click=on_click, icon=icon, color=colour).props("no-caps unelevated")

@@ -1,0 +1,74 @@
+"""Runs as processes of their own, which go on whatever happens to the studio or to the browser."""
+
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import IO
+
+from dalembert.errors import InputError
+from dalembert.study.folder import RUNNING, RunFolder
+
+
+@dataclass
+class Jobs:
+    """Processes that this studio started, by the folder of their run."""
+
+    _started: dict[Path, "Job"] = field(default_factory=dict)
+
+    def start(self, study: Path, folder: Path) -> None:
+        """Run a study in a new folder."""
+        self._begin(folder, ["run", str(study), "--out", str(folder)])
+
+    def resume(self, folder: Path) -> None:
+        """Go on with a run."""
+        self._begin(folder, ["resume", str(folder)])
+
+    def complaint(self, folder: Path) -> str:
+        """What a process said that ended before its run had a state; empty if there is nothing."""
+        job = self._started.get(folder)
+        return "" if job is None or job.process.poll() in (None, 0) else job.said()
+
+    def tidy(self) -> None:
+        """Let go of processes that have ended well."""
+        ended = [folder for folder, job in self._started.items() if job.process.poll() == 0]
+        for folder in ended:
+            del self._started[folder]
+
+    def _begin(self, folder: Path, arguments: list[str]) -> None:
+        self.tidy()
+        log = tempfile.TemporaryFile("w+", encoding="utf-8")  # noqa: SIM115  it is the process's, and goes with it
+        command = [sys.executable, "-m", "dalembert.cli", *arguments]
+        process = subprocess.Popen(
+            command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=log, start_new_session=True
+        )
+        self._started[folder] = Job(process, log)
+
+
+@dataclass
+class Job:
+    """A process and what it says."""
+
+    process: subprocess.Popen
+    log: IO[str]
+
+    def said(self) -> str:
+        self.log.seek(0)
+        return self.log.read()[-4000:]
+
+
+def stop(folder: RunFolder) -> None:
+    """Ask a run to end, as Ctrl-C does; whoever started it.
+
+    Raises
+    ------
+    InputError
+        If it is not going on.
+    """
+    state = folder.state()
+    if state["state"] != RUNNING:
+        raise InputError(f"{folder.path.name} is not running: it is {state['state']}")
+    os.kill(int(state["process"]), signal.SIGTERM)

@@ -1,0 +1,173 @@
+"""A run: live while it goes on, with its report when it has ended."""
+
+import asyncio
+import json
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+from urllib.parse import quote
+
+import plotly.graph_objects as go
+from nicegui import ui
+
+from dalembert.errors import DalembertError, InputError
+from dalembert.studio.figures import convergence, on_any_page
+from dalembert.studio.fit_so_far import fit_so_far
+from dalembert.studio.frame import STATES, badge, button, complain, frame
+from dalembert.studio.jobs import Jobs, stop
+from dalembert.studio.live import Live
+from dalembert.studio.workspace import Workspace
+from dalembert.study.folder import FINISHED, RESUMABLE, RUNNING, RunFolder
+from dalembert.study.runner import unknowns
+
+EVERY = 0.5  # s between two looks at the events
+FILES = {"report.html": "Report", "result.nc": "Result (NetCDF)", "study.toml": "Study", "events.jsonl": "Events"}
+"""Files of a run that can be downloaded, and what they are called."""
+STARTING = "starting"
+
+
+def run_page(workspace: Workspace, jobs: Jobs, pool: ProcessPoolExecutor, name: str) -> None:
+    """Watch a run, stop it or go on with it, and read its report."""
+    folder = RunFolder(workspace.runs_folder / name)
+    with frame(name):
+        page = _Page(folder, jobs, pool)
+        page.build()
+        page.look()
+        ui.timer(EVERY, page.look)
+
+
+class _Page:
+    """What changes on the page of a run.
+
+    Parameters
+    ----------
+    folder : RunFolder
+    jobs : Jobs
+    pool : ProcessPoolExecutor
+        Where the best fit so far is computed.
+    """
+
+    def __init__(self, folder: RunFolder, jobs: Jobs, pool: ProcessPoolExecutor) -> None:
+        self.folder, self.jobs, self.pool = folder, jobs, pool
+        self.live = Live(folder.events)
+        self.state, self.shown, self.drawn = "", 0, 0
+        self.fitted: list[float] = []
+        self.fitting: asyncio.Task | None = None
+
+    def build(self) -> None:
+        with ui.row().classes("items-center gap-x-4 gap-y-2"):
+            self.badge = badge(STARTING)
+            self.told = ui.label("").props("role=status aria-live=polite").classes("break-words")
+        self.bar = ui.linear_progress(0, show_value=False).props('aria-label="Progress"')
+        with ui.row().classes("gap-2"):
+            self.stop = button("Stop", self._asked(lambda: stop(self.folder)), icon="stop", colour="negative")
+            self.resume = button("Resume", self._asked(lambda: self.jobs.resume(self.folder.path)), icon="play_arrow")
+        self.message = ui.label("").classes("whitespace-pre-wrap break-words")
+        self.live_part = ui.column().classes("w-full gap-4")
+        with self.live_part:
+            self.curve, self.fit = ui.column().classes("w-full"), ui.column().classes("w-full")
+            with ui.expansion("Events", icon="list").classes("w-full"):
+                self.log = ui.log(max_lines=200).classes("w-full h-64")
+        self.files = ui.row().classes("gap-4")
+        self.report = ui.column().classes("w-full")
+
+    def look(self) -> None:
+        """Bring the page up to what the run's folder says."""
+        state = self._state()
+        if not self.live.names and self.folder.is_run:
+            self.live.name(_names(self.folder))
+        if self.live.advance():
+            self._show_events()
+        if self.live.values != self.fitted and state == RUNNING and (self.fitting is None or self.fitting.done()):
+            self.fitted = list(self.live.values)
+            self.fitting = asyncio.create_task(self._show_fit(self.fitted))
+        if state != self.state:
+            self.state = state
+            self._show_state()
+
+    def _state(self) -> str:
+        if self.folder.is_run:
+            return str(self.folder.state()["state"])
+        return "input" if self.jobs.complaint(self.folder.path) else STARTING
+
+    def _show_state(self) -> None:
+        """The state itself, what can be done now, and what there is to read."""
+        state, ended = self.state, self.state not in (RUNNING, STARTING)
+        self.badge.set_text(state)
+        self.badge.props(f"color={STATES.get(state, 'grey' if state == STARTING else 'negative')}")
+        self.stop.set_visibility(state == RUNNING)
+        self.resume.set_visibility(state in RESUMABLE)
+        self.bar.set_visibility(not ended)
+        said = self.folder.state().get("message", "") if self.folder.is_run else ""
+        self.message.set_text(str(said or self.jobs.complaint(self.folder.path)) if ended else "")
+        self.files.clear()
+        self.report.clear()
+        if not ended:
+            return
+        name = quote(self.folder.path.name)
+        with self.files:
+            for file, what in FILES.items():
+                if (self.folder.path / file).is_file():
+                    ui.link(what, f"/files/{name}/{file}").props(f'download="{_saved(self.folder, file)}"')
+        self.live_part.set_visibility(state != FINISHED)
+        if self.folder.report.is_file():
+            with self.report:
+                page = ui.element("iframe").props(f'src="/files/{name}/report.html" title="The report"')
+                page.props('sandbox="allow-scripts allow-downloads allow-popups"').classes("w-full border rounded")
+                page.style("height: 85vh")
+
+    def _show_events(self) -> None:
+        text, done, total = self.live.progress
+        self.told.set_text(text)
+        self.bar.set_value(done / total if total else 0.0)
+        self.bar.props("indeterminate" if not total else "", remove="indeterminate" if total else "")
+        new = min(self.live.count - self.shown, len(self.live.recent))
+        for event in list(self.live.recent)[len(self.live.recent) - new :]:
+            self.log.push(json.dumps(event, ensure_ascii=False)[:400])
+        self.shown = self.live.count
+        points = self.live.convergence
+        if len(points) > 1 and len(points) != self.drawn:
+            self.drawn = len(points)
+            _draw(self.curve, "Best value over simulations", convergence({self.folder.path.name: points}))
+
+    async def _show_fit(self, values: list[float]) -> None:
+        """The best fit so far; a run whose model another process cannot make has none."""
+        loop = asyncio.get_running_loop()
+        try:
+            figure = await loop.run_in_executor(self.pool, fit_so_far, self.folder.path, values)
+        except Exception:  # whatever a user's model raises, the run itself says it
+            return
+        if figure is not None:
+            _draw(self.fit, "Best fit so far, and the data", on_any_page(go.Figure(figure)))
+
+    def _asked(self, what: Callable[[], None]) -> Callable[[], None]:
+        def asked() -> None:
+            try:
+                what()
+            except (DalembertError, OSError) as error:
+                complain(error)
+
+        return asked
+
+
+def _draw(place: ui.column, name: str, figure: go.Figure) -> None:
+    """Draw a figure in its place, or a newer one in the place of an older."""
+    plots = [child for child in place if isinstance(child, ui.plotly)]
+    for plot in plots:
+        plot.update_figure(figure)
+    if not plots:
+        with place:
+            ui.plotly(figure).classes("w-full").props(f'role=img aria-label="{name}"')
+
+
+def _names(folder: RunFolder) -> tuple[str, ...]:
+    """Names of the unknowns; none of a run that has not begun."""
+    try:
+        return unknowns(folder.kept()) if folder.is_run else ()
+    except (InputError, OSError):
+        return ()
+
+
+def _saved(folder: RunFolder, file: str) -> str:
+    """Name under which a file of a run is saved."""
+    return f"{folder.path.name}-{Path(file).name}".replace('"', "")

@@ -1,0 +1,137 @@
+"""The studio as a web application: its pages, the files of its runs, and where it listens."""
+
+import multiprocessing
+import secrets
+import socket
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+from typing import Any
+
+from fastapi import FastAPI, Query
+from fastapi.responses import FileResponse, PlainTextResponse, Response
+
+from dalembert.errors import InputError
+from dalembert.studio.compare_page import compare_page
+from dalembert.studio.guard import Guard
+from dalembert.studio.jobs import Jobs
+from dalembert.studio.run_page import FILES, run_page
+from dalembert.studio.runs_page import runs_page
+from dalembert.studio.study_page import new_page, study_page
+from dalembert.studio.workspace import Workspace, checked
+
+LOOPBACK = ("127.0.0.1", "localhost", "::1")
+POLICY = (
+    "default-src 'self' 'unsafe-inline' 'unsafe-eval' data: blob:; connect-src 'self' ws: wss:; frame-ancestors 'self'"
+)
+"""Nothing is loaded from elsewhere; NiceGUI's pages build their scripts inline."""
+
+
+def application(root: Path) -> FastAPI:
+    """The studio's pages for a folder.
+
+    Parameters
+    ----------
+    root : Path
+        Studies lie in ``studies/``, runs in ``runs/``.
+    """
+    from nicegui import app as pages
+    from nicegui import ui
+
+    workspace, jobs = Workspace(root.resolve()), Jobs()
+    pool = ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn"))
+    app = FastAPI(docs_url=None, redoc_url=None, openapi_url=None)
+
+    ui.page("/")(lambda: runs_page(workspace))
+    ui.page("/new")(lambda: new_page(workspace))
+
+    @ui.page("/study/{folder}/{file}")
+    def study(folder: str, file: str) -> None:
+        study_page(workspace, jobs, f"{folder}/{file}")
+
+    @ui.page("/run/{name}")
+    def run(name: str) -> Any:
+        try:
+            checked(name)
+        except InputError as error:
+            return PlainTextResponse(str(error), status_code=404)
+        return run_page(workspace, jobs, pool, name)
+
+    @ui.page("/compare")
+    def compare(run: list[str] = Query(default=[])) -> None:  # noqa: B008  FastAPI reads the default
+        compare_page(workspace, run)
+
+    @app.get("/files/{name}/{file}")
+    def files(name: str, file: str) -> Response:
+        try:
+            path = workspace.run(name).path / file
+        except InputError as error:
+            return PlainTextResponse(str(error), status_code=404)
+        if file not in FILES or not path.is_file():
+            return PlainTextResponse(f"there is no {file} to read", status_code=404)
+        return FileResponse(path)
+
+    @app.middleware("http")
+    async def headers(request: Any, follow: Any) -> Response:
+        answer = await follow(request)
+        if not request.url.path.startswith("/files/"):  # a report has a policy of its own, and a sandbox
+            answer.headers["Content-Security-Policy"] = POLICY
+        answer.headers["X-Content-Type-Options"] = "nosniff"
+        answer.headers["Referrer-Policy"] = "no-referrer"
+        return answer
+
+    ui.run_with(app, title="dalembert", dark=None, show_welcome_message=False)
+    pages.on_shutdown(lambda: pool.shutdown(cancel_futures=True))
+    return app
+
+
+def serve(root: Path, host: str = "127.0.0.1", port: int = 8080, token: str = "", browser: bool = True) -> None:
+    """Run the studio until it is stopped.
+
+    Parameters
+    ----------
+    root : Path
+    host : str
+        Beyond this machine's own addresses a token is needed, and made if none is given.
+    port : int
+        Another free one is taken if 0.
+    token : str
+    browser : bool
+        Whether to open the page.
+
+    Raises
+    ------
+    InputError
+        For a port that is taken, an address that is not this machine's, and a token that is too short.
+    """
+    import uvicorn
+
+    if token and len(token) < 16:
+        raise InputError(f"the token has {len(token)} characters; expected at least 16, which cannot be guessed")
+    if host not in LOOPBACK and not token:
+        token = secrets.token_urlsafe(24)
+    listening = _listening(host, port)
+    port = listening.getsockname()[1]
+    shown = "localhost" if host in ("0.0.0.0", "::") else host
+    address = f"http://{f'[{shown}]' if ':' in shown else shown}:{port}/" + (f"?token={token}" if token else "")
+    print(f"the studio: {address}\nstop it with Ctrl-C; runs go on without it", flush=True)  # noqa: T201
+    if browser:
+        import webbrowser
+
+        webbrowser.open(address)
+    config = uvicorn.Config(Guard(application(root), token), log_level="warning", ws_max_size=16_000_000)
+    uvicorn.Server(config).run(sockets=[listening])
+
+
+def _listening(host: str, port: int) -> socket.socket:
+    """A socket at an address."""
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    listening = socket.socket(family, socket.SOCK_STREAM)
+    listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    try:
+        listening.bind((host, port))
+    except OSError as error:
+        listening.close()
+        raise InputError(
+            f"the studio cannot listen at {host}:{port}: {error.strerror}; choose another with --port or --host"
+        ) from None
+    return listening

@@ -1,0 +1,179 @@
+"""A study: its text with what is wrong at the lines, its data drawn, and the button that runs it."""
+
+import re
+import tempfile
+from functools import partial
+from pathlib import Path
+from urllib.parse import quote
+
+from nicegui import events, run, ui
+
+from dalembert.errors import DalembertError, InputError
+from dalembert.report.charts.measured import measured
+from dalembert.studio.figures import on_any_page
+from dalembert.studio.frame import button, complain, frame
+from dalembert.studio.jobs import Jobs
+from dalembert.studio.lines import line_of
+from dalembert.studio.workspace import MOST_BYTES, Workspace, as_text, templates
+from dalembert.study import load
+from dalembert.study.loader import StudyError
+from dalembert.study.study import Study
+
+AFTER = 0.4  # s after the last key until the text is read
+WRONG = "bg-red-100 dark:bg-red-900"
+DATA = ".csv,.txt,.dat,.parquet,.mat,.uff,.unv,.nc,.npz"
+
+
+def new_page(workspace: Workspace) -> None:
+    """Begin a study: from a template, or from a file."""
+    with frame("New study"):
+        name = ui.input("Name", placeholder="my-pendulum").classes("w-full max-w-md").props("outlined")
+        texts = templates()
+
+        def create(text: str, beside: dict[str, bytes]) -> None:
+            try:
+                study = workspace.create(name.value or "", text)
+                for file, content in beside.items():
+                    workspace.put(study, file, content)
+            except DalembertError as error:
+                complain(error)
+                return
+            ui.navigate.to(f"/study/{quote(study)}")
+
+        ui.label("Begin with").classes("text-xl font-bold").props("role=heading aria-level=2")
+        with ui.row().classes("gap-2"):
+            for title, (text, beside) in texts.items():
+                button(title, lambda text=text, beside=beside: create(text, beside), icon="description")
+        ui.label("or with a study file of yours").classes("text-xl font-bold").props("role=heading aria-level=2")
+
+        async def uploaded(event: events.UploadEventArguments) -> None:
+            try:
+                create(as_text(await event.file.read(), event.file.name), {})
+            except DalembertError as error:
+                complain(error)
+
+        upload = ui.upload(label="STUDY.toml", auto_upload=True, on_upload=uploaded, max_file_size=MOST_BYTES)
+        upload.props('accept=".toml" flat bordered').classes("w-full max-w-md")
+
+
+def study_page(workspace: Workspace, jobs: Jobs, name: str) -> None:
+    """Edit, check and run a study."""
+    try:
+        path = workspace.study(name)
+    except InputError as error:
+        with frame("No such study"):
+            ui.label(str(error))
+        return
+    with frame(name):
+        with ui.row().classes("gap-2 items-center"):
+            start = button("Run", lambda: _start(workspace, jobs, path, editor.value), icon="play_arrow")
+            button("Save", lambda: _save(workspace, path, editor.value), icon="save")
+            verdict = ui.label("").props("role=status aria-live=polite")
+        wrong = ui.column().classes("gap-1 w-full")
+        editor = ui.codemirror(path.read_text(encoding="utf-8"), language="TOML", line_wrapping=True)
+        editor.classes("w-full border rounded").props("aria-label='The study as text'").style("height: 60vh")
+        drawn = ui.column().classes("w-full")
+
+        async def look() -> None:
+            text = editor.value
+            study, mistakes = await run.io_bound(_read, path, text) or (None, [])
+            _tell(editor, wrong, text, mistakes)
+            verdict.set_text("In order." if study else f"{len(mistakes)} to put right:")
+            start.set_enabled(study is not None)
+            drawn.clear()
+            if study is not None and study.file.data is not None:
+                with drawn:
+                    await _draw(study)
+
+        waiting = ui.timer(AFTER, look, once=True)
+
+        def changed() -> None:
+            nonlocal waiting
+            waiting.cancel()
+            waiting = ui.timer(AFTER, look, once=True)
+
+        editor.on_value_change(changed)
+
+        async def uploaded(event: events.UploadEventArguments) -> None:
+            try:
+                placed = workspace.put(name, event.file.name, await event.file.read())
+            except DalembertError as error:
+                complain(error)
+                return
+            ui.notify(f"{placed.name} lies beside the study now: name it in [data].", type="positive")
+            await look()
+
+        upload = ui.upload(label="Measured data", auto_upload=True, on_upload=uploaded, max_file_size=MOST_BYTES)
+        upload.props(f'accept="{DATA}" flat bordered').classes("w-full max-w-md")
+
+
+def _read(path: Path, text: str) -> tuple[Study | None, list[tuple[int, str]]]:
+    """The study that a text is, or its mistakes with the numbers of their lines."""
+    with tempfile.TemporaryDirectory() as folder:
+        draft = Path(folder) / path.name
+        try:
+            draft.write_text(text, encoding="utf-8")
+            return load(draft, name=path.stem, folder=path.parent), []
+        except StudyError as error:
+            return None, [(line_of(text, place), sentence) for place, sentence in error.mistakes]
+        except InputError as error:
+            sentence = str(error).replace(f"{draft}: ", "").replace(f"{draft}", path.name)
+            return None, [(_line_in(sentence), sentence)]
+
+
+def _line_in(sentence: str) -> int:
+    """The line that a sentence of the TOML reader names."""
+    found = re.search(r"\bline (\d+)", sentence)
+    return int(found[1]) if found else 1
+
+
+def _tell(editor: ui.codemirror, wrong: ui.column, text: str, mistakes: list[tuple[int, str]]) -> None:
+    """Mark the lines with mistakes, and list them, each with a button to its line."""
+    lines = max(1, len(text.splitlines()))
+    editor.decorations = [
+        {"kind": "line", "line": line, "class": WRONG} for line in sorted({min(line, lines) for line, _ in mistakes})
+    ]
+    wrong.clear()
+    with wrong:
+        for line, sentence in mistakes:
+            with ui.row().classes("items-start gap-2 flex-nowrap").props("role=alert"):
+                go = ui.button(f"line {line}", on_click=partial(editor.reveal_line, line), color="negative")
+                go.props("dense no-caps outline size=sm").classes("shrink-0")
+                ui.label(sentence).classes("text-sm break-words")
+
+
+async def _draw(study: Study) -> None:
+    """The measured data as the study reads them."""
+    try:
+        data = await run.io_bound(study.data)
+        if data is None:  # the studio is ending
+            return
+    except DalembertError as error:
+        ui.label(str(error)).classes("text-negative").props("role=alert")
+        return
+    ui.label("Measured data").classes("text-xl font-bold").props("role=heading aria-level=2")
+    ui.plotly(on_any_page(measured(data))).classes("w-full h-80").props('role=img aria-label="Measured data"')
+
+
+def _save(workspace: Workspace, path: Path, text: str) -> bool:
+    try:
+        workspace.write(path, text)
+    except DalembertError as error:
+        complain(error)
+        return False
+    ui.notify("Saved.", type="positive")
+    return True
+
+
+def _start(workspace: Workspace, jobs: Jobs, path: Path, text: str) -> None:
+    """Save, run in a process of its own, and go to the run's page."""
+    if not _save(workspace, path, text):
+        return
+    try:
+        folder = workspace.new_run(load(path).name if path.stem != "study" else path.parent.name)
+    except DalembertError as error:
+        complain(error)
+        return
+    folder.parent.mkdir(exist_ok=True)
+    jobs.start(path, folder)
+    ui.navigate.to(f"/run/{quote(folder.name)}")

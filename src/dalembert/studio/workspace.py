@@ -1,0 +1,163 @@
+"""The folder that the studio works in: its studies, their files, and their runs."""
+
+import re
+import tomllib
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
+
+from dalembert.errors import InputError, unknown
+from dalembert.files import replacing
+from dalembert.study.folder import RunFolder, find_runs
+from dalembert.study.loader import LARGEST
+from dalembert.study.tasks import TASKS
+
+NAME = re.compile(r"\w[\w .-]{0,99}")
+"""What a study, a file or a run may be called: no separators of folders, and nothing that begins with a dot."""
+MOST_BYTES = 200_000_000
+"""Of an uploaded file."""
+TEMPLATES = files("dalembert.studio") / "templates"
+
+
+@dataclass(frozen=True)
+class Workspace:
+    """Studies in ``studies/NAME/*.toml`` and runs in ``runs/NAME`` below a folder.
+
+    Parameters
+    ----------
+    root : Path
+    """
+
+    root: Path
+
+    @property
+    def runs_folder(self) -> Path:
+        return self.root / "runs"
+
+    def runs(self) -> list[RunFolder]:
+        """All runs, by name."""
+        return find_runs(self.runs_folder)
+
+    def run(self, name: str) -> RunFolder:
+        """The run of a name.
+
+        Raises
+        ------
+        InputError
+            If there is none.
+        """
+        known = {folder.path.name: folder for folder in self.runs()}
+        if name not in known:
+            raise InputError(unknown("run", name, known))
+        return known[name]
+
+    def new_run(self, name: str) -> Path:
+        """Folder for another run of a study: ``runs/NAME``, or that with the next free number."""
+        path, number = self.runs_folder / checked(name), 2
+        while path.exists():
+            path = self.runs_folder / f"{name}-{number}"
+            number += 1
+        return path
+
+    def studies(self) -> list[str]:
+        """All study files as ``"folder/file"``, without ``.toml``, by name."""
+        found = sorted((self.root / "studies").glob("*/*.toml"))
+        return [f"{path.parent.name}/{path.stem}" for path in found if _is_study(path)]
+
+    def study(self, name: str) -> Path:
+        """The file of a study.
+
+        Raises
+        ------
+        InputError
+            If there is none.
+        """
+        if name not in self.studies():
+            raise InputError(unknown("study", name, self.studies()))
+        return self.root / "studies" / f"{name}.toml"
+
+    def create(self, name: str, content: str) -> str:
+        """A new study with its text; its name as :meth:`studies` gives it.
+
+        Raises
+        ------
+        InputError
+            For a name that is taken or cannot be one, and a text that is too large.
+        """
+        folder = self.root / "studies" / checked(name)
+        if folder.exists():
+            raise InputError(f"there is a study {name!r} already; choose another name")
+        folder.mkdir(parents=True)
+        self.write(folder / "study.toml", content)
+        return f"{name}/study"
+
+    def write(self, path: Path, content: str) -> None:
+        """Write a study's text."""
+        if len(content.encode()) > LARGEST:
+            raise InputError(f"{path.name} has more than {LARGEST} bytes; expected a study file")
+        with replacing(path) as temporary:
+            temporary.write_text(content, encoding="utf-8", newline="\n")
+
+    def put(self, study: str, name: str, content: bytes) -> Path:
+        """A file beside a study, such as its measured data.
+
+        Raises
+        ------
+        InputError
+            For a name that cannot be one, Python code, and a file that is too large.
+        """
+        name = checked(name)
+        if Path(name).suffix.lower() in (".py", ".pyc", ".so", ".toml"):
+            raise InputError(f"{name!r} is no data file; put programs and studies into the folder yourself")
+        if len(content) > MOST_BYTES:
+            raise InputError(f"{name!r} has {len(content)} bytes; expected at most {MOST_BYTES}")
+        path = self.study(study).parent / name
+        with replacing(path) as temporary:
+            temporary.write_bytes(content)
+        return path
+
+
+def checked(name: str) -> str:
+    """The name itself, if a study, a file or a run may have it."""
+    if not NAME.fullmatch(name):
+        raise InputError(
+            f"{name[:100]!r} cannot be a name here; expected letters, digits, spaces, dots, hyphens and underscores, a "
+            "letter or digit first, and at most 100 of them"
+        )
+    return name
+
+
+def templates() -> dict[str, tuple[str, dict[str, bytes]]]:
+    """Studies to begin with, by what they are for: text, and the files beside it."""
+    found = {}
+    for folder in sorted(TEMPLATES.iterdir(), key=lambda entry: entry.name):
+        text = (folder / "study.toml").read_text(encoding="utf-8")
+        beside = {entry.name: entry.read_bytes() for entry in folder.iterdir() if entry.name != "study.toml"}
+        found[tomllib.loads(text)["study"]["title"]] = text, beside
+    return found
+
+
+def as_text(content: bytes, name: str) -> str:
+    """Text of an uploaded study.
+
+    Raises
+    ------
+    InputError
+        If it is too large, or not UTF-8.
+    """
+    if len(content) > LARGEST:
+        raise InputError(f"{name} has more than {LARGEST} bytes; expected a study file")
+    try:
+        return content.decode("utf-8")
+    except UnicodeDecodeError as error:
+        line = content[: error.start].count(b"\n") + 1
+        raise InputError(f"{name}, line {line}: the file is not UTF-8 text") from None
+
+
+def _is_study(path: Path) -> bool:
+    """Whether a TOML file asks for something, or is not yet whole; tables of expected numbers are neither."""
+    try:
+        document = tomllib.loads(path.read_text(encoding="utf-8"))
+    except (ValueError, OSError):
+        return path.name == "study.toml"
+    return path.name == "study.toml" or (bool(document.keys() & TASKS.keys()) and "model" in document)

@@ -1,0 +1,95 @@
+"""The studio's folder: what may be written into it, and under which names."""
+
+import pytest
+
+from dalembert.errors import InputError
+from dalembert.studio import workspace as module
+from dalembert.studio.workspace import Workspace, as_text, templates
+from dalembert.study import load
+from support import says
+
+BAD = [
+    "",
+    "..",
+    ".",
+    "../up",
+    "a/b",
+    "a\\b",
+    "/etc/passwd",
+    ".hidden",
+    "-rf",
+    "a\0b",
+    "a\nb",
+    "<script>",
+    "x" * 101,
+    "C:x",
+]
+
+
+@pytest.fixture
+def workspace(tmp_path):
+    return Workspace(tmp_path)
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_names_that_lead_elsewhere_or_say_more_than_a_name_are_refused(workspace, name, tmp_path):
+    study = workspace.create("mine", "")
+    for refused in (
+        lambda: workspace.create(name, ""),
+        lambda: workspace.put(study, name, b""),
+        lambda: workspace.new_run(name),
+    ):
+        with pytest.raises(InputError, match="cannot be a name here; expected letters, digits"):
+            refused()
+    assert [path.name for path in tmp_path.iterdir()] == ["studies"]
+
+
+@pytest.mark.parametrize("name", ["../mine/study", "mine/../../x", "mine/nothing", "mine", ""])
+def test_a_study_that_is_not_listed_is_not_read(workspace, name):
+    workspace.create("mine", "")
+    with pytest.raises(InputError, match="unknown study"):
+        workspace.study(name)
+
+
+def test_a_study_and_what_lies_beside_it(workspace, tmp_path):
+    study = workspace.create("My study", "[study]\n")
+    assert study == "My study/study"
+    assert workspace.studies() == [study]
+    assert workspace.put(study, "data.csv", b"t,x\n").read_bytes() == b"t,x\n"
+    with pytest.raises(InputError, match=says("there is a study 'My study' already; choose another name")):
+        workspace.create("My study", "")
+    (tmp_path / "studies" / "My study" / "expected.toml").write_text("a = 1")
+    assert workspace.studies() == [study]
+    with pytest.raises(InputError, match=says("unknown run 'nothing'; known: none")):
+        workspace.run("nothing")
+
+
+@pytest.mark.parametrize("name", ["model.py", "a.PY", "study.toml", "lib.so"])
+def test_programs_and_studies_are_not_taken_for_data(workspace, name):
+    study = workspace.create("mine", "")
+    sentence = f"{name!r} is no data file; put programs and studies into the folder yourself"
+    with pytest.raises(InputError, match=says(sentence)):
+        workspace.put(study, name, b"")
+
+
+def test_what_is_too_large_or_no_text_is_refused(workspace, monkeypatch):
+    study = workspace.create("mine", "")
+    monkeypatch.setattr(module, "MOST_BYTES", 3)
+    with pytest.raises(InputError, match=says("'a.csv' has 4 bytes; expected at most 3")):
+        workspace.put(study, "a.csv", b"1234")
+    with pytest.raises(InputError, match=says("a.toml, line 2: the file is not UTF-8 text")):
+        as_text(b"a = 1\nb = '\xff'", "a.toml")
+    monkeypatch.setattr(module, "LARGEST", 3)
+    with pytest.raises(InputError, match=says("a.toml has more than 3 bytes; expected a study file")):
+        as_text(b"1234", "a.toml")
+    with pytest.raises(InputError, match=says("study.toml has more than 3 bytes; expected a study file")):
+        workspace.create("other", "1234")
+
+
+@pytest.mark.parametrize("title", templates())
+def test_a_template_is_a_study_in_order(workspace, title):
+    text, beside = templates()[title]
+    study = workspace.create("mine", text)
+    for name, content in beside.items():
+        workspace.put(study, name, content)
+    assert load(workspace.study(study)).title == title

@@ -176,6 +176,8 @@ def contents(
             looked = dofs or family_dofs(result, amplitude)
             own = [vibration_headlines.of_family(result, looked, amplitude, title, notes)]
             sections = [*own, *_family(result, looked, amplitude), *_deformed(deformation)]
+            sections += [NonlinearMode(backbone)] if backbone is not None else []
+            sections += [InTime(time_comparison)] if time_comparison is not None else []
             sections += [Reduction(reduction)] if reduction is not None else []
         case TrajectoryLike():
             moving = each(result)

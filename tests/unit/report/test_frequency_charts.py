@@ -296,3 +296,14 @@ def test_errors_of_a_reduction_are_in_percent():
     frequency, similarity = charts.reduction_errors(errors).data
     np.testing.assert_allclose(frequency.y, [1.0, np.nan])
     np.testing.assert_allclose(similarity.y, [0.01, np.nan])
+
+
+def test_folds_are_tabled_by_the_amplitude_that_is_drawn(folded, tmp_path):
+    rows = read_page(folded.report(tmp_path / "a.html", amplitude="harmonic 1")).table("marked-points")
+    assert rows[0][2] == "amplitude of harmonic 1 of m.x (m)"
+    np.testing.assert_array_equal([float(row[2]) for row in rows[1:]], folded.amplitude("m", "harmonic 1")[folded.fold])
+
+
+def test_a_family_takes_what_is_known_beside_it(family):
+    mode = backbone(duffing(), np.array([0.5, 1.0]), method=HarmonicBalance(3))
+    assert list(figures(family, backbone=mode))[-1] == "backbone"

@@ -8,7 +8,7 @@ import numpy as np
 from dalembert.report import charts
 from dalembert.report.digits import shown
 from dalembert.report.focus import Look, marked, movers, size_label, unit_of, unstable
-from dalembert.report.needs_frequency import BackboneLike, FrequencyCurveLike
+from dalembert.report.needs_frequency import BackboneLike
 from dalembert.report.plot import Plot
 from dalembert.report.quantities import labelled
 from dalembert.report.sections.findings import Findings
@@ -63,7 +63,7 @@ class ForcedResponse(Findings):
 
     @property
     def tables(self) -> tuple[Table, ...]:
-        return (_peaks(self.look), *_events(self.look.curve, self.look.dofs))
+        return (_peaks(self.look), *_events(self.look))
 
 
 def _peaks(look: Look) -> Table:
@@ -87,20 +87,21 @@ def _peaks(look: Look) -> Table:
     return Table("peaks", "Resonance peaks", columns, rows)
 
 
-def _events(curve: FrequencyCurveLike, dofs: tuple[str, ...]) -> tuple[Table, ...]:
+def _events(look: Look) -> tuple[Table, ...]:
     """Tables of marked points and of those that were not found, where there are any."""
-    found = []
+    curve, dofs, found = look.curve, look.dofs[:MOST_NAMED], []
+    sizes = {dof: curve.amplitude(dof, look.kind) for dof in dofs}
     rows = [
         (
             cell(kind),
             cell(float(curve.frequencies[point])),
-            *(cell(float(curve.amplitude(dof)[point])) for dof in dofs[:MOST_NAMED]),
+            *(cell(float(size[point])) for size in sizes.values()),
         )
         for kind, points in marked(curve).items()
         for point in points
     ]
     if rows:
-        columns = ("what", "frequency (Hz)", *(labelled(f"amplitude of {d}", unit_of(d)) for d in dofs[:MOST_NAMED]))
+        columns = ("what", "frequency (Hz)", *(labelled(f"{size_label(look.kind)} of {d}", unit_of(d)) for d in dofs))
         found.append(Table("marked-points", "Folds and changes of stability", columns, rows))
     lost = np.flatnonzero(~curve.converged)
     rows = [(cell(float(curve.frequencies[k])), cell(float(curve.residuals[k]), digits=2)) for k in lost]

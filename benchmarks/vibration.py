@@ -12,7 +12,7 @@ from dalembert.structure import Dofs, Structure, lumped
 from dalembert.vibration.equations import equations
 from dalembert.vibration.threads import one_thread
 
-HARMONICS, SAMPLES, STEP, REPEATS = 7, 1024, 0.1, 1
+HARMONICS, SAMPLES, STEP, REPEATS = 7, 1024, 0.03, 1
 CASES = {
     "one mass": (
         pyharm_models.Slider(np.eye(1), 0.04 * np.eye(1), np.eye(1), 0, 0, contact=0.8, friction=0.5, load=2.0),

@@ -25,7 +25,7 @@ from dalembert.vibration.fourier import Fourier, complex_blocks, real_blocks
 
 ACTIVE = 1e-11
 """Difference from its stuck stiffness, as part of that, above which a contact is active."""
-DIRECT = 800
+DIRECT = 500
 """Active unknowns up to which a dense system costs less than iterations."""
 EXACT = 1e-12
 """Residual of a linear system, as part of its right-hand side, to which GMRES goes unless told otherwise."""

@@ -113,7 +113,8 @@ def _period(d, z, force, forces, states, kept, numbers, tangents, normal, memory
     for t in range(d.shape[1]):
         state, size = update(d[:, t], z, force, numbers, tangents, normal, memory)
         states[t] = state
-        forces[:, t] = force
+        for i in range(len(force)):
+            forces[i, t] = force[i]
         if state == STUCK:
             continue
         moving += 1
@@ -203,7 +204,7 @@ def _slopes(d, z, force, states, moved, kept, slopes, past, numbers, tangents, n
     """
     count = synthesis.shape[1]
     stiffness, friction = numbers[TANGENTIAL], numbers[FRICTION]
-    direction, own = np.zeros(2), tangents * count
+    direction, own, unknowns = np.zeros(2), tangents * count, slopes.shape[2]
     kept[:] = 0.0
     for i in range(tangents):
         kept[i, i] = 1.0
@@ -212,26 +213,26 @@ def _slopes(d, z, force, states, moved, kept, slopes, past, numbers, tangents, n
             direction[i] = stiffness * (d[i, t] - z[i])
         state, size = update(d[:, t], z, force, numbers, tangents, normal, memory)
         states[t] = state
+        # Loops, not expressions of arrays, which would make new arrays at each sample.
         if normal:
             rise = numbers[NORMAL] if state != SEPARATED else 0.0
-            slopes[tangents, t, own:] = rise * synthesis[t]
-        if state == SEPARATED:
-            slopes[:tangents, t] = 0.0
-            past[:, t] = 0.0
-        else:
-            for i in range(tangents):
-                slopes[i, t] = -stiffness * moved[i]
-                slopes[i, t, i * count : (i + 1) * count] += stiffness * synthesis[t]
-                past[i, t] = -stiffness * kept[i]
+            for j in range(count):
+                slopes[tangents, t, own + j] = rise * synthesis[t, j]
+        held = stiffness if state == STUCK or (state == SLIPPING and tangents == 2) else 0.0
+        for i in range(tangents):
+            for j in range(unknowns):
+                slopes[i, t, j] = -held * moved[i, j]
+            for j in range(count):
+                slopes[i, t, i * count + j] += held * synthesis[t, j]
+            for j in range(tangents):
+                past[i, t, j] = -held * kept[i, j]
         if state == SLIPPING:
-            direction /= size
-            ratio = (force[0] * direction[0] + (force[1] * direction[1] if tangents == 2 else 0.0)) / size
-            if tangents == 1:
-                slopes[0, t] = 0.0
-                past[0, t] = 0.0
-            else:
+            for i in range(tangents):
+                direction[i] /= size
+            if tangents == 2:
                 e, f = direction[0], direction[1]
-                for j in range(slopes.shape[2]):
+                ratio = (force[0] * e + force[1] * f) / size
+                for j in range(unknowns):
                     along = e * slopes[0, t, j] + f * slopes[1, t, j]
                     slopes[0, t, j] = ratio * (slopes[0, t, j] - e * along)
                     slopes[1, t, j] = ratio * (slopes[1, t, j] - f * along)
@@ -241,12 +242,16 @@ def _slopes(d, z, force, states, moved, kept, slopes, past, numbers, tangents, n
                     past[1, t, j] = ratio * (past[1, t, j] - f * along)
             if normal:
                 for i in range(tangents):
-                    slopes[i, t, own:] += friction * direction[i] * slopes[tangents, t, own:]
+                    for j in range(own, unknowns):
+                        slopes[i, t, j] += friction * direction[i] * slopes[tangents, t, j]
         if memory and state != STUCK:
             for i in range(tangents):
-                moved[i] = -slopes[i, t] / stiffness
-                moved[i, i * count : (i + 1) * count] += synthesis[t]
-                kept[i] = -past[i, t] / stiffness
+                for j in range(unknowns):
+                    moved[i, j] = -slopes[i, t, j] / stiffness
+                for j in range(count):
+                    moved[i, i * count + j] += synthesis[t, j]
+                for j in range(tangents):
+                    kept[i, j] = -past[i, t, j] / stiffness
 
 
 @compiled

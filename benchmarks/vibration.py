@@ -107,8 +107,8 @@ def _cost(contacts: int, harmonics: int) -> dict[str, object]:
         balance, point, unknowns = problem.balance(512), problem.condensation.at(omega), solution.unknowns
 
         def iteration() -> None:
-            evaluation, tangent = balance.linearised(point, unknowns)
-            tangent.solve(evaluation.residual[:, :, None], 1e-6)
+            tangent = balance.linearised(point, unknowns)[1]
+            tangent.solve(tangent.slope[:, :, None], 1e-6)
 
         def residual() -> None:
             balance.residual(balance.linear(point.stiffness, point.force, unknowns), unknowns)

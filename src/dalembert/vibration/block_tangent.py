@@ -29,8 +29,8 @@ DIRECT = 500
 """Active unknowns up to which a dense system costs less than iterations."""
 EXACT = 1e-12
 """Residual of a linear system, as part of its right-hand side, to which GMRES goes unless told otherwise."""
-KRYLOV = 150
-"""Iterations of GMRES after which the dense system is solved all the same."""
+KRYLOV, CYCLES = 100, 4
+"""Iterations of GMRES in a cycle, which begins with the residual as it is, and cycles; then the dense system."""
 
 
 @dataclass(frozen=True)
@@ -199,5 +199,5 @@ class BlockTangent:
             return series.coefficients((self._preconditioner @ phasors[:, :, None])[:, :, 0]).ravel()
 
         own, near = (LinearOperator((size, size), matvec=one, dtype=float) for one in (self._product, precondition))  # type: ignore[call-arg]
-        found, failed = gmres(own, right.ravel(), rtol=tolerance, atol=0.0, restart=KRYLOV, maxiter=1, M=near)
+        found, failed = gmres(own, right.ravel(), rtol=tolerance, atol=0.0, restart=KRYLOV, maxiter=CYCLES, M=near)
         return self._direct(right) if failed else found.reshape(right.shape)

@@ -40,6 +40,34 @@ BANDS = """
 file = "bands.csv"
 columns = { x = ["low", "high"] }
 """
+CURVES = """
+[parameters]
+preload = { lower = 0.0, upper = 8.0, start = 1.0 }
+[[model.mass]]
+name = "m"
+mass = 1.0
+[[model.spring]]
+first = "m"
+stiffness = 1.0
+damping = 0.04
+[[model.spring]]
+kind = "CubicSpring"
+name = "hardening"
+first = "m"
+stiffness = 0.1
+[[model.force]]
+dof = "m"
+amplitude = 1.0
+[[model.contact]]
+name = "slider"
+first = "m"
+friction = 0.5
+preload = "preload"
+law = { kind = "Elastic", tangential_stiffness = 0.8 }
+[harmonic_balance]
+harmonics = 9
+[frequency_response]
+"""
 STUDIES = {
     "least-squares": HEAD + DATA + "[identify]\nstarts = 8\nprofile = true\nprediction = true\n",
     "improved-swarm": HEAD
@@ -52,6 +80,11 @@ STUDIES = {
     "bands": HEAD + BANDS + "[identify_bands]\nseed = 1\n",
     "set": HEAD + DATA + '[identify_set]\nerror = 0.02\nscheme = { kind = "tensor", order = 8 }\n',
     "sweep": HEAD + '[sweep]\nat = 0.5\nchannels = ["x"]\nover = { rate = { count = 150 } }\n',
+}
+STUDIES |= {
+    "family of curves": CURVES + "frequencies = { start = 0.12, end = 0.3, count = 120 }\nstability = true\n"
+    'sweep = { parameter = "preload", values = [0.0, 1.0, 2.0, 4.0, 8.0] }\n',
+    "curve past folds": CURVES + 'between = [0.1, 0.4]\ncontinuation = "arc-length"\n',
 }
 KILLS = 2
 MANY = 25
@@ -81,5 +114,5 @@ def test_killed_at_random_moments_a_study_ends_the_same(tmp_path, study):
 @pytest.mark.slow
 @pytest.mark.parametrize("study", STUDIES)
 def test_killed_very_often_a_study_ends_the_same(tmp_path, study):
-    """25 kills of each of eight kinds of study: 200 in all."""
+    """25 kills of each of ten kinds of study: 250 in all."""
     assert killed(tmp_path, study, MANY, seed=2)["kills"] == MANY

@@ -202,7 +202,7 @@ def frequency_responses(
     on_curve : callable, optional
         Called with the number of each value, its curve and why there is none, in the order of the values.
     options
-        Others of :func:`frequency_response`: ``continuation``, ``observe`` and so on.
+        Others of :func:`frequency_response`: ``continuation``, ``observe``, ``checkpoint`` and so on.
 
     Returns
     -------

@@ -1,6 +1,5 @@
 """The response of a vibrating system over frequency as a forward model."""
 
-import hashlib
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
@@ -16,12 +15,12 @@ from dalembert.vibration.amplitudes import Amplitude
 from dalembert.vibration.continuation import at_frequencies
 from dalembert.vibration.curve import FrequencyCurve
 from dalembert.vibration.equations import Equations, equations
+from dalembert.vibration.fingerprint import fingerprint
 from dalembert.vibration.frequency_response import frequency_response, response_of
 from dalembert.vibration.harmonic_balance import HarmonicBalance
 from dalembert.vibration.lowering import Lowered, lower
 from dalembert.vibration.newton import Solution
 from dalembert.vibration.sensitivity import STEP, sensitivities
-from dalembert.vibration.springs import UserElement
 from dalembert.vibration.system import VibrationSystem
 from dalembert.vibration.threads import one_thread
 
@@ -107,20 +106,9 @@ class FrequencyResponse:
 
     @cached_property
     def _fingerprint(self) -> str:
-        lowered = lower(self.system(self.parameters.start))
-        own = lowered.structure
-        digest = hashlib.sha256(repr((self.parameters.names, self.channel_names, self.method)).encode())
-        digest.update(repr((own.dofs.names, lowered.row_names, lowered.contacts, lowered.forces)).encode())
-        damping = [] if own.damping is None else [own.damping]
-        for matrix in (own.mass, own.stiffness, *damping, lowered.matrix):
-            digest.update(np.asarray(matrix @ np.linspace(0.5, 1.5, own.size)).tobytes())
-        for block in lowered.blocks:
-            digest.update(repr((block.kind, block.tangents, block.normal)).encode() + block.numbers.tobytes())
-        for rows, element in lowered.springs:
-            several = isinstance(element, UserElement)
-            probe = np.linspace(-1.0, 1.0, 7 * len(rows)).reshape(len(rows), 7)
-            digest.update(np.asarray(element.law(probe if several else probe[0])[0]).tobytes())
-        return digest.hexdigest()
+        return fingerprint(
+            lower(self.system(self.parameters.start)), self.method, self.parameters.names, self.channel_names
+        )
 
     def evaluate(self, vectors: np.ndarray) -> Responses:
         """Responses of a batch over all cores; ``vectors`` (batch, parameters), values (batch, samples, channels).

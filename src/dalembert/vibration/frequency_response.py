@@ -8,6 +8,7 @@ import scipy
 
 import dalembert
 from dalembert.errors import InputError, unknown
+from dalembert.forward import Checkpoint
 from dalembert.vibration.bifurcations import Judged, judged, unjudged
 from dalembert.vibration.continuation import along, at_frequencies, natural
 from dalembert.vibration.curve import FrequencyCurve
@@ -15,6 +16,7 @@ from dalembert.vibration.equations import Equations, equations
 from dalembert.vibration.harmonic_balance import HarmonicBalance
 from dalembert.vibration.lowering import Lowered
 from dalembert.vibration.newton import Solution
+from dalembert.vibration.recorded import recorded
 from dalembert.vibration.system import VibrationSystem
 from dalembert.vibration.threads import one_thread
 
@@ -34,6 +36,7 @@ def frequency_response(
     observe: Sequence[str] | None = None,
     start: tuple[FrequencyCurve, int] | None = None,
     stability: bool = False,
+    checkpoint: Checkpoint | None = None,
 ) -> FrequencyCurve:
     """Periodic responses over frequency by harmonic balance.
 
@@ -54,6 +57,9 @@ def frequency_response(
         Whether the stability of each point is found too, and the places where it changes: by Hill's method, or with
         friction by the linearised motion over a period (see :func:`floquet_multipliers`). On paths between two
         frequencies these places are points of their own; with given frequencies the first one behind is marked.
+    checkpoint : Checkpoint, optional
+        Where solutions are kept as they are found; begun again with the same file the curve is followed to where it was
+        in a part of the time, and on from there to the same bits.
 
     Returns
     -------
@@ -97,7 +103,8 @@ def frequency_response(
         )
     settings = {"continuation": continuation, "frequencies": list(map(float, frequencies)) if ends else "given"}
     with one_thread():
-        return _followed(equations(system, method), omegas, settings, observe, start, stability)
+        problem = recorded(equations(system, method), checkpoint)
+        return _followed(problem, omegas, settings, observe, start, stability)
 
 
 def _followed(

@@ -119,9 +119,7 @@ def correct(
 
     def place(unknowns: np.ndarray, omega: float, point: Point | None, step: bool = True) -> _Place:
         point = condensation.at(omega) if point is None else point
-        tangent = balance.tangent(point, unknowns) if step else None
-        linear = balance.linear(point.stiffness, point.force, unknowns)
-        evaluation = balance.residual(linear, unknowns, tangent)
+        evaluation, tangent = evaluated(balance, point, unknowns) if step else (_forces(balance, point, unknowns), None)
         scale = float(np.linalg.norm(point.force) + np.linalg.norm(evaluation.forces)) or 1.0
         floor = ROUNDING * float(np.abs(point.stiffness).max(initial=0.0)) * float(np.linalg.norm(unknowns))
         distance = 0.0 if plane is None else plane.distance(unknowns, omega)
@@ -155,6 +153,16 @@ def correct(
         at.omega, at.unknowns, at.point, at.evaluation, at.tangent, len(errors) - 1, at.error, converged,
         balance.series.samples,
     )  # fmt: skip
+
+
+def evaluated(balance: Balance, point: Point, unknowns: np.ndarray) -> tuple[Evaluation, Tangent]:
+    """Residual and forces at unknowns, with the tangent."""
+    tangent = balance.tangent(point, unknowns)
+    return _forces(balance, point, unknowns, tangent), tangent
+
+
+def _forces(balance: Balance, point: Point, unknowns: np.ndarray, tangent: Tangent | None = None) -> Evaluation:
+    return balance.residual(balance.linear(point.stiffness, point.force, unknowns), unknowns, tangent)
 
 
 def _stalls(errors: list[float]) -> bool:

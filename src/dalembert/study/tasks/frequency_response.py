@@ -212,6 +212,7 @@ class FrequencyResponseTask(Task):
             "continuation": table.continuation,
             "observe": _observed(study),
             "stability": table.stability,
+            "checkpoint": study.checkpoint,
         }
         if table.sweep is None:
             emit("following", begin=float(table.along[0]), end=float(table.along[-1]))

@@ -1,0 +1,74 @@
+"""Equations whose solutions are kept: an interrupted curve is followed again without Newton's method."""
+
+import hashlib
+from dataclasses import dataclass
+from functools import cached_property
+from time import perf_counter
+
+import numpy as np
+
+from dalembert.forward import Checkpoint
+from dalembert.vibration.condensation import Point
+from dalembert.vibration.equations import Equations
+from dalembert.vibration.fingerprint import fingerprint
+from dalembert.vibration.newton import Plane, Solution, evaluated
+
+
+@dataclass(frozen=True)
+class RecordedEquations(Equations):
+    """Equations that take from a checkpoint the solutions that it holds, and add those that it does not.
+
+    A path goes from one solution to the next, so it takes the same way again, bit for bit. Where a solution is known
+    its forces and its Jacobian are evaluated once, in place of once an iteration.
+
+    Parameters
+    ----------
+    checkpoint : Checkpoint
+    """
+
+    checkpoint: Checkpoint | None = None
+
+    def solve(
+        self,
+        unknowns: np.ndarray,
+        omega: float,
+        samples: int,
+        plane: Plane | None = None,
+        point: Point | None = None,
+    ) -> Solution:
+        assert self.checkpoint is not None  # recorded() gives one
+        key = self._key(unknowns, omega, samples, plane)
+        known = self.checkpoint.recall(key)
+        if known is not None:
+            return self._restored(*known)
+        began = perf_counter()
+        found = super().solve(unknowns, omega, samples, plane, point)
+        numbers = (found.omega, found.iterations, found.error, found.converged, found.samples, found.sampling_error)
+        self.checkpoint.keep(key, (found.unknowns, np.array(numbers, dtype=float)), perf_counter() - began)
+        return found
+
+    def _restored(self, unknowns: np.ndarray, numbers: np.ndarray) -> Solution:
+        """A solution from what is kept of it."""
+        omega, iterations, error, converged, samples, sampling_error = numbers.tolist()
+        point = self.condensation.at(omega)
+        evaluation, tangent = evaluated(self.balance(int(samples)), point, unknowns)
+        return Solution(
+            omega, unknowns, point, evaluation, tangent, int(iterations), error, bool(converged), int(samples),
+            sampling_error,
+        )  # fmt: skip
+
+    def _key(self, unknowns: np.ndarray, omega: float, samples: int, plane: Plane | None) -> bytes:
+        """Hash of all that a solution depends on."""
+        asked = [np.array([omega, samples]), unknowns]
+        if plane is not None:
+            asked += [plane.direction, plane.unknowns, np.array([plane.omega, plane.size, plane.width])]
+        return hashlib.sha256(self._system + b"".join(map(np.ndarray.tobytes, asked))).digest()
+
+    @cached_property
+    def _system(self) -> bytes:
+        return b"harmonic balance" + fingerprint(self.lowered, self.method).encode()
+
+
+def recorded(problem: Equations, checkpoint: Checkpoint | None) -> Equations:
+    """The equations with their solutions in a checkpoint, or the equations themselves without one."""
+    return problem if checkpoint is None else RecordedEquations(problem.lowered, problem.method, checkpoint=checkpoint)

@@ -15,6 +15,8 @@ NAMES = (
     "swarms",
     "collocation",
     "digits",
+    "vibration",
+    "plate",
     "startup",
 )
 

@@ -15,7 +15,7 @@ from dalembert.vibration.equations import equations
 from dalembert.vibration.threads import one_thread
 
 STUDY = Path(__file__).parents[1] / "studies" / "patched-plate" / "plate.py"
-PRELOAD, POINTS, ENDS = 190.0, 700, (394.0, 407.0)
+PRELOAD, POINTS, ENDS = 75.0, 700, (394.0, 407.0)
 METHOD = HarmonicBalance(harmonics=5, sampling=1e-3)
 PARTS = {
     "condensation": ("condensation.py", ("at",)),

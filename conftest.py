@@ -1,5 +1,8 @@
-"""Runs the examples of README.md and of the documentation, each file's in one empty folder."""
+"""Runs the examples of README.md and of the documentation, notebooks too, each file's in one empty folder."""
 
+import doctest
+import os
+import shlex
 import subprocess
 import sys
 import tomllib
@@ -7,7 +10,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from sybil import Example, Sybil
+from notebook_text import markdown
+from sybil import Document, Example, Sybil
 from sybil.parsers.markdown import CodeBlockParser, PythonCodeBlockParser, SkipParser
 
 
@@ -30,13 +34,54 @@ def check_study(example: Example) -> str | None:
         columns = [data.get("time", "t"), *data["columns"].values()]
         rows = [",".join(columns), *(",".join([str(time)] * len(columns)) for time in (0.0, 0.5, 1.0))]
         Path(data["file"]).write_text("\n".join(rows))
-    command = [Path(sys.executable).with_name("dalembert"), "check", file]
-    run = subprocess.run(command, check=False, capture_output=True, text=True)
-    return None if run.returncode == 0 else f"dalembert check ended with {run.returncode}:\n{run.stdout}{run.stderr}"
+    code, output = outcome("dalembert check study.toml")
+    return None if code == 0 else f"dalembert check ended with {code}:\n{output}"
+
+
+def outcome(command: str) -> tuple[int, str]:
+    """Exit code and output of a command of this environment, on a terminal of 120 columns."""
+    name, *arguments = shlex.split(command)
+    run = subprocess.run(
+        [Path(sys.executable).with_name(name), *arguments],
+        check=False,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        env={**os.environ, "COLUMNS": "120"},
+    )
+    return run.returncode, run.stdout
+
+
+def check_session(example: Example) -> str | None:
+    """What differs from a session on a terminal: a line ``$ command``, then what it prints, ``...`` for any text.
+
+    A command must end with 0, unless what it prints is shown.
+    """
+    for part in example.parsed.removeprefix("$ ").split("\n$ "):
+        command, _, shown = part.partition("\n")
+        code, output = outcome(command)
+        flags = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
+        same = doctest.OutputChecker().check_output(shown, output, flags) if shown.strip() else code == 0
+        if not same:
+            return f"'{command}' ended with {code} and printed\n{output}where the page shows\n{shown}"
+    return None
+
+
+class Notebook(Document):
+    """A notebook, parsed as the Markdown of its cells."""
+
+    def __init__(self, text: str, path: str) -> None:
+        super().__init__(markdown(text), path)
 
 
 pytest_collect_file = Sybil(
-    parsers=[PythonCodeBlockParser(), CodeBlockParser("toml", check_study), SkipParser()],
-    patterns=["*.md"],
+    parsers=[
+        PythonCodeBlockParser(),
+        CodeBlockParser("toml", check_study),
+        CodeBlockParser("console", check_session),
+        SkipParser(),
+    ],
+    patterns=["*.md", "*.ipynb"],
+    document_types={".ipynb": Notebook},
     fixtures=["empty_folder"],
 ).pytest()

@@ -1,6 +1,14 @@
-"""Sphinx: Markdown pages (MyST) and the reference from the docstrings (numpydoc)."""
+"""Sphinx: Markdown pages and notebooks (MyST), and the reference from the docstrings (numpydoc)."""
+
+import sys
+from pathlib import Path
+
+from sphinx.application import Sphinx
 
 from dalembert import __version__
+
+sys.path.append(str(Path(__file__).parent))
+from notebook_text import markdown
 
 project = "dalembert"
 author = "the dalembert developers"
@@ -10,6 +18,7 @@ release = version = __version__
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.mathjax"]
 myst_enable_extensions = ["dollarmath", "colon_fence"]
 myst_heading_anchors = 3
+source_suffix = {".md": "markdown", ".ipynb": "markdown"}
 exclude_patterns = ["_build"]
 
 autodoc_member_order = "bysource"
@@ -19,3 +28,14 @@ napoleon_use_rtype = False
 
 html_theme = "furo"
 html_title = f"dalembert {release}"
+
+
+def read_notebook(app: Sphinx, page: str, source: list[str]) -> None:
+    """Give MyST the text of a notebook in place of its JSON."""
+    if app.env.doc2path(page).suffix == ".ipynb":
+        source[0] = markdown(source[0])
+
+
+def setup(app: Sphinx) -> None:
+    """Called by Sphinx."""
+    app.connect("source-read", read_notebook)

@@ -271,6 +271,8 @@ def _told(problem: Problem, at: Linearisation | None, fitness: float, known: boo
 
 def _placed(model: ForwardModel | Sequence[Experiment], executor: Executor) -> ForwardModel | Sequence[Experiment]:
     """The model, or the model of each experiment, where its batches are computed."""
+    if executor is None:
+        return model
     if isinstance(model, Sequence):
         return [replace(item, model=on_cluster(item.model, executor)) for item in model]
     return on_cluster(model, executor)

@@ -96,7 +96,7 @@ def track_resonance(
     >>> method = HarmonicBalance(3, samples=128)
     >>> track = track_resonance(oscillator, "preload", [2.0, 4.0, 8.0], (0.1, 0.3), method, dof="m", unit="N")
     >>> track.amplitudes.round(2).tolist(), track.best()
-    ([3.63, 2.66, 5.23], 4.0)
+    ([3.63, 3.68, 5.79], 2.0)
     """
     method, numbers = method or HarmonicBalance(), np.asarray(values, dtype=float)
     if numbers.ndim != 1 or not len(numbers) or not np.all(np.isfinite(numbers)):
@@ -280,10 +280,11 @@ def _gradient(size: Amplitude, motion: np.ndarray) -> np.ndarray:
     """Derivative of an amplitude by the coefficients; of a peak at its own instant, not at the nearest sample."""
     if size.kind != "peak":
         return size.slope(motion)
-    sign, angle = np.sign(size.slope(motion) @ motion), size.instant(motion)
+    angle = size.instant(motion)
     orders = np.array([h for h in size.orders for _ in range(1 if h == 0 else 2)])
     for _ in range(3):
         waves = synthesis(size.orders, np.array([angle]))[0]
         turned = synthesis(size.orders, np.array([angle + 1e-30j]))[0].imag / 1e-30
         angle -= float(turned @ motion) / float(-(orders**2 * waves) @ motion)
-    return sign * synthesis(size.orders, np.array([angle]))[0]
+    waves = synthesis(size.orders, np.array([angle]))[0]
+    return np.sign(waves @ motion) * waves  # of two opposite peaks of one size, the sign of the one at this instant

@@ -9,6 +9,8 @@ from dalembert.errors import InputError
 from dalembert.structure import lumped
 from dalembert.vibration import (
     CubicSpring,
+    Elastic,
+    FrictionContact,
     HarmonicBalance,
     HarmonicForce,
     ResonanceTrack,
@@ -39,6 +41,22 @@ def test_a_track_is_kept_to_the_bit(tmp_path: Path) -> None:
     assert again.provenance == track.provenance
     assert again.summary() == track.summary()
     assert track.best() == 0.05
+
+
+def rubbing(preload: float) -> VibrationSystem:
+    system = VibrationSystem(lumped({"m": 1.0}, [("m", None, 1.0, 0.04)]))
+    system.add(HarmonicForce("m", 1.0))
+    system.add(FrictionContact("slider", "m", friction=0.5, preload=preload, law=Elastic(tangential_stiffness=0.8)))
+    return system
+
+
+@pytest.mark.parametrize("samples", [128, 1024])
+def test_a_motion_alike_to_both_sides_has_its_peak_at_either(samples: int) -> None:
+    """Rounding tells which of two opposite extremes is the larger; the track must climb all the same."""
+    method, loads = HarmonicBalance(3, samples=samples), [2.0, 4.0, 8.0]
+    track = track_resonance(rubbing, "preload", loads, (0.1, 0.3), method, dof="m")
+    peaks = [frequency_response(rubbing(load), np.linspace(0.1, 0.3, 401), method).peak("m") for load in loads]
+    np.testing.assert_allclose(track.amplitudes, [peak.amplitude for peak in peaks], rtol=1e-3)
 
 
 def test_a_track_begins_from_a_curve() -> None:

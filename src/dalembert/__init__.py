@@ -19,6 +19,7 @@ _MODULES = (
     "data",
     "inverse",
     "multibody",
+    "export",
     "report",
     "study",
     "uncertainty",
@@ -53,6 +54,7 @@ _NAMES = {
         Projection RadauIIA RungeKutta4 Variational
         TimeResponse Trajectory WorkPrecision simulate equilibrium modes work_precision
     """,
+    "export": "export_vtk",
     "uncertainty": """
         Comparison Propagation compare propagate
         Chebyshev LatinHypercube MonteCarlo Optimise Scan Taylor Vertex

@@ -1,0 +1,57 @@
+"""A mechanism in motion, as points and lines."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from dalembert.export.vtu import Mesh, chosen
+from dalembert.multibody import Trajectory
+from dalembert.multibody.drawing import draw
+
+STEP = 1e-30
+"""Of the complex step from places to velocities."""
+
+
+def motion(trajectory: Trajectory, frames: int | None, points: int) -> Iterator[tuple[float, Mesh]]:
+    """Times and meshes of a motion: bodies as lines, or vertices where they are points, and joints as vertices."""
+    rows = chosen(len(trajectory.times), frames)
+    times, states = trajectory.times[rows], trajectory.states
+    # A place is a function of the coordinates, so a step along the velocities carries its own velocity.
+    drawn = draw(trajectory.system, trajectory.lowered, times, states.x[rows] + STEP * 1j * states.v[rows], points)
+    bodies = list(drawn.lines.values())
+    joints = [place[:, None] for place in drawn.joints.values()]
+    places = _in_space(np.concatenate([*bodies, *joints], axis=1))
+    sizes = [line.shape[1] for line in bodies] + [1] * len(joints)
+    cells, marks = _cells(sizes, len(bodies))
+    sections = {
+        name: np.repeat(
+            [float(np.real(getattr(body, name, 0.0))) for body in trajectory.system.bodies] + [0.0] * len(joints), sizes
+        )
+        for name in ("height", "width")
+    }
+    for time, place in zip(times, places, strict=True):
+        fields = {"displacement": (place - places[0]).real, "velocity": place.imag / STEP}
+        yield float(time), Mesh(place.real, cells, fields | sections, marks)
+
+
+def _in_space(places: np.ndarray) -> np.ndarray:
+    """Places in the plane (frames, points, 2) with z = 0."""
+    return np.concatenate([places, np.zeros_like(places[..., :1])], axis=2)
+
+
+def _cells(sizes: list[int], bodies: int) -> tuple[list[tuple[str, np.ndarray]], dict[str, list[np.ndarray]]]:
+    """Lines along the points of each body and vertices for what has one point, with numbers of bodies and joints."""
+    first = np.cumsum([0, *sizes])
+    kinds = {"line": [place for place, size in enumerate(sizes) if size > 1]}
+    kinds["vertex"] = [place for place, size in enumerate(sizes) if size == 1]
+    cells, marks = [], {"body": [], "joint": []}
+    for kind, places in kinds.items():
+        if not places:
+            continue
+        starts = [first[place] + np.arange(max(sizes[place] - 1, 1)) for place in places]
+        owner = np.repeat(places, [len(own) for own in starts])
+        begin = np.concatenate(starts)
+        cells.append((kind, np.column_stack([begin, begin + 1]) if kind == "line" else begin[:, None]))
+        marks["body"].append(np.where(owner < bodies, owner, -1))
+        marks["joint"].append(np.where(owner < bodies, -1, owner - bodies))
+    return cells, marks

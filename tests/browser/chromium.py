@@ -143,7 +143,7 @@ class Tab:
         """Click with the mouse in the middle of an element that a script finds."""
         self.until(f"Boolean({script})")
         place = self.run(
-            f"(() => {{ const found = {script}; found.scrollIntoView({{block: 'center'}}); "
+            f"(() => {{ const found = {script}; found.scrollIntoView({{block: 'center', behavior: 'instant'}}); "
             "const box = found.getBoundingClientRect(); "
             "return [box.x + box.width / 2, box.y + box.height / 2] })()"
         )

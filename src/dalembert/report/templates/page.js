@@ -40,8 +40,7 @@
     }
     const config = {
       responsive: true, displaylogo: false, displayModeBar: hovering ? "hover" : false,
-      modeBarButtons: [["toImage", "zoom2d", "pan2d", "resetScale2d"]],
-      toImageButtonOptions: { format: "svg", filename: source.dataset.name },
+      modeBarButtons: [["zoom2d", "pan2d", "resetScale2d"]],
     };
     // An animation changes its traces in place: frames stay with the player.
     return Plotly.newPlot(place, figure.data, layout, config).then(() => {
@@ -85,10 +84,30 @@
     place.addEventListener("drawn", () => Number(slider.value) && show(Number(slider.value)));
   }
 
+  function seen(place) { // frames do not change a figure's own data
+    const frame = place.frames[document.querySelector(`.player[data-for="${place.id}"] input`)?.value];
+    const data = place.data.map((trace) => ({ ...trace }));
+    frame?.traces.forEach((trace, number) => Object.assign(data[trace], frame.data[number]));
+    return { data, layout: place.layout };
+  }
+
+  function offer(button) { // a picture of the figure as it is seen, with pixels fine enough to be printed
+    const place = document.getElementById(button.dataset.figure);
+    const format = button.textContent.toLowerCase();
+    button.addEventListener("click", () => {
+      const { clientWidth: width, clientHeight: height } = place;
+      const scale = format === "png" ? Math.max(2, 2000 / width) : 1;
+      Plotly.downloadImage(seen(place), { format, width, height, scale, filename: place.id.replace("figure-", "") });
+    });
+  }
+
   const sources = [...document.querySelectorAll("script.figure")];
   const all = () => Promise.all(sources.map(draw));
   document.querySelectorAll(".player").forEach(player);
-  all().then(() => { document.documentElement.dataset.ready = "yes"; });
+  all().then(() => {
+    document.querySelectorAll("[data-figure]").forEach(offer);
+    document.documentElement.dataset.ready = "yes";
+  });
   darkness.addEventListener("change", all);
   addEventListener("beforeprint", () => { printing = true; all(); });
   addEventListener("afterprint", () => { printing = false; all(); });

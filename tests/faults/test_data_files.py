@@ -8,11 +8,13 @@ import pyarrow.parquet as pq
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from scipy.io import savemat
+from scipy.io import mmwrite, savemat
+from scipy.sparse import coo_array, csc_array
 from xarray import Dataset
 
 from dalembert.data import read, read_bands
-from dalembert.errors import DataError
+from dalembert.errors import DataError, InputError
+from dalembert.structure import Dofs, Structure, read_structure, write_structure
 from data_files import ANGLE, TIMES, WAY, WRITERS, function, universal
 
 NAN = np.where(TIMES == 0.05, np.nan, ANGLE)
@@ -297,6 +299,14 @@ def test_a_file_that_ends_the_process_of_its_reader_is_told(tmp_path):
     assert refused(path) == f"{path}: cannot be read as MAT (it is damaged: the reader broke down over it)"
 
 
+def damaged(whole, data):
+    """A file's bytes with some changed, or the end cut off."""
+    content = bytearray(whole)
+    for place in data.draw(st.lists(st.integers(0, len(content) - 1), max_size=6)):
+        content[place] = data.draw(st.integers(0, 255))
+    return content[: data.draw(st.one_of(st.just(len(content)), st.integers(0, len(content))))]
+
+
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     folder = tmp_path_factory.mktemp("files")
@@ -326,12 +336,8 @@ def tried(path, missing="refuse"):
 @given(st.data())
 def test_a_malformed_file_gives_measurements_or_a_data_error(name, folder, data):
     """Bytes changed anywhere, or the end cut off: whatever the library meets, it is told in our words."""
-    content = bytearray((folder / name).read_bytes())
-    for place in data.draw(st.lists(st.integers(0, len(content) - 1), max_size=6)):
-        content[place] = data.draw(st.integers(0, 255))
-    cut = data.draw(st.one_of(st.just(len(content)), st.integers(0, len(content))))
     path = folder / f"broken-{name}"
-    path.write_bytes(content[:cut])
+    path.write_bytes(damaged((folder / name).read_bytes(), data))
     tried(path, missing=data.draw(st.sampled_from(["refuse", "leave-out"])))
 
 
@@ -341,3 +347,57 @@ def test_any_text_gives_measurements_or_a_data_error(text, tmp_path):
     path = tmp_path / "motion.csv"
     path.write_text(f"t,x\n{text}")
     tried(path)
+
+
+STRUCTURES = {
+    "a.npz": lambda path: write_structure(CHAIN, path),
+    "sparse.npz": lambda path: write_structure(Structure(csc_array(CHAIN.mass), CHAIN.stiffness, CHAIN.dofs), path),
+    "a.mat": lambda path: savemat(path, {"M": CHAIN.mass, "K": CHAIN.stiffness}),
+    "a.mtx": lambda path: mmwrite(path, coo_array(CHAIN.stiffness)),
+    "abaqus.mtx": lambda path: path.write_text("1,1,1,1,2.0\n2,1,1,1,-1.0\n2,1,2,1,3.0\n"),
+    "a.pch": lambda path: path.write_text(DMIG),
+}
+CHAIN = Structure(np.diag([2.0, 3.0]), np.array([[3.0, -1.0], [-1.0, 4.0]]), Dofs(("1.x", "2.x")))
+DMIG = "".join(
+    f"DMIG    {name}     0       6       2       0                       2\n"
+    f"DMIG*   {name}                            1               1\n*                      1               1 2.0D+00\n"
+    f"DMIG*   {name}                            2               1\n*                      2               1 3.0D+00\n"
+    for name in ("KAA", "MAA")
+)
+
+
+@pytest.fixture(scope="module")
+def structures(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("structures")
+    for name, write in STRUCTURES.items():
+        write(folder / name)
+        read_structure(given_as(folder / name))
+    return folder
+
+
+def given_as(path):
+    """One file for all, or for each role where it holds one matrix."""
+    return {"mass": path, "stiffness": path} if path.suffix == ".mtx" else path
+
+
+@pytest.mark.filterwarnings("ignore::ResourceWarning")
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+@pytest.mark.parametrize("name", STRUCTURES)
+@pytest.mark.parametrize("examples", [8, pytest.param(40, marks=pytest.mark.slow)])
+def test_a_malformed_file_of_matrices_gives_a_structure_or_an_error_of_ours(name, examples, structures):
+    @settings(max_examples=examples, deadline=None)
+    @given(st.data())
+    def tried(data):
+        path = structures / f"broken-{name}"
+        path.write_bytes(damaged((structures / name).read_bytes(), data))
+        try:
+            assert read_structure(given_as(path)).size > 0
+        except DataError as error:
+            told = str(error)
+        except InputError:  # the file was read, and its matrices make no structure
+            told = str(path)
+        else:
+            told = str(path)
+        assert str(path) in told
+
+    tried()

@@ -9,39 +9,11 @@ from hypothesis import strategies as st
 
 from dalembert.errors import InputError
 from dalembert.study import load
+from study_documents import ODD, places, toml
 
 STUDIES = Path(__file__).parents[2] / "studies"
 TEXTS = [path.read_text(encoding="utf-8") for path in sorted(STUDIES.glob("*/*.toml")) if path.name != "expected.toml"]
-ODD = st.one_of(
-    st.none().map(lambda _: {}),
-    st.booleans(),
-    st.integers(),
-    st.floats(),
-    st.text(max_size=12),
-    st.sampled_from(
-        ["theta1", "-L", "3 kg", "1e999 m", "ground", "OA.end", "ground(", "x.py:f", "0/0", "9**9**9", "1 "]
-    ),
-    st.lists(st.integers(-2, 2), max_size=3),
-    st.dictionaries(st.sampled_from(["kind", "end", "count", "x"]), st.sampled_from(["Step", 1, -1.5]), max_size=3),
-)
 QUIET = settings(max_examples=150, deadline=None, suppress_health_check=list(HealthCheck))
-
-
-def places(value: object, path: tuple = ()) -> list[tuple]:
-    """Paths of everything in a document."""
-    inner = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
-    return [path] * bool(path) + [found for key, entry in inner for found in places(entry, (*path, key))]
-
-
-def toml(value: object) -> str:
-    """A value in TOML's inline form."""
-    if isinstance(value, dict):
-        return "{" + ", ".join(f"{toml(str(key))} = {toml(entry)}" for key, entry in value.items()) + "}"
-    if isinstance(value, list):
-        return "[" + ", ".join(map(toml, value)) + "]"
-    if isinstance(value, str):
-        return '"' + "".join(f"\\U{ord(letter):08x}" for letter in value) + '"'
-    return str(value).lower()
 
 
 def read(folder: Path, content: bytes) -> None:

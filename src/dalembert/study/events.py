@@ -44,9 +44,12 @@ class EventLog:
     known: int = field(default=0, init=False)
 
     def __enter__(self) -> Self:
-        self.number = _repair(self.path)
+        try:
+            self.number = _repair(self.path)
+            self._file = os.open(self.path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o644)
+        except OSError as error:
+            raise unwritable(self.path, error.strerror) from None
         self.known = sum(not event["event"].startswith(OF_THE_RUN) for event in read_events(self.path))
-        self._file = os.open(self.path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o644)
         return self
 
     def __exit__(

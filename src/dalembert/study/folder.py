@@ -10,7 +10,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from dalembert.errors import InputError
+from dalembert.errors import InputError, unwritable
 from dalembert.files import replacing, write_text
 from dalembert.study.loader import load
 from dalembert.study.study import Study
@@ -108,7 +108,8 @@ class RunFolder:
         for number, (name, path) in enumerate(study.files.items()):
             (self.path / "inputs").mkdir(exist_ok=True)
             copy = self.path / "inputs" / f"{number}-{path.name}"
-            shutil.copyfile(path, copy)
+            with replacing(copy) as temporary:
+                shutil.copyfile(path, temporary)
             digest = hashlib.sha256(copy.read_bytes()).hexdigest()
             copies[name] = {"copy": copy.relative_to(self.path).as_posix(), "sha256": digest}
         seed = getattr(study.table, "seed", None)
@@ -134,6 +135,8 @@ class RunFolder:
             raise InputError(
                 f"a run is going on in {self.path}; wait for it, stop it, or choose another folder with --out"
             ) from None
+        except OSError as error:
+            raise unwritable(self._lock, error.strerror) from None
         try:
             yield
         finally:
@@ -163,6 +166,8 @@ class RunFolder:
                 return False
         except Timeout:
             return True
+        except PermissionError:  # no run is going on where none may write
+            return False
 
 
 def new_folder(name: str, out: Path | None = None, *, force: bool = False) -> RunFolder:

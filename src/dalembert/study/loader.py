@@ -12,6 +12,7 @@ from dalembert.study.context import Context
 from dalembert.study.schema import study_file
 from dalembert.study.sentences import mistakes
 from dalembert.study.study import Study
+from dalembert.study.table import placed
 
 LARGEST = 10_000_000  # bytes; a study of this size is some other file
 
@@ -99,7 +100,8 @@ def _with_model_file(document: dict[str, Any], context: Context, path: Path) -> 
             f"{path.name}: [model], file: {given!r} was given; expected the name of a TOML file, "
             "and no other key beside it in [model]"
         )
-    _, shared = _read(context.file(given))
+    with placed(f"{path.name}: [model], file"):
+        _, shared = _read(context.file(given))
     for table in shared:
         if table not in ("model", "constants"):
             raise InputError(

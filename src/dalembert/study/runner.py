@@ -118,6 +118,7 @@ def _executed(study: Study, folder: RunFolder, beginning: str, listener: Listene
                 if state == FAILED and not isinstance(error, DalembertError):
                     write_text(folder.path / "error.txt", traceback.format_exc())
                 log.emit("run-ended", state=state, message=message)
+            with suppress(StorageError):  # the state may fit where the event does not
                 folder.set_state(state, message=message, **about)
             if isinstance(error, KeyboardInterrupt):
                 raise Stopped(folder.path) from None

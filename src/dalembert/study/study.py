@@ -16,7 +16,7 @@ from dalembert.study.builder import FunctionBuilder, SystemBuilder
 from dalembert.study.experiments import measured_channels
 from dalembert.study.schema import StudyFile
 from dalembert.study.structure_builder import StructureBuilder
-from dalembert.study.table import StudyTable
+from dalembert.study.table import StudyTable, placed
 
 if TYPE_CHECKING:
     from dalembert.data import Bands, Measurements
@@ -145,11 +145,23 @@ class Study:
 
     def forward(self, channels: Sequence[str], samples: np.ndarray) -> ForwardModel:
         """The model between parameters and channels, at samples of its coordinate."""
-        model = on_cluster(self._forward(channels, samples), self.executor)
+        made = self._forward(channels, samples)
+        if self.file.model.forward is None:
+            self.system()  # what is wrong with the model itself is told as such
+            with placed(self._named_in):
+                made.channels  # noqa: B018 (an unknown one is found here)
+        model = on_cluster(made, self.executor)
         if self.checkpoint is None:
             return model
         varied = _plain({"constants": self.file.constants, "arguments": self.file.model.arguments})
         return Recorded(model, self.checkpoint, json.dumps(varied, sort_keys=True))
+
+    @property
+    def _named_in(self) -> str:
+        """Where the file names the channels of its model."""
+        given = [f"[{self.task}], channels"] if getattr(self.table, "channels", None) else []
+        given += [f"[{name}], columns" for name in ("data", "bands") if getattr(self.file, name) is not None]
+        return " or ".join(given) or "[[experiments]], columns"
 
     def _forward(self, channels: Sequence[str], samples: np.ndarray) -> ForwardModel:
         if self.has_system:

@@ -1,7 +1,8 @@
 """The base of every table of a study file: unknown keys are refused, and the known ones kept for that error."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Annotated, Any, TypeVar
 
@@ -47,6 +48,15 @@ def checked(function: Callable[..., T], *arguments: Any) -> T:
         return function(*arguments)
     except InputError as error:
         raise problem(str(error)) from None
+
+
+@contextmanager
+def placed(where: str) -> Iterator[None]:
+    """A block whose :class:`InputError` is about a place in the file; the place is put in front."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from None
 
 
 def _name(value: Any) -> str:

@@ -53,5 +53,6 @@ def floquet_multipliers(system: VibrationSystem, curve: FrequencyCurve, point: i
         raise InputError(unknown("way", way, (AUTOMATIC, HILL, TIME_MAP), "floquet_multipliers"))
     with one_thread():
         problem = equations(system, HarmonicBalance(**curve.provenance["method"]))
-        factors = np.exp(2 * np.pi * exponents(problem, restarted(problem, curve, point), way).values)
+        begin = restarted(problem, curve, point, "floquet_multipliers")
+        factors = np.exp(2 * np.pi * exponents(problem, begin, way).values)
     return factors[np.argsort(-np.abs(factors), kind="stable")]

@@ -116,7 +116,7 @@ def _followed(
     stability: bool,
 ) -> FrequencyCurve:
     """The curve through given frequencies, or between two."""
-    known = None if start is None else restarted(problem, *start)
+    known = None if start is None else restarted(problem, *start, "frequency_response")
     given = settings["frequencies"] == "given"
     if given:
         found = at_frequencies(problem, omegas, known)
@@ -127,12 +127,12 @@ def _followed(
     return _curve(problem, points, observed(problem.lowered, observe), settings)
 
 
-def restarted(problem: Equations, curve: FrequencyCurve, point: int) -> Solution:
-    """The point of a curve, solved again."""
+def restarted(problem: Equations, curve: FrequencyCurve, point: int, where: str) -> Solution:
+    """The point of a curve, solved again; ``where`` says whose start it is if the curve is another system's."""
     unknowns, samples = curve.unknowns[point], int(curve.samples[point])
     if unknowns.shape != problem.balance(samples).shape or curve.orders != problem.method.orders:
         raise InputError(
-            f"frequency_response: the start has unknowns of shape {unknowns.shape} and harmonics {curve.orders}; the "
+            f"{where}: the start has unknowns of shape {unknowns.shape} and harmonics {curve.orders}; the "
             f"system has {problem.balance(samples).shape} and {problem.method.orders}; "
             "start from a curve of the same system"
         )

@@ -14,14 +14,9 @@ Comparisons are of real parts: in complex arithmetic an imaginary part is a dire
 (|p| = mu N, or N = 0) the derivative is the one-sided one of the stuck and of the separated branch.
 """
 
-from typing import Any
-
 import numpy as np
-from numba import njit
 
-# No fast-math, so that results are the same bits on every run.
-_OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy"}
-compiled: Any = njit(**_OPTIONS)
+from dalembert.vibration.compiled import compiled
 
 SEPARATED, STUCK, SLIPPING = 0, 1, 2
 STATES = ("separated", "stuck", "slipping")

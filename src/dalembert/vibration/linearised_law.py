@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from dalembert.vibration.friction_law import SETTLED, SWEEPS, compiled, update
+from dalembert.vibration.compiled import compiled
+from dalembert.vibration.friction_law import SETTLED, SWEEPS, update
 
 STEP = 1e-30
 

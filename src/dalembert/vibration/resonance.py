@@ -112,7 +112,7 @@ def track_resonance(
         if not isinstance(curve, FrequencyCurve):
             system = builder(**{parameter: float(numbers[0])})
             curve = frequency_response(system, curve, method, continuation=ARC_LENGTH, observe=[name])
-        begin = restarted(first, curve, _top(curve, name, size))
+        begin = restarted(first, curve, _top(curve, name, size), "track_resonance")
         row = first.lowered.structure.dofs.index(name)
         peaks = list(_followed(problem, _Climber(row, size), numbers, _Peak(float(numbers[0]), first, begin)))
     solves = np.array([count for _, count in peaks])

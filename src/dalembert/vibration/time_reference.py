@@ -10,6 +10,7 @@ import scipy
 
 import dalembert
 from dalembert.errors import InputError, SolveError, unknown
+from dalembert.vibration.compiled import announce_compilation
 from dalembert.vibration.curve import FrequencyCurve
 from dalembert.vibration.equations import equations
 from dalembert.vibration.fourier import Fourier, synthesis
@@ -89,6 +90,7 @@ def steady_state(
     lowered = lower(system).real
     problem = InTime(lowered, 2 * np.pi * frequency, method.steps_per_period, method.stand_in)
     rows = observed(lowered, observe)
+    announce_compilation(advance, "its steps in time")
     with one_thread():
         run = _Run(problem, method, [])
         state = run.rest() if start is None else run.on_curve(system, *start)
@@ -157,7 +159,7 @@ class _Run:
     def on_curve(self, system: VibrationSystem, curve: FrequencyCurve, point: int) -> State:
         """On a point of a curve, with sliders as its motion moves them."""
         balance = equations(system, HarmonicBalance(**curve.provenance["method"]))
-        x = response_of(balance, restarted(balance, curve, point))
+        x = response_of(balance, restarted(balance, curve, point, "steady_state"))
         steps = self.method.steps_per_period
         waves = synthesis(curve.orders, 2 * np.pi * np.arange(1, steps + 1) / steps)
         rates = Fourier(curve.orders, steps).derivative.T @ waves[-1]

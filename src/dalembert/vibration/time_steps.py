@@ -16,17 +16,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dalembert.vibration.friction_law import (
-    FRICTION,
-    LOAD,
-    NORMAL,
-    SEPARATED,
-    SLIPPING,
-    STUCK,
-    TANGENTIAL,
-    compiled,
-    update,
-)
+from dalembert.vibration.compiled import compiled
+from dalembert.vibration.friction_law import FRICTION, LOAD, NORMAL, SEPARATED, SLIPPING, STUCK, TANGENTIAL, update
 
 CUBIC, GAP, STOP = 0, 1, 2
 """Springs without memory."""

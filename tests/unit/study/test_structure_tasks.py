@@ -430,8 +430,8 @@ def refused(write, text) -> str:
         ),
         (
             ("frequencies = {", 'amplitude = "harmonic 9"\nfrequencies = {'),
-            "the kind of amplitude is 'harmonic 9'; expected 'peak', 'rms', or 'harmonic K' with K among the harmonics "
-            "kept: 0, 1, 2, 3, 4, 5",
+            "[frequency_response], amplitude: the kind of amplitude is 'harmonic 9'; expected 'peak', 'rms', or "
+            "'harmonic K' with K among the harmonics kept: 0, 1, 2, 3, 4, 5",
         ),
         (
             ('"1.5 N/m" }', '"1.5 N/m" }\n[[model.body]]\nkind = "PointMass"\nname = "b"\nmass = 1.0'),

@@ -112,7 +112,7 @@ def test_multipliers_are_refused_where_they_make_no_sense(duffings_curve: Freque
     with pytest.raises(InputError, match=says(sentence)):
         floquet_multipliers(duffing(), duffings_curve, 0, "times map")
     sentence = (
-        "frequency_response: the start has unknowns of shape (1, 11) and harmonics (0, 1, 2, 3, 4, 5); the system has "
+        "floquet_multipliers: the start has unknowns of shape (1, 11) and harmonics (0, 1, 2, 3, 4, 5); the system has "
         "(2, 11) and (0, 1, 2, 3, 4, 5); start from a curve of the same system"
     )
     with pytest.raises(InputError, match=says(sentence)):

@@ -1,15 +1,16 @@
 """How kernels are compiled: once for a machine, kept on disk, without the interpreter's lock."""
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, TypeVar, cast
 
 from numba import njit
 
-from dalembert.multibody.kernels.stale import forget_stale
+from dalembert.stale import forget_stale
 
 _Function = TypeVar("_Function", bound=Callable)
 
-forget_stale()
+forget_stale(Path(__file__).parent.parent, Path(__file__))
 
 # Of fast-math only the fusing of a product with a sum, which saves a seventh of a residual: results must be the same
 # bits on every run, and NaN must stay visible.

@@ -9,7 +9,7 @@ from pydantic import Field, create_model, model_validator
 
 from dalembert.errors import InputError, unknown
 from dalembert.study.numbers import fixed, samples
-from dalembert.study.table import Read, StudyTable, problem
+from dalembert.study.table import Read, StudyTable, placed, problem
 from dalembert.study.tasks import beside_curve
 from dalembert.study.tasks.backbone import BackboneTable
 from dalembert.study.tasks.beside_curve import beside, beside_family, compare_in_time_table
@@ -175,12 +175,14 @@ class FrequencyResponseTask(Task):
         problem.condensation  # noqa: B018 (a structure that nothing holds is found here)
         names = problem.lowered.structure.dofs.names
         if table.observe is not None:
-            names = [names[row] for row in problem.lowered.structure.rows(_observed(study) or [])]
+            with placed("[frequency_response], observe"):
+                names = [names[row] for row in problem.lowered.structure.rows(_observed(study) or [])]
         if table.dof is not None and not any(
             name == table.dof or name.rpartition(".")[0] == table.dof for name in names
         ):
             raise InputError(unknown("observed degree of freedom", table.dof, names, "[frequency_response], dof"))
-        Amplitude(table.amplitude, study.balance.orders)
+        with placed("[frequency_response], amplitude"):
+            Amplitude(table.amplitude, study.balance.orders)
         points = "as many points as the curve needs" if table.between else f"{len(table.frequencies)} points"
         ends = table.between or (table.frequencies[0], table.frequencies[-1])
         way = f"follows the response from {ends[0]:g} to {ends[1]:g} Hz ({points}, {study.balance.harmonics} harmonics)"

@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from dalembert.study.numbers import fixed, samples
-from dalembert.study.table import Read, StudyTable, problem
+from dalembert.study.table import Read, StudyTable, placed, problem
 from dalembert.study.tasks.task import Outcome, Task
 from dalembert.study.tasks.wrong import needs_mechanism
 
@@ -105,7 +105,14 @@ class Simulate(Task):
         return [] if file.solver else ["the table [solver] is missing; expected at least its step"]
 
     def plan(self, study: "Study") -> str:
+        from dalembert.multibody import TimeResponse
+
         study.system()
+        table, ends = study.table, np.array([0.0, study.table.last])
+        for key, names in (("channels", table.channels), ("points", [f"{name}.x" for name in table.points])):
+            if names:
+                with placed(f"[simulate], {key}"):
+                    TimeResponse(study.builder, study.parameters, names, ends, solver=study.solver).channels  # noqa: B018
         return f"simulates the motion to {study.table.last:g} s: 1 simulation"
 
     def effort(self, study: "Study") -> "Effort":
@@ -116,6 +123,7 @@ class Simulate(Task):
         return Effort(lambda: study.motion(part), 1 / PARTS, 1, 1, f"going by the first {part:.3g} s of the motion")
 
     def run(self, study: "Study", emit: "Emit") -> Outcome:
+        self.plan(study)  # names that there are not are told before the motion is computed
         emit("simulating", end=study.table.last)
         times = study.table.times
         return Motion(study, study.motion(study.table.last, times=None if times is None else np.array(times)))

@@ -7,7 +7,7 @@ import numpy as np
 from pydantic import Field
 
 from dalembert.study.numbers import fixed
-from dalembert.study.table import Read, StudyTable
+from dalembert.study.table import Read, StudyTable, placed
 from dalembert.study.tasks.result import ResultOutcome
 from dalembert.study.tasks.sweep import Along, values_along
 from dalembert.study.tasks.task import Outcome, Task
@@ -50,8 +50,10 @@ class TrackResonance(Task):
         from dalembert.vibration.equations import equations
 
         table, lowered = study.table, equations(study.system(), study.balance).lowered
-        lowered.structure.dofs.index(table.dof)
-        Amplitude(table.amplitude, study.balance.orders)
+        with placed("[track_resonance], dof"):
+            lowered.structure.dofs.index(table.dof)
+        with placed("[track_resonance], amplitude"):
+            Amplitude(table.amplitude, study.balance.orders)
         values = _values(study)
         return (
             f"follows the peak of {table.dof} ({table.amplitude}) over {len(values)} values of {table.parameter}, "

@@ -1,0 +1,31 @@
+"""What is said where compilation takes a while."""
+
+from types import SimpleNamespace
+
+from dalembert.vibration.compiled import announce_compilation
+
+
+def law() -> None:
+    """Stands for a compiled function."""
+
+
+def test_a_first_compilation_is_announced_once(tmp_path, capsys):
+    function = dispatcher(tmp_path)
+    announce_compilation(function, "its laws")
+    announce_compilation(function, "its laws")
+    said = "dalembert: compiling its laws, once on this machine; this takes about half a minute\n"
+    assert capsys.readouterr().err == said
+
+
+def test_what_is_on_disk_is_not_announced(tmp_path, capsys):
+    (tmp_path / "test_compiled.law-10.py311.nbi").touch()
+    announce_compilation(dispatcher(tmp_path), "its laws")
+    assert capsys.readouterr().err == ""
+
+
+class Dispatcher(SimpleNamespace):
+    __hash__ = object.__hash__
+
+
+def dispatcher(folder) -> Dispatcher:
+    return Dispatcher(_cache=SimpleNamespace(cache_path=str(folder)), py_func=law)

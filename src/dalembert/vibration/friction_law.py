@@ -157,12 +157,56 @@ def _settle(d, z, before, force, forces, states, kept, numbers, tangents, normal
 
 @compiled
 def _balanced(d, z, before, force, forces, states, kept, numbers, tangents, normal, memory):
-    """As :func:`_settle`, directly where the slider's place does not depend on its past: that too, and ``moving``."""
+    """As :func:`_settle`, directly where the slider's place does not depend on its past: that too, and whether it moves."""
     moving = _settle(d, z, before, force, forces, states, kept, numbers, tangents, normal, memory, True)
     forgets = _restart(kept) > NEUTRAL
     if memory and not forgets and tangents == 2:
         moving = _settle(d, z, before, force, forces, states, kept, numbers, tangents, normal, memory, False)
-    return forgets, moving
+    return forgets, moving > 0
+
+
+@compiled
+def _line(d, force, states, numbers):
+    """A slider in one dimension that remembers, under a constant load: the law of :func:`update` in scalars.
+
+    Writes forces and states of the periodic motion, each (samples,). Returns whether its place does not depend on its
+    past, since it slips in each period, and whether it slips at all. The second period is as the first from where both
+    slip to the same side, which puts the slider in the same place.
+    """
+    stiffness, limit = numbers[TANGENTIAL], numbers[FRICTION] * numbers[LOAD]
+    z, begins, forgets = 0.0 * d[0], False, False
+    for period in range(2):
+        for t in range(len(d)):
+            p = stiffness * (d[t] - z)
+            if abs(p.real) <= limit.real:
+                force[t], states[t] = p, STUCK
+                continue
+            p = limit if p.real >= 0.0 else -limit
+            if period > 0 and states[t] == SLIPPING and force[t] == p:
+                return True, True
+            force[t], states[t] = p, SLIPPING
+            z = d[t] - p / stiffness
+            begins, forgets = True, period > 0
+        if not begins:
+            break
+    return forgets, begins
+
+
+@compiled
+def _line_slopes(states, stiffness, synthesis, slopes):
+    """Derivatives of the forces of :func:`_line`, (samples, coefficients), where it slips at some time.
+
+    A slider that sticks is where its last slip left it: its place moves as the displacement did at that sample.
+    """
+    last = 0
+    for t in range(len(states)):
+        last = t if states[t] == SLIPPING else last
+    for t in range(len(states)):
+        if states[t] == SLIPPING:
+            slopes[t], last = 0.0, t
+            continue
+        for j in range(slopes.shape[1]):
+            slopes[t, j] = stiffness * (synthesis[t, j] - synthesis[last, j])
 
 
 @compiled
@@ -186,6 +230,9 @@ def forces(displacements, numbers, tangents, normal, memory):
     z, kept = np.zeros_like(displacements[0, :, 0]), np.zeros((tangents, tangents))
     before, force = np.zeros_like(z), np.zeros_like(z)
     for c in range(contacts):
+        if memory and tangents == 1 and not normal:
+            _line(displacements[c, 0], result[c, 0], states[c], numbers[c])
+            continue
         _balanced(displacements[c], z, before, force, result[c], states[c], kept, numbers[c], tangents, normal, memory)
     return result, states
 
@@ -279,8 +326,15 @@ def tangent(displacements, numbers, tangents, normal, memory, synthesis, analysi
     z, before, force = np.zeros(columns), np.zeros(columns), np.zeros(columns)
     for c in range(contacts):
         d, own = displacements[c], numbers[c]
-        forgets, moving = _balanced(d, z, before, force, result[c], states[c], kept, own, tangents, normal, memory)
-        if memory and moving == 0:
+        line = memory and tangents == 1 and not normal
+        forgets, moving = _line(d[0], result[c, 0], states[c], own) if line else (False, True)
+        if line and forgets:
+            _line_slopes(states[c], own[TANGENTIAL], synthesis, slopes[0])
+            jacobians[c] = np.dot(analysis, slopes[0])
+            continue
+        if moving:
+            forgets, moving = _balanced(d, z, before, force, result[c], states[c], kept, own, tangents, normal, memory)
+        if memory and not moving:
             for i in range(columns):
                 for j in range(i * count, (i + 1) * count):
                     jacobians[c, j, j] = own[TANGENTIAL] if i < tangents else own[NORMAL]

@@ -46,6 +46,19 @@ def test_the_tangent_is_that_of_the_complex_step_in_every_state(
         np.testing.assert_allclose(jacobian[0, :, column], exact.ravel(), atol=1e-13 * np.abs(jacobian).max())
 
 
+@pytest.mark.parametrize("size", [0.01, 0.05, 0.1, 1.0, 10.0])
+def test_a_slider_in_one_dimension_is_one_in_two_that_moves_along_a_line(size: float) -> None:
+    for seed in range(20):
+        samples = motion(1, size, seed) @ SERIES.synthesis.T
+        plane = np.concatenate([samples, np.zeros_like(samples)], axis=1)
+        force, states, jacobian = tangent(samples, NUMBERS, 1, False, True, SERIES.synthesis, SERIES.analysis)
+        other, expected, exact = tangent(plane, NUMBERS, 2, False, True, SERIES.synthesis, SERIES.analysis)
+        np.testing.assert_array_equal(states, expected)
+        np.testing.assert_allclose(force, other[:, :1], atol=1e-13)
+        own = slice(SERIES.count)
+        np.testing.assert_allclose(jacobian[0], exact[0, own, own], atol=1e-12)
+
+
 def test_a_slider_that_slips_only_while_the_motion_begins_keeps_its_place_and_its_derivative() -> None:
     """From rest it slips once, and then sticks for good: the derivative must remember the slip."""
     coefficients = np.zeros((1, 1, SERIES.count))

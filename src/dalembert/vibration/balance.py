@@ -15,7 +15,6 @@ The Jacobian is :math:`J = Z_q + L^T G\, \partial D/\partial U` with G block-dia
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
@@ -110,16 +109,17 @@ class Balance:
 
         Without a tangent, in complex numbers where the linear part or the elements' numbers are complex.
         """
-        kind = np.result_type(linear, unknowns, *(block.numbers for block in self.lowered.blocks), *self._spring_kinds)
+        kind = np.result_type(linear, unknowns, self._kind)
         acting = np.zeros((len(self.lowered.row_names), self.series.count), dtype=kind)
         states = [np.zeros((0, 0), dtype=np.uint8)] * len(self.lowered.blocks)
         self._add_springs(acting, unknowns, tangent)
         for rigid in (False, True):  # rigid contacts last: their prediction needs the residual without them
-            total = linear + self._combination.T @ acting
-            before = tangent.copy() if isinstance(tangent, DenseTangent) and rigid else None
-            for number, block in enumerate(self.lowered.blocks):
-                if (block.kind != ELASTIC) == rigid:
-                    states[number] = self._add_friction(block, acting, unknowns, total, tangent, before)
+            blocks = [number for number, block in enumerate(self.lowered.blocks) if (block.kind != ELASTIC) == rigid]
+            total = linear + self._combination.T @ acting if blocks and rigid else linear
+            before = tangent.copy() if isinstance(tangent, DenseTangent) and blocks and rigid else None
+            for number in blocks:
+                block = self.lowered.blocks[number]
+                states[number] = self._add_friction(block, acting, unknowns, total, tangent, before)
         return Evaluation(linear + self._combination.T @ acting, acting, tuple(states))
 
     def _add_springs(self, acting: np.ndarray, unknowns: np.ndarray, tangent: Tangent | None) -> None:
@@ -164,7 +164,9 @@ class Balance:
         announce_compilation(friction_law.forces if tangent is None else friction_law.tangent, "its laws of contacts")
         if tangent is None:
             kind = np.result_type(samples, numbers)
-            force, states = friction_law.forces(samples.astype(kind), numbers.astype(kind), *shape)
+            force, states = friction_law.forces(
+                samples.astype(kind, copy=False), numbers.astype(kind, copy=False), *shape
+            )
         else:
             force, states, local = friction_law.tangent(samples, numbers, *shape, series.synthesis, series.analysis)
             if isinstance(tangent, BlockTangent):
@@ -180,7 +182,10 @@ class Balance:
             result[cell, : block.tangents, 0] += penalty * unknowns[places, 0]
             if isinstance(tangent, DenseTangent):
                 tangent.jacobian[places, 0, places, 0] += penalty
-        np.add.at(acting, block.rows, result)
+        if block.distinct:
+            acting[block.rows] += result
+        else:
+            np.add.at(acting, block.rows, result)
         return states
 
     def _predicted(
@@ -251,13 +256,14 @@ class Balance:
         return stiffness, rigid
 
     @cached_property
-    def _spring_kinds(self) -> list[Any]:
-        """Numbers of the springs, for the kind of arithmetic."""
-        return [
+    def _kind(self) -> np.dtype:
+        """Real or complex: of the elements' numbers."""
+        springs = [
             value
             for _, element in self.lowered.springs
             for value in (getattr(element, "stiffness", 0.0), getattr(element, "gap", 0.0))
         ]
+        return np.result_type(float, *(block.numbers for block in self.lowered.blocks), *springs)
 
 
 def _penalties(block: FrictionBlock) -> np.ndarray:

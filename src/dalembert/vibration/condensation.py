@@ -11,6 +11,7 @@ factorised.
 """
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -58,6 +59,16 @@ class Point:
     free: np.ndarray
     kept: dict[str, Any] = field(default_factory=dict, repr=False)
 
+    @cached_property
+    def load(self) -> float:
+        """Norm of the forces."""
+        return norm(self.force)
+
+    @cached_property
+    def stiffest(self) -> float:
+        """Largest entry of the stiffness."""
+        return float(np.abs(self.stiffness).max(initial=0.0))
+
     def interior(self, retained: np.ndarray) -> np.ndarray:
         """Interior coordinates (orders, l) where the retained ones are (orders, q)."""
         return self.free - (self.follow @ retained[:, :, None])[:, :, 0]
@@ -99,22 +110,23 @@ class Condensation:
     def at(self, omega: float) -> Point:
         """The condensed structure at ω, rad/s."""
         s = self.orders * omega
-        outer, across = _dynamic(self.outer, s), _dynamic(self.across, s)
-        inner = self._inner(s)
+        (outer, across, *inner), (outer_slope, across_slope, *inner_slope) = self._together(s)
+        if not self.inner_loads.shape[1]:
+            nothing = self.inner_loads
+            return Point(
+                s, outer, outer_slope, self.outer_loads, 0 * self.outer_loads, np.swapaxes(across, 1, 2), nothing
+            )
+        inner = inner[0] if inner else self._inner(s)
         right = np.concatenate([np.swapaxes(across, 1, 2), self.inner_loads[:, :, None]], axis=2)
         solved = self.solve(s, right, inner)
         follow, free = solved[:, :, :-1], solved[:, :, -1]
         turned = np.swapaxes(follow, 1, 2)
-        across_slope = self._slope(self.across, s)
-        moved = self._inner_slope(s, solved)
+        moved = _times(inner_slope[0], solved) if inner_slope else self._inner_slope(s, solved)
         crossed = across_slope @ solved
         return Point(
             frequencies=s,
             stiffness=outer - across @ follow,
-            slope=self._slope(self.outer, s)
-            - crossed[:, :, :-1]
-            - np.swapaxes(crossed[:, :, :-1], 1, 2)
-            + turned @ moved[:, :, :-1],
+            slope=outer_slope - crossed[:, :, :-1] - np.swapaxes(crossed[:, :, :-1], 1, 2) + turned @ moved[:, :, :-1],
             force=self.outer_loads - (turned @ self.inner_loads[:, :, None])[:, :, 0],
             force_slope=-crossed[:, :, -1] + (turned @ moved[:, :, -1:])[:, :, 0],
             follow=follow,
@@ -173,8 +185,32 @@ class Condensation:
             return np.stack(
                 [h * (1j * (damping @ x) - 2 * w * (mass @ x)) for h, w, x in zip(self.orders, s, solved, strict=True)]
             )
-        slope = self._slope(self.inner, s)
-        return slope[:, :, None] * solved if slope.ndim == 2 else slope @ solved
+        return _times(self._slope(self.inner, s), solved)
+
+    @cached_property
+    def _side_by_side(self) -> tuple[list[np.ndarray], list[tuple[slice, tuple[int, ...]]]]:
+        """Entries of the matrices that are not sparse, one after the other, and the place and shape of each."""
+        parts = [part for part in (self.outer, self.across, self.inner) if not issparse(part[0])]
+        ends = np.cumsum([part[0].size for part in parts]).tolist()
+        places = [(slice(end - part[0].size, end), part[0].shape) for part, end in zip(parts, ends, strict=True)]
+        return [np.concatenate([matrix.ravel() for matrix in kind]) for kind in zip(*parts, strict=True)], places
+
+    def _together(self, s: np.ndarray) -> tuple[list[np.ndarray], list[np.ndarray]]:
+        """Dynamic stiffness of the matrices that are not sparse, and its derivative by ω: outer, across, inner."""
+        entries, places = self._side_by_side
+        both = _dynamic(entries, s), self._slope(entries, s)
+        first, second = ([flat[:, own].reshape(len(s), *shape) for own, shape in places] for flat in both)
+        return first, second
+
+
+def norm(array: np.ndarray) -> float:
+    """Square root of the sum of squares, without what :func:`numpy.linalg.norm` asks before it."""
+    return float(np.sqrt(np.vdot(array, array).real))
+
+
+def _times(inner: np.ndarray, columns: np.ndarray) -> np.ndarray:
+    """Matrices (orders, l, l), or their diagonals (orders, l), times columns (orders, l, columns)."""
+    return inner[:, :, None] * columns if inner.ndim == 2 else inner @ columns
 
 
 def _dynamic(blocks: list[np.ndarray], s: np.ndarray) -> np.ndarray:

@@ -7,6 +7,7 @@ from typing import Protocol, cast
 import numpy as np
 from scipy.optimize import brentq
 
+from dalembert.vibration.condensation import norm
 from dalembert.vibration.harmonic_balance import HarmonicBalance
 from dalembert.vibration.newton import Plane, Solution
 from dalembert.vibration.tangents import bordered
@@ -167,14 +168,13 @@ class Path:
 
 def _size(known: Solution) -> float:
     """Size of the unknowns; where all contacts stick and these are rounding, a part of what the forces could move."""
-    force, stiffness = np.linalg.norm(known.point.force), np.abs(known.point.stiffness).max(initial=0.0)
-    return max(float(np.linalg.norm(known.unknowns)), STILL * float(force / (stiffness or 1.0))) or 1.0
+    return max(norm(known.unknowns), STILL * known.point.load / (known.point.stiffest or 1.0)) or 1.0
 
 
 def direction_at(known: Solution, before: np.ndarray, width: float, size: float | None = None) -> np.ndarray:
     """Unit tangent of the curve in scaled unknowns, to the same side as the one before."""
     size = size or _size(known)
-    scale = float(np.linalg.norm(known.point.force) + np.linalg.norm(known.evaluation.forces)) or 1.0
+    scale = known.point.load + norm(known.evaluation.forces) or 1.0
     change, turned = bordered(known.tangent, before, (size, width, scale), np.zeros_like(known.unknowns), 1.0)
     tangent = np.append(change, turned)
     return tangent / np.linalg.norm(tangent)

@@ -8,7 +8,7 @@ import numpy as np
 from dalembert.errors import InputError
 from dalembert.vibration.balance import Balance
 from dalembert.vibration.cold_start import by_force
-from dalembert.vibration.condensation import Condensation, Point
+from dalembert.vibration.condensation import Condensation, Point, norm
 from dalembert.vibration.fourier import Fourier
 from dalembert.vibration.harmonic_balance import AUTOMATIC, MOST_SAMPLES, HarmonicBalance
 from dalembert.vibration.lowering import Lowered, lower
@@ -92,8 +92,7 @@ class Equations:
         finer = self.balance(2 * solution.samples)
         linear = finer.linear(solution.point.stiffness, solution.point.force, solution.unknowns)
         evaluation = finer.residual(linear, solution.unknowns)
-        scale = np.linalg.norm(solution.point.force) + np.linalg.norm(evaluation.forces)
-        return float(np.linalg.norm(evaluation.residual) / (scale or 1.0))
+        return norm(evaluation.residual) / (solution.point.load + norm(evaluation.forces) or 1.0)
 
 
 def equations(system: VibrationSystem, method: HarmonicBalance) -> Equations:

@@ -29,12 +29,12 @@ class Fourier:
     orders: tuple[int, ...]
     samples: int
 
-    @property
+    @cached_property
     def count(self) -> int:
         """Number of coefficients."""
         return 2 * len(self.orders) - self.mean
 
-    @property
+    @cached_property
     def mean(self) -> int:
         """1 if the mean is among the harmonics, else 0."""
         return int(self.orders[0] == 0)
@@ -71,15 +71,18 @@ class Fourier:
 
     def phasors(self, coefficients: np.ndarray) -> np.ndarray:
         """Complex amplitudes X_c - i X_s, (orders, rows), of real coefficients (rows, coefficients)."""
-        result = coefficients.T[self.cosines].astype(complex)
-        result[self.mean :] -= 1j * coefficients.T[self.sines]
+        mean, result = self.mean, np.empty((len(self.orders), len(coefficients)), dtype=complex)
+        result[:mean] = coefficients[:, :mean].T
+        result[mean:] = (coefficients[:, mean::2] - 1j * coefficients[:, mean + 1 :: 2]).T
         return result
 
     def coefficients(self, phasors: np.ndarray) -> np.ndarray:
         """Real coefficients (rows, coefficients) of complex amplitudes (orders, rows)."""
-        result = np.empty((phasors.shape[1], self.count))
-        result[:, self.cosines] = np.real(phasors).T
-        result[:, self.sines] = -np.imag(phasors[self.mean :]).T
+        mean, result = self.mean, np.empty((phasors.shape[1], self.count))
+        real, imaginary = np.real(phasors), np.imag(phasors)
+        result[:, :mean] = real[:mean].T
+        result[:, mean::2] = real[mean:].T
+        result[:, mean + 1 :: 2] = -imaginary[mean:].T
         return result
 
 
@@ -94,14 +97,18 @@ def real_blocks(matrices: np.ndarray, mean: int) -> np.ndarray:
     orders, q, r = matrices.shape
     count = 2 * orders - mean
     result = np.zeros((q, count, r, count))
-    if mean:
-        result[:, 0, :, 0] = matrices[0].real
-    for number in range(mean, orders):
-        c = 2 * number - mean
-        result[:, c, :, c] = result[:, c + 1, :, c + 1] = matrices[number].real
-        result[:, c, :, c + 1] = matrices[number].imag
-        result[:, c + 1, :, c] = -matrices[number].imag
+    own, up, down = map(_diagonal, (result, result[:, :-1, :, 1:], result[:, 1:, :, :-1]))
+    real, imaginary = np.real(matrices), np.imag(matrices)
+    own[:mean] = real[:mean]
+    own[mean::2] = own[mean + 1 :: 2] = real[mean:]
+    up[mean::2] = imaginary[mean:]
+    down[mean::2] = -imaginary[mean:]
     return result
+
+
+def _diagonal(blocks: np.ndarray) -> np.ndarray:
+    """The part of (q, coefficients, r, coefficients) that is of one coefficient, (coefficients, q, r), to write in."""
+    return np.einsum("icjc->cij", blocks)
 
 
 def complex_blocks(matrices: np.ndarray, mean: int) -> np.ndarray:

@@ -157,7 +157,7 @@ def _settle(d, z, before, force, forces, states, kept, numbers, tangents, normal
 
 @compiled
 def _balanced(d, z, before, force, forces, states, kept, numbers, tangents, normal, memory):
-    """As :func:`_settle`, directly where the slider's place does not depend on its past: that too, and whether it moves."""
+    """As :func:`_settle`, directly where the slider's place does not depend on its past: that, and whether it moves."""
     moving = _settle(d, z, before, force, forces, states, kept, numbers, tangents, normal, memory, True)
     forgets = _restart(kept) > NEUTRAL
     if memory and not forgets and tangents == 2:

@@ -48,6 +48,11 @@ class FrictionBlock:
         """Whether the slider remembers."""
         return self.kind != "velocity"
 
+    @cached_property
+    def distinct(self) -> bool:
+        """Whether no two cells see the same row."""
+        return len(np.unique(self.rows)) == self.rows.size
+
 
 @dataclass(frozen=True)
 class Lowered:

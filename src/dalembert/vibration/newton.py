@@ -4,13 +4,14 @@ The forces have kinks, at which Newton's method takes the derivative of one side
 the residual keeps it from jumping between the sides.
 """
 
+import math
 from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 
 from dalembert.vibration.balance import Balance, Evaluation
-from dalembert.vibration.condensation import Point
+from dalembert.vibration.condensation import Point, norm
 from dalembert.vibration.harmonic_balance import HarmonicBalance
 from dalembert.vibration.tangents import Tangent, bordered
 
@@ -120,10 +121,10 @@ def correct(
     def place(unknowns: np.ndarray, omega: float, point: Point | None, step: bool = True) -> _Place:
         point = condensation.at(omega) if point is None else point
         evaluation, tangent = evaluated(balance, point, unknowns) if step else (_forces(balance, point, unknowns), None)
-        scale = float(np.linalg.norm(point.force) + np.linalg.norm(evaluation.forces)) or 1.0
-        floor = ROUNDING * float(np.abs(point.stiffness).max(initial=0.0)) * float(np.linalg.norm(unknowns))
+        scale = point.load + norm(evaluation.forces) or 1.0
+        floor = ROUNDING * point.stiffest * norm(unknowns)
         distance = 0.0 if plane is None else plane.distance(unknowns, omega)
-        error = float(np.hypot(np.linalg.norm(evaluation.residual) / scale, distance))
+        error = math.hypot(norm(evaluation.residual) / scale, distance)
         return _Place(unknowns, omega, point, evaluation, tangent, scale, floor / scale, distance, error)
 
     at, converged = place(unknowns, omega, point), False

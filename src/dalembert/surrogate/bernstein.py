@@ -17,7 +17,7 @@ from dalembert.surrogate.scan import transformed
 MOST_COEFFICIENTS = 100_000
 """Largest Bernstein form of one output; 3^10 is below."""
 CHUNK = 4_000_000
-"""Coefficients kept at once."""
+"""Coefficients kept at once: of a batch of boxes, and of the parts of a single one."""
 DEPTH = 60
 """Most halvings of a box."""
 
@@ -33,7 +33,9 @@ def enclosures(
     low, high : array, shape (boxes, d)
     gap : float
         Halves boxes until no bound is further from a value of the polynomial than this part of the sum of its
-        |coefficients| without the constant one (or ``DEPTH`` times); infinite for the first coefficients as they are.
+        |coefficients| without the constant one; infinite for the first coefficients as they are. Ends before that where
+        rounding hides the rest, after ``DEPTH`` halvings, or when the open parts of a box fill ``CHUNK``, as those of a
+        valley that is flat in several directions may: bounds are then guaranteed all the same, and wider.
 
     Raises
     ------
@@ -56,8 +58,9 @@ def enclosures(
     outputs = polynomial.coefficients.shape[1]
     varying = np.any(polynomial.exponents > 0, axis=1)
     variation = np.sum(np.abs(polynomial.coefficients[varying]), axis=0)
-    wanted = np.multiply(gap, variation, out=np.zeros(outputs), where=variation > 0)  # the gap may be infinite
     rounding = _rounding(polynomial)
+    # The gap may be infinite. Below rounding, which is added to the bounds, no part of a box would ever be settled.
+    wanted = np.maximum(np.multiply(gap, variation, out=np.zeros(outputs), where=variation > 0), rounding)
     # Coordinates s in [0, 1] of the polynomial's box, rounded outwards.
     ends = [np.clip((polynomial.eta(side) + 1) / 2 + out * 1e-15, 0, 1) for side, out in ((low, -1), (high, 1))]
     size = max(1, CHUNK // (outputs * int(np.prod(shape))))
@@ -77,20 +80,28 @@ def enclosures(
 
 def _lowest(cells: np.ndarray, wanted: np.ndarray) -> np.ndarray:
     """Lower bounds (owners,) of polynomials given by their Bernstein forms (owners, n_1 + 1, …, n_d + 1)."""
-    owner = np.arange(len(cells))
     attained = np.min(_corners(cells), axis=1)
     bound = np.full(len(cells), np.inf)
-    for _ in range(DEPTH):
+    most = CHUNK // cells[0].size  # cells kept at once
+    waiting = [(0, cells, np.arange(len(cells)))]
+    while waiting:
+        depth, cells, owner = waiting.pop()
         least = cells.reshape(len(cells), -1).min(axis=1)
         open_ = least < attained[owner] - wanted[owner]
+        full = 2 * np.bincount(owner[open_], minlength=len(bound)) > most
+        open_ &= ~full[owner] & (depth < DEPTH)
         np.minimum.at(bound, owner[~open_], least[~open_])
         cells, owner = cells[open_], owner[open_]
         if not len(cells):
-            return bound
-        halves = _halved(cells)
-        cells, owner = np.concatenate(halves), np.tile(owner, 2)
+            continue
+        if 2 * len(cells) > most:  # of several owners, as none fills the memory alone
+            owners = np.unique(owner)
+            first = owner < owners[len(owners) // 2]
+            waiting += [(depth, cells[part], owner[part]) for part in (~first, first)]
+            continue
+        cells, owner = np.concatenate(_halved(cells)), np.tile(owner, 2)
         np.minimum.at(attained, owner, np.min(_corners(cells), axis=1))
-    np.minimum.at(bound, owner, cells.reshape(len(cells), -1).min(axis=1))
+        waiting.append((depth + 1, cells, owner))
     return bound
 
 
@@ -164,7 +175,11 @@ def _from_chebyshev(degree: int) -> np.ndarray:
 
 
 def _rounding(polynomial: ChebyshevPolynomial) -> np.ndarray:
-    """Bound (outputs,) of all rounding errors: sizes of the products, times the length of the sums, times 10^-15."""
+    """Bound (outputs,) of all rounding errors: sizes of the products, times the length of the sums, times 10^-15.
+
+    And the smallest normal number, for products that are lost below it.
+    """
     sizes = [np.abs(_from_chebyshev(int(degree))).max(axis=0) for degree in polynomial.degrees]
     largest = np.prod([size[polynomial.exponents[:, k]] for k, size in enumerate(sizes)], axis=0)
-    return 1e-15 * (2 * polynomial.degrees.sum() + DEPTH) * (largest @ np.abs(polynomial.coefficients))
+    relative = 1e-15 * (2 * polynomial.degrees.sum() + DEPTH) * (largest @ np.abs(polynomial.coefficients))
+    return relative + np.finfo(float).tiny * np.any(polynomial.coefficients, axis=0)

@@ -60,7 +60,7 @@ def bounds(
         Valleys of the scan to refine from, at most, for each bound.
     gap : float
         For "bernstein": subdivides until bounds are this close, relative to the sum of the coefficients' sizes
-        without the constant one.
+        without the constant one, or rounding or the memory for boxes that do not settle (see there) ends it before.
 
     Raises
     ------

@@ -72,7 +72,7 @@ class RunFolder:
     @property
     def is_remnant(self) -> bool:
         """Whether a run was killed here before it began: it left nothing but copies of what was given."""
-        given = {"lock", "study.toml", "settings.json", "inputs", "inputs.json"}
+        given = {"lock", "study.toml", "settings.json", "inputs", "inputs.json", "events.jsonl"}
         names = {entry.name for entry in self.path.iterdir() if not entry.name.startswith(".")}
         return "lock" in names <= given
 

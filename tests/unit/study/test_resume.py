@@ -98,7 +98,7 @@ def test_the_folder_of_a_stopped_run_says_how_to_go_on(stopped):
 def test_what_a_run_left_that_was_killed_before_it_began_is_taken_over(study, tmp_path):
     left = tmp_path / "left"
     left.mkdir()
-    for name in ("lock", "study.toml", ".settings-abc.json"):
+    for name in ("lock", "study.toml", "events.jsonl", ".settings-abc.json"):
         (left / name).touch()
     (tmp_path / "go").touch()
     folder, _ = run_study(study, left)

@@ -14,6 +14,9 @@ from notebook_text import markdown
 from sybil import Document, Example, Sybil
 from sybil.parsers.markdown import CodeBlockParser, PythonCodeBlockParser, SkipParser
 
+collect_ignore = ["docs/conf.py"]
+"""It is Sphinx's, which the tests do without."""
+
 
 @pytest.fixture(scope="module")
 def empty_folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:

@@ -81,20 +81,19 @@ class Distributed:
         workers: Any = self.client.nthreads()
         threads = max(1, sum(workers.values()))
         parts = np.array_split(vectors, min(len(vectors), PARTS * threads))
-        with self._sent() as sent:
-            asked = self.client.map(_answered, [sent] * len(parts), parts, pure=False, retries=RETRIES)
-            try:
-                answers: Any = self.client.gather(asked)
-            except DalembertError:
-                raise
-            except KeyboardInterrupt:
-                self.client.cancel(asked, force=True)
-                raise
-            except Exception as error:
-                raise SolveError(
-                    f"the cluster lost a part of a batch of {len(vectors)} ({type(error).__name__}: {error}); see its "
-                    "workers' logs, and resume the run"
-                ) from error
+        asked = self.client.map(_answered, [self._sent()] * len(parts), parts, pure=False, retries=RETRIES)
+        try:
+            answers: Any = self.client.gather(asked)
+        except DalembertError:
+            raise
+        except KeyboardInterrupt:
+            self.client.cancel(asked, force=True)
+            raise
+        except Exception as error:
+            raise SolveError(
+                f"the cluster lost a part of a batch of {len(vectors)} ({type(error).__name__}: {error}); see its "
+                "workers' logs, and resume the run"
+            ) from error
         values = np.concatenate([own for own, _ in answers])
         return Responses(values, tuple(failure for _, own in answers for failure in own))
 
@@ -110,8 +109,7 @@ class Distributed:
         """The same model, cut to its first ``samples`` samples."""
         return Distributed(self.model.first(samples), self.client)
 
-    @contextmanager
-    def _sent(self) -> Iterator[Any]:
+    def _sent(self) -> Any:
         """The model on the cluster; a worker that comes later, or in place of a lost one, gets it too."""
         import cloudpickle
 
@@ -124,7 +122,7 @@ class Distributed:
                 "locks or other things of this process"
             ) from error
         key = f"dalembert-model-{hashlib.sha256(content).hexdigest()}"
-        yield self.client.submit(cloudpickle.loads, content, key=key)
+        return self.client.submit(cloudpickle.loads, content, key=key)
 
 
 Executor: TypeAlias = "str | Client | None"

@@ -1,6 +1,6 @@
 """Errors that tell a user what is wrong, where, what was given, what is expected and what to do."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 
 
@@ -52,3 +52,12 @@ def unknown(what: str, given: str, known: Iterable[str], where: str = "") -> str
     if close:
         return f"{prefix}unknown {what} {given!r}; did you mean {' or '.join(map(repr, close))}?"
     return f"{prefix}unknown {what} {given!r}; known: {', '.join(names) or 'none'}"
+
+
+def listed(words: Sequence[str]) -> str:
+    """Words in a row.
+
+    >>> listed(["a", "b", "c"]), listed(["a"])
+    ('a, b and c', 'a')
+    """
+    return " and ".join(filter(None, [", ".join(words[:-1]), words[-1]]))

@@ -5,6 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 from scipy import linalg
 
+from dalembert.errors import listed
+
 SHOWN = 0.1
 """Part of its width by which the parameter that moves most moves in a sentence."""
 
@@ -42,12 +44,3 @@ def moved(names: Sequence[str], move: np.ndarray, widths: np.ndarray) -> str:
     named = members(move, widths)
     move = move * np.sign(move[named[0]]) * SHOWN / np.max(np.abs(move) / widths)
     return listed([f"{names[k]!r} by {move[k]:+.3g}" for k in named])
-
-
-def listed(words: Sequence[str]) -> str:
-    """Words in a row.
-
-    >>> listed(["a", "b", "c"]), listed(["a"])
-    ('a, b and c', 'a')
-    """
-    return " and ".join(filter(None, [", ".join(words[:-1]), words[-1]]))

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from dalembert.errors import InputError
-from dalembert.inverse.combinations import listed, moved, separated
+from dalembert.errors import InputError, listed
+from dalembert.inverse.combinations import moved, separated
 from dalembert.parameters import Parameters
 
 ALONE = 0.9

@@ -4,7 +4,8 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from dalembert.inverse.combinations import listed, members, moved, separated
+from dalembert.errors import listed
+from dalembert.inverse.combinations import members, moved, separated
 from dalembert.inverse.estimate import UNSEEN, Estimate
 from dalembert.inverse.prior import told_by_priors
 from dalembert.parameters import Parameters

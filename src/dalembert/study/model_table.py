@@ -43,6 +43,13 @@ class ModelTable(StudyTable):
     contact: list[Any] = []
 
     @property
+    def holding(self) -> str:
+        """Where the file says what holds a structure."""
+        if self.mass:
+            return "[[model.spring]]"
+        return "[model.structure], fixed" if self.is_structure else "[model], function"
+
+    @property
     def is_structure(self) -> bool:
         """Whether the tables describe a structure."""
         return bool(self.mass) or (self.structure is not None and self.structure.source)

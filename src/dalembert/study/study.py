@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from dalembert.errors import InputError
+from dalembert.errors import InputError, ModelError
 from dalembert.forward import Checkpoint, Executor, ForwardModel, Recorded, on_cluster
 from dalembert.parameters import Parameters
 from dalembert.study.builder import FunctionBuilder, SystemBuilder
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from dalembert.data import Bands, Measurements
     from dalembert.multibody import Trajectory
     from dalembert.vibration import HarmonicBalance
+    from dalembert.vibration.equations import Equations
 
 
 def _plain(value: Any) -> Any:
@@ -131,6 +132,16 @@ class Study:
     def system(self, vector: np.ndarray | None = None) -> Any:
         """The mechanism or the structure at a parameter vector (parameters,), by default at the first guesses."""
         return self.builder(**self.parameters.mapping(self.parameters.start if vector is None else vector))
+
+    def equations(self) -> "Equations":
+        """The structure's equations at the first guesses; what nothing holds is found here."""
+        from dalembert.vibration.equations import equations
+
+        found = equations(self.system(), self.balance)
+        found.lowered.coordinates  # noqa: B018 (contacts that cannot be told apart are told as such)
+        with placed(self.file.model.holding, ModelError):
+            found.condensation  # noqa: B018
+        return found
 
     def along(self, name: str) -> Callable[..., Any]:
         """The model as a function of one parameter, the others at their first guesses."""

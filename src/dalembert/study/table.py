@@ -17,7 +17,7 @@ from pydantic import (
 )
 from pydantic_core import CoreSchema, PydanticCustomError
 
-from dalembert.errors import InputError
+from dalembert.errors import DalembertError, InputError
 from dalembert.study.context import Context
 
 T = TypeVar("T")
@@ -51,12 +51,12 @@ def checked(function: Callable[..., T], *arguments: Any) -> T:
 
 
 @contextmanager
-def placed(where: str) -> Iterator[None]:
-    """A block whose :class:`InputError` is about a place in the file; the place is put in front."""
+def placed(where: str, kind: type[DalembertError] = InputError) -> Iterator[None]:
+    """A block whose errors of a kind are about a place in the file; the place is put in front."""
     try:
         yield
-    except InputError as error:
-        raise InputError(f"{where}: {error}") from None
+    except kind as error:
+        raise kind(f"{where}: {error}") from None
 
 
 def _name(value: Any) -> str:

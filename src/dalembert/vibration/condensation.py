@@ -16,10 +16,10 @@ from typing import Any
 
 import numpy as np
 from scipy.linalg import LinAlgError, eigh
-from scipy.sparse import csc_array, issparse
+from scipy.sparse import csc_array, eye_array, issparse
 from scipy.sparse.linalg import splu
 
-from dalembert.errors import ModelError
+from dalembert.errors import ModelError, listed
 from dalembert.structure import Structure
 from dalembert.vibration.coordinates import Coordinates
 
@@ -29,6 +29,12 @@ COUPLED = 1e-9
 """Damping between modes, as part of the largest of a mode, above which it counts."""
 FLOATING = 3e-14
 """Smallest interior stiffness as part of the largest, below which it is none."""
+MOVING = 1e-6
+"""Part of the largest motion above which a degree of freedom is said to move."""
+SOFT = 1e-12
+"""Stiffness, as part of the largest, that makes a sparse interior that moves freely one that can be factorised."""
+NAMED = 4
+"""Degrees of freedom that a sentence names."""
 
 
 @dataclass(frozen=True)
@@ -105,7 +111,7 @@ class Condensation:
         self.loads = loads
         self.outer_loads, self.inner_loads = loads @ self.retained, np.asarray((self.back.T @ loads.T).T)
         if self.orders[0] == 0:
-            _require_held(self.inner[0])
+            _require_held(self.inner[0], self.back, structure.dofs.names)
 
     def at(self, omega: float) -> Point:
         """The condensed structure at ω, rad/s."""
@@ -227,18 +233,37 @@ def _real(matrix: Any) -> Any:
     return matrix.real if np.iscomplexobj(matrix) else matrix
 
 
-def _require_held(stiffness: Any) -> None:
+def _require_held(stiffness: Any, back: Any, names: tuple[str, ...]) -> None:
     """Refuse a structure that still moves freely where the coordinates of its elements are held."""
-    if not stiffness.shape[0]:
+    motion = np.abs(back @ _free_motion(stiffness)) if stiffness.shape[0] else np.zeros(0)
+    if not motion.any():
         return
+    moving = [repr(name) for name, size in zip(names, motion / motion.max(), strict=True) if size > MOVING]
+    if len(moving) > NAMED:
+        moving = [*moving[:NAMED], f"{len(moving) - NAMED} more degrees of freedom"]
+    raise ModelError(
+        f"the structure can move freely, at {listed(moving)}, without a spring or a contact that holds it, so its mean "
+        "position is not determined; clamp it, or keep odd harmonics only (odd_only=True) where the motion is symmetric"
+    )
+
+
+def _free_motion(stiffness: Any) -> np.ndarray:
+    """A motion (l,) that a stiffness does not resist, made of all such ones; zeros if it resists all."""
+    any_motion = np.random.default_rng(0).standard_normal(stiffness.shape[0])  # with a part of each
+    if stiffness.ndim == 1:
+        return np.where(np.abs(stiffness) <= FLOATING * np.abs(stiffness).max(), any_motion, 0.0)
     if issparse(stiffness):
-        diagonal = np.abs(splu(csc_array(stiffness)).U.diagonal())
-    elif stiffness.ndim == 1:
-        diagonal = np.abs(stiffness)
-    else:
-        diagonal = np.abs(np.linalg.eigvalsh(stiffness))
-    if diagonal.min() <= FLOATING * diagonal.max():
-        raise ModelError(
-            "the structure can move freely without a spring or a contact that holds it, so its mean position is not "
-            "determined; clamp it, or keep odd harmonics only (odd_only=True) where the motion is symmetric"
-        )
+        try:
+            pivots = np.abs(splu(csc_array(stiffness)).U.diagonal())
+        except RuntimeError:  # a pivot is zero
+            pivots = np.zeros(1)
+        if pivots.min() > FLOATING * pivots.max():
+            return np.zeros_like(any_motion)
+        nearly = splu(csc_array(stiffness + SOFT * (abs(stiffness).max() or 1.0) * eye_array(len(any_motion))))
+        for _ in range(3):
+            any_motion = nearly.solve(any_motion)
+            any_motion = any_motion / np.abs(any_motion).max()
+        return any_motion
+    values, shapes = np.linalg.eigh(stiffness)
+    free = shapes[:, np.abs(values) <= FLOATING * np.abs(values).max()]
+    return free @ (free.T @ any_motion)

@@ -325,7 +325,7 @@ def test_a_point_that_is_not_found_is_marked_and_the_curve_goes_on(write, tmp_pa
     assert folder.report.is_file()
 
 
-def test_a_structure_that_nothing_holds_is_refused(write):
+def test_a_structure_that_nothing_holds_is_refused(write, tmp_path):
     text = """
 [[model.mass]]
 name = "m"
@@ -336,10 +336,14 @@ amplitude = 1.0
 [frequency_response]
 frequencies = [1.0]
 """
-    assert refused(write, text) == (
-        "the structure can move freely without a spring or a contact that holds it, so its mean position is not "
-        "determined; clamp it, or keep odd harmonics only (odd_only=True) where the motion is symmetric"
+    sentence = (
+        "[[model.spring]]: the structure can move freely, at 'm.x', without a spring or a contact that holds it, so "
+        "its mean position is not determined; clamp it, or keep odd harmonics only (odd_only=True) where the motion is "
+        "symmetric"
     )
+    assert refused(write, text) == sentence
+    with pytest.raises(DalembertError, match=re.escape(sentence)):
+        run_study(load(write(text)), tmp_path / "run")
 
 
 def refused(write, text) -> str:

@@ -1,9 +1,12 @@
 """Curves over frequency: what is kept, how they go on, and what is refused."""
 
+from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.sparse import csc_array
 
 from dalembert.errors import InputError, ModelError
 from dalembert.structure import lumped
@@ -96,8 +99,9 @@ CONTACT = {"friction": 0.3, "preload": 1.0}
             free_mass(FORCE),
             {},
             ModelError,
-            "the structure can move freely without a spring or a contact that holds it, so its mean position is not "
-            "determined; clamp it, or keep odd harmonics only (odd_only=True) where the motion is symmetric",
+            "the structure can move freely, at 'a.x' and 'b.x', without a spring or a contact that holds it, so its "
+            "mean position is not determined; clamp it, or keep odd harmonics only (odd_only=True) where the motion is "
+            "symmetric",
         ),
         (
             free_mass(FORCE, FrictionContact("foot", "c", **CONTACT)),
@@ -148,6 +152,27 @@ CONTACT = {"friction": 0.3, "preload": 1.0}
 def test_what_cannot_be_meant_is_told(system: VibrationSystem, options: dict, error: type, sentence: str) -> None:
     with pytest.raises(error, match=says(sentence)):
         frequency_response(system, np.array([0.1]), **options)
+
+
+@pytest.mark.parametrize("sparse", [False, True])
+@pytest.mark.parametrize("damping", [0.0, 0.1])
+def test_the_part_that_nothing_holds_is_named(sparse: bool, damping: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A chain that is held at its first mass and cut behind the second, in modes and not, and by a sparse solver."""
+    names = [f"m{number}" for number in range(8)]
+    springs = [(first, second, 1.0, 0.0) for first, second in pairwise(names) if first != "m1"]
+    chain = lumped(dict.fromkeys(names, 1.0), [("m0", None, 1.0, damping), *springs])
+    if sparse:
+        monkeypatch.setattr("dalembert.vibration.condensation.DENSE", 0)
+        chain = replace(chain, mass=csc_array(chain.mass), stiffness=csc_array(chain.stiffness))
+    system = VibrationSystem(chain)
+    system.add(HarmonicForce("m0", 1.0))
+    sentence = (
+        "the structure can move freely, at 'm2.x', 'm3.x', 'm4.x', 'm5.x' and 2 more degrees of freedom, without a "
+        "spring or a contact that holds it, so its mean position is not determined; clamp it, or keep odd harmonics "
+        "only (odd_only=True) where the motion is symmetric"
+    )
+    with pytest.raises(ModelError, match=says(sentence)):
+        frequency_response(system, np.array([0.1]))
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
-from dalembert.inverse.combinations import listed
+from dalembert.errors import listed
 from dalembert.inverse.summary import table
 from dalembert.parameters import Parameter, Parameters
 from dalembert.results import Result

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 import numpy as np
 
 from dalembert.data import Measurements
+from dalembert.errors import listed
 from dalembert.forward import Coordinate
-from dalembert.inverse.combinations import listed
 from dalembert.inverse.summary import table
 from dalembert.results import Result
 

@@ -66,10 +66,8 @@ class BackboneTask(Task):
         return needs_structure(file, "backbone")
 
     def plan(self, study: "Study") -> str:
-        from dalembert.vibration.equations import equations
-
         table = study.table
-        equations(study.system(), study.balance)
+        study.equations()
         count = "as many amplitudes as it needs" if table.between else f"{len(table.given)} amplitudes"
         return f"follows mode {table.mode} from {table.given[0]:g} to {table.given[-1]:g} m ({count}): 1 simulation"
 
@@ -87,6 +85,7 @@ class BackboneTask(Task):
         return Effort(once, 1, count, count, "the first amplitude")
 
     def run(self, study: "Study", emit: "Emit") -> Outcome:
+        study.equations()
         return _outcome(study, study.table.follow(study, study.system()))
 
     def load(self, study: "Study", path: Path) -> Outcome:

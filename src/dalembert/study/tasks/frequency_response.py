@@ -169,10 +169,8 @@ class FrequencyResponseTask(Task):
 
     def plan(self, study: "Study") -> str:
         from dalembert.vibration.amplitudes import Amplitude
-        from dalembert.vibration.equations import equations
 
-        table, problem = study.table, equations(study.system(), study.balance)
-        problem.condensation  # noqa: B018 (a structure that nothing holds is found here)
+        table, problem = study.table, study.equations()
         names = problem.lowered.structure.dofs.names
         if table.observe is not None:
             with placed("[frequency_response], observe"):
@@ -218,6 +216,7 @@ class FrequencyResponseTask(Task):
         }
         if table.sweep is None:
             emit("following", begin=float(table.along[0]), end=float(table.along[-1]))
+            study.equations()
             system = study.system()
             curve = frequency_response(system, table.along, study.balance, **options)
             return Response(study, curve, beside(study, curve, system))

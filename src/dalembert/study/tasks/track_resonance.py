@@ -47,9 +47,8 @@ class TrackResonance(Task):
 
     def plan(self, study: "Study") -> str:
         from dalembert.vibration.amplitudes import Amplitude
-        from dalembert.vibration.equations import equations
 
-        table, lowered = study.table, equations(study.system(), study.balance).lowered
+        table, lowered = study.table, study.equations().lowered
         with placed("[track_resonance], dof"):
             lowered.structure.dofs.index(table.dof)
         with placed("[track_resonance], amplitude"):

@@ -1,7 +1,12 @@
 """Errors that tell a user what is wrong, where, what was given, what is expected and what to do."""
 
+import sysconfig
+import traceback
 from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
+from pathlib import Path
+
+_OWN = str(Path(__file__).parent)
 
 
 class DalembertError(Exception):
@@ -61,3 +66,31 @@ def listed(words: Sequence[str]) -> str:
     ('a, b and c', 'a')
     """
     return " and ".join(filter(None, [", ".join(words[:-1]), words[-1]]))
+
+
+def told(error: BaseException) -> str:
+    """What an error says, in one line: one of ours as it is, any other with its type and place in the user's code.
+
+    >>> told(InputError("no such spring")), told(KeyError("spring"))
+    ('no such spring', "KeyError: 'spring'")
+    """
+    if isinstance(error, DalembertError):
+        return str(error)
+    if isinstance(error, SyntaxError):
+        return f"SyntaxError: {error.msg} ({Path(error.filename or '').name}, line {error.lineno})"
+    place = users_place(error)
+    text = " ".join(str(error).split())
+    return f"{type(error).__name__}{f': {text}' if text else ''}{f' ({place})' if place else ''}"
+
+
+def users_place(error: BaseException | None) -> str:
+    """File and line of the user's own code that an error went through last; none if it met only libraries and ours.
+
+    >>> users_place(KeyError("never raised"))
+    ''
+    """
+    others = ("<", _OWN, *sysconfig.get_paths().values())
+    frames = traceback.walk_tb(error.__traceback__ if error else None)
+    places = [(frame.f_code.co_filename, line) for frame, line in frames]
+    own = [(Path(name).name, line) for name, line in places if not name.startswith(others)]
+    return "{}, line {}".format(*own[-1]) if own else ""

@@ -113,7 +113,7 @@ def test_a_failed_sample_is_marked_and_the_others_return(client, decay):
     vectors = np.linspace(0.1, 2.0, 12)[:, None]
     here, there = decay.evaluate(vectors), da.on_cluster(decay, client).evaluate(vectors)
     assert there.failures == here.failures
-    assert here.failures[-1] == "RuntimeError: too fast"
+    assert here.failures[-1] == "RuntimeError: too fast (test_distributed.py, line 71)"
     np.testing.assert_array_equal(there.values, here.values)
 
 

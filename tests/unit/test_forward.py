@@ -1,3 +1,4 @@
+import sys
 from collections.abc import Callable
 
 import numpy as np
@@ -46,16 +47,19 @@ def test_a_failed_sample_is_marked_and_the_others_return() -> None:
             raise ValueError("too fast")
         return decay(rate, height) / (1.0 if height < 3 else np.nan)
 
+    first = touchy.__code__.co_firstlineno
     responses = model(touchy).evaluate(np.array([[2.0, 1.0], POINT, [1.0, 3.0]]))
     assert responses.ok.tolist() == [False, True, False]
     assert responses.failures == (
-        "ValueError: too fast",
+        f"ValueError: too fast (test_forward.py, line {first + 2})",
         None,
-        "SolveError: the model's function returned a value that is not finite",
+        f"the model's function (test_forward.py, line {first}) returned a value that is not finite",
     )
     assert np.isnan(responses.values[[0, 2]]).all()
     assert np.array_equal(responses.values[1], decay(*POINT))
-    with pytest.raises(SolveError, match=says("sample 0 of 3: ValueError: too fast")):
+    with pytest.raises(
+        SolveError, match=says(f"sample 0 of 3: ValueError: too fast (test_forward.py, line {first + 2})")
+    ):
         responses.only()
 
 
@@ -75,33 +79,61 @@ def test_linearise_is_the_response_and_its_jacobian() -> None:
 
 
 def test_a_function_that_drops_the_imaginary_part_is_refused() -> None:
+    def real(rate: complex, height: complex) -> np.ndarray:
+        return decay(rate.real, height.real)
+
     sentence = (
-        "the model's function drops the imaginary part of its parameters, so its complex-step derivative would be "
-        "zero; give derivative='central-differences', or make it complex-safe"
+        f"the model's function (test_forward.py, line {real.__code__.co_firstlineno}) drops the imaginary part of its "
+        "parameters, so its complex-step derivative would be zero; give derivative='central-differences', or make it "
+        "complex-safe"
     )
     with pytest.raises(InputError, match=says(sentence)):
-        model(lambda rate, height: decay(rate.real, height.real)).jacobian(POINT)
+        model(real).jacobian(POINT)
 
 
 def test_a_function_that_cannot_run_in_complex_numbers_is_refused() -> None:
-    sentence = (
-        "the model's function cannot run in complex numbers (must be real number, not complex); "
-        "give derivative='central-differences', or make it complex-safe"
-    )
-
     def real_only(rate: float, height: float) -> np.ndarray:
         if isinstance(rate, complex):
             raise TypeError("must be real number, not complex")
         return decay(rate, height)
 
+    sentence = (
+        f"the model's function (test_forward.py, line {real_only.__code__.co_firstlineno}) cannot run in complex "
+        "numbers (must be real number, not complex); give derivative='central-differences', or make it complex-safe"
+    )
     with pytest.raises(InputError, match=says(sentence)):
         model(real_only).jacobian(POINT)
 
 
 def test_a_response_of_another_shape_is_refused() -> None:
-    sentence = "the model's function returned an array of shape (5, 2); expected (samples, channels) = (5, 3)"
+    sentence = (
+        f"the model's function (test_forward.py, line {decay.__code__.co_firstlineno}) returned an array of shape "
+        "(5, 2); expected (samples, channels) = (5, 3)"
+    )
     with pytest.raises(InputError, match=says(sentence)):
         model(channels=("x", "y", "z")).linearise(POINT)
+
+
+@pytest.mark.parametrize(
+    ("function", "error", "sentence"),
+    [
+        (lambda rate, height: None, InputError, "{named} returned a NoneType; expected an array of numbers"),
+        (lambda rate, height: ["a"] * 5, InputError, "{named} returned a list; expected an array of numbers"),
+        (lambda rate, height: 1.0, InputError,
+         "{named} returned an array of shape (); expected (samples, channels) = (5, 2)"),
+        (lambda rate, height: sys.exit(3), SolveError, "SystemExit: 3 ({place})"),
+        (lambda rate, height: {}["stiff"], SolveError, "KeyError: 'stiff' ({place})"),
+        (lambda rates: None, SolveError,
+         "{named} raised TypeError: {function} got an unexpected keyword argument 'rate'"),
+    ],
+)  # fmt: skip
+def test_whatever_a_function_does_is_told_with_its_place(function, error, sentence) -> None:
+    place = f"test_forward.py, line {function.__code__.co_firstlineno}"
+    named = f"the model's function ({place})"
+    sentence = sentence.format(place=place, named=named, function=f"{function.__qualname__}()")
+    with pytest.raises(error, match=says(sentence)):
+        model(function).linearise(POINT)
+    assert model(function).evaluate(POINT).failures == (sentence,)
 
 
 def test_an_unknown_derivative_is_refused() -> None:

@@ -55,7 +55,7 @@ def test_stamps_that_are_samples_are_read_without_interpolation():
 
 def test_a_run_that_fails_is_marked_and_the_others_return():
     responses = SEEN.evaluate(np.array([POINT, [8.5, 0, 1, 0]]))
-    assert responses.failures == (None, "RuntimeError: too fast")
+    assert responses.failures == (None, "RuntimeError: too fast (test_sensors.py, line 18)")
     np.testing.assert_allclose(responses.values[0], exact(*POINT), atol=1e-9)
 
 

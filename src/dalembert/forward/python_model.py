@@ -4,10 +4,11 @@ import hashlib
 import inspect
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 
-from dalembert.errors import InputError, SolveError, unknown
+from dalembert.errors import DalembertError, InputError, SolveError, told, unknown, users_place
 from dalembert.forward.model import Channel, Coordinate, ForwardModel
 from dalembert.forward.responses import Responses
 from dalembert.parameters import Parameter, Parameters
@@ -96,7 +97,7 @@ class PythonModel:
                 values[row] = self._call(vector)
                 failures.append(None)
             except Exception as error:  # whatever the user's function raises is this sample's failure
-                failures.append(f"{type(error).__name__}: {error}")
+                failures.append(told(error))
         return Responses(values, tuple(failures))
 
     def jacobian(self, vector: np.ndarray) -> np.ndarray:
@@ -133,33 +134,55 @@ class PythonModel:
         return len(self.coordinate.values), len(self.channels)
 
     def _call(self, vector: np.ndarray) -> np.ndarray:
-        response = np.asarray(self.function(**dict(zip(self.parameters.names, vector, strict=True))))
+        given = dict(zip(self.parameters.names, vector, strict=True))
+        try:
+            returned = self.function(**given)
+        except DalembertError:
+            raise
+        except (Exception, SystemExit) as error:
+            raise SolveError(told(error) if users_place(error) else f"{self._named} raised {told(error)}") from error
+        try:
+            response = np.asarray(returned)
+        except ValueError as error:
+            raise InputError(f"{self._named} returned no array: {error}") from error
+        if response.dtype.kind not in "buifc":
+            raise InputError(f"{self._named} returned a {type(returned).__name__}; expected an array of numbers")
         if response.ndim == 1:
             response = response[:, None]
-        response = response[: self.kept]
+        if response.ndim == 2:
+            response = response[: self.kept]
         if response.shape != self._shape:
             raise InputError(
-                f"the model's function returned an array of shape {response.shape}; "
+                f"{self._named} returned an array of shape {response.shape}; "
                 f"expected (samples, channels) = {self._shape}"
             )
         if not np.all(np.isfinite(response)):
-            raise SolveError("the model's function returned a value that is not finite")
+            raise SolveError(f"{self._named} returned a value that is not finite")
         return response
+
+    @property
+    def _named(self) -> str:
+        """The function with its place, in a sentence."""
+        code = getattr(self.function, "__code__", None)
+        place = f" ({Path(code.co_filename).name}, line {code.co_firstlineno})" if code else ""
+        return f"the model's function{place}"
 
     def _complex_step(self, vector: np.ndarray, column: int, step: float = 1e-30) -> np.ndarray:
         moved = vector.astype(complex)
         moved[column] += 1j * step
         try:
             response = self._call(moved)
-        except TypeError as error:
+        except SolveError as error:
+            if not isinstance(error.__cause__, TypeError):
+                raise
             raise InputError(
-                "the model's function cannot run in complex numbers "
-                f"({error}); give derivative='central-differences', or make it complex-safe"
+                f"{self._named} cannot run in complex numbers "
+                f"({error.__cause__}); give derivative='central-differences', or make it complex-safe"
             ) from error
         if not np.iscomplexobj(response):
             raise InputError(
-                "the model's function drops the imaginary part of its parameters, so its complex-step derivative would "
-                "be zero; give derivative='central-differences', or make it complex-safe"
+                f"{self._named} drops the imaginary part of its parameters, so its complex-step derivative would be "
+                "zero; give derivative='central-differences', or make it complex-safe"
             )
         return np.imag(response) / step
 

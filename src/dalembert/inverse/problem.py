@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from dalembert.data import Measurements
-from dalembert.errors import InputError, SolveError
+from dalembert.errors import InputError, SolveError, told
 from dalembert.forward import ForwardModel
 from dalembert.inverse.journal import Journal
 from dalembert.inverse.loss import Loss
@@ -114,8 +114,8 @@ class Problem:
         except InputError:  # a model that cannot be differentiated at all: no other vector will do better
             raise
         except Exception as error:  # whatever a user's function raises is this vector's failure
-            self.journal.failures.append(f"{error} (at {named(self.model, vector)})")
-            raise SolveError(str(error)) from error
+            self.journal.failures.append(f"{told(error)} (at {named(self.model, vector)})")
+            raise SolveError(told(error)) from error
         return Linearisation(vector, response[:, self.columns], jacobian[:, self.columns])
 
     def residual(self, response: np.ndarray) -> np.ndarray:

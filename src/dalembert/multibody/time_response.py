@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from dalembert.errors import DalembertError, InputError, SolveError
+from dalembert.errors import InputError, SolveError, told
 from dalembert.forward import Channel, Coordinate, Responses
 from dalembert.forward.builders import cores, inexact, restructured
 from dalembert.multibody.assemble import assembled, refuse_kinks, refuse_redundancy
@@ -130,10 +130,8 @@ class TimeResponse:
             for row in rows:
                 try:
                     samples.append((row, self._lower(vectors[row])))
-                except DalembertError as error:
-                    failures[row] = str(error)
                 except Exception as error:  # the user's builder raised: this sample's failure, not the batch's
-                    failures[row] = f"{type(error).__name__}: {error}"
+                    failures[row] = told(error)
             runs = self._runs([own for _, own in samples])
             for (row, lowered), result in zip(samples, runs, strict=True):
                 failures[row] = result.reason

@@ -2,9 +2,9 @@
 
 import importlib
 import importlib.util
+import inspect
 import re
 import sys
-import traceback
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from typing import Annotated, Any
 
 from pydantic import PlainValidator, ValidationInfo, WithJsonSchema
 
-from dalembert.errors import InputError, unknown
+from dalembert.errors import DalembertError, InputError, listed, told, unknown, users_place
 from dalembert.study.context import Context
 from dalembert.study.table import checked
 
@@ -54,13 +54,50 @@ class FunctionReference:
         with _importing_from(self.folder):
             try:
                 module = importlib.import_module(source) if self.path is None else _module(self.path)
-            except Exception as error:  # whatever the user's file raises
-                raise InputError(f"{source} cannot be imported: {_told(error)}") from error
+            except (Exception, SystemExit) as error:  # whatever the user's file raises
+                raise InputError(f"{source} cannot be imported: {told(error)}") from error
         function = getattr(module, name, None)
         if not callable(function):
             known = [key for key, value in vars(module).items() if callable(value) and not key.startswith("_")]
             raise InputError(unknown("function", name, known, where=source))
         return function
+
+    def fitting(self, *arguments: Any, **named: Any) -> Callable[..., Any]:
+        """The function, if it can be called with these arguments.
+
+        Raises
+        ------
+        InputError
+            As :meth:`load`, and if it cannot.
+        """
+        function = self.load()
+        try:
+            inspect.signature(function).bind(*arguments, **named)
+        except TypeError as error:
+            given = [*(f"a {type(one).__name__}" for one in arguments), *map(repr, named)]
+            raise InputError(
+                f"{self} cannot be called with {listed(given) if given else 'no arguments'}: {error}"
+            ) from None
+        except ValueError:  # a function that does not say what it takes
+            pass
+        return function
+
+
+@contextmanager
+def users_code() -> Iterator[None]:
+    """A block that calls functions of the user's: what they raise is told with its place in their file.
+
+    Raises
+    ------
+    InputError
+        From any error, not one of ours, that went through the user's code.
+    """
+    try:
+        yield
+    except (Exception, SystemExit) as error:
+        if isinstance(error, DalembertError) or not users_place(error):
+            raise
+        raise InputError(f"the study's Python code raised {told(error)}; mend it there") from error
 
 
 def read_function(value: object, context: Context) -> FunctionReference:
@@ -107,16 +144,3 @@ def _module(path: Path) -> ModuleType:
     sys.modules[name] = module  # dataclasses and pickles of the file look their module up
     spec.loader.exec_module(module)
     return module
-
-
-def _told(error: BaseException) -> str:
-    """An exception's type, message and last place, in one line."""
-    if isinstance(error, SyntaxError):
-        return f"SyntaxError: {error.msg} ({Path(error.filename or '').name}, line {error.lineno})"
-    frames = [frame for frame in traceback.extract_tb(error.__traceback__) if not _machinery(frame.filename)]
-    place = f" ({Path(frames[-1].filename).name}, line {frames[-1].lineno})" if frames else ""
-    return f"{type(error).__name__}: {error}{place}"
-
-
-def _machinery(filename: str) -> bool:
-    return filename.startswith("<frozen") or filename in (__file__, importlib.__file__)

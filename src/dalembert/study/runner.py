@@ -9,12 +9,13 @@ from pathlib import Path
 from time import perf_counter
 
 from dalembert import __version__
-from dalembert.errors import DalembertError, InputError, SolveError, StorageError
+from dalembert.errors import DalembertError, InputError, SolveError, StorageError, users_place
 from dalembert.files import write_text
 from dalembert.forward import Checkpoint, Executor
 from dalembert.study.duration import duration
 from dalembert.study.events import Event, EventLog
 from dalembert.study.folder import FAILED, FINISHED, INPUT, INTERRUPTED, RUNNING, RunFolder, new_folder
+from dalembert.study.functions import users_code
 from dalembert.study.study import Study
 from dalembert.study.tasks import TASKS, Outcome
 
@@ -108,14 +109,14 @@ def _executed(study: Study, folder: RunFolder, beginning: str, listener: Listene
         began = perf_counter()
         try:
             log.emit(beginning, **about)
-            with Checkpoint(folder.checkpoint) as checkpoint:
+            with Checkpoint(folder.checkpoint) as checkpoint, users_code():
                 outcome = TASKS[study.task].run(replace(study, checkpoint=checkpoint), log.emit)
             outcome.save(folder.result)
             outcome.report(folder.report)
         except BaseException as error:
             state, message = _ending(error)
             with suppress(StorageError):  # the error itself says it, and a run without a state was killed
-                if state == FAILED and not isinstance(error, DalembertError):
+                if state != INTERRUPTED and (not isinstance(error, DalembertError) or users_place(error.__cause__)):
                     write_text(folder.path / "error.txt", traceback.format_exc())
                 log.emit("run-ended", state=state, message=message)
             with suppress(StorageError):  # the state may fit where the event does not
@@ -132,17 +133,20 @@ def _executed(study: Study, folder: RunFolder, beginning: str, listener: Listene
 
 def plan(study: Study) -> str:
     """What a study would run, in a sentence; the model is built once, so that it is known to be well posed."""
-    return TASKS[study.task].plan(study)
+    with users_code():
+        return TASKS[study.task].plan(study)
 
 
 def takes(study: Study) -> str:
     """About how long a study would take, from one timed evaluation, in a sentence."""
-    return duration(TASKS[study.task].effort(study))
+    with users_code():
+        return duration(TASKS[study.task].effort(study))
 
 
 def foreseen(study: Study) -> tuple[str, ...]:
     """Sentences on what a study would tell, from a look at its first guesses."""
-    return TASKS[study.task].foreseen(study)
+    with users_code():
+        return TASKS[study.task].foreseen(study)
 
 
 def unknowns(study: Study) -> tuple[str, ...]:
@@ -162,7 +166,8 @@ def report_run(folder: RunFolder) -> Path:
     if not folder.result.is_file():
         raise InputError(f"{folder.path} has no result: the run is {state}; run its study again")
     study = folder.kept()
-    TASKS[study.task].load(study, folder.result).report(folder.report)
+    with users_code():
+        TASKS[study.task].load(study, folder.result).report(folder.report)
     return folder.report
 
 

@@ -104,7 +104,7 @@ class StructureBuilder:
 
         table = self._table
         if table.function is not None:
-            whole = table.function.load()(**table.arguments)
+            whole = table.function.fitting(**table.arguments)(**table.arguments)
             if not isinstance(whole, Structure):
                 raise InputError(f"{table.function} returned a {type(whole).__name__}; expected a Structure")
         else:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from dalembert.errors import InputError, ModelError
+from dalembert.errors import InputError, ModelError, unknown
 from dalembert.forward import Checkpoint, Executor, ForwardModel, Recorded, on_cluster
 from dalembert.parameters import Parameters
 from dalembert.study.builder import FunctionBuilder, SystemBuilder
@@ -43,6 +43,14 @@ def _watched(file: StudyFile) -> Iterator[str]:
         yield from getattr(table, "observe", None) or ()
         yield from (channel.partition(" ")[0] for channel in getattr(table, "channels", None) or ())
     yield from (channel.partition(" ")[0] for channel in measured_channels(file))
+
+
+def _require_given(channels: Sequence[str], model: ForwardModel) -> None:
+    """Refuse channels that a model does not give."""
+    names = [channel.name for channel in model.channels]
+    for name in channels:
+        if name not in names:
+            raise InputError(unknown("channel", name, names))
 
 
 @dataclass(frozen=True)
@@ -111,7 +119,9 @@ class Study:
         """The model as a function from parameters to a System or a VibrationSystem."""
         model = self.file.model
         if model.function is not None:
-            return FunctionBuilder(model.function.load(), model.resolved_arguments, self.file.vibrates)
+            arguments = model.resolved_arguments
+            given = {**self.parameters.mapping(self.parameters.start), **arguments}
+            return FunctionBuilder(model.function.fitting(**given), arguments, self.file.vibrates)
         if model.is_structure:
             return StructureBuilder(model, self.file.constants, tuple(_watched(self.file)))
         return SystemBuilder(model, self.file.constants)
@@ -157,7 +167,10 @@ class Study:
     def forward(self, channels: Sequence[str], samples: np.ndarray) -> ForwardModel:
         """The model between parameters and channels, at samples of its coordinate."""
         made = self._forward(channels, samples)
-        if self.file.model.forward is None:
+        if self.file.model.forward is not None:
+            with placed(self._named_in):
+                _require_given(channels, made)
+        else:
             self.system()  # what is wrong with the model itself is told as such
             with placed(self._named_in):
                 made.channels  # noqa: B018 (an unknown one is found here)
@@ -187,7 +200,8 @@ class Study:
             return curve
         reference = self.file.model.forward
         assert reference is not None  # or there is a system
-        model = reference.load()(self.parameters, **self.file.model.resolved_arguments)
+        arguments = self.file.model.resolved_arguments
+        model = reference.fitting(self.parameters, **arguments)(self.parameters, **arguments)
         if not isinstance(model, ForwardModel):
             raise InputError(
                 f"{reference} returned a {type(model).__name__}; expected a ForwardModel such as PythonModel"

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from dalembert.errors import InputError, SolveError
+from dalembert.errors import InputError, SolveError, told
 from dalembert.forward import ForwardModel
 from dalembert.intervals import Box
 from dalembert.uncertainty.events import Event, OnEvent, Ran
@@ -84,7 +84,7 @@ class Runs:
         except InputError:
             raise
         except Exception as error:  # whatever a user's function raises is this point's failure
-            self._failed(point, str(error))
+            self._failed(point, told(error))
             return None
         finally:
             self._ran(1 + len(point))

@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from dalembert.errors import DalembertError, InputError, SolveError
+from dalembert.errors import InputError, SolveError, told
 from dalembert.forward import Channel, Coordinate, Responses
 from dalembert.forward.builders import cores, inexact, restructured
 from dalembert.parameters import Parameter, Parameters
@@ -122,10 +122,8 @@ class FrequencyResponse:
         def work(row: int) -> None:
             try:
                 values[row] = self._read(*self._solve(vectors[row]))
-            except DalembertError as error:
-                failures[row] = str(error)
             except Exception as error:  # the user's builder raised: this sample's failure, not the batch's
-                failures[row] = f"{type(error).__name__}: {error}"
+                failures[row] = told(error)
 
         with one_thread():
             if self.workers == 1 or len(vectors) == 1:

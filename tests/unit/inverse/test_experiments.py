@@ -122,7 +122,8 @@ def test_every_method_takes_experiments_and_failed_samples_name_theirs():
     experiments[0] = Experiment("short", PythonModel(fragile, BOUNDS, ["x"], SHORT), experiments[0].data, ("size",))
     fit = identify(experiments, method=ParticleSwarm(20, 30), polish=True)
     np.testing.assert_allclose(fit.values, [2.0, 0.8, 1.5], rtol=1e-5)
-    assert "the first: experiment 'short': RuntimeError: too fast (at short.size = " in fit.status
+    place = f"test_experiments.py, line {fragile.__code__.co_firstlineno + 2}"
+    assert f"the first: experiment 'short': RuntimeError: too fast ({place}) (at short.size = " in fit.status
 
 
 def test_weights_are_given_by_the_experiments_name():

@@ -117,7 +117,7 @@ def test_a_failed_point_is_marked_and_the_rest_returns(study):
     assert outcome.status == "6 points along rate, height; 1 of them failed, see events.jsonl"
     assert folder.state()["state"] == "failed"
     failures = [event["failure"] for event in read_events(folder.events) if event.get("failure")]
-    assert failures == ["ValueError: too fast"]
+    assert failures == ["ValueError: too fast (decay.py, line 12)"]
     with xr.open_dataset(folder.result, group="rate", engine="h5netcdf") as curve:
         assert np.isnan(curve["x"]).values.tolist() == [False, False, False, True]
 

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dalembert.errors import InputError, SolveError, unknown
+from dalembert.errors import InputError, SolveError, told, unknown
 from dalembert.forward import ForwardModel
 
 
@@ -61,7 +61,7 @@ def linearised(model: ForwardModel, vector: np.ndarray) -> tuple[np.ndarray, np.
     except InputError:
         raise
     except Exception as error:  # whatever a user's function raises is this vector's failure
-        raise SolveError(f"{error} (at {at}); look at the model there, or look elsewhere") from error
+        raise SolveError(f"{told(error)} (at {at}); look at the model there, or look elsewhere") from error
     if not (np.all(np.isfinite(response)) and np.all(np.isfinite(jacobian))):
         raise SolveError(f"the response or its jacobian at {at} is not finite; look at the model there, or elsewhere")
     return response, jacobian

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy as np
 from pydantic import Discriminator, Field, Tag, model_validator
 
-from dalembert.errors import DalembertError, InputError, unknown
+from dalembert.errors import InputError, told, unknown
 from dalembert.files import replacing
 from dalembert.forward import ForwardModel
 from dalembert.parameters import Parameters
@@ -239,7 +239,7 @@ def _fill(study: "Study", model: ForwardModel, curve: Curve) -> Iterator[tuple[i
         except InputError:  # a model that cannot be differentiated at all
             raise
         except Exception as error:  # whatever a user's function raises is this point's failure
-            failure = str(error) if isinstance(error, DalembertError) else f"{type(error).__name__}: {error}"
+            failure = told(error)
         yield row, failure
 
 

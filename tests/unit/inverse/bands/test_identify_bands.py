@@ -249,7 +249,10 @@ def test_a_check_whose_runs_all_fail_is_none():
     model = PythonModel(fragile, DECAY.parameters, ["x"], TIMES)
     fit = identify_bands(model, EXACT, method=GlobalSurrogate(Tensor(8), tolerance=1.0))
     assert fit.checked_fitness is None
-    assert "simulations failed and were passed over, the first: RuntimeError: enough (at size = " in fit.status
+    place = f"test_identify_bands.py, line {fragile.__code__.co_firstlineno + 3}"
+    assert (
+        f"simulations failed and were passed over, the first: RuntimeError: enough ({place}) (at size = " in fit.status
+    )
     np.testing.assert_allclose(fit.box.lower, [1.8, 0.7], rtol=1e-3)
 
 

@@ -170,7 +170,8 @@ def test_failed_runs_are_passed_over_where_the_scheme_can_do_without_and_said():
     model = PythonModel(fragile, DISC.parameters, ["r"], NOWHEN)
     found = identify_set(model, AT_ZERO, error=1.0, scheme=dalembert.surrogate.TotalDegree(2, oversampling=4))
     assert found.volume[0] < np.pi < found.volume[1]
-    assert "passed over, the first: RuntimeError: too far (at x = " in found.status
+    place = f"test_identify_set.py, line {fragile.__code__.co_firstlineno + 2}"
+    assert f"passed over, the first: RuntimeError: too far ({place}) (at x = " in found.status
 
 
 def test_events_tell_of_runs_boxes_and_the_end():

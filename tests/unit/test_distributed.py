@@ -12,8 +12,10 @@ import pytest
 
 import dalembert as da
 from dalembert.errors import InputError
-from dalembert.forward import distributed
-from dalembert.study import load, run_study
+from dalembert.forward import cluster
+from dalembert.structure import lumped
+from dalembert.study import RunFolder, load, run_study
+from faults.kills import content, kinds
 from flexible_pendulum import tip
 from support import says
 
@@ -31,9 +33,9 @@ def address():
     command = [DASK, "scheduler", "--host", "127.0.0.1", "--port", str(port), "--no-dashboard"]
     with subprocess.Popen(command, **QUIET) as scheduler:
         yield f"tcp://127.0.0.1:{port}"
-        for client in distributed._connected.values():  # or they go on looking for it in threads of their own
+        for client in cluster._connected.values():  # or they go on looking for it in threads of their own
             client.close()
-        distributed._connected.clear()
+        cluster._connected.clear()
         scheduler.kill()
 
 
@@ -113,7 +115,8 @@ def test_a_failed_sample_is_marked_and_the_others_return(client, decay):
     vectors = np.linspace(0.1, 2.0, 12)[:, None]
     here, there = decay.evaluate(vectors), da.on_cluster(decay, client).evaluate(vectors)
     assert there.failures == here.failures
-    assert here.failures[-1] == "RuntimeError: too fast (test_distributed.py, line 71)"
+    line = slowly.__code__.co_firstlineno + 3
+    assert here.failures[-1] == f"RuntimeError: too fast (test_distributed.py, line {line})"
     np.testing.assert_array_equal(there.values, here.values)
 
 
@@ -177,7 +180,7 @@ def test_a_study_with_files_of_its_own_runs_on_a_cluster(client, tmp_path, monke
 
 
 def test_an_address_without_a_scheduler(monkeypatch, decay):
-    monkeypatch.setattr("dalembert.forward.distributed.WAIT", 0.2)
+    monkeypatch.setattr("dalembert.forward.cluster.WAIT", 0.2)
     with pytest.raises(InputError, match=r"no scheduler of Dask answers at 'tcp://127\.0\.0\.1:9' within 0\.2 s"):
         da.on_cluster(decay, "tcp://127.0.0.1:9")
 
@@ -194,3 +197,78 @@ def test_a_model_that_cannot_be_sent(client, tmp_path):
         model = da.PythonModel(lambda rate: log.write("") + rate * TIMES, {"rate": (0.1, 2.0)}, ["x"], TIMES)
         with pytest.raises(InputError, match=r"the model cannot be sent to the cluster: .*must not hold open files"):
             da.on_cluster(model, client).evaluate(np.array([[1.0], [1.5]]))
+
+
+def damped(preload: float) -> da.VibrationSystem:
+    if preload == 7.0:
+        raise RuntimeError("no seven")
+    system = da.VibrationSystem(lumped({"m": 1.0}, [("m", None, 1.0, 0.04)]))
+    system.add(da.HarmonicForce("m", 1.0))
+    system.add(da.FrictionContact("damper", "m", friction=0.5, preload=preload, law=da.Elastic(0.8)))
+    return system
+
+
+def test_a_family_of_curves_goes_there_and_its_curves_are_kept(client, tmp_path):
+    asked = (damped, "preload", [0.0, 2.0, 7.0, -1.0, 4.0], (0.12, 0.25), da.HarmonicBalance(3, samples=128))
+    here, told = da.frequency_responses(*asked, stability=True), []
+    with da.Checkpoint(tmp_path / "checkpoint") as checkpoint:
+        options = dict(executor=client, checkpoint=checkpoint, stability=True)
+        there = da.frequency_responses(*asked, **options, on_curve=lambda row, *_: told.append(row))
+    assert told == [0, 1, 2, 3, 4]
+    assert there.failures == here.failures
+    assert there.failures[2].startswith("RuntimeError: no seven (test_distributed.py, line ")
+    assert there.failures[3] is not None
+    with da.Checkpoint(tmp_path / "checkpoint") as checkpoint:
+        again = da.frequency_responses(*asked, checkpoint=checkpoint, stability=True)
+        assert checkpoint.spared > 0
+    for one, other, third in zip(here.curves, there.curves, again.curves, strict=True):
+        if one is not None:
+            assert content_of(one) == content_of(other) == content_of(third)
+
+
+def content_of(curve) -> dict[str, bytes]:
+    dataset = curve.to_xarray()
+    return {str(name): array.values.tobytes() for name, array in dataset.items()} | {"attributes": str(dataset.attrs)}
+
+
+FAMILY = """
+[parameters]
+preload = { lower = 0.0, upper = 8.0, start = 1.0 }
+[[model.mass]]
+name = "m"
+mass = 1.0
+[[model.spring]]
+first = "m"
+stiffness = 1.0
+damping = 0.04
+[[model.force]]
+dof = "m"
+amplitude = 1.0
+[[model.contact]]
+name = "slider"
+first = "m"
+friction = 0.5
+preload = "preload"
+law = { kind = "Elastic", tangential_stiffness = 0.8 }
+[frequency_response]
+frequencies = { start = 0.12, end = 0.3, count = 60 }
+sweep = { parameter = "preload", values = { count = 8 } }
+"""
+
+
+@pytest.mark.slow
+def test_a_family_that_is_killed_on_a_cluster_goes_on_there_or_here(address, client, tmp_path):
+    (tmp_path / "study.toml").write_text(FAMILY)
+    folder, _ = run_study(load(tmp_path / "study.toml"), tmp_path / "undisturbed")
+    for name, more in (("there", ["--cluster", address]), ("here", [])):
+        killed, events = tmp_path / name, tmp_path / name / "events.jsonl"
+        command = [Path(sys.executable).with_name("dalembert"), "run", tmp_path / "study.toml", "--out", killed]
+        with subprocess.Popen([*command, "--cluster", address], **QUIET) as run:
+            while not (events.is_file() and events.read_text().count('"swept"') >= 2):
+                assert run.poll() is None
+                time.sleep(0.01)
+            run.kill()
+        assert events.read_text().count('"swept"') < 8
+        subprocess.run([command[0], "resume", killed, *more], check=True, **QUIET)
+        assert content(killed / "result.nc") == content(folder.result)
+        assert kinds(RunFolder(killed)) == kinds(folder)

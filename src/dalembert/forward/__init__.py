@@ -1,7 +1,9 @@
 """The protocol that every model fulfils, models made of plain functions, and what sensors see of a model."""
 
 from dalembert.forward.checkpoint import Checkpoint
-from dalembert.forward.distributed import Distributed, Executor, on_cluster
+from dalembert.forward.cluster import Executor
+from dalembert.forward.distributed import Distributed, on_cluster
+from dalembert.forward.ensemble import ensemble
 from dalembert.forward.model import Channel, Coordinate, ForwardModel
 from dalembert.forward.python_model import PythonModel
 from dalembert.forward.recorded import Recorded, clock
@@ -21,5 +23,6 @@ __all__ = [
     "Sensor",
     "Sensors",
     "clock",
+    "ensemble",
     "on_cluster",
 ]

@@ -2,14 +2,13 @@
 
 import hashlib
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 
 from dalembert.errors import InputError, SolveError, told
-from dalembert.forward import Channel, Coordinate, Responses
+from dalembert.forward import Channel, Coordinate, Responses, ensemble
 from dalembert.forward.builders import cores, inexact, restructured
 from dalembert.multibody.assemble import assembled, refuse_kinks, refuse_redundancy
 from dalembert.multibody.callbacks import in_complex_numbers
@@ -141,12 +140,7 @@ class TimeResponse:
 
         parts = _parts(len(vectors), self.workers)
         with in_complex_numbers(strict=False):
-            if self.workers == 1 or len(parts) == 1:
-                for part in parts:
-                    work(part)
-            else:
-                with ThreadPoolExecutor(self.workers) as pool:
-                    list(pool.map(work, parts))
+            list(ensemble(work, parts, workers=self.workers))
         return Responses(values, tuple(failures))
 
     def jacobian(self, vector: np.ndarray) -> np.ndarray:

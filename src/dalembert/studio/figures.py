@@ -31,6 +31,25 @@ def convergence(curves: Mapping[str, Sequence[tuple[float, float]]]) -> go.Figur
     return on_any_page(figure.update_layout(showlegend=len(curves) > 1))
 
 
+def followed(points: Sequence[tuple[float, float]], axes: tuple[str, str]) -> go.Figure:
+    """A path as far as it has come, with its last point marked.
+
+    Parameters
+    ----------
+    points : sequence of (place, size)
+    axes : (str, str)
+        What they are called.
+    """
+    figure = go.Figure()
+    x, y = np.array(points, dtype=float).reshape(-1, 2).T
+    figure.add_scatter(x=x, y=y, mode="lines", line={"color": LIGHT.series[0], "width": 2})
+    figure.add_scatter(x=x[-1:], y=y[-1:], mode="markers", marker={"color": LIGHT.series[0], "size": 9})
+    themed(figure, "", height=320)
+    figure.update_xaxes(title=plain(axes[0]))
+    figure.update_yaxes(title=plain(axes[1]), rangemode="tozero")
+    return on_any_page(figure.update_layout(showlegend=False))
+
+
 def on_any_page(figure: go.Figure) -> go.Figure:
     """The figure without a ground of its own, for a light and for a dark page."""
     clear = "rgba(0,0,0,0)"

@@ -11,7 +11,7 @@ from dalembert.study.progress import Told
 SHOWN = 200
 """Events in the list of a page."""
 POINTS = 1000
-"""Points of a curve of convergence: beyond them every other one is left out."""
+"""Points of a curve that grows: beyond them every other one is left out."""
 
 
 @dataclass
@@ -22,6 +22,11 @@ class Live:
     ----------
     path : Path
         ``events.jsonl``.
+
+    Attributes
+    ----------
+    followed, axes : list of (float, float), (str, str)
+        Amplitudes along what is followed so far, in its order, and what the axes are called.
     """
 
     path: Path
@@ -29,11 +34,15 @@ class Live:
     best: float = float("inf")
     values: list[float] = field(default_factory=list)
     convergence: list[tuple[float, float]] = field(default_factory=list)
+    followed: list[tuple[float, float]] = field(default_factory=list)
+    axes: tuple[str, str] = ("", "")
     recent: deque[Event] = field(default_factory=lambda: deque(maxlen=SHOWN))
     _told: Told = field(default_factory=Told)
     _place: int = 0
     _samples: int | None = None
     _every: int = 1
+    _passed: int = 0
+    _stride: int = 1
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -66,6 +75,7 @@ class Live:
         self.count += 1
         self.recent.append(event)
         self._told.take(event)
+        self._follow(event)
         best = event.get("best")
         if best is None:
             return
@@ -77,3 +87,20 @@ class Live:
             self.convergence.append((event.get("simulations", self.count), self.best))
         if len(self.convergence) > POINTS:
             self.convergence, self._every = self.convergence[::2], 2 * self._every
+
+    def _follow(self, event: Event) -> None:
+        """Amplitudes along a path that grows: over frequency, or the peaks of whole curves over a parameter."""
+        match event:
+            case {"event": "followed", "frequency": place, "amplitude": size, "dof": dof}:
+                self.axes = "frequency (Hz)", f"{dof} (m)"
+            case {"event": "swept", "value": place, "amplitude": size, "dof": dof, "parameter": parameter}:
+                self.axes = parameter, f"peak of {dof} (m)"
+            case _:
+                return
+        if size is None:
+            return
+        if self._passed % self._stride == 0:
+            self.followed.append((place, size))
+        self._passed += 1
+        if len(self.followed) > POINTS:
+            self.followed, self._stride = self.followed[::2], 2 * self._stride

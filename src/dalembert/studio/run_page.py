@@ -11,7 +11,7 @@ import plotly.graph_objects as go
 from nicegui import ui
 
 from dalembert.errors import DalembertError, InputError
-from dalembert.studio.figures import convergence, on_any_page
+from dalembert.studio.figures import convergence, followed, on_any_page
 from dalembert.studio.fit_so_far import fit_so_far
 from dalembert.studio.frame import STATES, badge, button, complain, frame
 from dalembert.studio.jobs import Jobs, stop
@@ -129,6 +129,10 @@ class _Page:
         if len(points) > 1 and len(points) != self.drawn:
             self.drawn = len(points)
             _draw(self.curve, "Best value over simulations", convergence({self.folder.path.name: points}))
+        points = self.live.followed
+        if len(points) > 1 and len(points) != self.drawn:
+            self.drawn = len(points)
+            _draw(self.curve, "The response as far as it was followed", followed(points, self.live.axes))
 
     async def _show_fit(self, values: list[float]) -> None:
         """The best fit so far; a run whose model another process cannot make has none."""

@@ -61,6 +61,9 @@ class Told:
                 return f"profile of {name} · {simulations} simulations", 0, None
             case {"event": "following", "begin": begin, "end": end}:
                 return f"following the response from {begin:g} to {end:g} Hz", 0, None
+            case {"event": "followed", "frequency": frequency, "amplitude": amplitude, "dof": dof, "done": part}:
+                size = "not found" if amplitude is None else f"{dof} {amplitude:.4g} m"
+                return f"{frequency:.6g} Hz · {size} · {part:.0%} of the way", round(100 * part), 100
             case {"event": "simulating", "end": end}:
                 return f"simulating to {end:g} s", 0, None
         return "", 0, None

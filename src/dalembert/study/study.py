@@ -155,8 +155,8 @@ class Study:
 
     def along(self, name: str) -> Callable[..., Any]:
         """The model as a function of one parameter, the others at their first guesses."""
-        others = self.parameters.mapping(self.parameters.start)
-        return lambda **given: self.builder(**{**others, name: given[name]})
+        builder, others = self.builder, self.parameters.mapping(self.parameters.start)
+        return lambda **given: builder(**{**others, name: given[name]})
 
     def motion(self, end: float, vector: np.ndarray | None = None, times: np.ndarray | None = None) -> "Trajectory":
         """The mechanism's motion until ``end`` (s) at a parameter vector."""

@@ -3,11 +3,12 @@
 from dalembert.vibration.backbone import Backbone
 from dalembert.vibration.contacts import Elastic, FrictionContact, Iwan, Rigid
 from dalembert.vibration.curve import FrequencyCurve, Peak
-from dalembert.vibration.curve_family import CurveFamily, Envelope, frequency_responses
+from dalembert.vibration.curve_family import CurveFamily, Envelope
 from dalembert.vibration.deformation import Deformation, deformation
 from dalembert.vibration.floquet import floquet_multipliers
 from dalembert.vibration.forward_model import FrequencyResponse
-from dalembert.vibration.frequency_response import frequency_response
+from dalembert.vibration.frequency_response import FollowedPoint, frequency_response
+from dalembert.vibration.frequency_responses import frequency_responses
 from dalembert.vibration.harmonic_balance import HarmonicBalance
 from dalembert.vibration.newmark import Newmark
 from dalembert.vibration.nonlinear_modes import backbone
@@ -27,6 +28,7 @@ __all__ = [
     "Deformation",
     "Elastic",
     "Envelope",
+    "FollowedPoint",
     "FrequencyCurve",
     "FrequencyResponse",
     "FrictionContact",

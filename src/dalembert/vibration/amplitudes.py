@@ -1,6 +1,7 @@
 """Sizes of periodic motions from their harmonics."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -38,13 +39,13 @@ class Amplitude:
     def of(self, coefficients: np.ndarray) -> np.ndarray:
         """Sizes of motions, from coefficients (..., coefficients)."""
         if self.kind == "peak":
-            return np.abs(coefficients @ self._waves().T).max(axis=-1)
+            return np.abs(coefficients @ self._waves.T).max(axis=-1)
         return np.sqrt(coefficients**2 @ self._weights())
 
     def slope(self, coefficients: np.ndarray) -> np.ndarray:
         """Derivative of the size by the coefficients; both (..., coefficients)."""
         if self.kind == "peak":
-            waves = self._waves()
+            waves = self._waves
             samples = coefficients @ waves.T
             largest = np.abs(samples).argmax(axis=-1)
             sign = np.sign(np.take_along_axis(samples, largest[..., None], axis=-1))
@@ -54,12 +55,13 @@ class Amplitude:
 
     def instant(self, coefficients: np.ndarray) -> float:
         """Phase, rad, at which a motion (coefficients,) is largest, to a 4096th of the period."""
-        return float(2 * np.pi * np.abs(self._waves() @ coefficients).argmax() / PHASES)
+        return float(2 * np.pi * np.abs(self._waves @ coefficients).argmax() / PHASES)
 
     def _order(self) -> int:
         word, _, number = self.kind.partition(" ")
         return int(number) if word == "harmonic" and number.isdigit() else -1
 
+    @cached_property
     def _waves(self) -> np.ndarray:
         return synthesis(self.orders, 2 * np.pi * np.arange(PHASES) / PHASES)
 

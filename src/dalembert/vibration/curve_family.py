@@ -1,21 +1,15 @@
-"""Responses over frequency for several values of a parameter, such as a preload."""
+"""The result of following responses over frequency for several values of a parameter, such as a preload."""
 
 import json
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import numpy as np
 
-from dalembert.errors import DalembertError, InputError
-from dalembert.forward.builders import cores
+from dalembert.errors import InputError
 from dalembert.results import Result
 from dalembert.vibration.curve import FrequencyCurve, Peak
-from dalembert.vibration.frequency_response import frequency_response
-from dalembert.vibration.harmonic_balance import HarmonicBalance
-from dalembert.vibration.system import VibrationSystem
-from dalembert.vibration.threads import one_thread
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -170,87 +164,6 @@ class CurveFamily(Result):
 
     def _sizes(self, dof: str, kind: str) -> np.ndarray:
         return np.array([peak.amplitude for peak in self.peaks(dof, kind)])
-
-
-def frequency_responses(
-    builder: Callable[..., VibrationSystem],
-    parameter: str,
-    values: Sequence[float] | np.ndarray,
-    frequencies: np.ndarray | tuple[float, float],
-    method: HarmonicBalance | None = None,
-    *,
-    unit: str = "",
-    workers: int | None = None,
-    on_curve: Callable[[int, FrequencyCurve | None, str | None], None] | None = None,
-    **options: Any,
-) -> CurveFamily:
-    """Responses over frequency for several values of a parameter, over all cores.
-
-    Parameters
-    ----------
-    builder : callable
-        ``builder(**{parameter: value}) -> VibrationSystem``.
-    parameter : str
-    values : array, shape (values,)
-        The first is what reductions are measured by: for a preload 0, with which contacts are free.
-    frequencies, method
-        As of :func:`frequency_response`.
-    unit : str
-        Of the parameter, for labels.
-    workers : int, optional
-        Threads; as many as there are cores if not given.
-    on_curve : callable, optional
-        Called with the number of each value, its curve and why there is none, in the order of the values.
-    options
-        Others of :func:`frequency_response`: ``continuation``, ``observe``, ``checkpoint`` and so on.
-
-    Returns
-    -------
-    CurveFamily
-        A value for which there is no curve is marked with the reason, and the others return.
-
-    Raises
-    ------
-    InputError
-        Where no values are given.
-    DalembertError
-        Where there is no curve for any of them: the reason of the first.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from dalembert.structure import lumped
-    >>> from dalembert.vibration import Elastic, FrictionContact, HarmonicForce, VibrationSystem
-    >>> def damped(preload):
-    ...     system = VibrationSystem(lumped({"m": 1.0}, [("m", None, 1.0, 0.04)]))
-    ...     system.add(HarmonicForce("m", 1.0))
-    ...     system.add(FrictionContact("damper", "m", friction=0.5, preload=preload, law=Elastic(0.8)))
-    ...     return system
-    >>> family = frequency_responses(damped, "preload", [0.0, 1.0, 2.0, 10.0], np.linspace(0.12, 0.25, 40))
-    >>> family.best("m"), family.reduction("m").round(2).tolist()
-    (2.0, [0.0, 0.59, 0.85, 0.72])
-    """
-    given = np.asarray(values, dtype=float)
-    if given.ndim != 1 or not len(given):
-        raise InputError(f"frequency_responses: the values of {parameter} are {values}; expected one or more numbers")
-
-    def work(value: float) -> tuple[FrequencyCurve | None, DalembertError | None]:
-        try:
-            return frequency_response(builder(**{parameter: value}), frequencies, method, **options), None
-        except DalembertError as error:
-            return None, error
-
-    curves, errors = [], []
-    with one_thread(), ThreadPoolExecutor(min(workers or cores(), len(given))) as pool:
-        for row, (curve, error) in enumerate(pool.map(work, given.tolist())):
-            curves.append(curve)
-            errors.append(error)
-            if on_curve is not None:
-                on_curve(row, curve, None if error is None else str(error))
-    if errors[0] is not None and all(curve is None for curve in curves):
-        raise errors[0]
-    failures = tuple(None if error is None else str(error) for error in errors)
-    return CurveFamily(parameter, unit, given, tuple(curves), failures)
 
 
 def _curve(dataset: "Dataset", row: str, attributes: dict[str, Any] | None) -> FrequencyCurve | None:

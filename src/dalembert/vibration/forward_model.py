@@ -1,14 +1,13 @@
 """The response of a vibrating system over frequency as a forward model."""
 
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 
 from dalembert.errors import InputError, SolveError, told
-from dalembert.forward import Channel, Coordinate, Responses
+from dalembert.forward import Channel, Coordinate, Responses, ensemble
 from dalembert.forward.builders import cores, inexact, restructured
 from dalembert.parameters import Parameter, Parameters
 from dalembert.vibration.amplitudes import Amplitude
@@ -126,12 +125,7 @@ class FrequencyResponse:
                 failures[row] = told(error)
 
         with one_thread():
-            if self.workers == 1 or len(vectors) == 1:
-                for row in range(len(vectors)):
-                    work(row)
-            else:
-                with ThreadPoolExecutor(self.workers) as pool:
-                    list(pool.map(work, range(len(vectors))))
+            list(ensemble(work, range(len(vectors)), workers=self.workers))
         return Responses(values, tuple(failures))
 
     def jacobian(self, vector: np.ndarray) -> np.ndarray:

@@ -1,7 +1,8 @@
 """The response of a vibrating system over frequency."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict
+from typing import NamedTuple
 
 import numpy as np
 import scipy
@@ -27,6 +28,29 @@ ALL = 60
 """Size up to which all degrees of freedom are observed if none are named."""
 
 
+class FollowedPoint(NamedTuple):
+    """A point of a curve when it is found.
+
+    Parameters
+    ----------
+    frequency : float
+        Hz.
+    response : array, shape (dofs, coefficients)
+        Of the observed degrees of freedom, m; NaN where the point was not found.
+    dofs : tuple of str
+    done : float
+        Part of the way between the first and the last frequency that the curve has come, at its farthest.
+    """
+
+    frequency: float
+    response: np.ndarray
+    dofs: tuple[str, ...]
+    done: float
+
+
+OnPoint = Callable[[FollowedPoint], object]
+
+
 def frequency_response(
     system: VibrationSystem,
     frequencies: np.ndarray | tuple[float, float],
@@ -37,6 +61,7 @@ def frequency_response(
     start: tuple[FrequencyCurve, int] | None = None,
     stability: bool = False,
     checkpoint: Checkpoint | None = None,
+    on_point: OnPoint | None = None,
 ) -> FrequencyCurve:
     """Periodic responses over frequency by harmonic balance.
 
@@ -60,6 +85,8 @@ def frequency_response(
     checkpoint : Checkpoint, optional
         Where solutions are kept as they are found; begun again with the same file the curve is followed to where it was
         in a part of the time, and on from there to the same bits.
+    on_point : callable, optional
+        Called with each point, a :class:`FollowedPoint`, as it is found.
 
     Returns
     -------
@@ -104,7 +131,7 @@ def frequency_response(
     settings = {"continuation": continuation, "frequencies": list(map(float, frequencies)) if ends else "given"}
     with one_thread():
         problem = recorded(equations(system, method), checkpoint)
-        return _followed(problem, omegas, settings, observe, start, stability)
+        return _followed(problem, omegas, settings, observe, start, stability, on_point)
 
 
 def _followed(
@@ -114,6 +141,7 @@ def _followed(
     observe: Sequence[str] | None,
     start: tuple[FrequencyCurve, int] | None,
     stability: bool,
+    on_point: OnPoint | None,
 ) -> FrequencyCurve:
     """The curve through given frequencies, or between two."""
     known = None if start is None else restarted(problem, *start, "frequency_response")
@@ -124,7 +152,7 @@ def _followed(
         follow = along if settings["continuation"] == ARC_LENGTH else natural
         found = follow(problem, float(omegas[0]), float(omegas[1]), known)
     points = judged(problem, found, located=not given) if stability else unjudged(found)
-    return _curve(problem, points, observed(problem.lowered, observe), settings)
+    return _curve(problem, points, observed(problem.lowered, observe), settings, omegas, on_point)
 
 
 def restarted(problem: Equations, curve: FrequencyCurve, point: int, where: str) -> Solution:
@@ -150,13 +178,29 @@ def observed(lowered: Lowered, names: Sequence[str] | None) -> np.ndarray:
     return np.unique([*forced, *lowered.matrix.nonzero()[1]]).astype(int)
 
 
-def _curve(problem: Equations, points: Iterable[Judged], rows: np.ndarray, settings: dict) -> FrequencyCurve:
-    lowered, records = problem.lowered, [(one, *_read(problem, one.found.solution, rows)) for one in points]
+def _curve(
+    problem: Equations,
+    points: Iterable[Judged],
+    rows: np.ndarray,
+    settings: dict,
+    omegas: np.ndarray,
+    on_point: OnPoint | None,
+) -> FrequencyCurve:
+    lowered, records, done = problem.lowered, [], 0.0
+    dofs = tuple(lowered.structure.dofs.names[row] for row in rows)
+    for one in points:
+        records.append((one, *_read(problem, one.found.solution, rows)))
+        if on_point is not None:
+            omega = one.found.solution.omega
+            given = settings["frequencies"] == "given"
+            come = len(records) / len(omegas) if given else (omega - omegas[0]) / (omegas[1] - omegas[0])
+            done = float(max(done, min(come, 1.0)))
+            on_point(FollowedPoint(omega / (2 * np.pi), records[-1][1], dofs, done))
     solutions = [one.found.solution for one, *_ in records]
     method = asdict(problem.method)
     provenance = {"version": dalembert.__version__, "numpy": np.__version__, "scipy": scipy.__version__}
     return FrequencyCurve(
-        dofs=tuple(lowered.structure.dofs.names[row] for row in rows),
+        dofs=dofs,
         coordinates=lowered.row_names,
         contacts=lowered.contacts,
         orders=problem.method.orders,

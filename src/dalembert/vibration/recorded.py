@@ -1,6 +1,7 @@
-"""Equations whose solutions are kept: an interrupted curve is followed again without Newton's method."""
+"""Solutions and curves that are kept: an interrupted curve is followed again without Newton's method."""
 
 import hashlib
+import json
 from dataclasses import dataclass
 from functools import cached_property
 from time import perf_counter
@@ -9,6 +10,7 @@ import numpy as np
 
 from dalembert.forward import Checkpoint
 from dalembert.vibration.condensation import Point
+from dalembert.vibration.curve import FrequencyCurve
 from dalembert.vibration.equations import Equations
 from dalembert.vibration.fingerprint import fingerprint
 from dalembert.vibration.newton import Plane, Solution, evaluated
@@ -72,3 +74,24 @@ class RecordedEquations(Equations):
 def recorded(problem: Equations, checkpoint: Checkpoint | None) -> Equations:
     """The equations with their solutions in a checkpoint, or the equations themselves without one."""
     return problem if checkpoint is None else RecordedEquations(problem.lowered, problem.method, checkpoint=checkpoint)
+
+
+def keep_curve(checkpoint: Checkpoint, key: bytes, curve: FrequencyCurve, seconds: float) -> None:
+    """Keep a whole curve, which took so long."""
+    dataset = curve.to_xarray()
+    told = {"variables": {name: dataset[name].dims for name in dataset}, "attributes": dict(dataset.attrs)}
+    text = np.frombuffer(json.dumps(told).encode(), np.uint8)
+    checkpoint.keep(key, (text, *(dataset[name].values for name in dataset)), seconds)
+
+
+def kept_curve(checkpoint: Checkpoint, key: bytes) -> FrequencyCurve | None:
+    """The curve that was kept, or None."""
+    import xarray as xr
+
+    known = checkpoint.recall(key)
+    if known is None:
+        return None
+    text, *arrays = known
+    told = json.loads(text.tobytes())
+    variables = dict(zip(told["variables"], zip(told["variables"].values(), arrays, strict=True), strict=True))
+    return FrequencyCurve.from_xarray(xr.Dataset(variables, attrs=told["attributes"]))

@@ -2,14 +2,13 @@
 
 import json
 from collections.abc import Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from dalembert.errors import InputError
-from dalembert.forward.builders import cores
+from dalembert.forward import ensemble
 from dalembert.results import Result
 from dalembert.vibration.curve import FrequencyCurve
 from dalembert.vibration.newmark import Newmark
@@ -171,8 +170,8 @@ def compare_in_time(
         sizes = [motion.amplitude(dof, kind) for dof in curve.dofs]
         return sizes, motion.periods, motion.residual, motion.converged
 
-    with one_thread(), ThreadPoolExecutor(cores()) as pool:
-        runs = list(pool.map(run, chosen.tolist()))
+    with one_thread():
+        runs = list(ensemble(run, chosen.tolist()))
     sizes, periods, residuals, converged = zip(*runs, strict=True)
     return TimeComparison(
         dofs=curve.dofs,

@@ -1,7 +1,9 @@
 """A run's events as a page reads them while they come."""
 
 import json
+from itertools import pairwise
 
+from dalembert.studio.figures import followed
 from dalembert.studio.live import POINTS, SHOWN, Live
 
 
@@ -52,3 +54,40 @@ def test_a_fitness_over_more_samples_begins_another_curve(tmp_path):
     live = Live(path)
     live.advance()
     assert (live.best, live.convergence) == (0.1, [(1, 0.1)])
+
+
+def test_a_curve_grows_with_its_points_and_a_family_with_its_peaks(tmp_path):
+    path = tmp_path / "events.jsonl"
+    points = [
+        {"event": "followed", "frequency": 1.0 + k, "amplitude": 0.1 * k, "dof": "m.x", "done": 0.1} for k in (0, 1)
+    ]
+    lost = {"event": "followed", "frequency": 3.0, "amplitude": None, "dof": "m.x", "done": 0.2}
+    path.write_text("".join(json.dumps(event) + "\n" for event in (*points, lost)))
+    live = Live(path)
+    live.advance()
+    assert (live.followed, live.axes) == ([(1.0, 0.0), (2.0, 0.1)], ("frequency (Hz)", "m.x (m)"))
+    assert live.progress == ("3 Hz · not found · 20% of the way", 20, 100)
+    swept = {"event": "swept", "parameter": "load", "value": 2.0, "dof": "m.x", "amplitude": 0.3, "done": 1, "total": 4}
+    path.write_text(json.dumps(swept) + "\n")
+    live = Live(path)
+    live.advance()
+    assert (live.followed, live.axes) == ([(2.0, 0.3)], ("load", "peak of m.x (m)"))
+
+
+def test_a_long_path_keeps_a_short_curve(tmp_path):
+    path = tmp_path / "events.jsonl"
+    points = [{"event": "followed", "frequency": k, "amplitude": 0.1, "dof": "m", "done": 0.1} for k in range(5000)]
+    path.write_text("".join(json.dumps(event) + "\n" for event in points))
+    live = Live(path)
+    live.advance()
+    assert POINTS // 2 <= len(live.followed) <= POINTS
+    gaps = {second[0] - first[0] for first, second in pairwise(live.followed)}
+    assert len(gaps) == 1
+
+
+def test_what_was_followed_is_drawn_with_its_last_point():
+    figure = followed([(1.0, 0.1), (2.0, 0.4), (1.5, 0.5)], ("frequency (Hz)", "m.x (m)"))
+    line, end = figure.data
+    assert (list(line.x), list(line.y)) == ([1.0, 2.0, 1.5], [0.1, 0.4, 0.5])
+    assert (list(end.x), list(end.y)) == ([1.5], [0.5])
+    assert (figure.layout.xaxis.title.text, figure.layout.yaxis.title.text) == ("frequency (Hz)", "m.x (m)")

@@ -35,6 +35,10 @@ def _printed(event: dict, names: tuple[str, ...] = ()) -> str:
             {"event": "swept", "parameter": "a", "value": 0.5, "done": 3, "total": 9, "failure": None},
             "a = 0.5 · 3 of 9",
         ),
+        (
+            {"event": "followed", "frequency": 12.5, "amplitude": 0.002, "dof": "m.x", "done": 0.374},
+            "12.5 Hz · m.x 0.002 m · 37% of the way",
+        ),
         ({"event": "run-started", "task": "propagate"}, ""),
     ],
 )

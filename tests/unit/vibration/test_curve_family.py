@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dalembert.errors import InputError
+from dalembert.errors import InputError, SolveError
 from dalembert.structure import lumped
 from dalembert.vibration import (
     CubicSpring,
@@ -117,3 +117,32 @@ def test_where_there_is_no_curve_at_all_the_first_reason_is_raised() -> None:
         match=says("frequency_responses: the values of preload are []; expected one or more numbers"),
     ):
         frequency_responses(damped, "preload", [], FREQUENCIES, METHOD)
+
+
+def test_a_builder_that_raises_is_the_failure_of_its_value() -> None:
+    def builder(preload: float) -> VibrationSystem:
+        return damped(1 / preload)
+
+    line = builder.__code__.co_firstlineno + 1
+    reason = f"ZeroDivisionError: float division by zero (test_curve_family.py, line {line})"
+    family = frequency_responses(builder, "preload", [0.0, 2.0], FREQUENCIES, METHOD)
+    assert family.failures == (reason, None)
+    with pytest.raises(SolveError, match=says(reason)):
+        frequency_responses(builder, "preload", [0.0], FREQUENCIES, METHOD)
+
+
+def test_curves_that_nobody_waits_for_end_at_their_next_point() -> None:
+    """As where the user stops a run while curves are followed in threads."""
+    begun: list[float] = []
+
+    def builder(preload: float) -> VibrationSystem:
+        begun.append(preload)
+        return damped(preload)
+
+    def stop(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    values, many = np.linspace(1.0, 2.0, 40), np.linspace(0.12, 0.25, 400)
+    with pytest.raises(KeyboardInterrupt):
+        frequency_responses(builder, "preload", values, many, METHOD, workers=2, on_curve=stop)
+    assert len(begun) < 10

@@ -12,6 +12,7 @@ from dalembert.errors import InputError, ModelError
 from dalembert.structure import lumped
 from dalembert.vibration import (
     Elastic,
+    FollowedPoint,
     FrequencyCurve,
     FrictionContact,
     HarmonicBalance,
@@ -213,3 +214,20 @@ def test_the_part_that_nothing_holds_is_named(sparse: bool, damping: float, monk
 def test_parts_that_make_no_sense_are_told(make, sentence: str) -> None:
     with pytest.raises(InputError, match=says(sentence)):
         make()
+
+
+@pytest.mark.parametrize(
+    ("along", "continuation"), [(FREQUENCIES, "natural"), ((0.25, 0.1), "natural"), ((0.12, 0.3), "arc-length")]
+)
+def test_each_point_is_told_as_it_is_found(along: np.ndarray | tuple[float, float], continuation: str) -> None:
+    told: list[FollowedPoint] = []
+    system = duffing() if continuation == "arc-length" else two_masses()
+    curve = frequency_response(system, along, METHOD, continuation=continuation, on_point=told.append)
+    np.testing.assert_array_equal([one.frequency for one in told], curve.frequencies)
+    np.testing.assert_array_equal(np.stack([one.response for one in told]), curve.response)
+    assert {one.dofs for one in told} == {curve.dofs}
+    done = np.array([one.done for one in told])
+    assert np.all(np.diff(done) >= 0)
+    assert done[0] < 0.2
+    assert done[-1] == pytest.approx(1.0)
+    assert (continuation == "arc-length") == bool(len(curve.folds))

@@ -1,5 +1,6 @@
 """Frequency response: periodic responses of a structure over frequency, or a family of them over one parameter."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from dalembert.study.duration import Effort
     from dalembert.study.events import Emit
     from dalembert.study.study import Study
+    from dalembert.vibration import FollowedPoint
 
 MOST_DRAWN = 6
 """Degrees of freedom that a figure shows by themselves; of more the report chooses."""
@@ -218,15 +220,20 @@ class FrequencyResponseTask(Task):
             emit("following", begin=float(table.along[0]), end=float(table.along[-1]))
             study.equations()
             system = study.system()
-            curve = frequency_response(system, table.along, study.balance, **options)
+            tell = _points_told(study, emit)
+            curve = frequency_response(system, table.along, study.balance, on_point=tell, **options)
             return Response(study, curve, beside(study, curve, system))
         name, values = table.sweep.parameter, _values(study)
         unit = next(item.unit for item in study.parameters if item.name == name)
 
         def on_curve(row: int, curve: Any, failure: str | None) -> None:
+            details: dict[str, Any] = {"parameter": name, "value": float(values[row])}
+            if curve is not None and curve.converged.any():
+                dof = table.dof or curve.dofs[0]
+                peak = curve.peak(dof, table.amplitude)
+                details |= {"dof": dof, "amplitude": peak.amplitude, "frequency": peak.frequency}
             found = None if curve is None else int(curve.converged.sum())
-            details = {"parameter": name, "value": float(values[row]), "done": row + 1, "total": len(values)}
-            emit("swept", **details, points=found, failure=failure)
+            emit("swept", **details, done=row + 1, total=len(values), points=found, failure=failure)
 
         family = frequency_responses(
             study.along(name),
@@ -235,6 +242,7 @@ class FrequencyResponseTask(Task):
             table.along,
             study.balance,
             unit=unit,
+            executor=study.executor,
             on_curve=on_curve,
             **options,
         )
@@ -245,6 +253,21 @@ class FrequencyResponseTask(Task):
 
         kind = FrequencyCurve if study.table.sweep is None else CurveFamily
         return Response(study, kind.load(path), beside_curve.load(path))
+
+
+def _points_told(study: "Study", emit: "Emit") -> Callable[["FollowedPoint"], None]:
+    """Writes each point of a curve as it is found, with the amplitude that the study tells."""
+    from dalembert.vibration.amplitudes import Amplitude
+
+    size, dof = Amplitude(study.table.amplitude, study.balance.orders), study.table.dof
+
+    def tell(point: "FollowedPoint") -> None:
+        names = (dof, *(name for name in point.dofs if name.rpartition(".")[0] == dof), *point.dofs)
+        row = next(point.dofs.index(name) for name in names if name in point.dofs)
+        amplitude = float(size.of(point.response[row]))
+        emit("followed", frequency=point.frequency, amplitude=amplitude, dof=point.dofs[row], done=round(point.done, 4))
+
+    return tell
 
 
 def _observed(study: "Study") -> list[str] | None:

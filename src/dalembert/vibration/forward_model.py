@@ -1,6 +1,6 @@
 """The response of a vibrating system over frequency as a forward model."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -120,7 +120,7 @@ class FrequencyResponse:
 
         def work(row: int) -> None:
             try:
-                values[row] = self._read(*self._solve(vectors[row]))
+                values[row] = self._sizes(vectors[row])
             except Exception as error:  # the user's builder raised: this sample's failure, not the batch's
                 failures[row] = told(error)
 
@@ -163,20 +163,21 @@ class FrequencyResponse:
         return frequency_response(self.system(vector), self.frequencies, self.method)
 
     def _linearise(self, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        problem, solutions = self._solve(vector)
-        values = self._read(problem, solutions)
+        problem = equations(self.system(vector), self.method)
+        places = self._places(problem.lowered)
+        values = np.empty((len(self.frequencies), len(places)))
         jacobian = np.empty((*values.shape, len(vector)))
         tilted = [self._tilted(vector, column, problem.lowered) for column in range(len(vector))]
-        for number, solution in enumerate(solutions):
+        for number, solution in enumerate(self._solutions(problem)):
             response = response_of(problem, solution)
             slopes = sensitivities(problem, solution, tilted)
-            for channel, (row, size) in enumerate(self._places(problem.lowered)):
+            for channel, (row, size) in enumerate(places):
+                values[number, channel] = size.of(response[row])
                 jacobian[number, channel] = slopes[:, row] @ size.slope(response[row])
         return values, jacobian / self.parameters.scale
 
-    def _solve(self, vector: np.ndarray) -> tuple[Equations, list[Solution]]:
-        problem = equations(self.system(vector), self.method)
-        solutions = []
+    def _solutions(self, problem: Equations) -> Iterator[Solution]:
+        """The solution at each frequency; one after the other, since each holds matrices."""
         for found in at_frequencies(problem, 2 * np.pi * self.frequencies, None):
             if not found.solution.converged:
                 raise SolveError(
@@ -184,17 +185,18 @@ class FrequencyResponse:
                     f"{found.solution.iterations} iterations {found.solution.error:.1e} of the forces are not "
                     "balanced; give more frequencies on the way there, or fewer harmonics"
                 )
-            solutions.append(found.solution)
-        return problem, solutions
+            yield found.solution
 
     def _places(self, lowered: Lowered) -> list[tuple[int, Amplitude]]:
         """Degree of freedom and amplitude of each channel."""
         parts = [name.partition(" ") for name in self.channel_names]
         return [(lowered.structure.dofs.index(dof), Amplitude(kind, self.method.orders)) for dof, _, kind in parts]
 
-    def _read(self, problem: Equations, solutions: Sequence[Solution]) -> np.ndarray:
+    def _sizes(self, vector: np.ndarray) -> np.ndarray:
+        """Values of the channels, (samples, channels)."""
+        problem = equations(self.system(vector), self.method)
         places = self._places(problem.lowered)
-        responses = [response_of(problem, solution) for solution in solutions]
+        responses = (response_of(problem, solution) for solution in self._solutions(problem))
         return np.array([[size.of(response[row]) for row, size in places] for response in responses])
 
     def _tilted(self, vector: np.ndarray, column: int, real: Lowered) -> Lowered:

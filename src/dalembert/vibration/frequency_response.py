@@ -189,37 +189,52 @@ def _curve(
     lowered, records, done = problem.lowered, [], 0.0
     dofs = tuple(lowered.structure.dofs.names[row] for row in rows)
     for one in points:
-        records.append((one, *_read(problem, one.found.solution, rows)))
+        records.append(_Record.of(problem, one, rows))
         if on_point is not None:
-            omega = one.found.solution.omega
-            given = settings["frequencies"] == "given"
+            given, omega = settings["frequencies"] == "given", one.found.solution.omega
             come = len(records) / len(omegas) if given else (omega - omegas[0]) / (omegas[1] - omegas[0])
             done = float(max(done, min(come, 1.0)))
-            on_point(FollowedPoint(omega / (2 * np.pi), records[-1][1], dofs, done))
-    solutions = [one.found.solution for one, *_ in records]
-    method = asdict(problem.method)
+            on_point(FollowedPoint(records[-1].frequencies, records[-1].response, dofs, done))
+    kept = {name: np.array([getattr(one, name) for one in records]) for name in _Record._fields if name != "marker"}
     provenance = {"version": dalembert.__version__, "numpy": np.__version__, "scipy": scipy.__version__}
     return FrequencyCurve(
         dofs=dofs,
         coordinates=lowered.row_names,
         contacts=lowered.contacts,
         orders=problem.method.orders,
-        frequencies=np.array([solution.omega / (2 * np.pi) for solution in solutions]),
-        response=np.stack([response for _, response, *_ in records]),
-        displacements=np.stack([displacements for *_, displacements, _, _ in records]),
-        forces=np.stack([forces for *_, forces, _ in records]),
-        states=np.stack([states for *_, states in records]),
-        unknowns=np.stack([solution.unknowns for solution in solutions]),
-        iterations=np.array([solution.iterations for solution in solutions]),
-        residuals=np.array([solution.error for solution in solutions]),
-        converged=np.array([solution.converged for solution in solutions]),
-        fold=np.array([one.found.fold for one, *_ in records]),
-        samples=np.array([solution.samples for solution in solutions]),
-        sampling_errors=np.array([solution.sampling_error for solution in solutions]),
-        stable=np.array([one.stable for one, *_ in records], dtype=np.int8),
-        markers=tuple((one.marker, number) for number, (one, *_) in enumerate(records) if one.marker),
-        provenance={**provenance, "method": method, **settings},
+        **{**kept, "stable": kept["stable"].astype(np.int8)},
+        markers=tuple((one.marker, number) for number, one in enumerate(records) if one.marker),
+        provenance={**provenance, "method": asdict(problem.method), **settings},
     )
+
+
+class _Record(NamedTuple):
+    """What a curve keeps of a point, by the names of its arrays: not its matrices, some megabytes each."""
+
+    frequencies: float
+    unknowns: np.ndarray
+    iterations: int
+    residuals: float
+    converged: bool
+    fold: bool
+    samples: int
+    sampling_errors: float
+    stable: int
+    marker: str
+    response: np.ndarray
+    displacements: np.ndarray
+    forces: np.ndarray
+    states: np.ndarray
+
+    @classmethod
+    def of(cls, problem: Equations, one: Judged, rows: np.ndarray) -> "_Record":
+        """Of a point, with the response in some rows of the structure."""
+        solution = one.found.solution
+        return cls(
+            solution.omega / (2 * np.pi), solution.unknowns, solution.iterations, solution.error, solution.converged,
+            one.found.fold, solution.samples, solution.sampling_error, one.stable, one.marker,
+            *_read(problem, solution, rows),
+        )  # fmt: skip
 
 
 def _read(

@@ -1,5 +1,6 @@
 """Curves over frequency: what is kept, how they go on, and what is refused."""
 
+import gc
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -23,6 +24,7 @@ from dalembert.vibration import (
     VibrationSystem,
     frequency_response,
 )
+from dalembert.vibration.newton import Solution
 from support import says
 from vibrating_systems import duffing, one_mass, two_masses
 
@@ -231,3 +233,15 @@ def test_each_point_is_told_as_it_is_found(along: np.ndarray | tuple[float, floa
     assert done[0] < 0.2
     assert done[-1] == pytest.approx(1.0)
     assert (continuation == "arc-length") == bool(len(curve.folds))
+
+
+def test_matrices_of_points_that_are_past_are_let_go() -> None:
+    alive: dict[float, int] = {}
+    frequencies = np.linspace(0.1, 0.25, 20)
+
+    def count(point: FollowedPoint) -> None:
+        if point.done in (0.1, 1.0):
+            alive[point.done] = sum(isinstance(one, Solution) for one in gc.get_objects())
+
+    frequency_response(two_masses(), frequencies, METHOD, on_point=count)
+    assert alive[1.0] - alive[0.1] < 5

@@ -7,6 +7,9 @@ from difflib import get_close_matches
 from pathlib import Path
 
 _OWN = str(Path(__file__).parent)
+_ROOM = "see that the disk has room and that the folder may be written to"
+_BEGUN = f"; what was written before is whole: {_ROOM}, and go on with the run by 'dalembert resume'"
+_NOT_BEGUN = f"; nothing has run yet: {_ROOM}, and run the study again"
 
 
 class DalembertError(Exception):
@@ -39,10 +42,16 @@ def unwritable(path: object, reason: object) -> StorageError:
     >>> str(unwritable("runs/a/result.nc", "No space left on device")).partition(";")[0]
     'runs/a/result.nc cannot be written: No space left on device'
     """
-    return StorageError(
-        f"{path} cannot be written: {reason}; what was written before is whole: see that the disk has room and that "
-        "the folder may be written to, and go on with the run by 'dalembert resume'"
-    )
+    return StorageError(f"{path} cannot be written: {reason}{_BEGUN}")
+
+
+def not_begun(error: StorageError) -> StorageError:
+    """The same error of a run that has no state yet, so that nothing can go on with it.
+
+    >>> str(not_begun(unwritable("runs/a/study.toml", "No space left on device"))).rpartition(", ")[2]
+    'and run the study again'
+    """
+    return StorageError(str(error).replace(_BEGUN, _NOT_BEGUN))
 
 
 def unknown(what: str, given: str, known: Iterable[str], where: str = "") -> str:

@@ -115,7 +115,7 @@ FILES = {
         "a.mat",
         mat(t=[0.0, 0.2, 0.1], x=[0.0, 0.0, 0.0]),
         {},
-        "{path}, column 't', sample 2: 0.1 comes after 0.2; expected growing times; "
+        "{path}, column 't', sample 2: 0.1 comes after 0.2; expected growing values; "
         "sort the samples or remove the repeated one",
     ),
     "a column of another length": (

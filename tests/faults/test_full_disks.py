@@ -51,6 +51,10 @@ TOLD = (
     " cannot be written: {reason}; what was written before is whole: see that the disk has room and that the folder "
     "may be written to, and go on with the run by 'dalembert resume'"
 )
+NOT_BEGUN = (
+    " cannot be written: {reason}; nothing has run yet: see that the disk has room and that the folder may be written "
+    "to, and run the study again"
+)
 DROP, ANY_FILE = 24, 1
 """PR_CAPBSET_DROP and CAP_DAC_OVERRIDE of Linux."""
 
@@ -112,7 +116,8 @@ def test_without_room_there_is_a_sentence_and_a_way_on(room, tmp_path, undisturb
     written(tmp_path)
     limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))  # noqa: E731
     code, said = command(tmp_path, "run", "study.toml", "--out", "run", before=limit)
-    assert (code, said) == (1, name + TOLD.format(reason=reason))
+    told = NOT_BEGUN if room == "for nothing" else TOLD
+    assert (code, said) == (1, name + told.format(reason=reason))
     ends_as(tmp_path, undisturbed)
 
 
@@ -140,7 +145,7 @@ def test_where_no_folder_may_be_made_there_is_a_sentence(rights):
 
 def test_in_a_read_only_folder_there_is_a_sentence(rights):
     code, said = command(rights, "run", "study.toml", "--out", "closed", before=bound)
-    assert (code, said) == (1, "closed/lock" + TOLD.format(reason="Permission denied"))
+    assert (code, said) == (1, "closed/lock" + NOT_BEGUN.format(reason="Permission denied"))
 
 
 @pytest.mark.parametrize(

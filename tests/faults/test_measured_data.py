@@ -42,13 +42,13 @@ FILES = {
     "a time that goes backwards": (
         "t,x\n0,1\n0.2,1\n0.1,1\n",
         {},
-        "{path}, line 4, column 't': 0.1 comes after 0.2; expected growing times; "
+        "{path}, line 4, column 't': 0.1 comes after 0.2; expected growing values; "
         "sort the lines or remove the repeated one",
     ),
     "a time that stands still after a blank line": (
         "t,x\n0,1\n\n0,1\n",
         {},
-        "{path}, line 4, column 't': 0 comes after 0; expected growing times; "
+        "{path}, line 4, column 't': 0 comes after 0; expected growing values; "
         "sort the lines or remove the repeated one",
     ),
     "an empty file": (

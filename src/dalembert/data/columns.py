@@ -127,13 +127,13 @@ def check_finite(path: Path, name: str, column: np.ndarray, missing: str) -> Non
 
 
 def check_growing(path: Path, time: str, along: np.ndarray) -> None:
-    """Refuse times that do not grow."""
+    """Refuse times, or frequencies, that do not grow."""
     back = np.flatnonzero(np.diff(along) <= 0)
     if len(back):
         now = int(back[0]) + 1
         raise DataError(
             f"{path}, column {time!r}, sample {now}: {along[now]:.10g} comes after {along[now - 1]:.10g}; expected "
-            "growing times; sort the samples or remove the repeated one"
+            "growing values; sort the samples or remove the repeated one"
         )
 
 

@@ -54,7 +54,7 @@ def csv_columns(path: Path, time: str, names: Iterable[str] | None, missing: str
     for (line, _), before, now in zip(rows[1:], table[:-1, 0], table[1:, 0], strict=True):
         if now <= before:
             raise DataError(
-                f"{path}, line {line}, column {time!r}: {now:.10g} comes after {before:.10g}; expected growing times; "
+                f"{path}, line {line}, column {time!r}: {now:.10g} comes after {before:.10g}; expected growing values; "
                 "sort the lines or remove the repeated one"
             )
     return Columns(path, time, table[:, 0], dict(zip(wanted, table[:, 1:].T, strict=True)))

@@ -10,15 +10,17 @@ from pydantic import (
     PlainValidator,
     Tag,
     ValidationInfo,
+    ValidatorFunctionWrapHandler,
     WithJsonSchema,
+    WrapValidator,
     model_validator,
 )
 
 from dalembert.data.formats import SUFFIXES
 from dalembert.errors import unknown
 from dalembert.study.context import Context
-from dalembert.study.numbers import fixed, samples
-from dalembert.study.table import Read, StudyTable, problem
+from dalembert.study.numbers import fixed, read_number, samples
+from dalembert.study.table import Read, StudyTable, checked, problem
 
 if TYPE_CHECKING:
     from dalembert.data import Bands, Measurements
@@ -38,6 +40,11 @@ DataFile = Annotated[Path, PlainValidator(_read_file), WithJsonSchema({"type": "
 
 
 Format = Annotated[str, Read(Literal[tuple(SUFFIXES)])]  # pyright: ignore[reportInvalidTypeForm]
+
+
+def is_universal(file: Path, form: str | None) -> bool:
+    """Whether a file is a universal one, by the format that is given or else its suffix."""
+    return form == "uff" or (form is None and file.suffix.lower() in SUFFIXES["uff"])
 
 
 class FileTable(StudyTable):
@@ -61,7 +68,7 @@ class FileTable(StudyTable):
     @property
     def universal(self) -> bool:
         """Whether the file is a universal one, which says itself what its samples lie along."""
-        return self.format == "uff" or (self.format is None and self.file.suffix.lower() in SUFFIXES["uff"])
+        return is_universal(self.file, self.format)
 
 
 class DerivativeTable(StudyTable):
@@ -80,6 +87,20 @@ Differentiated = Annotated[
 ]
 
 
+def _along(value: Any, handler: ValidatorFunctionWrapHandler, info: ValidationInfo) -> Any:
+    """Numbers along the samples: frequencies if the file has a column of them, else times; a universal file either."""
+    given = info.data
+    if not ("file" in given and "format" in given and is_universal(given["file"], given["format"])):
+        numbers = [one for key, one in value.items() if key != "count"] if isinstance(value, dict) else value
+        for one in numbers if isinstance(numbers, list) else ():
+            checked(read_number, one, "s" if given.get("frequency") is None else "Hz")
+    return handler(value)
+
+
+Ends = Annotated[list[Annotated[float, Read(fixed(None))]], Field(min_length=2, max_length=2)] | None
+Samples = Annotated[tuple[float, ...], Read(samples(None))] | None
+
+
 class DataTable(FileTable):
     """Measured data: a file, its column of times, the column of each channel, and what becomes of them."""
 
@@ -92,12 +113,12 @@ class DataTable(FileTable):
     derivatives: dict[str, Annotated[DerivativeTable, Read(Differentiated)]] = Field(
         {}, description="channels that are derivatives of others: 'crank.rate' = 'crank.angle'"
     )
-    between: Annotated[list[Annotated[float, Read(fixed("s"))]], Field(min_length=2, max_length=2)] | None = Field(
-        None, description="times between which samples are kept"
+    between: Annotated[Ends, WrapValidator(_along)] = Field(
+        None, description="times, or frequencies, between which samples are kept"
     )
     every: int | None = Field(None, ge=1, description="keep every so manyth sample")
-    resample: Annotated[tuple[float, ...], Read(samples("s"))] | None = Field(
-        None, description="times at which splines through the samples are taken"
+    resample: Annotated[Samples, WrapValidator(_along)] = Field(
+        None, description="times, or frequencies, at which splines through the samples are taken"
     )
 
     @model_validator(mode="after")

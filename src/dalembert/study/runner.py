@@ -9,7 +9,7 @@ from pathlib import Path
 from time import perf_counter
 
 from dalembert import __version__
-from dalembert.errors import DalembertError, InputError, SolveError, StorageError, users_place
+from dalembert.errors import DalembertError, InputError, SolveError, StorageError, not_begun, users_place
 from dalembert.files import write_text
 from dalembert.forward import Checkpoint, Executor
 from dalembert.study.duration import duration
@@ -58,9 +58,12 @@ def run_study(
         What stopped the run; the folder's state says the same.
     """
     folder = new_folder(study.name, out, force=force)
-    with folder.locked():
-        folder.keep(study)
-        return folder, _executed(replace(study, executor=executor), folder, "run-started", listener)
+    try:
+        with folder.locked():
+            folder.keep(study)
+            return folder, _executed(replace(study, executor=executor), folder, "run-started", listener)
+    except StorageError as error:
+        raise error if folder.is_run else not_begun(error) from None
 
 
 def resume_run(folder: RunFolder, *, listener: Listener | None = None, executor: Executor = None) -> Outcome:

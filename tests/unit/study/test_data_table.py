@@ -4,12 +4,14 @@ import numpy as np
 import pytest
 from scipy.io import savemat
 
-from dalembert.errors import InputError
+from dalembert.errors import DataError, InputError
 from dalembert.study.context import Context
 from dalembert.study.data_table import BandsTable
 from dalembert.study.loader import load
 from dalembert.study.runner import plan
 from dalembert.study.tasks import TASKS
+from dalembert.units import expected
+from support import says
 
 STUDY = """
 [parameters]
@@ -101,6 +103,68 @@ def test_samples_are_chosen_or_interpolated(study, more, times):
     data = study(GIVEN + more).data()
     np.testing.assert_allclose(data.coordinate.values, times, atol=1e-15)
     np.testing.assert_allclose(data.difference(2.5 * times[:, None])[data.present], 0, atol=1e-9)
+
+
+@pytest.fixture
+def sweep(study, tmp_path):
+    """A study of data over frequency."""
+    lines = [f"{f},{2.5 * f}" for f in np.linspace(10.0, 30.0, 21)]
+    (tmp_path / "sweep.csv").write_text("\n".join(["f,x", *lines]))
+    return lambda more: study('frequency = "f"\ncolumns = { "crank.angle" = "x" }\n' + more, file="sweep.csv")
+
+
+@pytest.mark.parametrize(
+    ("more", "frequencies"),
+    [
+        ('between = ["12 Hz", "0.015 kHz"]', [12.0, 13.0, 14.0, 15.0]),
+        ("between = [12, 14]", [12.0, 13.0, 14.0]),
+        ('resample = ["12.5 Hz", 13.5]', [12.5, 13.5]),
+        ('resample = { start = "12 Hz", end = "14 Hz", every = "500 mHz" }', [12.0, 12.5, 13.0, 13.5, 14.0]),
+    ],
+)
+def test_samples_over_frequency_are_chosen_by_frequencies(sweep, more, frequencies):
+    data = sweep(more).data()
+    assert (data.coordinate.name, data.coordinate.unit) == ("frequency", "Hz")
+    np.testing.assert_allclose(data.coordinate.values, frequencies, rtol=1e-12)
+    np.testing.assert_allclose(data.values[:, 0], 2.5 * np.array(frequencies), rtol=1e-12)
+
+
+FREQUENCY, TIME = (f"expected {expected(unit)}" for unit in ("Hz", "s"))
+
+
+@pytest.mark.parametrize(
+    ("more", "sentence"),
+    [
+        ('between = ["12 ms", "15 ms"]', f"[data], between: '12 ms' was given; {FREQUENCY}"),
+        ('resample = { end = "2 s", count = 3 }', f"[data.resample]: '2 s' was given; {FREQUENCY}"),
+    ],
+)
+def test_times_along_a_frequency_are_refused(sweep, more, sentence):
+    with pytest.raises(InputError, match=says(f"study.toml: {sentence}")):
+        sweep(more)
+
+
+@pytest.mark.parametrize(
+    ("more", "sentence"),
+    [
+        ('between = ["12 Hz", "15 Hz"]', f"[data], between: '12 Hz' was given; {TIME}"),
+        ("resample = [0.0, true]", f"[data], resample: True was given; {TIME}"),
+    ],
+)
+def test_frequencies_along_a_time_are_refused(study, more, sentence):
+    with pytest.raises(InputError, match=says(f"study.toml: {sentence}")):
+        study(GIVEN + more)
+
+
+def test_samples_that_are_not_there_are_told_as_frequencies(sweep):
+    sentence = "sweep.csv: no sample lies from 40 to 50; the frequency runs from 10 to 30 Hz"
+    with pytest.raises(DataError, match=sentence):
+        sweep("between = [40, 50]").data()
+    sentence = (
+        "frequency 5 Hz lies outside the data, which run from 10 to 30 Hz; expected samples within; nothing is known"
+    )
+    with pytest.raises(DataError, match=sentence):
+        sweep("resample = [5, 12]").data()
 
 
 def test_the_settings_of_a_table_are_in_si(study):

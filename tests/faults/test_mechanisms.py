@@ -238,9 +238,13 @@ INPUTS = {
         lambda: mb.RigidBody("plate", 1.0, 1.0, points={"centre": (0.0, 1.0)}),
         "rigid body 'plate': the point name 'centre' is taken by the centre of mass",
     ),
+    "more elements than a memory holds": (
+        lambda: mb.AncfCable("rope", 1.0, 2**62, 1e6, **SECTION),
+        "beam 'rope': elements is 4611686018427387904; expected a whole number, from 1 to 100000",
+    ),
     "no elements": (
         lambda: mb.AncfCable("rope", 1.0, 0, 1e6, **SECTION),
-        "beam 'rope': elements is 0; expected a whole number, at least 1",
+        "beam 'rope': elements is 0; expected a whole number, from 1 to 100000",
     ),
     "a Poisson ratio of one half": (
         lambda: mb.AncfBeam("bar", 1.0, 1, 1e6, poisson_ratio=0.5, **SECTION),

@@ -15,6 +15,8 @@ from dalembert.multibody.points import Place, Point
 if TYPE_CHECKING:
     from dalembert.multibody.lowering import Lowering
 
+MOST_ELEMENTS = 100_000
+"""Of a beam: a hundred times as many as the longest chain of the benchmarks."""
 LAWS = ("plane-stress", "plane-strain", "uncoupled")
 
 
@@ -80,8 +82,10 @@ class _Ancf(Body):
     def _check(self) -> None:
         owner = f"beam {self.name!r}"
         require(owner, length=self.length, youngs_modulus=self.youngs_modulus)
-        if not (isinstance(self.elements, int) and self.elements > 0):
-            raise InputError(f"{owner}: elements is {self.elements!r}; expected a whole number, at least 1")
+        if not (isinstance(self.elements, int) and 0 < self.elements <= MOST_ELEMENTS):
+            raise InputError(
+                f"{owner}: elements is {self.elements!r}; expected a whole number, from 1 to {MOST_ELEMENTS}"
+            )
 
 
 @with_points("start", "end")

@@ -58,8 +58,10 @@ class HarmonicBalance:
     resolution: float = 0.02
 
     def __post_init__(self) -> None:
-        if self.harmonics < 1:
-            raise InputError(f"HarmonicBalance: {self.harmonics} harmonics were asked for; expected at least 1")
+        if not 1 <= self.harmonics <= MOST_HARMONICS:
+            raise InputError(
+                f"HarmonicBalance: {self.harmonics} harmonics were asked for; expected 1 to {MOST_HARMONICS}"
+            )
         needed = 2 * self.harmonics + 1
         if isinstance(self.samples, str):
             if self.samples != AUTOMATIC:
@@ -68,6 +70,10 @@ class HarmonicBalance:
             raise InputError(
                 f"HarmonicBalance: {self.samples} samples of a period cannot tell {self.harmonics} harmonics apart; "
                 f"expected at least {needed}"
+            )
+        elif self.samples > MOST_GIVEN:
+            raise InputError(
+                f"HarmonicBalance: {self.samples} samples of a period were asked for; expected at most {MOST_GIVEN}"
             )
         for name in ("sampling", "tolerance", "resolution"):
             if not 0 < getattr(self, name) < 1:
@@ -84,5 +90,9 @@ class HarmonicBalance:
         return self.samples if isinstance(self.samples, int) else max(64, 1 << (8 * self.harmonics - 1).bit_length())
 
 
+MOST_HARMONICS = 1000
+"""Far more than a friction contact needs; their tangents would fill the memory of any machine."""
+MOST_GIVEN = 1_000_000
+"""Samples of a period, for the same reason."""
 MOST_SAMPLES = 8192
 """Where the automatic doubling ends."""

@@ -182,6 +182,14 @@ def test_the_part_that_nothing_holds_is_named(sparse: bool, damping: float, monk
     ("make", "sentence"),
     [
         (
+            lambda: HarmonicBalance(2**62),
+            "HarmonicBalance: 4611686018427387904 harmonics were asked for; expected 1 to 1000",
+        ),
+        (
+            lambda: HarmonicBalance(samples=2**62),
+            "HarmonicBalance: 4611686018427387904 samples of a period were asked for; expected at most 1000000",
+        ),
+        (
             lambda: FrictionContact("foot", "a", friction=0.3, preload=-1.0),
             "contact 'foot': the preload is -1 N; expected a number that is not negative",
         ),

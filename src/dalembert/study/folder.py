@@ -21,6 +21,7 @@ FAILED = "failed"  # the solver could not
 INPUT = "input"  # what was given cannot run
 INTERRUPTED = "interrupted"  # stopped by the user
 KILLED = "killed"  # never written: the process of a running run is gone
+DAMAGED = "damaged"  # never written: state.json holds no state
 RESUMABLE = (KILLED, INTERRUPTED, FAILED)
 
 
@@ -90,9 +91,20 @@ class RunFolder:
             state = json.loads(self._state.read_text(encoding="utf-8"))
         except FileNotFoundError:
             raise InputError(f"{self.path} is no run folder: it has no state.json") from None
+        except ValueError:  # no JSON, or no text at all
+            state = None
+        if not isinstance(state, dict) or not isinstance(state.get("state"), str):
+            return {"state": DAMAGED}
         if state["state"] == RUNNING and not self._is_locked():
             state["state"] = KILLED
         return state
+
+    def damaged(self, file: Path) -> InputError:
+        """Error about a file of the run that is not there, or that was changed."""
+        return InputError(
+            f"{self.path}: the run is damaged: {file.name} is missing, or cannot be read; run its study again, in "
+            "another folder"
+        )
 
     def set_state(self, state: str, **details: Any) -> None:
         """Write the state, atomically."""
@@ -117,9 +129,19 @@ class RunFolder:
         _write_json(self.inputs, {"name": study.name, "folder": origin, "seed": seed, "files": copies})
 
     def kept(self) -> Study:
-        """The study as it ran, with the copies of its files."""
-        kept = json.loads(self.inputs.read_text(encoding="utf-8"))
-        files = {name: self.path / entry["copy"] for name, entry in kept["files"].items()}
+        """The study as it ran, with the copies of its files.
+
+        Raises
+        ------
+        InputError
+            If the folder is no run's, or lacks what was kept.
+        """
+        self.state()
+        try:
+            kept = json.loads(self.inputs.read_text(encoding="utf-8"))
+            files = {name: self.path / entry["copy"] for name, entry in kept["files"].items()}
+        except (FileNotFoundError, ValueError, TypeError, AttributeError, KeyError):
+            raise self.damaged(self.inputs) from None
         study = load(self.study, name=kept["name"], folder=Path(kept["folder"]), files=files)
         return study if kept["seed"] is None else study.with_seed(kept["seed"])
 

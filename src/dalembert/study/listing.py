@@ -9,7 +9,7 @@ from dalembert.study.events import last_progress
 from dalembert.study.folder import RunFolder, find_runs
 
 COLUMNS = ("run", "task", "state", "since", "best")
-_STYLES = {"finished": "green", "running": "cyan", "failed": "red", "input": "red", "killed": "red"}
+_STYLES = {"finished": "green", "running": "cyan", "failed": "red", "input": "red", "killed": "red", "damaged": "red"}
 
 
 def rows(root: Path) -> list[dict[str, str]]:

@@ -14,7 +14,7 @@ from dalembert.files import write_text
 from dalembert.forward import Checkpoint, Executor
 from dalembert.study.duration import duration
 from dalembert.study.events import Event, EventLog
-from dalembert.study.folder import FAILED, FINISHED, INPUT, INTERRUPTED, RUNNING, RunFolder, new_folder
+from dalembert.study.folder import DAMAGED, FAILED, FINISHED, INPUT, INTERRUPTED, RUNNING, RunFolder, new_folder
 from dalembert.study.functions import users_code
 from dalembert.study.study import Study
 from dalembert.study.tasks import TASKS, Outcome
@@ -89,6 +89,8 @@ def resume_run(folder: RunFolder, *, listener: Listener | None = None, executor:
     state = folder.state()
     if state["state"] == RUNNING:
         raise InputError(f"{folder.path}: the run is going on; wait for it, or stop it")
+    if state["state"] == DAMAGED:
+        raise folder.damaged(folder.path / "state.json")
     if state["state"] == FINISHED:
         raise InputError(
             f"{folder.path}: the run has finished, so there is nothing to resume; make its report anew by "

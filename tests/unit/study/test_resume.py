@@ -1,6 +1,7 @@
 """What is refused when a run is to be resumed, and what a run leaves for it."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from dalembert.errors import InputError, SolveError, StorageError
 from dalembert.forward import Checkpoint, PythonModel, Recorded
 from dalembert.study import RunFolder, load, resume_run, run_study
 from dalembert.study.folder import new_folder
+from dalembert.study.listing import rows
 from dalembert.study.runner import Stopped
 from support import says
 
@@ -139,3 +141,26 @@ def test_a_file_that_is_no_checkpoint(tmp_path):
     (tmp_path / "checkpoint").write_text("something else" * 100)
     with pytest.raises(StorageError, match="cannot be written: file is not a database"):
         Checkpoint(tmp_path / "checkpoint")
+
+
+DAMAGE = "runs/a: the run is damaged: {} is missing, or cannot be read; run its study again, in another folder"
+
+
+@pytest.mark.parametrize("content", [b'{"state": "finis', b"\xff\xfe", b"[]", b"{}"])
+def test_a_damaged_state_is_listed_and_told(content, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    folder = RunFolder(Path("runs/a"))
+    folder.path.mkdir(parents=True)
+    (folder.path / "state.json").write_bytes(content)
+    (row,) = rows(Path("runs"))
+    assert (row["run"], row["state"]) == ("a", "damaged")
+    with pytest.raises(InputError, match=says(DAMAGE.format("state.json"))):
+        resume_run(folder)
+    with pytest.raises(InputError, match=says(DAMAGE.format("inputs.json"))):
+        folder.kept()
+
+
+def test_a_folder_that_is_no_run_is_not_resumed(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(InputError, match=says("plain is no run folder: it has no state.json")):
+        RunFolder(Path("plain")).kept()

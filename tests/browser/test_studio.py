@@ -134,7 +134,7 @@ def test_mistakes_stand_at_their_lines(visit):
     tab.press("End")
     tab.write("x")
     tab.until(f"{TEXT}.includes('1 to put right')")
-    tab.until("document.querySelector('.cm-line.bg-red-100')?.innerText.startsWith('mass')")
+    tab.until("document.querySelector('.cm-line.wrong')?.innerText.startsWith('mass')")
     assert tab.run(f"{button('Run')}.disabled")
     tab.until("[...document.querySelectorAll('[role=alert]')].some((one) => one.innerText.includes('line '))")
 

@@ -5,11 +5,12 @@ from urllib.parse import quote
 from nicegui import ui
 
 from dalembert.errors import InputError
-from dalembert.studio.figures import convergence
+from dalembert.studio.figures import convergence, plot
 from dalembert.studio.frame import badge, frame
 from dalembert.studio.live import Live
 from dalembert.studio.workspace import Workspace
 from dalembert.study.folder import RunFolder
+from dalembert.study.listing import since
 
 MOST = 8  # runs side by side
 
@@ -26,7 +27,7 @@ def compare_page(workspace: Workspace, names: list[str]) -> None:
         _table(folders, lives)
         curves = {name: live.convergence for name, live in lives.items() if len(live.convergence) > 1}
         if curves:
-            ui.plotly(convergence(curves)).classes("w-full").props('role=img aria-label="Convergence"')
+            plot(convergence(curves)).classes("w-full").props('role=img aria-label="Convergence"')
         with ui.row().classes("w-full gap-4"):
             for folder in (folder for folder in folders if folder.report.is_file()):
                 with ui.column().classes("grow basis-80 min-w-0"):
@@ -48,7 +49,7 @@ def _table(folders: list[RunFolder], lives: dict[str, Live]) -> None:
     values = [dict((state.get("best") or {}).get("values") or {}) for state in states]
     rows: list[tuple[str, list[str]]] = [
         ("task", [str(state.get("task", "")) for state in states]),
-        ("begun or ended", [str(state.get("since", "")) for state in states]),
+        ("since (UTC)", [since(state) for state in states]),
         ("best fitness", [_number((state.get("best") or {}).get("fitness")) for state in states]),
         ("events", [str(lives[folder.path.name].count) for folder in folders]),
     ]
@@ -59,7 +60,7 @@ def _table(folders: list[RunFolder], lives: dict[str, Live]) -> None:
             ui.element("td")
             for folder, state in zip(folders, states, strict=True):
                 with ui.element("th").classes("text-left p-2").props("scope=col"):
-                    ui.link(folder.path.name, f"/run/{quote(folder.path.name)}").classes("break-all")
+                    ui.link(folder.path.name, f"/run/{quote(folder.path.name)}").classes("break-all mr-2")
                     badge(str(state["state"]))
         for label, cells in rows:
             with ui.element("tr").classes("border-t"):

@@ -1,9 +1,11 @@
 """Figures of runs that go on, and of runs side by side."""
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import plotly.graph_objects as go
+from nicegui import ui
 
 from dalembert.report.charts.logarithm import logarithmic, positive
 from dalembert.report.look import LIGHT, plain, themed
@@ -48,6 +50,16 @@ def followed(points: Sequence[tuple[float, float]], axes: tuple[str, str]) -> go
     figure.update_xaxes(title=plain(axes[0]))
     figure.update_yaxes(title=plain(axes[1]), rangemode="tozero")
     return on_any_page(figure.update_layout(showlegend=False))
+
+
+def plot(figure: go.Figure) -> ui.plotly:
+    """The figure on a page, without the buttons that would cover it on a phone."""
+    return ui.plotly(bare(figure))
+
+
+def bare(figure: go.Figure) -> dict[str, Any]:
+    """The figure as a page takes it."""
+    return figure.to_plotly_json() | {"config": {"displayModeBar": False, "responsive": True}}
 
 
 def on_any_page(figure: go.Figure) -> go.Figure:

@@ -10,6 +10,13 @@ from dalembert.report.look import LIGHT
 
 STATES = {"finished": "positive", "running": "primary", "interrupted": "warning", "killed": "warning"}
 """Colour of a state's badge; that of an error for the others."""
+LOOKS = """
+.border, .border-t { border-color: rgba(118, 129, 143, 0.45) }
+.cm-line.wrong { background: rgba(224, 49, 49, 0.28) !important }
+.q-uploader__subtitle { display: none }
+.q-uploader__list { min-height: 0; padding: 0 }
+"""
+"""Quiet lines; mistakes in red on any ground; no sizes and no empty list before anything was uploaded."""
 WAYS = (("Runs", "/"), ("New study", "/new"))
 
 
@@ -18,6 +25,7 @@ def frame(title: str) -> Iterator[None]:
     """A page with the head on top; what is made in the block is its content."""
     ui.page_title(f"{title} · dalembert")
     ui.colors(primary=LIGHT.series[0])
+    ui.add_css(LOOKS)
     main = ui.column().classes("w-full max-w-6xl mx-auto p-2 sm:p-4 gap-4").props("role=main id=main")
     ui.skip_link("Skip to the content", target=main)
     with ui.header().classes("items-center gap-x-6 gap-y-1 py-2").props("role=banner"):

@@ -32,6 +32,11 @@ class Jobs:
         job = self._started.get(folder)
         return "" if job is None or job.process.poll() in (None, 0) else job.said()
 
+    def said(self, folder: Path) -> str:
+        """What a process has said so far, such as that it compiles; empty if there is nothing."""
+        job = self._started.get(folder)
+        return "" if job is None else job.said().strip()
+
     def tidy(self) -> None:
         """Let go of processes that have ended well."""
         ended = [folder for folder, job in self._started.items() if job.process.poll() == 0]

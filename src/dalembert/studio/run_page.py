@@ -11,13 +11,14 @@ import plotly.graph_objects as go
 from nicegui import ui
 
 from dalembert.errors import DalembertError, InputError
-from dalembert.studio.figures import convergence, followed, on_any_page
+from dalembert.studio.figures import bare, convergence, followed, on_any_page, plot
 from dalembert.studio.fit_so_far import fit_so_far
 from dalembert.studio.frame import STATES, badge, button, complain, frame
 from dalembert.studio.jobs import Jobs, stop
 from dalembert.studio.live import Live
 from dalembert.studio.workspace import Workspace
 from dalembert.study.folder import FINISHED, RESUMABLE, RUNNING, RunFolder
+from dalembert.study.listing import best
 from dalembert.study.runner import unknowns
 
 EVERY = 0.5  # s between two looks at the events
@@ -58,7 +59,7 @@ class _Page:
         with ui.row().classes("items-center gap-x-4 gap-y-2"):
             self.badge = badge(STARTING)
             self.told = ui.label("").props("role=status aria-live=polite").classes("break-words")
-        self.bar = ui.linear_progress(0, show_value=False).props('aria-label="Progress"')
+        self.bar = ui.linear_progress(0, show_value=False).props('aria-label="Progress" indeterminate')
         with ui.row().classes("gap-2"):
             self.stop = button("Stop", self._asked(lambda: stop(self.folder)), icon="stop", colour="negative")
             self.resume = button("Resume", self._asked(lambda: self.jobs.resume(self.folder.path)), icon="play_arrow")
@@ -84,6 +85,10 @@ class _Page:
         if state != self.state:
             self.state = state
             self._show_state()
+        if not self.live.count and state in (RUNNING, STARTING):
+            self.message.set_text(self.jobs.said(self.folder.path))
+        elif state == RUNNING:
+            self.message.set_text("")
 
     def _state(self) -> str:
         if self.folder.is_run:
@@ -106,9 +111,12 @@ class _Page:
             return
         name = quote(self.folder.path.name)
         with self.files:
+            ui.label("Download:")
             for file, what in FILES.items():
                 if (self.folder.path / file).is_file():
                     ui.link(what, f"/files/{name}/{file}").props(f'download="{_saved(self.folder, file)}"')
+        if state == FINISHED:
+            self.told.set_text(best(self.folder, self.folder.state()))
         self.live_part.set_visibility(state != FINISHED)
         if self.folder.report.is_file():
             with self.report:
@@ -157,11 +165,11 @@ class _Page:
 def _draw(place: ui.column, name: str, figure: go.Figure) -> None:
     """Draw a figure in its place, or a newer one in the place of an older."""
     plots = [child for child in place if isinstance(child, ui.plotly)]
-    for plot in plots:
-        plot.update_figure(figure)
+    for drawn in plots:
+        drawn.update_figure(bare(figure))
     if not plots:
         with place:
-            ui.plotly(figure).classes("w-full").props(f'role=img aria-label="{name}"')
+            plot(figure).classes("w-full").props(f'role=img aria-label="{name}"')
 
 
 def _names(folder: RunFolder) -> tuple[str, ...]:

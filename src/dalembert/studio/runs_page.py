@@ -20,11 +20,14 @@ def runs_page(workspace: Workspace) -> None:
         @ui.refreshable
         def listed(found: list[dict[str, str]]) -> None:
             if not found:
-                ui.label("No runs yet: begin with a new study, or run one of those below.")
+                ui.label("No runs yet: begin with a new study, or open one of those below, and run it.")
+                button("New study", lambda: ui.navigate.to("/new"), icon="add")
             for row in found[:SHOWN]:
                 _row(row, chosen)
             if len(found) > SHOWN:
                 ui.label(f"{len(found) - SHOWN} older runs are not shown.")
+            if len(found) > 1:
+                button("Compare chosen runs", lambda: _compare(chosen), icon="compare_arrows")
 
         seen = _newest(workspace)
         listed(seen)
@@ -37,14 +40,13 @@ def runs_page(workspace: Workspace) -> None:
                 listed.refresh(found)
 
         ui.timer(EVERY, look)
-        button("Compare chosen runs", lambda: _compare(chosen), icon="compare_arrows")
         with ui.column().classes("gap-2"):
             ui.label("Studies").classes("text-xl font-bold").props("role=heading aria-level=2")
             names = workspace.studies()
             for name in names:
                 ui.link(name, f"/study/{quote(name)}")
             if not names:
-                ui.label("None yet. Studies lie in studies/NAME/ of the folder that the studio was started in.")
+                ui.label("None yet. They lie in studies/NAME/ of the folder that the studio was started in.")
 
 
 def _newest(workspace: Workspace) -> list[dict[str, str]]:

@@ -19,6 +19,7 @@ from dalembert.studio.runs_page import runs_page
 from dalembert.studio.study_page import new_page, study_page
 from dalembert.studio.workspace import Workspace, checked
 
+PATIENCE = 30.0  # s that a browser may be out of reach, on a machine that runs are busy on
 LOOPBACK = ("127.0.0.1", "localhost", "::1")
 POLICY = (
     "default-src 'self' 'unsafe-inline' 'unsafe-eval' data: blob:; connect-src 'self' ws: wss:; frame-ancestors 'self'"
@@ -79,7 +80,7 @@ def application(root: Path) -> FastAPI:
         answer.headers["Referrer-Policy"] = "no-referrer"
         return answer
 
-    ui.run_with(app, title="dalembert", dark=None, show_welcome_message=False)
+    ui.run_with(app, title="dalembert", dark=None, show_welcome_message=False, reconnect_timeout=PATIENCE)
     pages.on_shutdown(lambda: pool.shutdown(cancel_futures=True))
     return app
 

@@ -10,29 +10,29 @@ from nicegui import events, run, ui
 
 from dalembert.errors import DalembertError, InputError
 from dalembert.report.charts.measured import measured
-from dalembert.studio.figures import on_any_page
+from dalembert.studio.figures import on_any_page, plot
 from dalembert.studio.frame import button, complain, frame
 from dalembert.studio.jobs import Jobs
 from dalembert.studio.lines import line_of
 from dalembert.studio.workspace import MOST_BYTES, Workspace, as_text, templates
-from dalembert.study import load
+from dalembert.study import load, plan
 from dalembert.study.loader import StudyError
 from dalembert.study.study import Study
 
 AFTER = 0.4  # s after the last key until the text is read
-WRONG = "bg-red-100 dark:bg-red-900"
+WRONG = "wrong"  # the class of lines with mistakes; frame.LOOKS
 DATA = ".csv,.txt,.dat,.parquet,.mat,.uff,.unv,.nc,.npz"
 
 
 def new_page(workspace: Workspace) -> None:
     """Begin a study: from a template, or from a file."""
     with frame("New study"):
-        name = ui.input("Name", placeholder="my-pendulum").classes("w-full max-w-md").props("outlined")
-        texts = templates()
+        name = ui.input("Name (one is made up if this is empty)", placeholder="my-pendulum")
+        name.classes("w-full max-w-md").props("outlined")
 
-        def create(text: str, beside: dict[str, bytes]) -> None:
+        def create(text: str, beside: dict[str, bytes], otherwise: str) -> None:
             try:
-                study = workspace.create(name.value or "", text)
+                study = workspace.create(name.value or workspace.free(otherwise), text)
                 for file, content in beside.items():
                     workspace.put(study, file, content)
             except DalembertError as error:
@@ -41,18 +41,22 @@ def new_page(workspace: Workspace) -> None:
             ui.navigate.to(f"/study/{quote(study)}")
 
         ui.label("Begin with").classes("text-xl font-bold").props("role=heading aria-level=2")
-        with ui.row().classes("gap-2"):
-            for title, (text, beside) in texts.items():
-                button(title, lambda text=text, beside=beside: create(text, beside), icon="description")
+        with ui.element("div").classes("grid grid-cols-1 sm:grid-cols-2 gap-3 w-full"):
+            for title, one in templates().items():
+                with ui.column().classes("border rounded p-3 gap-2"):
+                    button(title, partial(create, one.text, one.beside, one.name), icon="description")
+                    ui.label(one.description).classes("text-sm")
         ui.label("or with a study file of yours").classes("text-xl font-bold").props("role=heading aria-level=2")
 
         async def uploaded(event: events.UploadEventArguments) -> None:
             try:
-                create(as_text(await event.file.read(), event.file.name), {})
+                create(as_text(await event.file.read(), event.file.name), {}, Path(event.file.name).stem)
             except DalembertError as error:
                 complain(error)
 
-        upload = ui.upload(label="STUDY.toml", auto_upload=True, on_upload=uploaded, max_file_size=MOST_BYTES)
+        upload = ui.upload(
+            label="Choose a study file (.toml)", auto_upload=True, on_upload=uploaded, max_file_size=MOST_BYTES
+        )
         upload.props('accept=".toml" flat bordered').classes("w-full max-w-md")
 
 
@@ -69,16 +73,24 @@ def study_page(workspace: Workspace, jobs: Jobs, name: str) -> None:
             start = button("Run", lambda: _start(workspace, jobs, path, editor.value), icon="play_arrow")
             button("Save", lambda: _save(workspace, path, editor.value), icon="save")
             verdict = ui.label("").props("role=status aria-live=polite")
+        does = ui.label("").classes("break-words")
         wrong = ui.column().classes("gap-1 w-full")
         editor = ui.codemirror(path.read_text(encoding="utf-8"), language="TOML", line_wrapping=True)
         editor.classes("w-full border rounded").props("aria-label='The study as text'").style("height: 60vh")
         drawn = ui.column().classes("w-full")
 
+        async def adapt() -> None:
+            if await ui.run_javascript("matchMedia('(prefers-color-scheme: dark)').matches"):
+                editor.set_theme("vscodeDark")
+
+        ui.timer(0.0, adapt, once=True)
+
         async def look() -> None:
             text = editor.value
-            study, mistakes = await run.io_bound(_read, path, text) or (None, [])
+            study, does_what, mistakes = await run.io_bound(_read, path, text) or (None, "", [])
             _tell(editor, wrong, text, mistakes)
             verdict.set_text("In order." if study else f"{len(mistakes)} to put right:")
+            does.set_text(does_what)
             start.set_enabled(study is not None)
             drawn.clear()
             if study is not None and study.file.data is not None:
@@ -103,22 +115,23 @@ def study_page(workspace: Workspace, jobs: Jobs, name: str) -> None:
             ui.notify(f"{placed.name} lies beside the study now: name it in [data].", type="positive")
             await look()
 
-        upload = ui.upload(label="Measured data", auto_upload=True, on_upload=uploaded, max_file_size=MOST_BYTES)
+        upload = ui.upload(label="Add measured data", auto_upload=True, on_upload=uploaded, max_file_size=MOST_BYTES)
         upload.props(f'accept="{DATA}" flat bordered').classes("w-full max-w-md")
 
 
-def _read(path: Path, text: str) -> tuple[Study | None, list[tuple[int, str]]]:
-    """The study that a text is, or its mistakes with the numbers of their lines."""
+def _read(path: Path, text: str) -> tuple[Study | None, str, list[tuple[int, str]]]:
+    """The study that a text is and what it does, or its mistakes with the numbers of their lines."""
     with tempfile.TemporaryDirectory() as folder:
         draft = Path(folder) / path.name
         try:
             draft.write_text(text, encoding="utf-8")
-            return load(draft, name=path.stem, folder=path.parent), []
+            study = load(draft, name=path.stem, folder=path.parent)
+            return study, f"It {plan(study)}.", []
         except StudyError as error:
-            return None, [(line_of(text, place), sentence) for place, sentence in error.mistakes]
-        except InputError as error:
+            return None, "", [(line_of(text, place), sentence) for place, sentence in error.mistakes]
+        except DalembertError as error:
             sentence = str(error).replace(f"{draft}: ", "").replace(f"{draft}", path.name)
-            return None, [(_line_in(sentence), sentence)]
+            return None, "", [(_line_in(sentence), sentence)]
 
 
 def _line_in(sentence: str) -> int:
@@ -138,7 +151,7 @@ def _tell(editor: ui.codemirror, wrong: ui.column, text: str, mistakes: list[tup
         for line, sentence in mistakes:
             with ui.row().classes("items-start gap-2 flex-nowrap").props("role=alert"):
                 go = ui.button(f"line {line}", on_click=partial(editor.reveal_line, line), color="negative")
-                go.props("dense no-caps outline size=sm").classes("shrink-0")
+                go.props("dense no-caps unelevated size=sm").classes("shrink-0")
                 ui.label(sentence).classes("text-sm break-words")
 
 
@@ -152,7 +165,7 @@ async def _draw(study: Study) -> None:
         ui.label(str(error)).classes("text-negative").props("role=alert")
         return
     ui.label("Measured data").classes("text-xl font-bold").props("role=heading aria-level=2")
-    ui.plotly(on_any_page(measured(data))).classes("w-full h-80").props('role=img aria-label="Measured data"')
+    plot(on_any_page(measured(data))).classes("w-full h-80").props('role=img aria-label="Measured data"')
 
 
 def _save(workspace: Workspace, path: Path, text: str) -> bool:

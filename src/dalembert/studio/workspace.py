@@ -64,6 +64,13 @@ class Workspace:
         found = sorted((self.root / "studies").glob("*/*.toml"))
         return [f"{path.parent.name}/{path.stem}" for path in found if _is_study(path)]
 
+    def free(self, name: str) -> str:
+        """The name itself, or with the next number with which no study is there."""
+        chosen, number = name, 2
+        while (self.root / "studies" / chosen).exists():
+            chosen, number = f"{name}-{number}", number + 1
+        return chosen
+
     def study(self, name: str) -> Path:
         """The file of a study.
 
@@ -127,13 +134,34 @@ def checked(name: str) -> str:
     return name
 
 
-def templates() -> dict[str, tuple[str, dict[str, bytes]]]:
-    """Studies to begin with, by what they are for: text, and the files beside it."""
+@dataclass(frozen=True)
+class Template:
+    """A study to begin with.
+
+    Parameters
+    ----------
+    name : str
+        What a study made from it is called, unless it is given another name.
+    description : str
+    text : str
+    beside : dict of str to bytes
+        Files beside it.
+    """
+
+    name: str
+    description: str
+    text: str
+    beside: dict[str, bytes]
+
+
+def templates() -> dict[str, Template]:
+    """Studies to begin with, by what they are for."""
     found = {}
     for folder in sorted(TEMPLATES.iterdir(), key=lambda entry: entry.name):
         text = (folder / "study.toml").read_text(encoding="utf-8")
         beside = {entry.name: entry.read_bytes() for entry in folder.iterdir() if entry.name != "study.toml"}
-        found[tomllib.loads(text)["study"]["title"]] = text, beside
+        about = tomllib.loads(text)["study"]
+        found[about["title"]] = Template(folder.name.partition("-")[2], about["description"], text, beside)
     return found
 
 

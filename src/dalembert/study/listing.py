@@ -29,22 +29,26 @@ def table(found: list[dict[str, str]]) -> Table:
 
 def _row(folder: RunFolder) -> dict[str, str]:
     state = folder.state()
-    since = str(state.get("since", "")).replace("T", " ").removesuffix("+00:00")
     return {
         "run": folder.path.name,
         "task": str(state.get("task", "")),
         "state": str(state["state"]),
-        "since": since,
-        "best": _best(folder, state),
+        "since": since(state),
+        "best": best(folder, state),
     }
 
 
-def _best(folder: RunFolder, state: dict) -> str:
-    """Best fitness: of the result, or of the events while there is none."""
-    best = state.get("best") or {}
-    fitness = best.get("fitness")
+def since(state: dict) -> str:
+    """When a run came into its state, in universal time."""
+    return str(state.get("since", "")).replace("T", " ").removesuffix("+00:00")
+
+
+def best(folder: RunFolder, state: dict) -> str:
+    """Best fitness and values: of the result, or of the events while there is none."""
+    found = state.get("best") or {}
+    fitness = found.get("fitness")
     if fitness is None:
         event = last_progress(folder.events)
         fitness = event["best"] if event else None
-    values = ", ".join(f"{name} = {value:.6g}" for name, value in best.get("values", {}).items())
-    return " ".join(part for part in ("" if fitness is None else f"{fitness:.4g}", values) if part)
+    values = ", ".join(f"{name} = {value:.6g}" for name, value in found.get("values", {}).items())
+    return ", ".join(part for part in ("" if fitness is None else f"fitness {fitness:.4g}", values) if part)

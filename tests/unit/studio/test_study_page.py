@@ -4,20 +4,22 @@ from dalembert.studio.lines import line_of
 from dalembert.studio.study_page import _read
 from dalembert.studio.workspace import templates
 
-TEXT = templates()["A motion of a mechanism"][0]
+TEXT = templates()["A motion of a mechanism"].text
 
 
 def lines_of(tmp_path, text: str) -> list[tuple[str, str]]:
     """Lines that mistakes are told at, and their sentences."""
-    study, mistakes = _read(tmp_path / "study.toml", text)
+    study, does, mistakes = _read(tmp_path / "study.toml", text)
     assert study is None
+    assert does == ""
     return [(text.splitlines()[line - 1], sentence) for line, sentence in mistakes]
 
 
 def test_a_study_in_order(tmp_path):
-    study, mistakes = _read(tmp_path / "study.toml", TEXT)
+    study, does, mistakes = _read(tmp_path / "study.toml", TEXT)
     assert study is not None
     assert study.task == "simulate"
+    assert does == "It simulates the motion to 4 s: 1 simulation."
     assert mistakes == []
 
 

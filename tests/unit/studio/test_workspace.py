@@ -88,8 +88,9 @@ def test_what_is_too_large_or_no_text_is_refused(workspace, monkeypatch):
 
 @pytest.mark.parametrize("title", templates())
 def test_a_template_is_a_study_in_order(workspace, title):
-    text, beside = templates()[title]
-    study = workspace.create("mine", text)
-    for name, content in beside.items():
+    one = templates()[title]
+    study = workspace.create(one.name, one.text)
+    assert workspace.free(one.name) == f"{one.name}-2"
+    for name, content in one.beside.items():
         workspace.put(study, name, content)
     assert load(workspace.study(study)).title == title

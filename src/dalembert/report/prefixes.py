@@ -2,6 +2,8 @@
 
 import math
 
+from dalembert.report.digits import shown
+
 PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 SMALLEST = {"m": (-9, 0), "N": (0, 6), "J": (-9, 6)}
 """Exponents of the smallest and the largest prefix that people use with a unit; others stay as they are."""
@@ -20,3 +22,15 @@ def prefixed(largest: float, unit: str) -> tuple[float, str]:
     least, most = SMALLEST[unit]
     exponent = min(max(3 * math.floor(math.log10(largest * (1 + 1e-12)) / 3), least), most)
     return 10.0**-exponent, f"{PREFIXES[exponent]}{unit}"
+
+
+def in_words(value: float, unit: str, digits: int = 6) -> str:
+    """Text of a number with the prefix of its unit that makes it easy to read.
+
+    Examples
+    --------
+    >>> in_words(1.8883e-4, "m"), in_words(2.5, "rad")
+    ('188.83 µm', '2.5 rad')
+    """
+    factor, own = prefixed(abs(value), unit)
+    return f"{shown(factor * value, digits=digits)} {own}"

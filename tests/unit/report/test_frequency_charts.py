@@ -105,7 +105,8 @@ def test_the_loop_encloses_the_energy_of_a_period(curve):
 
 def test_states_over_a_period_and_over_frequency(curve):
     point = Look.of(curve, ["m2.x"]).point
-    (states,) = charts.contact_states(curve, point).data
+    states, *legend = charts.contact_states(curve, point).data
+    assert [trace.name for trace in legend] == list(STATES)
     np.testing.assert_array_equal(states.z, curve.states[point])
     assert list(states.y) == ["slider"]
     shares = traces(charts.contact_shares(curve))

@@ -1,6 +1,7 @@
 import plotly.graph_objects as go
 import pytest
 
+from dalembert.report.charts.logarithm import logarithmic
 from dalembert.report.look import DARK, LIGHT, dark, exchanged, plain, themed
 
 
@@ -39,3 +40,10 @@ def test_a_dark_figure_keeps_its_numbers_and_exchanges_its_colours():
 
 def test_tags_in_a_name_are_shown_not_read():
     assert plain("<a href='x'>&</a>") == "&lt;a href='x'&gt;&amp;&lt;/a&gt;"
+
+
+def test_a_logarithmic_axis_of_few_decades_has_labels_between_them():
+    axis = logarithmic(go.Figure(go.Scatter(y=[20.0, 300.0])))
+    assert {20.0, 50.0, 100.0, 200.0} <= set(axis["tickvals"])
+    assert logarithmic(go.Figure(go.Scatter(y=[1e-3, 20.0])))["dtick"] == 1
+    assert logarithmic(go.Figure(go.Scatter(y=[2.0, 3.0]))) == {"type": "log"}

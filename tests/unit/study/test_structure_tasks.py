@@ -134,7 +134,7 @@ def test_a_structure_of_tables_is_the_one_of_calls(write, tmp_path):
     theirs = frequency_response(two_masses(), np.linspace(0.12, 0.16, 5), HarmonicBalance(5, samples=256))
     np.testing.assert_array_equal(ours.response, theirs.response)
     peak = theirs.peak("m1")
-    assert outcome.best == {"values": {"peak of m1.x": peak.amplitude, "at": peak.frequency}}
+    assert outcome.best == {"values": {"peak of m1.x": peak.amplitude, "frequency (Hz)": peak.frequency}}
     first = folder.report.read_text()
     folder.report.unlink()
     report_run(folder)
@@ -248,7 +248,7 @@ def test_friction_is_identified_from_a_curve_and_bounds_it(write, tmp_path):
         (
             '[track_resonance]\nparameter = "preload"\nvalues = [2.0, 3.0]\nbetween = [0.1, 0.2]\ndof = "m2"\n',
             "follows the peak of m2 (peak) over 2 values of preload, 2 to 3: 2 simulations",
-            {"preload", "peak of m2.x", "at"},
+            {"preload", "peak of m2.x", "frequency (Hz)"},
         ),
         (
             "[backbone]\namplitudes = [0.5, 1.0, 2.0]\n",
@@ -265,12 +265,12 @@ def test_friction_is_identified_from_a_curve_and_bounds_it(write, tmp_path):
             + "backbone = { amplitudes = [0.5, 1.0] }\ncompare_in_time = { frequencies = [0.13], way = 'shooting', "
             "method = { steps_per_period = 64 } }\n",
             "follows the response from 0.12 to 0.16 Hz (5 points, 5 harmonics): 1 simulation",
-            {"peak of m1.x", "at"},
+            {"peak of m1.x", "frequency (Hz)"},
         ),
         (
             CURVE + 'sweep = { parameter = "preload", values = { count = 3 } }\ndof = "m2"\namplitude = "rms"\n',
             "follows the response from 0.12 to 0.16 Hz (5 points, 5 harmonics) for 3 values of preload: 3 simulations",
-            {"preload", "rms of m2", "at", "reduction"},
+            {"preload", "rms of m2", "frequency (Hz)", "reduction"},
         ),
     ],
 )

@@ -39,28 +39,20 @@ def contact_states(curve: FrequencyCurveLike, point: int, *, title: str = "Conta
             zmax=len(STATES) - 0.5,
             colorscale=steps,
             ygap=2 if len(states) <= NAMED else 0,
-            colorbar={
-                "orientation": "h",
-                "x": 0,
-                "xanchor": "left",
-                "y": 1.0,
-                "yanchor": "bottom",
-                "len": 0.6,
-                "thickness": 10,
-                "outlinewidth": 0,
-                "tickvals": list(range(len(STATES))),
-                "ticktext": list(STATES),
-            },
+            showscale=False,
             text=[[STATES[state] for state in row] for row in states],
             hovertemplate="%{y}, %{x:.0f}°: %{text}<extra></extra>",
         )
     )
+    for state in STATES:
+        marker = {"symbol": "square", "size": 11, "color": COLOURS[state]}
+        figure.add_scatter(x=[None], y=[None], name=state, mode="markers", marker=marker)
     themed(figure, title, height=min(220 + 22 * len(states), 720))
     figure.update_xaxes(title="phase of the period (°)", dtick=90, range=[0, 360], showgrid=False)
     figure.update_yaxes(
         showgrid=False, ticks="", autorange="reversed", showticklabels=len(states) <= NAMED, automargin=True
     )
-    return figure.update_layout(margin_t=84)
+    return figure.update_layout(showlegend=True)
 
 
 def contact_shares(curve: FrequencyCurveLike, *, title: str = "Contact states over frequency") -> go.Figure:

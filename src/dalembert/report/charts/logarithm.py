@@ -1,4 +1,4 @@
-"""Logarithmic axes that say decades, and nothing between them."""
+"""Logarithmic axes that say decades, and 2 and 5 between them where there are few."""
 
 from typing import Any
 
@@ -20,10 +20,15 @@ def positive(values: np.ndarray) -> np.ndarray:
 
 
 def logarithmic(figure: go.Figure, along: str = "y") -> dict[str, Any]:
-    """Settings of a logarithmic axis: a label at every decade, or at every few, where the data span more than one."""
+    """Settings of a logarithmic axis: a label at every decade or few; at 2 and 5 too where there are few."""
     traces: Any = figure.data
     series = [np.asarray(trace[along], dtype=float) for trace in traces]
     values = np.concatenate([*series, [np.nan]])
     values = np.log10(values[np.isfinite(values) & (values > 0)])
     span = float(np.ptp(values)) if len(values) else 0.0
-    return {"type": "log", "dtick": max(1, int(np.ceil(span / LABELS)))} if span > 1 else {"type": "log"}
+    if span <= 1:
+        return {"type": "log"}
+    if span < 2:
+        decades = range(int(np.floor(values.min())) - 1, int(np.ceil(values.max())) + 2)
+        return {"type": "log", "tickvals": [float(f"{step}e{decade}") for decade in decades for step in (1, 2, 5)]}
+    return {"type": "log", "dtick": max(1, int(np.ceil(span / LABELS)))}

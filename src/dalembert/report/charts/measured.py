@@ -4,7 +4,7 @@ import plotly.graph_objects as go
 
 from dalembert.report.look import LIGHT, plain, themed
 from dalembert.report.needs import MeasurementsLike
-from dalembert.report.quantities import labelled
+from dalembert.report.quantities import labelled, quantity
 from dalembert.report.thin import thin
 
 FEW = 500
@@ -33,4 +33,7 @@ def measured(data: MeasurementsLike, *, title: str = "") -> go.Figure:
             marker={"color": colour, "size": 5}, line={"color": colour}, selector={"name": plain(name)}
         )
     themed(figure, title)
+    quantities = {quantity(name) for name in data.channels}
+    if len(quantities) == 1:
+        figure.update_yaxes(title_text=quantities.pop())
     return figure.update_xaxes(title_text=labelled(along.name, along.unit)).update_layout(hovermode="x unified")

@@ -23,7 +23,7 @@ def points_found(curve: FrequencyCurveLike, *, title: str = "How the points were
     """
     figure = make_subplots(rows=2, shared_xaxes=True, vertical_spacing=0.06)
     for row, name, values, colour in (
-        (1, "Newton iterations", curve.iterations, LIGHT.series[0]),
+        (1, "Newton iterations", curve.iterations, LIGHT.ink),
         (2, "left unbalanced", positive(np.asarray(curve.residuals, dtype=float)), LIGHT.series[0]),
         (2, "change with twice the samples", positive(np.asarray(curve.sampling_errors, dtype=float)), LIGHT.series[1]),
     ):

@@ -91,8 +91,9 @@ def _drawn(
             row=1,
             col=1,
         )
-    themed(figure, title or f"Peak of {plain(dof)} over {plain(over.parameter)}", height=460)
-    figure.update_yaxes(title_text=labelled(size_label(kind), unit), rangemode="tozero", row=1)
+    by = "" if kind == "peak" else f", by its {size_label(kind)}"
+    themed(figure, title or f"Peak of {plain(dof)} over {plain(over.parameter)}{by}", height=460)
+    figure.update_yaxes(title_text=labelled("peak", unit), rangemode="tozero", row=1)
     figure.update_yaxes(title_text="frequency (Hz)", row=2)
     if values.min() > 0 and values.max() > DECADES * values.min():
         figure.update_xaxes(type="log", dtick=1)

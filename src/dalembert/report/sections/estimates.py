@@ -8,7 +8,7 @@ from dalembert.report.charts.parameters import on_bound
 from dalembert.report.needs import FitLike
 from dalembert.report.plot import Plot
 from dalembert.report.sections.section import Section
-from dalembert.report.table import Table, cell
+from dalembert.report.table import Table, cell, noted
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class Estimates(Section):
             )
         ]
         columns = ("parameter", "value", "standard deviation", "unit", "lower bound", "upper bound", "note")
-        return Table("parameters", "Identified values", columns, rows)
+        return noted(Table("parameters", "Identified values", columns, rows))
 
     @property
     def plots(self) -> tuple[Plot, ...]:

@@ -9,7 +9,7 @@ from dalembert.report.needs import ExperimentLike, FitLike
 from dalembert.report.plot import Plot
 from dalembert.report.sections.comparison import all_samples, plots, residual_cells, validation
 from dalembert.report.sections.section import Section
-from dalembert.report.table import Table, cell
+from dalembert.report.table import Table, cell, noted
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class Experiments(Section):
             "deviation of the data",
             "note",
         )
-        return Table("residuals", "Residuals, in the units of their channels", columns, rows)
+        return noted(Table("residuals", "Residuals, in the units of their channels", columns, rows))
 
     @property
     def samples(self) -> list[tuple[str, Table]]:

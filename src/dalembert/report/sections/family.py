@@ -11,6 +11,7 @@ from dalembert.report.digits import shown
 from dalembert.report.focus import unit_of
 from dalembert.report.needs_frequency import CurveFamilyLike, FrequencyCurveLike
 from dalembert.report.plot import Plot
+from dalembert.report.prefixes import in_words
 from dalembert.report.quantities import labelled
 from dalembert.report.sections.findings import Findings
 from dalembert.report.table import Table, cell, noted
@@ -32,7 +33,7 @@ class Family(Findings):
         best = int(np.flatnonzero(values == family.best(dof, self.kind))[0])
         gain = float(family.reduction(dof, self.kind)[best])
         told = f"The smallest peak of {dof} is at {family.parameter} = {value_text(family, values[best])}: "
-        told += f"{shown(peaks[best].amplitude, digits=4)} {unit_of(dof)} at {shown(peaks[best].frequency)} Hz"
+        told += f"{in_words(peaks[best].amplitude, unit_of(dof), 4)} at {shown(peaks[best].frequency)} Hz"
         if best and np.isfinite(gain):
             told += f", {shown(100 * gain, digits=3)} % below that at {value_text(family, values[0])}"
         ends = [place for place in (0, len(values) - 1) if np.isfinite(peaks[place].frequency)]

@@ -29,9 +29,9 @@ class Friction(Findings):
     @property
     def sentences(self) -> tuple[str, ...]:
         curve, point = self.look.curve, self.look.point
-        at = f"the peak of {self.look.dof} at {shown(float(curve.frequencies[point]))} Hz"
+        at = f"the point of the curve where {self.look.dof} is largest, {shown(float(curve.frequencies[point]))} Hz,"
         if not curve.contacts:
-            return (_after(self.lead, f"Drawn for {at}."),)
+            return (_after(self.lead, f"Drawn for {at[:-1]}."),)
         part = {name: float(share.mean()) for name, share in shares(curve.states[point]).items()}
         told = f"At {at} the contacts are stuck for {_percent(part['stuck'])} of the period, slip for "
         told += f"{_percent(part['slipping'])} and are separated for {_percent(part['separated'])}."

@@ -22,8 +22,19 @@ class Provenance(Section):
 
     @property
     def table(self) -> Table:
-        rows = [(cell(key), _shortened(str(value))) for key, value in _flat(self.facts)]
+        rows = [(cell(key), _shortened(_worded(value))) for key, value in _flat(self.facts)]
         return Table("provenance", "What made this result", ("what", "value"), rows)
+
+
+def _worded(value: Any) -> str:
+    """A setting as people write it.
+
+    >>> _worded(True), _worded(None), _worded(["low", "high"]), _worded([0.08, 0.32]), _worded(1e-10)
+    ('yes', 'none', 'low, high', '0.08, 0.32', '1e-10')
+    """
+    if isinstance(value, list | tuple):
+        return ", ".join(map(_worded, value))
+    return {True: "yes", False: "no", None: "none"}[value] if value is None or isinstance(value, bool) else str(value)
 
 
 def _shortened(text: str) -> Cell:

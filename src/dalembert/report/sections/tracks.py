@@ -11,6 +11,7 @@ from dalembert.report.digits import shown
 from dalembert.report.focus import unit_of
 from dalembert.report.needs_frequency import ResonanceTrackLike
 from dalembert.report.plot import Plot
+from dalembert.report.prefixes import in_words
 from dalembert.report.quantities import labelled
 from dalembert.report.sections.findings import Findings
 from dalembert.report.table import Table, cell, noted
@@ -30,7 +31,7 @@ class Tracks(Findings):
             return ()
         top, low = int(np.nanargmax(track.amplitudes)), int(np.nanargmin(track.amplitudes))
         least, most = (
-            f"{shown(float(track.amplitudes[at]), digits=4)} {unit_of(track.dof)} at "
+            f"{in_words(float(track.amplitudes[at]), unit_of(track.dof), 4)} at "
             f"{shown(float(track.frequencies[at]))} Hz"
             for at in (low, top)
         )

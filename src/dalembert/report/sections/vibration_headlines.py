@@ -18,6 +18,7 @@ from dalembert.report.needs_frequency import (
     ResonanceTrackLike,
     TimeComparisonLike,
 )
+from dalembert.report.prefixes import in_words
 from dalembert.report.sections.headline import MOST_VALUES, Fact, Headline
 
 
@@ -55,10 +56,12 @@ def of_family(
         at = int(np.flatnonzero(np.asarray(family.values) == best)[0])
         gain = float(family.reduction(dofs[0], kind)[at])
         facts += [
-            Fact(f"best {family.parameter}", value_text(family, best)),
-            Fact(f"peak of {dofs[0]} there", f"{shown(peaks[at].amplitude, digits=5)} {unit_of(dofs[0])}"),
-            Fact(f"reduction from {value_text(family, float(family.values[0]))}", f"{shown(100 * gain, digits=3)} %"),
+            Fact(f"{family.parameter} of the smallest peak", value_text(family, best)),
+            Fact(f"peak of {dofs[0]} there", in_words(peaks[at].amplitude, unit_of(dofs[0]), 5)),
         ]
+        if gain > 0:
+            first = value_text(family, float(family.values[0]))
+            facts.append(Fact(f"reduction from {first}", f"{shown(100 * gain, digits=3)} %"))
     verdict = "computed" if family.success else "incomplete"
     name = title or f"Forced response over {family.parameter}"
     return Headline(name, verdict, family.success, f"{family.status}.", facts, notes)
@@ -99,10 +102,8 @@ def of_track(track: ResonanceTrackLike, title: str | None, notes: Sequence[str])
     if found.any():
         lowest = int(np.nanargmin(track.amplitudes))
         facts += [
-            Fact(f"best {track.parameter}", value_text(track, track.best())),
-            Fact(
-                f"peak of {track.dof} there", f"{shown(float(track.amplitudes[lowest]), digits=5)} {unit_of(track.dof)}"
-            ),
+            Fact(f"{track.parameter} of the smallest peak", value_text(track, track.best())),
+            Fact(f"peak of {track.dof} there", in_words(float(track.amplitudes[lowest]), unit_of(track.dof), 5)),
         ]
     status = f"The peak was found at {int(found.sum())} of {len(found)} values of {track.parameter}."
     verdict = "tracked" if found.all() else "incomplete"
@@ -158,7 +159,7 @@ def _percent(part: float) -> str:
 
 def _largest(curve: FrequencyCurveLike, dof: str, kind: str) -> tuple[str, str]:
     peak = curve.peak(dof, kind)
-    return f"peak of {dof}", f"{shown(peak.amplitude, digits=5)} {unit_of(dof)} at {shown(peak.frequency)} Hz"
+    return f"peak of {dof}", f"{in_words(peak.amplitude, unit_of(dof), 5)} at {shown(peak.frequency)} Hz"
 
 
 def _orders(orders: Sequence[int]) -> str:

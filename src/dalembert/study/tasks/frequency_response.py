@@ -119,11 +119,15 @@ class Response(Outcome):
             if not result.converged.any():
                 return {}
             peak = result.peak(dof, table.amplitude)
-            return {"values": {f"{table.amplitude} of {dof}": peak.amplitude, "at": peak.frequency}}
+            return {"values": {f"{table.amplitude} of {dof}": peak.amplitude, "frequency (Hz)": peak.frequency}}
         best = result.best(dof, table.amplitude)
         row = result.values.tolist().index(best)
         peak, part = result.peaks(dof, table.amplitude)[row], result.reduction(dof, table.amplitude)[row]
-        found = {f"{table.amplitude} of {dof}": peak.amplitude, "at": peak.frequency, "reduction": float(part)}
+        found = {
+            f"{table.amplitude} of {dof}": peak.amplitude,
+            "frequency (Hz)": peak.frequency,
+            "reduction": float(part),
+        }
         return {"values": {table.sweep.parameter: best, **found}}
 
     def save(self, path: Path) -> None:

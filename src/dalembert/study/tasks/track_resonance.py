@@ -101,5 +101,8 @@ def _outcome(study: "Study", track: Any) -> Outcome:
     if not track.converged.any():
         return ResultOutcome(study, track, {})
     best, row = track.best(), int(np.nanargmin(track.amplitudes))
-    peak = {f"{track.kind} of {track.dof}": float(track.amplitudes[row]), "at": float(track.frequencies[row])}
+    peak = {
+        f"{track.kind} of {track.dof}": float(track.amplitudes[row]),
+        "frequency (Hz)": float(track.frequencies[row]),
+    }
     return ResultOutcome(study, track, {"values": {track.parameter: best, **peak}})

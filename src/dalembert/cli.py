@@ -77,6 +77,7 @@ def run(
         from dalembert.study.runner import unknowns
 
         _stop_on_terminate()
+        _say_once(cluster)
         read = load(study)
         if seed is not None:
             read = read.with_seed(seed)
@@ -96,6 +97,7 @@ def resume(run: Run, cluster: Cluster = None) -> None:
         from dalembert.study.runner import unknowns
 
         _stop_on_terminate()
+        _say_once(cluster)
         folder = _folder(run)
         with Watch(Console(stderr=True, soft_wrap=True), unknowns(folder.kept())) as watch:
             outcome = resume_run(folder, listener=watch, executor=cluster)
@@ -224,6 +226,14 @@ def _stop_on_terminate() -> None:
         raise KeyboardInterrupt
 
     signal.signal(signal.SIGTERM, stop)
+
+
+def _say_once(cluster: str | None) -> None:
+    """A cluster that is lost is told by the error that ends the run; Dask logs the same, with tracebacks."""
+    import logging
+
+    if cluster is not None:
+        logging.disable(logging.ERROR)
 
 
 if __name__ == "__main__":

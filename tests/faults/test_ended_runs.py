@@ -4,36 +4,15 @@ import json
 import resource
 import signal
 import subprocess
-import sys
 import time
-from collections.abc import Callable
-from pathlib import Path
 
 import pytest
 
 from dalembert.study import RunFolder
 from dalembert.study.events import read_events
+from faults.slow_runs import COMMAND, begun, wait_for, written
 
-COMMAND = Path(sys.executable).with_name("dalembert")
-SLOW = """
-import time
-import numpy as np
-from dalembert.forward import PythonModel
-
-times = np.linspace(0, 1, 3)
-
-def slow(parameters):
-    return PythonModel(response, parameters, ["x"], times)
-
-def response(rate):
-    time.sleep(0.02)
-    return np.exp(-rate * times)
-"""
-STUDY = """
-[parameters]
-rate = { lower = 0.5, upper = 2.0 }
-[model]
-forward = "slow.py:slow"
+SWEEP = """
 [sweep]
 at = 0.5
 channels = ["x"]
@@ -47,11 +26,8 @@ def start(tmp_path):
     started = []
 
     def start(points: int, **options: object) -> subprocess.Popen[str]:
-        (tmp_path / "slow.py").write_text(SLOW)
-        (tmp_path / "slow.toml").write_text(STUDY.replace("COUNT", str(points)))
-        command = [COMMAND, "run", "slow.toml", "--out", "run"]
-        pipe = subprocess.PIPE
-        process = subprocess.Popen(command, cwd=tmp_path, stdout=pipe, stderr=pipe, text=True, **options)  # type: ignore
+        written(tmp_path, SWEEP.replace("COUNT", str(points)))
+        process = begun(tmp_path, "run", "slow.toml", "--out", "run", **options)
         started.append(process)
         return process
 
@@ -64,13 +40,6 @@ def start(tmp_path):
 @pytest.fixture
 def folder(tmp_path):
     return RunFolder(tmp_path / "run")
-
-
-def wait_for(condition: Callable[[], bool], seconds: float = 60.0) -> None:
-    end = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < end, "it did not happen"
-        time.sleep(0.02)
 
 
 def is_running(folder: RunFolder) -> bool:
@@ -96,8 +65,7 @@ def test_a_killed_run_says_so(start, folder):
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_stopped_run_says_so(start, folder, number):
-    # A shell's background job ignores the interrupt, and so would its children.
-    process = start(2000, preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
+    process = start(2000)
     wait_for(lambda: is_running(folder))
     process.send_signal(number)
     _, errors = process.communicate(timeout=120)

@@ -1,7 +1,6 @@
 """Batches on a Dask cluster: a real scheduler and real workers, as processes on the loopback."""
 
 import os
-import socket
 import subprocess
 import sys
 import time
@@ -12,59 +11,32 @@ import pytest
 
 import dalembert as da
 from dalembert.errors import InputError
-from dalembert.forward import cluster
+from dalembert.forward import distributed, takes_executor
+from dalembert.forward.builders import cores
 from dalembert.structure import lumped
 from dalembert.study import RunFolder, load, run_study
 from faults.kills import content, kinds
 from flexible_pendulum import tip
+from loopback_cluster import QUIET, cluster
 from support import says
 
-DASK = Path(sys.executable).with_name("dask")
-QUIET = dict(stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 TIMES = np.linspace(0, 1, 11)
 
 
 @pytest.fixture(scope="module")
-def address():
-    """A scheduler's address."""
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        port = free.getsockname()[1]
-    command = [DASK, "scheduler", "--host", "127.0.0.1", "--port", str(port), "--no-dashboard"]
-    with subprocess.Popen(command, **QUIET) as scheduler:
-        yield f"tcp://127.0.0.1:{port}"
-        for client in cluster._connected.values():  # or they go on looking for it in threads of their own
-            client.close()
-        cluster._connected.clear()
-        scheduler.kill()
+def started():
+    with cluster(workers=2) as started:
+        yield started
 
 
 @pytest.fixture(scope="module")
-def worker(address):
-    """Start one more worker, a process of one thread."""
-    started = []
-
-    def start() -> subprocess.Popen:
-        limits = ["--nthreads", "1", "--memory-limit", "0", "--no-dashboard", "--no-nanny"]
-        here = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path.endswith("src"))}
-        started.append(subprocess.Popen([DASK, "worker", address, *limits], env=here, **QUIET))
-        return started[-1]
-
-    yield start
-    for process in started:
-        process.kill()
-        process.wait()
-
-
-@pytest.fixture(scope="module")
-def client(address, worker):
+def client(started):
     from distributed import Client
 
-    first, second = worker(), worker()
-    with Client(address, timeout=60, set_as_default=False) as client:
+    with Client(started.address, timeout=60, set_as_default=False) as client:
         client.wait_for_workers(2, timeout=60)
         yield client
-    assert first.poll() is second.poll() is None
+    assert all(worker.poll() is None for worker in started.workers[:2])
 
 
 def slowly(rate):
@@ -120,8 +92,8 @@ def test_a_failed_sample_is_marked_and_the_others_return(client, decay):
     np.testing.assert_array_equal(there.values, here.values)
 
 
-def test_a_worker_that_is_killed_costs_a_retry(client, worker, decay):
-    lost = worker()
+def test_a_worker_that_is_killed_costs_a_retry(client, started, decay):
+    lost = started.worker()
     client.wait_for_workers(3, timeout=60)
     vectors = np.linspace(0.1, 1.8, 60)[:, None]
     model = da.on_cluster(decay, client)
@@ -136,13 +108,13 @@ def test_a_worker_that_is_killed_costs_a_retry(client, worker, decay):
     np.testing.assert_array_equal(there.values, decay.evaluate(vectors).values)
 
 
-def test_methods_take_an_executor(client, address):
+def test_methods_take_an_executor(client, started):
     decay = da.PythonModel(lambda rate: np.exp(-rate * TIMES), {"rate": (0.1, 2.0)}, ["x"], TIMES)
     here = da.propagate(decay, {"rate": (0.5, 1.0)}, "chebyshev")
     there = da.propagate(decay, {"rate": (0.5, 1.0)}, "chebyshev", executor=client)
     assert there.lower.tobytes() == here.lower.tobytes()
     data = da.Measurements.of(TIMES, {"x": np.exp(-0.7 * TIMES)})
-    fits = [da.identify(decay, data, executor=executor) for executor in (None, client, address)]
+    fits = [da.identify(decay, data, executor=executor) for executor in (None, client, started.address)]
     assert len({fit.values.tobytes() for fit in fits}) == 1
     swarm = da.ParticleSwarm(particles=6, iterations=5)
     sets = [da.identify(decay, data, method=swarm, seed=2, executor=executor) for executor in (None, client)]
@@ -179,17 +151,59 @@ def test_a_study_with_files_of_its_own_runs_on_a_cluster(client, tmp_path, monke
     assert here.result.lower.tobytes() == there.result.lower.tobytes()
 
 
+def test_a_connection_ends_with_what_made_it(client, started):
+    @takes_executor
+    def method(executor=None):
+        return executor
+
+    own = method(executor=started.address)
+    assert own.status == "closed"
+    assert method(executor=client) is client
+    assert client.status == "running"
+    assert method() is None
+
+
+def test_of_a_recorded_model_the_unknown_answers_come_from_the_cluster(client, decay, tmp_path):
+    vectors = np.array([[0.5], [1.0]])
+    with da.Checkpoint(tmp_path / "checkpoint") as checkpoint:
+        recorded = da.on_cluster(da.Recorded(decay, checkpoint), client)
+        assert recorded == da.Recorded(da.Distributed(decay, client), checkpoint) == da.on_cluster(recorded, client)
+        there = recorded.evaluate(vectors).values
+        assert da.Recorded(decay, checkpoint).evaluate(vectors).values.tobytes() == there.tobytes()
+    assert there.tobytes() == decay.evaluate(vectors).values.tobytes()
+
+
+def test_a_model_in_a_model_is_sent_without_what_it_computed(client):
+    inner = tip({"theta1": (0.6, 1.0), "theta2": (0.4, 0.65)}, end=0.1)
+    model = da.Sensors(inner, {inner.channels[0].name: da.Sensor(gain=(0.5, 2.0))})
+    model.evaluate(np.array([[0.7, 0.5, 1.0]]))
+    assert "_frame" in vars(inner)
+    sent = distributed._bare(model)
+    assert "_frame" not in vars(sent.model)
+    assert (sent.model.workers, inner.workers) == (1, cores())
+
+
 def test_an_address_without_a_scheduler(monkeypatch, decay):
     monkeypatch.setattr("dalembert.forward.cluster.WAIT", 0.2)
     with pytest.raises(InputError, match=r"no scheduler of Dask answers at 'tcp://127\.0\.0\.1:9' within 0\.2 s"):
-        da.on_cluster(decay, "tcp://127.0.0.1:9")
+        da.propagate(decay, {"rate": (0.5, 1.0)}, executor="tcp://127.0.0.1:9")
+
+
+def test_a_model_takes_a_client_and_no_address(decay):
+    sentence = (
+        "on_cluster: 'tcp://10.0.0.1:8786' is an address; expected a client, as of: with "
+        "distributed.Client('tcp://10.0.0.1:8786') as client; methods such as identify take an address, too, and "
+        "disconnect when they end"
+    )
+    with pytest.raises(InputError, match=says(sentence)):
+        da.on_cluster(decay, "tcp://10.0.0.1:8786")
 
 
 def test_without_dask_it_says_what_to_install(monkeypatch, decay):
     monkeypatch.setitem(sys.modules, "distributed", None)
     sentence = "a cluster needs Dask, which is not installed; run: pip install 'dalembert[cluster]'"
     with pytest.raises(InputError, match=says(sentence)):
-        da.on_cluster(decay, "tcp://127.0.0.1:8786")
+        da.propagate(decay, {"rate": (0.5, 1.0)}, executor="tcp://127.0.0.1:8786")
 
 
 def test_a_model_that_cannot_be_sent(client, tmp_path):
@@ -257,13 +271,13 @@ sweep = { parameter = "preload", values = { count = 8 } }
 
 
 @pytest.mark.slow
-def test_a_family_that_is_killed_on_a_cluster_goes_on_there_or_here(address, client, tmp_path):
+def test_a_family_that_is_killed_on_a_cluster_goes_on_there_or_here(started, client, tmp_path):
     (tmp_path / "study.toml").write_text(FAMILY)
     folder, _ = run_study(load(tmp_path / "study.toml"), tmp_path / "undisturbed")
-    for name, more in (("there", ["--cluster", address]), ("here", [])):
+    for name, more in (("there", ["--cluster", started.address]), ("here", [])):
         killed, events = tmp_path / name, tmp_path / name / "events.jsonl"
         command = [Path(sys.executable).with_name("dalembert"), "run", tmp_path / "study.toml", "--out", killed]
-        with subprocess.Popen([*command, "--cluster", address], **QUIET) as run:
+        with subprocess.Popen([*command, "--cluster", started.address], **QUIET) as run:
             while not (events.is_file() and events.read_text().count('"swept"') >= 2):
                 assert run.poll() is None
                 time.sleep(0.01)

@@ -1,14 +1,15 @@
 """The protocol that every model fulfils, models made of plain functions, and what sensors see of a model."""
 
 from dalembert.forward.checkpoint import Checkpoint
-from dalembert.forward.cluster import Executor
+from dalembert.forward.cluster import Executor, connected, takes_executor
 from dalembert.forward.distributed import Distributed, on_cluster
 from dalembert.forward.ensemble import ensemble
 from dalembert.forward.model import Channel, Coordinate, ForwardModel
 from dalembert.forward.python_model import PythonModel
-from dalembert.forward.recorded import Recorded, clock
+from dalembert.forward.recorded import Recorded
 from dalembert.forward.responses import Responses
 from dalembert.forward.sensors import Sensor, Sensors
+from dalembert.forward.wrapped import clock
 
 __all__ = [
     "Channel",
@@ -23,6 +24,8 @@ __all__ = [
     "Sensor",
     "Sensors",
     "clock",
+    "connected",
     "ensemble",
     "on_cluster",
+    "takes_executor",
 ]

@@ -1,11 +1,15 @@
-"""A Dask cluster: connecting to it, sending it work, and what is said where it fails."""
+"""A Dask cluster: connecting to it, sending it work, and what is said where it fails.
+
+A connection belongs to the call that makes it, and ends with it.
+"""
 
 import hashlib
 import sys
 import sysconfig
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, TypeAlias
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from functools import wraps
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, cast
 
 from dalembert.errors import DalembertError, InputError, SolveError
 
@@ -20,11 +24,12 @@ WAIT = 10.0
 Executor: TypeAlias = "str | Client | None"
 """Where ensembles are computed: at the address of a scheduler, by a client of Dask's, or in this process."""
 
-_connected: "dict[str, Client]" = {}
+M = TypeVar("M", bound=Callable[..., Any])
 
 
-def connected(executor: "str | Client") -> "Client":
-    """A client, or that of the scheduler at an address: the same one as long as it is connected.
+@contextmanager
+def connected(executor: Executor) -> Iterator["Client | None"]:
+    """A client of the scheduler at an address, closed at the end; one that is given stays open.
 
     Raises
     ------
@@ -32,10 +37,8 @@ def connected(executor: "str | Client") -> "Client":
         Where Dask is not installed, or no scheduler answers.
     """
     if not isinstance(executor, str):
-        return executor
-    known = _connected.get(executor)
-    if known is not None and known.status == "running":
-        return known
+        yield executor
+        return
     try:
         from distributed import Client
     except ImportError:
@@ -43,13 +46,25 @@ def connected(executor: "str | Client") -> "Client":
             "a cluster needs Dask, which is not installed; run: pip install 'dalembert[cluster]'"
         ) from None
     try:
-        _connected[executor] = Client(executor, timeout=WAIT, set_as_default=False)
+        client = Client(executor, timeout=WAIT, set_as_default=False)
     except (OSError, ValueError) as error:
         raise InputError(
             f"no scheduler of Dask answers at {executor!r} within {WAIT:g} s ({error}); expected an address such as "
             "'tcp://10.0.0.1:8786', as 'dask scheduler' says it when it starts"
         ) from None
-    return _connected[executor]
+    with client:
+        yield client
+
+
+def takes_executor(method: M) -> M:
+    """A method that is given a client for its ``executor``, connected as long as it runs."""
+
+    @wraps(method)
+    def with_client(*args: Any, executor: Executor = None, **settings: Any) -> Any:
+        with connected(executor) as client:
+            return method(*args, executor=client, **settings)
+
+    return cast(M, with_client)
 
 
 def sent(client: "Client", thing: Any) -> "Future":
@@ -74,21 +89,19 @@ def sent(client: "Client", thing: Any) -> "Future":
 
 
 @contextmanager
-def asked_of(client: "Client", asked: "Sequence[Future]", what: str) -> Iterator[None]:
-    """Where answers are awaited: those that are no longer wanted are taken from the cluster, and losses are told."""
+def asked_of(client: "Client", what: str) -> Iterator["list[Future]"]:
+    """A list for what is asked: it is taken from the cluster where it is no longer wanted, and losses are told."""
+    asked: list[Future] = []
     try:
-        yield
-    except DalembertError:
-        client.cancel(asked, force=True)
-        raise
-    except Exception as error:
-        client.cancel(asked, force=True)
+        yield asked
+    except BaseException as error:  # that the user stops the run, or does not ask for the rest, too
+        with suppress(Exception):  # the cluster may be gone
+            client.cancel(asked, force=True)
+        if isinstance(error, DalembertError) or not isinstance(error, Exception):
+            raise
         raise SolveError(
             f"the cluster lost {what} ({type(error).__name__}: {error}); see its workers' logs, and resume the run"
         ) from error
-    except BaseException:  # the user stops the run, or the rest is not asked for
-        client.cancel(asked, force=True)
-        raise
 
 
 @contextmanager

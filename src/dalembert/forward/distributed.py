@@ -1,16 +1,18 @@
 """Batches of a model on a Dask cluster."""
 
 from copy import copy
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from dalembert.forward.cluster import RETRIES, Executor, asked_of, connected, sent
-from dalembert.forward.model import Channel, Coordinate, ForwardModel
+from dalembert.errors import InputError
+from dalembert.forward.cluster import RETRIES, Executor, asked_of, sent
+from dalembert.forward.model import ForwardModel
 from dalembert.forward.responses import Responses
-from dalembert.parameters import Parameters
+from dalembert.forward.wrapped import Wrapped
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -20,7 +22,7 @@ PARTS = 4
 
 
 @dataclass(frozen=True)
-class Distributed:
+class Distributed(Wrapped):
     """A forward model whose batches are computed by a Dask cluster; single linearisations stay in this process.
 
     Parameters
@@ -37,24 +39,7 @@ class Distributed:
     computed by another one.
     """
 
-    model: ForwardModel
     client: "Client" = field(repr=False)
-
-    @property
-    def parameters(self) -> Parameters:
-        return self.model.parameters
-
-    @property
-    def channels(self) -> tuple[Channel, ...]:
-        return self.model.channels
-
-    @property
-    def coordinate(self) -> Coordinate:
-        return self.model.coordinate
-
-    @property
-    def fingerprint(self) -> str:
-        return self.model.fingerprint
 
     def evaluate(self, vectors: np.ndarray) -> Responses:
         """Responses of a batch; ``vectors`` (batch, parameters), values (batch, samples, channels).
@@ -64,49 +49,50 @@ class Distributed:
         SolveError
             Where the cluster lost the batch, and why.
         """
+        from distributed import as_completed
+
         vectors = np.atleast_2d(np.asarray(vectors, dtype=float))
         if len(vectors) < 2:
             return self.model.evaluate(vectors)
-        workers: Any = self.client.nthreads()
-        threads = max(1, sum(workers.values()))
-        parts = np.array_split(vectors, min(len(vectors), PARTS * threads))
-        model = sent(self.client, _bare(self.model))
-        asked = self.client.map(_answered, [model] * len(parts), parts, pure=False, retries=RETRIES)
-        with asked_of(self.client, asked, f"a part of a batch of {len(vectors)}"):
+        with asked_of(self.client, f"a part of a batch of {len(vectors)}") as asked:
+            workers: Any = self.client.nthreads()
+            parts = np.array_split(vectors, min(len(vectors), PARTS * max(1, sum(workers.values()))))
+            model = sent(self.client, _bare(self.model))
+            asked += self.client.map(_answered, [model] * len(parts), parts, pure=False, retries=RETRIES)
+            for part in as_completed(asked, loop=self.client.loop):  # gather would complain of each that is cancelled
+                if part.status != "finished":
+                    part.result()  # raises what became of it
             answers: Any = self.client.gather(asked)
-        values = np.concatenate([own for own, _ in answers])
-        return Responses(values, tuple(failure for _, own in answers for failure in own))
-
-    def jacobian(self, vector: np.ndarray) -> np.ndarray:
-        """Derivative of the response, (samples, channels, parameters)."""
-        return self.model.jacobian(vector)
-
-    def linearise(self, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Response (samples, channels) and its jacobian (samples, channels, parameters)."""
-        return self.model.linearise(vector)
-
-    def first(self, samples: int) -> "Distributed":
-        """The same model, cut to its first ``samples`` samples."""
-        return Distributed(self.model.first(samples), self.client)
+        values, failures = zip(*answers, strict=True)
+        return Responses(np.concatenate(values), tuple(chain.from_iterable(failures)))
 
 
-def on_cluster(model: ForwardModel, executor: Executor) -> ForwardModel:
-    """A model whose batches go to a Dask cluster.
+def on_cluster(model: ForwardModel, client: Executor) -> ForwardModel:
+    """A model whose batches go to a Dask cluster; of a recorded one, those that are not known yet.
 
     Parameters
     ----------
     model : ForwardModel
-    executor : str or distributed.Client, optional
-        Such as ``"tcp://10.0.0.1:8786"``, or a client of any of Dask's clusters; the model itself without one.
+    client : distributed.Client, optional
+        Of any of Dask's clusters; without one the model stays as it is.
 
     Raises
     ------
     InputError
-        Where Dask is not installed, or no scheduler answers.
+        For an address: who connects is to disconnect, too.
     """
-    if executor is None:
+    if client is None:
         return model
-    return Distributed(model, connected(executor))
+    if isinstance(client, str):
+        raise InputError(
+            f"on_cluster: {client!r} is an address; expected a client, as of: with distributed.Client({client!r}) as "
+            "client; methods such as identify take an address, too, and disconnect when they end"
+        )
+    if isinstance(model, Distributed):
+        return replace(model, client=client)
+    if isinstance(model, Wrapped):
+        return replace(model, model=on_cluster(model.model, client))
+    return Distributed(model, client)
 
 
 def _answered(model: ForwardModel, vectors: np.ndarray) -> tuple[np.ndarray, tuple[str | None, ...]]:
@@ -116,10 +102,16 @@ def _answered(model: ForwardModel, vectors: np.ndarray) -> tuple[np.ndarray, tup
 
 
 def _bare(model: ForwardModel) -> ForwardModel:
-    """A copy for one thread, without what it has computed of itself, addresses of compiled functions among it."""
+    """A copy for one thread, without what it has computed of itself, addresses of compiled functions among it.
+
+    The same of a model that it holds.
+    """
     own = copy(model)
-    for name in [name for name in vars(own) if isinstance(getattr(type(own), name, None), cached_property)]:
-        del vars(own)[name]
+    for name, held in list(vars(own).items()):
+        if isinstance(getattr(type(own), name, None), cached_property):
+            del vars(own)[name]
+        elif isinstance(held, ForwardModel):
+            object.__setattr__(own, name, _bare(held))
     if hasattr(own, "workers"):
         object.__setattr__(own, "workers", 1)
     return own

@@ -38,9 +38,10 @@ def ensemble(
     >>> list(ensemble(abs, [-3, 4], workers=2))
     [3, 4]
     """
-    if executor is not None:
-        yield from _on_cluster(work, items, executor)
-        return
+    with connected(executor) as client:
+        if client is not None:
+            yield from _on_cluster(work, items, client)
+            return
     workers = min(workers or cores(), len(items))
     if workers < 2:
         yield from map(work, items)
@@ -56,10 +57,9 @@ def ensemble(
         pool.shutdown(cancel_futures=True)
 
 
-def _on_cluster(work: Callable[[Item], Answer], items: Sequence[Item], executor: Any) -> Generator[Answer, None, None]:
-    client = connected(executor)
-    asked = client.map(_done, [sent(client, work)] * len(items), items, pure=False, retries=RETRIES)
-    with asked_of(client, asked, f"a part of an ensemble of {len(items)}"):
+def _on_cluster(work: Callable[[Item], Answer], items: Sequence[Item], client: Any) -> Generator[Answer, None, None]:
+    with asked_of(client, f"a part of an ensemble of {len(items)}") as asked:
+        asked += client.map(_done, [sent(client, work)] * len(items), items, pure=False, retries=RETRIES)
         for one in asked:
             yield one.result()
 

@@ -10,16 +10,15 @@ import numpy as np
 
 from dalembert.errors import SolveError
 from dalembert.forward.checkpoint import Checkpoint
-from dalembert.forward.model import Channel, Coordinate, ForwardModel
 from dalembert.forward.responses import Responses
-from dalembert.parameters import Parameters
+from dalembert.forward.wrapped import Wrapped
 
 TOGETHER = 64
 """Vectors of a batch that are computed between two records."""
 
 
 @dataclass(frozen=True)
-class Recorded:
+class Recorded(Wrapped):
     """A forward model that answers from a checkpoint what it holds, and adds to it what it does not.
 
     Whatever method asks, and however long it has run: begun anew after it was killed, it is told the same answers, bit
@@ -50,25 +49,13 @@ class Recorded:
     (2, True)
     """
 
-    model: ForwardModel
     checkpoint: Checkpoint
     label: str = ""
 
     @property
-    def parameters(self) -> Parameters:
-        return self.model.parameters
-
-    @property
-    def channels(self) -> tuple[Channel, ...]:
-        return self.model.channels
-
-    @property
-    def coordinate(self) -> Coordinate:
-        return self.model.coordinate
-
-    @property
-    def fingerprint(self) -> str:
-        return self.model.fingerprint
+    def spared(self) -> float:
+        """Seconds that earlier processes computed what this one recalled."""
+        return self.checkpoint.spared
 
     def evaluate(self, vectors: np.ndarray) -> Responses:
         """Responses of a batch: those that are known, and then the others, kept as they come."""
@@ -100,10 +87,6 @@ class Recorded:
         values, jacobian = self._once("linearise", vector, lambda: self.model.linearise(vector))
         return values, jacobian
 
-    def first(self, samples: int) -> "Recorded":
-        """The same model, cut to its first ``samples`` samples."""
-        return Recorded(self.model.first(samples), self.checkpoint, self.label)
-
     def _once(self, what: str, vector: np.ndarray, compute: Callable[[], Sequence[np.ndarray]]) -> Sequence[np.ndarray]:
         """Arrays that are known or computed; a solver that could not go on says so again."""
         key = self._key(what, np.asarray(vector, dtype=float))
@@ -128,11 +111,6 @@ class Recorded:
     def _asked(self) -> bytes:
         text = "\n".join((self.label, self.fingerprint, *(channel.name for channel in self.channels)))
         return hashlib.sha256(text.encode() + self.coordinate.values.tobytes()).digest()
-
-
-def clock(model: ForwardModel) -> float:
-    """Seconds on a clock that also counts what a run computed before it was killed and resumed."""
-    return perf_counter() + (model.checkpoint.spared if isinstance(model, Recorded) else 0.0)
 
 
 def _bytes(text: str | None) -> np.ndarray:

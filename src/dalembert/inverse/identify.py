@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from dalembert.data import Measurements
 from dalembert.errors import DalembertError, InputError, SolveError, unknown
-from dalembert.forward import Executor, ForwardModel, on_cluster
+from dalembert.forward import Executor, ForwardModel, on_cluster, takes_executor
 from dalembert.forward.provenance import provenance
 from dalembert.inverse.estimate import Estimate, estimate
 from dalembert.inverse.events import Finished, OnEvent
@@ -28,6 +28,7 @@ from dalembert.inverse.validation import split
 from dalembert.optimize import LeastSquares, Minimiser, Squares
 
 
+@takes_executor
 def identify(
     model: ForwardModel | Sequence[Experiment],
     data: Measurements | None = None,

@@ -11,7 +11,7 @@ from time import perf_counter
 from dalembert import __version__
 from dalembert.errors import DalembertError, InputError, SolveError, StorageError, not_begun, users_place
 from dalembert.files import write_text
-from dalembert.forward import Checkpoint, Executor
+from dalembert.forward import Checkpoint, Executor, connected
 from dalembert.study.duration import duration
 from dalembert.study.events import Event, EventLog
 from dalembert.study.folder import DAMAGED, FAILED, FINISHED, INPUT, INTERRUPTED, RUNNING, RunFolder, new_folder
@@ -114,8 +114,9 @@ def _executed(study: Study, folder: RunFolder, beginning: str, listener: Listene
         began = perf_counter()
         try:
             log.emit(beginning, **about)
-            with Checkpoint(folder.checkpoint) as checkpoint, users_code():
-                outcome = TASKS[study.task].run(replace(study, checkpoint=checkpoint), log.emit)
+            with connected(study.executor) as client, Checkpoint(folder.checkpoint) as checkpoint, users_code():
+                placed = replace(study, checkpoint=checkpoint, executor=client)
+                outcome = TASKS[study.task].run(placed, log.emit)
             outcome.save(folder.result)
             outcome.report(folder.report)
         except BaseException as error:

@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from dalembert.errors import DalembertError, InputError
-from dalembert.forward import Executor, ForwardModel, on_cluster
+from dalembert.forward import Executor, ForwardModel, on_cluster, takes_executor
 from dalembert.results import Result
 from dalembert.uncertainty.events import OnEvent
 from dalembert.uncertainty.found import Method
@@ -115,6 +115,7 @@ class Comparison(Result):
         return comparison_from(dataset)
 
 
+@takes_executor
 def compare(
     model: ForwardModel,
     intervals: Intervals,

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 from dalembert.errors import InputError, unknown
-from dalembert.forward import Executor, ForwardModel, clock, on_cluster
+from dalembert.forward import Executor, ForwardModel, clock, on_cluster, takes_executor
 from dalembert.forward.provenance import provenance
 from dalembert.intervals import Box, Interval
 from dalembert.uncertainty.events import Began, Ended, OnEvent
@@ -15,6 +15,7 @@ from dalembert.uncertainty.runs import Runs
 Intervals = Box | Mapping[str, Interval | tuple[float, float] | float]
 
 
+@takes_executor
 def propagate(
     model: ForwardModel,
     intervals: Intervals,

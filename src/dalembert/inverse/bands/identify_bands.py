@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from dalembert.data import Bands
 from dalembert.errors import InputError, unknown
-from dalembert.forward import Executor, ForwardModel, clock, on_cluster
+from dalembert.forward import Executor, ForwardModel, clock, on_cluster, takes_executor
 from dalembert.forward.provenance import provenance
 from dalembert.intervals import Box
 from dalembert.inverse.bands.band_fit import BandFit
@@ -25,6 +25,7 @@ from dalembert.inverse.journal import Journal
 METHODS = {"global": GlobalSurrogate, "nested": Nested}
 
 
+@takes_executor
 def identify_bands(
     model: ForwardModel,
     bands: Bands,

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from dalembert.data import Measurements
 from dalembert.errors import InputError, unknown
-from dalembert.forward import Executor, ForwardModel, clock, on_cluster
+from dalembert.forward import Executor, ForwardModel, clock, on_cluster, takes_executor
 from dalembert.forward.provenance import provenance
 from dalembert.intervals import Box
 from dalembert.inverse.events import Finished, OnEvent
@@ -26,6 +26,7 @@ RESOLUTIONS = {1: 1 / 256, 2: 1 / 64, 3: 1 / 32}
 """Resolution by the number of parameters, if none is given; a sixteenth for more."""
 
 
+@takes_executor
 def identify_set(
     model: ForwardModel,
     data: Measurements,

@@ -1,0 +1,65 @@
+"""What models around another model have in common: they answer for it in all that they do not change."""
+
+from dataclasses import dataclass, replace
+from time import perf_counter
+from typing import Self
+
+import numpy as np
+
+from dalembert.forward.model import Channel, Coordinate, ForwardModel
+from dalembert.forward.responses import Responses
+from dalembert.parameters import Parameters
+
+
+@dataclass(frozen=True)
+class Wrapped:
+    """A forward model that hands everything on to another one.
+
+    Parameters
+    ----------
+    model : ForwardModel
+    """
+
+    model: ForwardModel
+
+    @property
+    def parameters(self) -> Parameters:
+        return self.model.parameters
+
+    @property
+    def channels(self) -> tuple[Channel, ...]:
+        return self.model.channels
+
+    @property
+    def coordinate(self) -> Coordinate:
+        return self.model.coordinate
+
+    @property
+    def fingerprint(self) -> str:
+        return self.model.fingerprint
+
+    @property
+    def spared(self) -> float:
+        """Seconds of computing that earlier processes did, and this one need not."""
+        return self.model.spared if isinstance(self.model, Wrapped) else 0.0
+
+    def evaluate(self, vectors: np.ndarray) -> Responses:
+        """Responses of a batch; ``vectors`` (batch, parameters), values (batch, samples, channels)."""
+        return self.model.evaluate(vectors)
+
+    def jacobian(self, vector: np.ndarray) -> np.ndarray:
+        """Derivative of the response, (samples, channels, parameters)."""
+        return self.model.jacobian(vector)
+
+    def linearise(self, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Response (samples, channels) and its jacobian (samples, channels, parameters)."""
+        return self.model.linearise(vector)
+
+    def first(self, samples: int) -> Self:
+        """The same around the model cut to its first ``samples`` samples."""
+        return replace(self, model=self.model.first(samples))
+
+
+def clock(model: ForwardModel) -> float:
+    """Seconds on a clock that also counts what a run computed before it was killed and resumed."""
+    return perf_counter() + (model.spared if isinstance(model, Wrapped) else 0.0)

@@ -81,6 +81,7 @@ def test_a_cluster_that_is_lost_ends_the_run_with_a_sentence(study, folder):
         _, errors = process.communicate(timeout=300)
     assert process.returncode == 1, errors
     assert "Traceback" not in errors
-    assert "the cluster lost a part of a batch of 64" in errors.splitlines()[-1]
+    assert "the cluster lost a part of a batch of 64" in errors
+    assert errors.endswith("; see its workers' logs, and resume the run\n")
     assert folder.state()["state"] == "failed"
     assert begun(folder.path.parent, "resume", "run").wait(300) == 0

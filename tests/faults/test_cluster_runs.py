@@ -84,4 +84,6 @@ def test_a_cluster_that_is_lost_ends_the_run_with_a_sentence(study, folder):
     assert "the cluster lost a part of a batch of 64" in errors
     assert errors.endswith("; see its workers' logs, and resume the run\n")
     assert folder.state()["state"] == "failed"
-    assert begun(folder.path.parent, "resume", "run").wait(300) == 0
+    resumed = begun(folder.path.parent, "resume", "run")
+    _, errors = resumed.communicate(timeout=300)
+    assert resumed.returncode == 0, errors

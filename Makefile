@@ -4,7 +4,7 @@ SHELL := /bin/sh
 .DEFAULT_GOAL := help
 .SUFFIXES:
 .DELETE_ON_ERROR:
-.PHONY: help demo checks test verify validation docs bench clean
+.PHONY: help demo checks kernels test verify validation docs bench clean
 
 DEMO_STUDY := studies/flexible-pendulum/identify.toml
 DEMO_RUN := runs/demo
@@ -39,14 +39,18 @@ checks: .venv/test.stamp
 	$(BIN)/pyright
 	$(BIN)/lint-imports
 
-test: checks
+# Compiled once, on all cores: tests that begin together would compile the same things twice.
+kernels: .venv/test.stamp
+	$(BIN)/dalembert compile
+
+test: checks kernels
 	$(BIN)/pytest -n auto --dist loadfile
 
-verify: checks
+verify: checks kernels
 	$(BIN)/pytest -n auto --dist loadfile -m "$(ALL)" --evidence=$(EVIDENCE)
 	$(BIN)/python docs/validation.py $(EVIDENCE) --check
 
-validation: .venv/test.stamp
+validation: kernels
 	$(BIN)/pytest -n auto --dist loadfile tests -m "$(ALL)" --evidence=$(EVIDENCE)
 	$(BIN)/python docs/validation.py $(EVIDENCE)
 

@@ -1,4 +1,4 @@
-"""The command line: ``dalembert run | resume | check | list | report | studio | schema``.
+"""The command line: ``dalembert run | resume | check | list | report | studio | compile | schema``.
 
 Exit codes: 0 done, 1 the solver could not, 2 the input is wrong, 130 stopped by the user.
 """
@@ -169,6 +169,15 @@ def studio(
         if not folder.is_dir():
             raise InputError(f"there is no folder {folder}; make it, or name another")
         serve(folder, host, port, token, browser)
+
+
+@app.command("compile")
+def compile_() -> None:
+    """Compile all kernels now, on all cores: for an image, or the shared disk of a cluster."""
+    from dalembert.study.ahead import compile_ahead
+
+    for name, seconds in compile_ahead():
+        typer.echo(f"{name}: {seconds:.0f} s")
 
 
 @app.command()

@@ -5,6 +5,9 @@ import pytest
 
 from dalembert.multibody.kernels import linear
 from dalembert.multibody.kernels.linear import BAND, DENSE, Layout
+from support import from_python
+
+factorise, solve = from_python(linear.factorise), from_python(linear.solve)
 
 
 def dense_layout(size: int) -> Layout:
@@ -28,10 +31,10 @@ def solved(layout: Layout, matrix: np.ndarray, given: np.ndarray) -> np.ndarray 
     factors = linear.storage(layout)
     for i, j in zip(*np.nonzero(matrix), strict=True):
         factors.matrix[place(layout, i, j)] = matrix[i, j]
-    if not linear.factorise(layout, factors):
+    if not factorise(layout, factors):
         return None
     answer = np.zeros(layout.size + 1)
-    linear.solve(layout, factors, np.append(given, 0.0), answer)
+    solve(layout, factors, np.append(given, 0.0), answer)
     return answer[:-1]
 
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from dalembert.multibody.integrators.collocation_step import begin, finish, measure
 from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR
-from dalembert.multibody.kernels.compiled import compiled
+from dalembert.multibody.kernels.compiled import compiled, template
 from dalembert.multibody.kernels.linear import Layout, factorise, solve, storage
 from dalembert.multibody.kernels.vector import LANES
 
@@ -13,7 +13,7 @@ _COARSE = 1e-6  # the same, after the last iteration, that is too much
 _DIFFERENCE = 1e-5  # the same, for differences of the derivatives
 
 
-@compiled
+@template
 def _normal(problem, size):
     """Layout of a dense matrix of that size."""
     whole = problem.exact_layout
@@ -41,7 +41,7 @@ def _square(n, rule, gaps, slopes, unknowns, count, matrix, lead, right):
             right[0, k] += rule.weights[s] * product
 
 
-@compiled
+@template
 def descend(problem, rule, iterations, model, dual, directions, schedule, number, walk):
     """Gauss and Newton's iterations: status, how many they were, and the coordinate that moved most."""
     n, own, unknowns = problem.n, walk.partition, len(walk.c)
@@ -71,7 +71,7 @@ def descend(problem, rule, iterations, model, dual, directions, schedule, number
     return (DONE if largest <= _COARSE else NEWTON_FAILED), iteration, worst
 
 
-@compiled
+@template
 def respond(problem, rule, model, dual, directions, schedule, number, walk):
     """Derivatives of the minimum along the directions, by the derivative of its gradient.
 

@@ -24,7 +24,7 @@ from dalembert.multibody.integrators.partitioning import (
 )
 from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR
 from dalembert.multibody.kernels.assembly import constraint_rates, residual, tangent
-from dalembert.multibody.kernels.compiled import compiled, kernel
+from dalembert.multibody.kernels.compiled import compiled, kernel, template
 from dalembert.multibody.kernels.dual import STEP
 from dalembert.multibody.kernels.linear import Factors, factorise, solve, storage
 from dalembert.multibody.kernels.model import Work, select, workspace
@@ -97,7 +97,7 @@ def prepare(problem, rule, model, dual, directions):
     )  # fmt: skip
 
 
-@kernel
+@template
 def _choose(problem, dual, within, t, walk):
     """Keep the independent coordinates, or choose others; whether there are as many as at first."""
     own = walk.partition
@@ -175,14 +175,14 @@ def _clear(state):
         state.x[i], state.v[i], state.a[i], state.w[i] = 0.0, 0.0, 0.0, 0.0
 
 
-@compiled
+@template
 def begin(problem, rule, model, dual, tilted, schedule, number, walk):
     """Begin a step: accelerations at a jump of the loads, independent coordinates, a prediction."""
     t, within = schedule.begins[number], schedule.within[number]
     if schedule.opens[number]:
         walk.chosen[1] = 0.0
         if not accelerate(
-            problem, model, dual, tilted, t, within, walk.old, walk.dold, False, walk.work, walk.dual_work, walk.lifted,
+            problem, model, dual, tilted, t, within, walk.old, walk.dold, walk.work, walk.dual_work, walk.lifted,
             walk.exact,
         ):  # fmt: skip
             return SINGULAR
@@ -194,7 +194,7 @@ def begin(problem, rule, model, dual, tilted, schedule, number, walk):
     return DONE
 
 
-@compiled
+@template
 def _drive(problem, model, dual, directions, t, within, state, dstates, walk):
     """Accelerations and multipliers by the equations of motion, and their derivatives; whether the matrix is regular.
 
@@ -301,7 +301,7 @@ def _reach(problem, rule, model, dual, tilted, schedule, number, walk, share, st
     ):
         return NEWTON_FAILED
     regular = accelerate(
-        problem, model, dual, tilted, t, within, state, dstates, False, walk.work, walk.dual_work, walk.lifted,
+        problem, model, dual, tilted, t, within, state, dstates, walk.work, walk.dual_work, walk.lifted,
         walk.exact,
     )  # fmt: skip
     return DONE if regular else SINGULAR
@@ -315,7 +315,7 @@ def _record(state, dstates, out, dout, due):
             dout.x[d, due, i], dout.v[d, due, i], dout.a[d, due, i] = dstates.x[d, i], dstates.v[d, i], dstates.a[d, i]
 
 
-@compiled
+@template
 def finish(problem, rule, model, dual, tilted, schedule, number, walk, out, dout):
     """End a step with the accelerations that were found: the next state, and those at the output times."""
     status = _reach(problem, rule, model, dual, tilted, schedule, number, walk, 1.0, walk.new, walk.dnew)

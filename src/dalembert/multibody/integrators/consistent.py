@@ -4,14 +4,14 @@ import numpy as np
 
 from dalembert.multibody.integrators.lifting import lift, set_signals
 from dalembert.multibody.kernels.assembly import constraint_rates, residual, tangent
-from dalembert.multibody.kernels.compiled import compiled, kernel
+from dalembert.multibody.kernels.compiled import compiled, template
 from dalembert.multibody.kernels.dual import STEP
 from dalembert.multibody.kernels.linear import factorise, solve
 from dalembert.multibody.kernels.model import select
 from dalembert.multibody.kernels.motion import row, subtract
 
 
-@kernel
+@template
 def _initial_matrix(problem, dual, state, dual_work, constraints, exact):
     """Factorised matrix of motion beside the constraints at acceleration level; whether it is regular."""
     arguments = (dual, problem.exact_slots, problem.n, state.x, state.v, state.a)
@@ -23,10 +23,10 @@ def _initial_matrix(problem, dual, state, dual_work, constraints, exact):
 
 
 @compiled
-def accelerate(problem, model, dual, directions, t, within, state, dstates, projected, work, dual_work, lifted, exact):
+def accelerate(problem, model, dual, directions, t, within, state, dstates, work, dual_work, lifted, exact):
     """Accelerations and multipliers that satisfy the equations of motion, and their derivatives.
 
-    Where ``projected``, the velocities are first moved onto the constraints, by the smallest kinetic energy.
+    Where the problem says so, the velocities are first moved onto the constraints, by the smallest kinetic energy.
     """
     n, last = problem.n, len(state.x) - 1
     delta, answer, rate, second = np.zeros(last + 1), np.zeros(last + 1), np.zeros(last + 1), np.zeros(last + 1)
@@ -37,7 +37,7 @@ def accelerate(problem, model, dual, directions, t, within, state, dstates, proj
         # The last correction is rounding: the derivatives below are taken with the matrix of the state that it leaves.
         if iteration < 5 and not _initial_matrix(problem, dual, state, dual_work, constraints, exact):
             return False
-        if iteration == 0 and projected:
+        if iteration == 0 and problem.projected:
             _project(problem, model, directions, t, within, state, dstates, work, dual_work, lifted, exact)
         residual(model, n, state.x, state.v, state.a, work, 1.0, delta)
         constraint_rates(model, n, state.x, state.v, state.a, work, rate, second)
@@ -59,7 +59,7 @@ def accelerate(problem, model, dual, directions, t, within, state, dstates, proj
     return True
 
 
-@compiled
+@template
 def _project(problem, model, directions, t, within, state, dstates, work, dual_work, lifted, exact):
     """Velocities on the constraints, v - w with M w + J^T m = 0 and J w = rate of the constraints, and derivatives."""
     n, last = problem.n, len(state.x) - 1

@@ -14,7 +14,7 @@ from dalembert.multibody.integrators.lifting import set_signals
 from dalembert.multibody.integrators.newton import Newton, converge, learn
 from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR, TOO_MANY_STEPS, Log, Problem
 from dalembert.multibody.integrators.run import Run, cut, explain, resting, stacks, starts
-from dalembert.multibody.kernels.compiled import compiled, inlined
+from dalembert.multibody.kernels.compiled import compiled, inlined, template
 from dalembert.multibody.kernels.linear import storage
 from dalembert.multibody.kernels.model import select, workspace
 from dalembert.multibody.kernels.motion import Motion, clear, coefficients, copy, glance, interpolate, row, still
@@ -92,7 +92,8 @@ class GeneralizedAlpha(Integrator):
         logged: bool = True,
     ) -> list[Run]:
         """Runs of samples in one compiled loop that leaves the interpreter's lock free; see `Integrator`."""
-        problem = cut(samples, problem, end)
+        # at spectral radius 1 velocities leave the constraints and nothing damps what grows from there
+        problem = cut(samples, problem, end)._replace(projected=self.spectral_radius == 1.0)
         states, dstates = starts(samples, tilted)
         shape = len(problem.times), states.x.shape[1]
         out, dout = resting(len(samples), *shape), resting(len(tilted), *shape)
@@ -171,7 +172,7 @@ def integrate(problem, settings, models, duals, directions, states, dstates, out
         )  # fmt: skip
 
 
-@compiled
+@template
 def _integrate(problem, edges, settings, model, dual, directions, state, dstates, out, dout, log):
     """Run one sample: status, time reached, and the unknown that moved most."""
     n, width = problem.n, len(state.x)
@@ -196,7 +197,7 @@ def _integrate(problem, edges, settings, model, dual, directions, state, dstates
         clear(newton.slope)
         if stretch > 0 or settings.consistent:
             if not accelerate(
-                problem, model, dual, directions, begin, within, new, dstates, False, work, dual_work, lifted, exact
+                problem, model, dual, directions, begin, within, new, dstates, work, dual_work, lifted, exact
             ):
                 return SINGULAR, begin, 0
         if stretch == 0:
@@ -264,9 +265,9 @@ def _integrate(problem, edges, settings, model, dual, directions, state, dstates
                 buffers,
             ):
                 return SINGULAR, target, 0
-            if settings.spectral_radius == 1.0 and width - 1 > n:
+            if problem.projected and width - 1 > n:
                 if not accelerate(
-                    problem, model, dual, directions, target, within, new, dstates, True, work, dual_work, lifted, exact
+                    problem, model, dual, directions, target, within, new, dstates, work, dual_work, lifted, exact
                 ):
                     return SINGULAR, target, 0
             while due < len(problem.times) and problem.times[due] <= target + 1e-9 * length:

@@ -8,7 +8,7 @@ from dalembert.multibody.integrators.least_squares import invert_on_range, range
 from dalembert.multibody.integrators.lifting import lift, set_signals
 from dalembert.multibody.integrators.partitioning import Partition, room
 from dalembert.multibody.kernels.assembly import constraint_rates, residual, tangent
-from dalembert.multibody.kernels.compiled import compiled, kernel
+from dalembert.multibody.kernels.compiled import compiled, kernel, template
 from dalembert.multibody.kernels.dual import STEP
 from dalembert.multibody.kernels.linear import Factors, factorise, storage
 from dalembert.multibody.kernels.linear import solve as solve_linear
@@ -51,7 +51,7 @@ class Tools(NamedTuple):
     change: Motion
 
 
-@compiled
+@template
 def make_tools(problem, model, dual):
     """Work for a model."""
     width = problem.exact_layout.size + 1

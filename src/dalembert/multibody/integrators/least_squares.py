@@ -5,13 +5,13 @@ import numpy as np
 from dalembert.multibody.integrators.lifting import lift
 from dalembert.multibody.integrators.partitioning import choose, invert
 from dalembert.multibody.kernels.assembly import constraint_rates
-from dalembert.multibody.kernels.compiled import compiled
+from dalembert.multibody.kernels.compiled import template
 from dalembert.multibody.kernels.dual import STEP
 from dalembert.multibody.kernels.linear import Layout, factorise, solve, storage
 from dalembert.multibody.kernels.vector import LANES
 
 
-@compiled
+@template
 def range_of(problem, partition):
     """Orthonormal basis (m, rank) of what the Jacobian in ``partition.matrix`` reaches, with the rank decided anew."""
     choose(problem, partition)
@@ -27,7 +27,7 @@ def range_of(problem, partition):
     return basis
 
 
-@compiled
+@template
 def invert_on_range(problem, basis, matrix):
     """Replace a dense flat matrix, of motion beside constraints, by the inverse on the multipliers in the range.
 
@@ -52,7 +52,7 @@ def invert_on_range(problem, basis, matrix):
     return regular
 
 
-@compiled
+@template
 def turn_range(problem, tilted, state, dstate, dual_work, lifted, partition, basis):
     """Give the multipliers' derivative the part across the range that keeps the multipliers in it.
 

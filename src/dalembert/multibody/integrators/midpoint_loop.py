@@ -89,7 +89,7 @@ def integrate(problem, pattern, edges, settings, rigid, model, dual, directions,
         t, end = edges[stretch], edges[stretch + 1]
         within = 0.5 * (t + end)
         if not accelerate(
-            problem, model, dual, directions, t, within, new, dstates, False, works[0], dual_works[0], lifted, exact
+            problem, model, dual, directions, t, within, new, dstates, works[0], dual_works[0], lifted, exact
         ):
             return SINGULAR, t, 0
         if stretch == 0:

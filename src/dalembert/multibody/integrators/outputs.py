@@ -4,12 +4,12 @@ from dalembert.multibody.integrators.ends import interpolate_ends, support, weig
 from dalembert.multibody.integrators.lifting import set_signals
 from dalembert.multibody.integrators.matrices import renew
 from dalembert.multibody.integrators.settling import COORDINATES, settle, settle_along
-from dalembert.multibody.kernels.compiled import compiled
+from dalembert.multibody.kernels.compiled import template
 from dalembert.multibody.kernels.model import select
 from dalembert.multibody.kernels.motion import copy, row
 
 
-@compiled
+@template
 def record(
     problem, pattern, matrices, far, model, dual, directions, ends, within, out, dout, due, state, dstate, weights,
     moved, work, dual_work, lifted,

@@ -173,7 +173,7 @@ def _shift(problem, partition, level, state):
     return largest
 
 
-@kernel
+@template
 def _close(problem, model, dual, state, work, dual_work, partition):
     """Newton's iteration on the dependent coordinates; whether it arrived."""
     for _ in range(_MOST_ITERATIONS):

@@ -12,7 +12,8 @@ class Problem(NamedTuple):
 
     ``n`` coordinates; ``scale`` (N + 1,); ``slots`` and ``layout`` of the Newton matrix; those of the sensitivities,
     whose matrix is renewed at each step; ``times`` of the output. ``edges`` (samples, -) of the smooth stretches of
-    motion, and how many ``stretches`` each sample has.
+    motion, and how many ``stretches`` each sample has. ``projected``: whether velocities are moved onto the constraints
+    wherever accelerations are solved for.
     """
 
     n: int
@@ -24,6 +25,7 @@ class Problem(NamedTuple):
     times: np.ndarray
     edges: np.ndarray
     stretches: np.ndarray
+    projected: bool = False
 
 
 class Log(NamedTuple):

@@ -4,7 +4,7 @@ from dalembert.multibody.integrators.index1 import factorise_motion
 from dalembert.multibody.integrators.lifting import set_signals
 from dalembert.multibody.integrators.partitioning import POSITION, VELOCITY, fill_gap
 from dalembert.multibody.kernels.assembly import residual
-from dalembert.multibody.kernels.compiled import compiled, kernel
+from dalembert.multibody.kernels.compiled import compiled, kernel, template
 from dalembert.multibody.kernels.dual import STEP
 from dalembert.multibody.kernels.linear import solve
 from dalembert.multibody.kernels.model import select
@@ -44,7 +44,7 @@ def _clear_forces(n, answer, lifted):
             lifted[0, i] = 0.0
 
 
-@compiled
+@template
 def _follow(problem, level, model, t, within, state, dstate, tools, change):
     """The derivative of a projection along one direction.
 

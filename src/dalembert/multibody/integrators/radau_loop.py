@@ -12,7 +12,7 @@ from dalembert.multibody.integrators.matrices import renew, room, weigh_masses
 from dalembert.multibody.integrators.outputs import record
 from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR, TOO_MANY_STEPS
 from dalembert.multibody.integrators.settling import VELOCITIES, accelerate_roughly, settle, settle_along
-from dalembert.multibody.kernels.compiled import compiled, kernel
+from dalembert.multibody.kernels.compiled import compiled, kernel, template
 from dalembert.multibody.kernels.linear import storage
 from dalembert.multibody.kernels.model import select, workspace
 from dalembert.multibody.kernels.motion import Motion, copy, row, still
@@ -60,7 +60,7 @@ def _read(n, s, new):
             new.v[k], new.a[k] = s.v[last, k], s.a[last, k]
 
 
-@compiled
+@template
 def _differentiate(
     problem, method, pattern, matrices, directions, h, t, target, within, s, dold, dnews, ds, b, dual_work, dsignals,
 ):  # fmt: skip
@@ -73,7 +73,7 @@ def _differentiate(
         _read(problem.n, ds, dnew)
 
 
-@compiled
+@template
 def _settle_end(
     j, problem, pattern, matrices, model, directions, within, last, moved, work, dual_work, lifted,
 ):  # fmt: skip
@@ -91,7 +91,7 @@ def _settle_end(
     return True
 
 
-@compiled
+@template
 def _settle_ends(
     problem, pattern, matrices, apart, far, model, dual, directions, damped, within, last, moved, work, dual_work,
     lifted,
@@ -187,9 +187,7 @@ def integrate(problem, method, pattern, edges, settings, model, dual, directions
     for stretch in range(len(edges) - 1):
         t, end = edges[stretch], edges[stretch + 1]
         within = 0.5 * (t + end)
-        if not accelerate(
-            problem, model, dual, directions, t, within, new, dstates, False, work, dual_work, lifted, exact
-        ):
+        if not accelerate(problem, model, dual, directions, t, within, new, dstates, work, dual_work, lifted, exact):
             return SINGULAR, t, 0
         if stretch == 0:
             weigh_masses(pattern, matrices, dual, n, new, dual_work)

@@ -299,7 +299,7 @@ def _largest(n, scale, moves):
     return norm, worst
 
 
-@kernel
+@template
 def converge(
     problem, method, pattern, matrices, model, damped, work, signals, h, start, s, b, tolerance, speed, limit,
 ):  # fmt: skip
@@ -349,7 +349,7 @@ def converge(
     return norm <= _MAGNIFIED, iteration, rate, worst
 
 
-@compiled
+@template
 def converge_along(problem, method, pattern, matrices, tilted, work, signals, h, s, dstart, ds, b):
     """Derivatives ``ds`` of the converged stages along a direction, by the same iteration on imaginary parts."""
     n, size, count = problem.n, len(dstart.x) - 1, len(method.c)

@@ -52,7 +52,7 @@ def residual(model, n, x, v, a, work, scale, r):
     _residual(model, n, x, v, a, work, scale, r)
 
 
-@inlined
+@template
 def residual_here(model, n, x, v, a, work, scale, r):
     """The same, written into the caller."""
     _residual(model, n, x, v, a, work, scale, r)

@@ -12,11 +12,6 @@ from dalembert.multibody.kernels.dual import STEP
 from dalembert.multibody.kernels.model import workspace
 from dalembert.multibody.kernels.motion import Motion
 from dalembert.multibody.lowering import Lowered
-from support import from_python
-
-linearise, choose, invert, dependence = map(
-    from_python, (partitioning.linearise, partitioning.choose, partitioning.invert, partitioning.dependence)
-)
 
 
 def four_bar(length: float = 2.0, bars: int = 2) -> mb.System:
@@ -48,9 +43,9 @@ def work_of(lowered: Lowered) -> tuple:
 
 def chosen(lowered: Lowered, problem, state: Motion, dual_work):
     partition = partitioning.room(problem)
-    linearise(problem, lowered.dual, state, dual_work, partition)
-    choose(problem, partition)
-    assert invert(problem, partition)
+    partitioning.linearise(problem, lowered.dual, state, dual_work, partition)
+    partitioning.choose(problem, partition)
+    assert partitioning.invert(problem, partition)
     return partition
 
 
@@ -69,7 +64,7 @@ def test_as_many_coordinates_depend_as_constraints_are_independent(bars: int, ra
     assert partition.rank[0] == rank == lowered.structure.n - 1
     assert sorted(partition.columns) == list(range(lowered.structure.n))
     assert sorted(partition.rows) == list(range(lowered.structure.size - lowered.structure.n))
-    assert dependence(problem, partition) < 3.0
+    assert partitioning.dependence(problem, partition) < 3.0
 
 
 @pytest.mark.parametrize("bars", [2, 3])

@@ -57,7 +57,7 @@ def room(problem):
     )  # fmt: skip
 
 
-@kernel
+@compiled
 def linearise(problem, dual, state, dual_work, partition):
     """The constraint Jacobian of a state; the signals in ``dual_work`` hold the time."""
     tangent(
@@ -66,7 +66,7 @@ def linearise(problem, dual, state, dual_work, partition):
     )  # fmt: skip
 
 
-@kernel
+@compiled
 def choose(problem, partition):
     """Order coordinates and constraints by complete pivoting of the constraint Jacobian, in units of their scales."""
     n, lead, a = problem.n, problem.exact_layout.lead, partition.pivots
@@ -107,7 +107,7 @@ def choose(problem, partition):
         partition.rank[0] = k + 1
 
 
-@kernel
+@compiled
 def invert(problem, partition):
     """Invert the dependent part of the Jacobian; whether it is regular."""
     rank, lead = partition.rank[0], problem.exact_layout.lead
@@ -121,7 +121,7 @@ def invert(problem, partition):
     return factorise(layout, partition.dependent)
 
 
-@kernel
+@compiled
 def dependence(problem, partition):
     """Largest change of a dependent coordinate by an independent one, in units of their scales.
 

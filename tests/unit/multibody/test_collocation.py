@@ -93,7 +93,8 @@ def test_outputs_between_steps_satisfy_the_constraints_too_and_change_no_step():
 @pytest.mark.parametrize(("degree", "points"), [(2, 2), (3, 2), (3, 4)])
 @pytest.mark.parametrize(
     ("minimiser", "tolerance"),
-    [(PRECISE, 1e-9), (da.LeastSquares(tolerance=1e-15, gain=1e-15), 2e-5)],  # SciPy's ends a little before the minimum
+    # SciPy's ends where the sum of squares gains 1e-15 no more: 3e-8 from the minimum, which is 3e-4 of the push.
+    [(PRECISE, 1e-9), (da.LeastSquares(tolerance=1e-15, gain=1e-15), 3e-4)],
     ids=["own", "SciPy's"],
 )
 def test_derivatives_are_those_of_the_discrete_motion(degree, points, minimiser, tolerance):

@@ -18,6 +18,7 @@ from dalembert.multibody.kernels.model import select, workspace
 from dalembert.multibody.kernels.motion import Motion, copy, row, still
 
 _AGED = 0.003  # contraction at which the next step begins with new matrices, and outputs have their own
+_SHORTEST = 0.2  # of a step: the one after it (Hairer and Wanner 1996, IV.8); what is foreseen may vanish in the time
 _NEAR = 1.25  # ratio of a step to the one that the kept systems were factorised for
 _FAR = 1.5  # ratio of a step to the one before, from which the latter alone predicts
 _HALVINGS = 8  # of a fixed step that Newton's iteration does not converge on
@@ -267,7 +268,8 @@ def integrate(problem, method, pattern, edges, settings, model, dual, directions
                 error = max(error, 1e-30)
                 length = h * min(3.0, 0.9 * error ** (-1.0 / order))
                 if former > 0.0:
-                    length = min(length, 0.9 * h * (h / earlier) * (former / (error * error)) ** (1.0 / order))
+                    foreseen = 0.9 * h * (h / earlier) * (former / (error * error)) ** (1.0 / order)
+                    length = min(length, max(foreseen, _SHORTEST * h))
                 former = max(error, 1e-2)
     copy(new, start)
     return DONE, edges[-1], 0

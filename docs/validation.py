@@ -17,7 +17,8 @@ HEAD = """\
 Each row is an assertion of a test: a number from the named source, the same number computed by dalembert, and how far
 apart they may be. "≤" rounds a difference up to 1, 2 or 5, or to what is allowed; "rounding" stands for a difference
 that is rounding noise. A relative difference is a part of the largest published magnitude. Where a row compares many
-values, the difference is the largest one.
+values, the difference is the largest one. Where nothing is "allowed", the published model is not described whole: the
+numbers only stand beside each other.
 """
 
 
@@ -63,15 +64,24 @@ def as_tolerance_allows(value: float, tolerance: float) -> str:
 def line(row: dict) -> str:
     """One row of a table in Markdown."""
     relative = " relative" if row["relative"] else ""
-    if row["ours"] is None:
+    if row["tolerance"] is None:
+        published, ours = number(row["published"], 15), number(row["ours"], 2)
+    elif row["ours"] is None:
         published, ours = f"{row['published']} values", "as many"
     else:
         tolerance = row["tolerance"] * (abs(row["published"]) if row["relative"] else 1.0)
         published, ours = number(row["published"], 15), as_tolerance_allows(row["ours"], tolerance)
     unit = f" [{row['unit']}]" if row["unit"] else ""
-    difference = "rounding" if row["noisy"] else bound(row["difference"], row["tolerance"]) + relative
-    cells = [row["quantity"] + unit, published, ours, difference, number(row["tolerance"]) + relative, row["source"]]
+    cells = [row["quantity"] + unit, published, ours, *_apart(row, relative), row["source"]]
     return f"| {' | '.join(cells)} |"
+
+
+def _apart(row: dict, relative: str) -> tuple[str, str]:
+    """The difference, and what is allowed."""
+    if row["tolerance"] is None:
+        return number(row["difference"], 1) + relative, ""
+    difference = "rounding" if row["noisy"] else bound(row["difference"], row["tolerance"]) + relative
+    return difference, number(row["tolerance"], 2) + relative
 
 
 def page(rows: list[dict]) -> str:

@@ -21,7 +21,7 @@ class Evidence:
     published: float | int
     ours: float | None
     difference: float
-    tolerance: float
+    tolerance: float | None
     relative: bool
     noisy: bool
 
@@ -31,7 +31,7 @@ def compare(
     published: ArrayLike,
     ours: ArrayLike,
     *,
-    tolerance: float,
+    tolerance: float | None,
     topic: str,
     source: str,
     unit: str = "",
@@ -40,10 +40,12 @@ def compare(
 ) -> Evidence:
     """Evidence that ``ours`` lies within ``tolerance`` of ``published``; AssertionError where it does not.
 
+    Without a tolerance the numbers only stand beside each other, as where the published model is not described whole.
+
     Parameters
     ----------
     published, ours : array-like of the same shape
-    tolerance : float
+    tolerance : float or None
         Largest allowed absolute difference; with ``relative``, as a part of the largest published magnitude.
     noisy : bool
         The difference is rounding noise, which another machine need not repeat: the page prints no digit of it.
@@ -51,7 +53,7 @@ def compare(
     expected, given = np.asarray(published, dtype=float), np.asarray(ours, dtype=float)
     assert expected.shape == given.shape, f"{quantity}: shapes {expected.shape} (published) and {given.shape} (ours)"
     difference = float(np.max(np.abs(given - expected))) / (float(np.max(np.abs(expected))) if relative else 1.0)
-    assert difference <= tolerance, (
+    assert tolerance is None or difference <= tolerance, (
         f"{quantity}: ours {given} and the published {expected} differ by {difference:.3g}"
         f"{' relative' if relative else ''}; allowed: {tolerance:g} ({source})"
     )

@@ -15,6 +15,7 @@ def test_rate(record_evidence):
     record_evidence("rate", 2.0, {ours}, tolerance=0.05, topic="Orders", source="theory")
     table = dict(topic="Orders", source="table", relative=True)
     record_evidence("curve", [1.0, 4.0], [1.0, 4.0 + 3e-6], tolerance=1e-5, **table)
+    record_evidence("depth", 0.754, 0.6913, tolerance=None, topic="Orders", source="figure")
 """
 
 
@@ -31,6 +32,7 @@ def test_a_value_within_the_tolerance_becomes_a_row(pytester: pytest.Pytester) -
     text = page(rows)
     assert "| rate | 2 | 2.01 | ≤ 0.02 | 0.05 | theory |" in text
     assert "| curve | 2 values | as many | ≤ 1e-6 relative | 1e-5 relative | table |" in text
+    assert "| depth | 0.754 | 0.69 | 0.06 |  | figure |" in text
 
 
 @pytest.mark.parametrize("ours", ["2.06", "float('nan')", "[2.0]"])

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
+from dalembert.errors import InputError
 from dalembert.results import Result
 from dalembert.structure.eigenmodes import EigenModes
 from dalembert.structure.node_motion import known_nodes, node_motion
@@ -82,7 +83,7 @@ def mode_shapes(structure: Structure, modes: EigenModes) -> ModeShapes:
     Raises
     ------
     InputError
-        For a structure that does not say where its nodes are.
+        For a structure that does not say where its nodes are, and for complex shapes.
 
     Examples
     --------
@@ -92,6 +93,11 @@ def mode_shapes(structure: Structure, modes: EigenModes) -> ModeShapes:
     >>> shown.shapes.shape, float(abs(shown.shapes).max())
     ((2, 25, 3), 1.0)
     """
+    if np.iscomplexobj(modes.shapes):
+        raise InputError(
+            "mode_shapes: the shapes are complex; expected those of the undamped structure, which `eigenmodes` finds, "
+            "whose nodes move in phase"
+        )
     nodes, motion = known_nodes(structure), node_motion(structure, modes.shapes)
     kept, faces = drawn_nodes(motion, nodes.faces)
     shapes = np.moveaxis(motion[kept], -1, 0)

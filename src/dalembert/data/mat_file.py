@@ -1,8 +1,5 @@
 """Columns of a MAT file of MATLAB: version 5 (and older), or 7.3, which is HDF5."""
 
-import pickle
-import subprocess
-import sys
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -10,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from dalembert.data.columns import Columns, chosen
+from dalembert.data.guarded import guarded
 from dalembert.data.opening import reading
-from dalembert.errors import DataError
 
 
 def mat_columns(path: Path, time: str, names: Iterable[str] | None, missing: str) -> Columns:
@@ -34,21 +31,7 @@ def _version_5(path: Path) -> Iterator[tuple[str, np.ndarray]]:
 
 def version_5(path: Path) -> dict[str, Any]:
     """All variables of a MAT file of version 5 or older, as SciPy gives them."""
-    # In a process of its own: over some damaged files SciPy's compiled reader ends the whole process.
-    done = subprocess.run([sys.executable, "-c", _READER, str(path)], capture_output=True, check=False)
-    if done.returncode < 0:
-        raise DataError(f"{path}: cannot be read as MAT (it is damaged: the reader broke down over it)")
-    if done.returncode > 0:
-        last = done.stderr.decode(errors="replace").strip().splitlines()[-1:]
-        raise ValueError(*last)
-    return pickle.loads(done.stdout)
-
-
-_READER = """
-import pickle, sys
-from scipy.io import loadmat
-pickle.dump(loadmat(sys.argv[1], simplify_cells=True), sys.stdout.buffer)
-"""
+    return guarded(path, "MAT", "scipy.io", "loadmat", simplify_cells=True)
 
 
 def _fields(front: str, held: Mapping[str, Any]) -> Iterator[tuple[str, np.ndarray]]:

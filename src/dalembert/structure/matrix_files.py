@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.io import mmread
 from scipy.sparse import coo_array, csc_array, issparse
 
+from dalembert.data.guarded import guarded
 from dalembert.data.mat_file import version_5
 from dalembert.data.opening import library, reading
 from dalembert.errors import DataError
@@ -46,7 +46,7 @@ def matrix_market(path: Path) -> Matrices:
         first = stream.readline()
     if not first.startswith(b"%%MatrixMarket"):
         return _abaqus(path)
-    matrix = mmread(path)
+    matrix = guarded(path, "Matrix Market", "scipy.io", "mmread")
     return {path.stem: NamedMatrix(csc_array(matrix) if issparse(matrix) else matrix)}
 
 

@@ -1,0 +1,43 @@
+"""Compiled readers of others, in processes of their own: over some damaged files they end the whole process."""
+
+import json
+import pickle
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+from dalembert.errors import DataError
+
+
+def guarded(path: Path, what: str, module: str, function: str, **options: Any) -> Any:
+    """``module.function(path, **options)``.
+
+    Parameters
+    ----------
+    what : str
+        The kind of the file, for messages.
+
+    Raises
+    ------
+    DataError
+        Where the reader broke down.
+    ValueError
+        With the last line of what it raised.
+    """
+    command = [sys.executable, "-c", _READER, module, function, str(path), json.dumps(options)]
+    done = subprocess.run(command, capture_output=True, check=False)
+    if done.returncode < 0:
+        raise DataError(f"{path}: cannot be read as {what} (it is damaged: the reader broke down over it)")
+    if done.returncode > 0:
+        last = done.stderr.decode(errors="replace").strip().splitlines()[-1:]
+        raise ValueError(*last)
+    return pickle.loads(done.stdout)
+
+
+_READER = """
+import json, pickle, sys
+from importlib import import_module
+module, function, path, options = sys.argv[1:]
+pickle.dump(getattr(import_module(module), function)(path, **json.loads(options)), sys.stdout.buffer)
+"""

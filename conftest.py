@@ -14,7 +14,7 @@ from notebook_text import markdown
 from sybil import Document, Example, Sybil
 from sybil.parsers.markdown import CodeBlockParser, PythonCodeBlockParser, SkipParser
 
-collect_ignore = ["docs/conf.py"]
+collect_ignore = ["docs/conf.py", "docs/mathml.py"]
 """It is Sphinx's, which the tests do without."""
 
 

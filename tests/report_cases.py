@@ -68,6 +68,7 @@ def _fragile(a: float) -> np.ndarray:
     return a * TIMES
 
 
+RUNS_AWAY = f"ArithmeticError: the motion runs away (report_cases.py, line {_fragile.__code__.co_firstlineno + 2})"
 FRAGILE = PythonModel(_fragile, {"a": Parameter("a", 0.0, 2.0, start=1.9)}, ["x"], TIMES)
 
 
@@ -265,8 +266,8 @@ CASES: dict[str, Case] = {
     "failing runs": Case(
         lambda: _unsimulated(None, 1.9, 4),
         (
-            "simulations failed and were passed over, the first: the motion runs away",
-            "the first point could not be simulated: the motion runs away (at a = 1.9)",
+            f"simulations failed and were passed over, the first: {RUNS_AWAY}",
+            f"the first point could not be simulated: {RUNS_AWAY} (at a = 1.9)",
         ),
     ),
     # ── identification: why a start ended ───────────────────────────────────────────────────────────────────────────
@@ -453,7 +454,7 @@ CASES: dict[str, Case] = {
     ),
     "a look before that fails": Case(
         lambda: "\n".join(foreseen(FRAGILE, _exact(FRAGILE, [0.4]))),
-        ("What the data can tell could not be foreseen: the motion runs away",),
+        (f"What the data can tell could not be foreseen: {RUNS_AWAY}",),
     ),
     # ── integrators ──
     "integrators": Case(

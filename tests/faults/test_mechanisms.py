@@ -370,3 +370,8 @@ def test_an_adaptive_run_that_takes_too_many_steps_is_told() -> None:
     with pytest.raises(SolveError, match=r"^the adaptive step reached most_steps = 20 at t = 0\..*") as told:
         mb.simulate(pendulum(), 1.0, solver)
     assert str(told.value).endswith(" s; raise tolerance or most_steps")
+
+
+def test_a_number_too_large_to_compute_with_is_refused():
+    with pytest.raises(InputError, match=says("rigid bar 'bar': length is 1e+300; expected a number below 1e+100")):
+        mb.RigidBar("bar", 1e300, 1.0)

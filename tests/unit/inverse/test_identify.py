@@ -219,9 +219,10 @@ def test_a_start_that_fails_is_followed_by_others_and_told():
     assert not fit.starts[0].success
     assert fit.starts[0].fitness == np.inf
     assert fit.starts[0].message == (
-        "the first point could not be simulated: the motion runs away (at size = 3.9, rate = 2.9)"
+        "the first point could not be simulated: ArithmeticError: the motion runs away (test_identify.py, line 203) "
+        "(at size = 3.9, rate = 2.9)"
     )
-    assert "simulations failed and were passed over, the first: the motion runs away (at size = 3.9, rate" in fit.status
+    assert "simulations failed and were passed over, the first: ArithmeticError: the motion runs away" in fit.status
 
 
 @pytest.mark.parametrize("method", [LeastSquares(), ParticleSwarm(4, 3), "Nelder-Mead"])

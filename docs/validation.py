@@ -17,8 +17,8 @@ HEAD = """\
 Each row is an assertion of a test: a number from the named source, the same number computed by dalembert, and how far
 apart they may be. "≤" rounds a difference up to 1, 2 or 5, or to what is allowed; "rounding" stands for a difference
 that is rounding noise. A relative difference is a part of the largest published magnitude. Where a row compares many
-values, the difference is the largest one. Where nothing is "allowed", the published model is not described whole: the
-numbers only stand beside each other.
+values, the difference is the largest one. Where nothing is "allowed" the numbers only stand beside each other: the
+published model is not described whole, or the source is another method.
 """
 
 
@@ -65,7 +65,7 @@ def line(row: dict) -> str:
     """One row of a table in Markdown."""
     relative = " relative" if row["relative"] else ""
     if row["tolerance"] is None:
-        published, ours = number(row["published"], 15), number(row["ours"], 2)
+        published, ours = number(row["published"], 3), number(row["ours"], 3)
     elif row["ours"] is None:
         published, ours = f"{row['published']} values", "as many"
     else:
@@ -79,7 +79,7 @@ def line(row: dict) -> str:
 def _apart(row: dict, relative: str) -> tuple[str, str]:
     """The difference, and what is allowed."""
     if row["tolerance"] is None:
-        return number(row["difference"], 1) + relative, ""
+        return number(row["difference"], 2) + relative, ""
     difference = "rounding" if row["noisy"] else bound(row["difference"], row["tolerance"]) + relative
     return difference, number(row["tolerance"], 2) + relative
 

@@ -32,7 +32,7 @@ def test_a_value_within_the_tolerance_becomes_a_row(pytester: pytest.Pytester) -
     text = page(rows)
     assert "| rate | 2 | 2.01 | ≤ 0.02 | 0.05 | theory |" in text
     assert "| curve | 2 values | as many | ≤ 1e-6 relative | 1e-5 relative | table |" in text
-    assert "| depth | 0.754 | 0.69 | 0.06 |  | figure |" in text
+    assert "| depth | 0.754 | 0.691 | 0.063 |  | figure |" in text
 
 
 @pytest.mark.parametrize("ours", ["2.06", "float('nan')", "[2.0]"])

@@ -3,7 +3,6 @@
 A connection belongs to the call that makes it, and ends with it.
 """
 
-import hashlib
 import sys
 import sysconfig
 from collections.abc import Callable, Iterator
@@ -85,7 +84,8 @@ def sent(client: "Client", thing: Any) -> "Future":
             f"the model cannot be sent to the cluster: {error}; a function of the model must not hold open files, "
             "locks or other things of this process"
         ) from error
-    return client.submit(cloudpickle.loads, content, key=f"dalembert-{hashlib.sha256(content).hexdigest()}")
+    # Each time under a name of its own: one that is asked for again while the scheduler lets go of it may never come.
+    return client.submit(cloudpickle.loads, content, pure=False)
 
 
 @contextmanager

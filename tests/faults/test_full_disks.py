@@ -16,8 +16,8 @@ import pytest
 
 from dalembert.study import RunFolder
 from faults.kills import content, kinds
+from faults.slow_runs import COMMAND
 
-COMMAND = Path(sys.executable).with_name("dalembert")
 MODEL = """
 import os
 from pathlib import Path

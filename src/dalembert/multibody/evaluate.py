@@ -1,12 +1,9 @@
 """Residuals, matrices, constraint rates and energies of a lowered model, for use from Python."""
 
-import sys
-from functools import cache
-from pathlib import Path
-
 import numpy as np
 from scipy.sparse import csr_matrix
 
+from dalembert.compilation import announce_compilation
 from dalembert.multibody.kernels import assembly, signals
 from dalembert.multibody.kernels.compiled import compiled
 from dalembert.multibody.kernels.model import Model, Slots, workspace
@@ -60,17 +57,9 @@ def _violations(model, n, x, v, a, times, within, out):
             out[s, level] = 0.0 if width - 1 == n else np.abs(values[n : width - 1]).max()
 
 
-@cache
-def _announce_compilation() -> None:
-    """Say, once, that kernels will be compiled where no compiled ones are on disk."""
-    kept = Path(_residual._cache.cache_path)  # type: ignore[attr-defined] - Numba's cache of a compiled function
-    if not any(kept.glob("evaluate._residual-*.nbi")):
-        sys.stderr.write("dalembert: compiling its kernels, once on this machine; this takes one to two minutes\n")
-
-
 def residual(lowered: Lowered, model: Model, x: np.ndarray, v: np.ndarray, a: np.ndarray, t: float = 0.0) -> np.ndarray:
     """Equations of motion, then constraints, (N,)."""
-    _announce_compilation()
+    announce_compilation(_residual, "its kernels", "one to two minutes")
     r = np.zeros_like(x)
     _residual(model, lowered.structure.n, x, v, a, t, t, r)
     return r[:-1]

@@ -4,10 +4,11 @@ import inspect
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from multiprocessing import get_context
-from os import cpu_count
 from time import perf_counter
 
 import numpy as np
+
+from dalembert.forward.builders import cores
 
 
 def compile_ahead() -> Iterator[tuple[str, float]]:
@@ -20,7 +21,7 @@ def compile_ahead() -> Iterator[tuple[str, float]]:
     seconds : float
         That it took: next to nothing if it was on disk.
     """
-    with ProcessPoolExecutor(cpu_count(), get_context("spawn")) as pool:
+    with ProcessPoolExecutor(cores(), get_context("spawn")) as pool:
         for done in as_completed([pool.submit(_timed, name) for name in _sorts()]):
             yield done.result()
 

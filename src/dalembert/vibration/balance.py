@@ -18,8 +18,8 @@ from functools import cached_property
 
 import numpy as np
 
+from dalembert.compilation import announce_compilation
 from dalembert.vibration import friction_law
-from dalembert.vibration.compiled import announce_compilation
 from dalembert.vibration.condensation import Point
 from dalembert.vibration.fourier import Fourier, real_blocks
 from dalembert.vibration.friction_law import NORMAL, TANGENTIAL
@@ -162,7 +162,8 @@ class Balance:
         series, shape = self.series, (block.tangents, block.normal, block.memory)
         predicted, numbers = self._predicted(block, unknowns, total)
         samples = np.ascontiguousarray(predicted @ series.synthesis.T)
-        announce_compilation(friction_law.forces if tangent is None else friction_law.tangent, "its laws of contacts")
+        law = friction_law.forces if tangent is None else friction_law.tangent
+        announce_compilation(law, "its laws of contacts", "about half a minute")
         if tangent is None:
             kind = np.result_type(samples, numbers)
             force, states = friction_law.forces(

@@ -9,8 +9,8 @@ import numpy as np
 import scipy
 
 import dalembert
+from dalembert.compilation import announce_compilation
 from dalembert.errors import InputError, SolveError, unknown
-from dalembert.vibration.compiled import announce_compilation
 from dalembert.vibration.curve import FrequencyCurve
 from dalembert.vibration.equations import equations
 from dalembert.vibration.fourier import Fourier, synthesis
@@ -90,7 +90,7 @@ def steady_state(
     lowered = lower(system).real
     problem = InTime(lowered, 2 * np.pi * frequency, method.steps_per_period, method.stand_in)
     rows = observed(lowered, observe)
-    announce_compilation(advance, "its steps in time")
+    announce_compilation(advance, "its steps in time", "about half a minute")
     with one_thread():
         run = _Run(problem, method, [])
         state = run.rest() if start is None else run.on_curve(system, *start)

@@ -2,7 +2,7 @@
 
 from types import SimpleNamespace
 
-from dalembert.vibration.compiled import announce_compilation
+from dalembert.compilation import announce_compilation
 
 
 def law() -> None:
@@ -11,15 +11,15 @@ def law() -> None:
 
 def test_a_first_compilation_is_announced_once(tmp_path, capsys):
     function = dispatcher(tmp_path)
-    announce_compilation(function, "its laws")
-    announce_compilation(function, "its laws")
+    announce_compilation(function, "its laws", "about half a minute")
+    announce_compilation(function, "its laws", "about half a minute")
     said = "dalembert: compiling its laws, once on this machine; this takes about half a minute\n"
     assert capsys.readouterr().err == said
 
 
 def test_what_is_on_disk_is_not_announced(tmp_path, capsys):
-    (tmp_path / "test_compiled.law-10.py311.nbi").touch()
-    announce_compilation(dispatcher(tmp_path), "its laws")
+    (tmp_path / "test_compilation.law-10.py311.nbi").touch()
+    announce_compilation(dispatcher(tmp_path), "its laws", "about half a minute")
     assert capsys.readouterr().err == ""
 
 

@@ -14,6 +14,7 @@ from dalembert.report.needs import (
     BandFitLike,
     ComparisonLike,
     FitLike,
+    IdentifiedLike,
     ParameterSetLike,
     PropagationLike,
     SweepLike,
@@ -230,7 +231,7 @@ def _motion(moving: Mapping[str, TrajectoryLike], points: tuple[str, ...], fit: 
     return [Motion(drawn, left_out)] if drawn else []
 
 
-def _search(fit: FitLike | BandFitLike) -> list[Section]:
+def _search(fit: IdentifiedLike) -> list[Section]:
     return [Search(fit)] if fit.history else []
 
 
@@ -240,7 +241,7 @@ def _shooting(fit: FitLike) -> list[Section]:
     return [] if nodes is None else [Shooting(fit, nodes)]
 
 
-def _telling(fit: FitLike | BandFitLike) -> list[Section]:
+def _telling(fit: IdentifiedLike) -> list[Section]:
     """The section on identifiability, where there is more than one unknown or something to say."""
     ask: Any = getattr(fit, "identifiability", None)
     told = ask() if ask is not None else None

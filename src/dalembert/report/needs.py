@@ -8,6 +8,15 @@ import numpy as np
 from dalembert.parameters import Parameters
 
 
+class OutcomeLike(Protocol):
+    """Whether all went well, and in words what did not."""
+
+    @property
+    def success(self) -> bool: ...
+    @property
+    def status(self) -> str: ...
+
+
 class CoordinateLike(Protocol):
     """What the samples lie along."""
 
@@ -122,40 +131,35 @@ class StartLike(Protocol):
     def simulations(self) -> int: ...
 
 
-@runtime_checkable
-class FitLike(Protocol):
-    """Identified parameters, and how they were found."""
+class IdentifiedLike(OutcomeLike, Protocol):
+    """What a search identified, and how it went; ``correlation`` is that of its unknowns."""
 
     @property
     def parameters(self) -> Parameters: ...
-    @property
-    def values(self) -> np.ndarray: ...
-    @property
-    def deviations(self) -> np.ndarray: ...
     @property
     def correlation(self) -> np.ndarray: ...
     @property
     def fitness(self) -> float: ...
     @property
-    def response(self) -> np.ndarray: ...
-    @property
-    def residuals(self) -> np.ndarray: ...
-    @property
-    def data(self) -> MeasurementsLike: ...
-    @property
     def history(self) -> Sequence[StepLike]: ...
     @property
     def starts(self) -> Sequence[StartLike]: ...
-    @property
-    def success(self) -> bool: ...
-    @property
-    def status(self) -> str: ...
     @property
     def method(self) -> str: ...
     @property
     def simulations(self) -> int: ...
     @property
     def provenance(self) -> Mapping[str, Any]: ...
+
+
+@runtime_checkable
+class FitLike(IdentifiedLike, ResponseLike, Protocol):
+    """Identified parameters, and how they were found."""
+
+    @property
+    def values(self) -> np.ndarray: ...
+    @property
+    def deviations(self) -> np.ndarray: ...
 
 
 class DrawingLike(Protocol):
@@ -187,8 +191,8 @@ class TrajectoryLike(Protocol):
     def drawing(self) -> DrawingLike: ...
 
 
-class CurveLike(Protocol):
-    """Responses (samples, channels) along values (samples,) of one parameter, and their derivatives if known."""
+class OverParameterLike(Protocol):
+    """Something over values (values,) of one parameter."""
 
     @property
     def parameter(self) -> str: ...
@@ -196,6 +200,11 @@ class CurveLike(Protocol):
     def unit(self) -> str: ...
     @property
     def values(self) -> np.ndarray: ...
+
+
+class CurveLike(OverParameterLike, Protocol):
+    """Responses (samples, channels) along values (samples,) of one parameter, and their derivatives if known."""
+
     @property
     def channels(self) -> tuple[str, ...]: ...
     @property
@@ -207,15 +216,11 @@ class CurveLike(Protocol):
 
 
 @runtime_checkable
-class SweepLike(Protocol):
+class SweepLike(OutcomeLike, Protocol):
     """One curve a parameter, at one instant that ``at`` names, for example ``"time 0.5 s"``."""
 
     @property
     def at(self) -> str: ...
-    @property
-    def success(self) -> bool: ...
-    @property
-    def status(self) -> str: ...
     @property
     def curves(self) -> Sequence[CurveLike]: ...
 
@@ -246,7 +251,7 @@ class BandsLike(Protocol):
 
 
 @runtime_checkable
-class PropagationLike(BandsLike, Protocol):
+class PropagationLike(BandsLike, OutcomeLike, Protocol):
     """Bounds of a response over a box of parameters: how they were found, and how far they can be trusted.
 
     ``units`` are those of the channels. ``error`` (samples, channels) is estimated, ``at_lower`` and ``at_upper``
@@ -271,10 +276,6 @@ class PropagationLike(BandsLike, Protocol):
     def at_upper(self) -> np.ndarray | None: ...
     @property
     def failures(self) -> Sequence[str]: ...
-    @property
-    def success(self) -> bool: ...
-    @property
-    def status(self) -> str: ...
     @property
     def seconds(self) -> float: ...
     @property
@@ -301,7 +302,7 @@ class RowLike(Protocol):
 
 
 @runtime_checkable
-class ComparisonLike(Protocol):
+class ComparisonLike(OutcomeLike, Protocol):
     """Bounds over the same box by several methods; ``reference`` names the one that the others are measured by.
 
     ``refused`` are pairs of a method that gave no bounds and the reason.
@@ -315,22 +316,16 @@ class ComparisonLike(Protocol):
     def rows(self) -> Sequence[RowLike]: ...
     @property
     def refused(self) -> Sequence[tuple[str, str]]: ...
-    @property
-    def success(self) -> bool: ...
-    @property
-    def status(self) -> str: ...
 
 
 @runtime_checkable
-class BandFitLike(Protocol):
+class BandFitLike(IdentifiedLike, Protocol):
     """Intervals identified from bands.
 
     The unknowns are the middles and radii of the parameters; ``deviations`` and ``correlation`` are theirs. ``lower``
     and ``upper`` (samples, channels) are the bands reproduced on the surrogate, the checked ones those of true runs.
     """
 
-    @property
-    def parameters(self) -> Parameters: ...
     @property
     def box(self) -> BoxLike: ...
     @property
@@ -344,10 +339,6 @@ class BandFitLike(Protocol):
     @property
     def radius_deviations(self) -> np.ndarray: ...
     @property
-    def correlation(self) -> np.ndarray: ...
-    @property
-    def fitness(self) -> float: ...
-    @property
     def bands(self) -> BandsLike: ...
     @property
     def lower(self) -> np.ndarray: ...
@@ -359,24 +350,10 @@ class BandFitLike(Protocol):
     def checked_upper(self) -> np.ndarray | None: ...
     @property
     def checked_fitness(self) -> float | None: ...
-    @property
-    def history(self) -> Sequence[StepLike]: ...
-    @property
-    def starts(self) -> Sequence[StartLike]: ...
-    @property
-    def success(self) -> bool: ...
-    @property
-    def status(self) -> str: ...
-    @property
-    def method(self) -> str: ...
-    @property
-    def simulations(self) -> int: ...
-    @property
-    def provenance(self) -> Mapping[str, Any]: ...
 
 
 @runtime_checkable
-class ParameterSetLike(Protocol):
+class ParameterSetLike(OutcomeLike, Protocol):
     """All parameters that are consistent with bounded-error data, as boxes (boxes, 2, parameters) of lower, upper.
 
     ``inside`` lie wholly in the set, ``boundary`` may; ``outer`` holds the set, ``inner`` is the largest box found in
@@ -397,9 +374,5 @@ class ParameterSetLike(Protocol):
     def volume(self) -> tuple[float, float]: ...
     @property
     def runs(self) -> int: ...
-    @property
-    def success(self) -> bool: ...
-    @property
-    def status(self) -> str: ...
     @property
     def provenance(self) -> Mapping[str, Any]: ...

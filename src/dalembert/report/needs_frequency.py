@@ -5,6 +5,8 @@ from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
+from dalembert.report.needs import OutcomeLike, OverParameterLike
+
 
 class PeakLike(Protocol):
     """The largest response of a curve, Hz and m."""
@@ -72,23 +74,13 @@ class EnvelopeLike(Protocol):
 
 
 @runtime_checkable
-class CurveFamilyLike(Protocol):
+class CurveFamilyLike(OverParameterLike, OutcomeLike, Protocol):
     """Responses over frequency for several values of a parameter; None and a reason where there is none."""
 
-    @property
-    def parameter(self) -> str: ...
-    @property
-    def unit(self) -> str: ...
-    @property
-    def values(self) -> np.ndarray: ...
     @property
     def curves(self) -> Sequence[FrequencyCurveLike | None]: ...
     @property
     def failures(self) -> Sequence[str | None]: ...
-    @property
-    def success(self) -> bool: ...
-    @property
-    def status(self) -> str: ...
     def peaks(self, dof: str, kind: str = ...) -> Sequence[PeakLike]: ...
     def best(self, dof: str, kind: str = ...) -> float: ...
     def reduction(self, dof: str, kind: str = ...) -> np.ndarray: ...
@@ -155,19 +147,13 @@ class BackboneLike(Protocol):
 
 
 @runtime_checkable
-class ResonanceTrackLike(Protocol):
+class ResonanceTrackLike(OverParameterLike, Protocol):
     """The peak of a response over a parameter: frequencies and amplitudes (values,)."""
 
-    @property
-    def parameter(self) -> str: ...
-    @property
-    def unit(self) -> str: ...
     @property
     def dof(self) -> str: ...
     @property
     def kind(self) -> str: ...
-    @property
-    def values(self) -> np.ndarray: ...
     @property
     def frequencies(self) -> np.ndarray: ...
     @property
@@ -181,19 +167,24 @@ class ResonanceTrackLike(Protocol):
     def best(self) -> float: ...
 
 
+class BodyLike(Protocol):
+    """A structure: nodes at ``places`` (nodes, 3) with faces (faces, corners) between them."""
+
+    @property
+    def places(self) -> np.ndarray: ...
+    @property
+    def faces(self) -> np.ndarray: ...
+
+
 @runtime_checkable
-class DeformationLike(Protocol):
-    """A periodic motion of nodes at ``places`` (nodes, 3) with faces between them, and what its contacts do.
+class DeformationLike(BodyLike, Protocol):
+    """A periodic motion of a structure, and what its contacts do.
 
     States (contacts, phases) say 0 separated, 1 stuck, 2 slipping; energies (contacts,) are those of a period.
     """
 
     @property
     def frequency(self) -> float: ...
-    @property
-    def places(self) -> np.ndarray: ...
-    @property
-    def faces(self) -> np.ndarray: ...
     @property
     def contacts(self) -> tuple[str, ...]: ...
     @property
@@ -206,15 +197,11 @@ class DeformationLike(Protocol):
 
 
 @runtime_checkable
-class ModeShapesLike(Protocol):
-    """Shapes (modes, nodes, 3) of free vibrations of nodes at ``places`` (nodes, 3) with faces between them."""
+class ModeShapesLike(BodyLike, Protocol):
+    """Shapes (modes, nodes, 3) of free vibrations of a structure."""
 
     @property
     def frequencies(self) -> np.ndarray: ...
-    @property
-    def places(self) -> np.ndarray: ...
-    @property
-    def faces(self) -> np.ndarray: ...
     @property
     def shapes(self) -> np.ndarray: ...
 

@@ -3,6 +3,8 @@
 from collections.abc import Sequence
 from typing import Protocol, runtime_checkable
 
+from dalembert.report.needs import OutcomeLike
+
 
 class RunLike(Protocol):
     """One run of one integrator: error, run time, steps, largest violations and energy imbalance, and why it ended."""
@@ -30,7 +32,7 @@ class RunLike(Protocol):
 
 
 @runtime_checkable
-class WorkPrecisionLike(Protocol):
+class WorkPrecisionLike(OutcomeLike, Protocol):
     """Runs of integrators on one motion beside a reference, which is known to ``apart``."""
 
     @property
@@ -46,7 +48,3 @@ class WorkPrecisionLike(Protocol):
     @property
     def rows(self) -> Sequence[RunLike]: ...
     def fastest(self, error: float) -> RunLike | None: ...
-    @property
-    def success(self) -> bool: ...
-    @property
-    def status(self) -> str: ...

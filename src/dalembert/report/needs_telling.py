@@ -6,7 +6,7 @@ from typing import Any, Protocol, runtime_checkable
 import numpy as np
 
 from dalembert.parameters import Parameters
-from dalembert.report.needs import BandsLike, MeasurementsLike
+from dalembert.report.needs import BandsLike, MeasurementsLike, OutcomeLike
 
 
 class ProfileLike(Protocol):
@@ -35,7 +35,7 @@ class ProfileLike(Protocol):
 
 
 @runtime_checkable
-class ProfilesLike(Protocol):
+class ProfilesLike(OutcomeLike, Protocol):
     """Profile likelihoods of identified values, and the threshold of their excess at a level."""
 
     @property
@@ -52,15 +52,11 @@ class ProfilesLike(Protocol):
     def threshold(self) -> float: ...
     @property
     def simulations(self) -> int: ...
-    @property
-    def success(self) -> bool: ...
-    @property
-    def status(self) -> str: ...
     def sentences(self) -> Sequence[str]: ...
 
 
 @runtime_checkable
-class PredictionLike(BandsLike, Protocol):
+class PredictionLike(BandsLike, OutcomeLike, Protocol):
     """A response with the bands of its true value and of a new measurement, each (samples, channels)."""
 
     @property
@@ -75,14 +71,10 @@ class PredictionLike(BandsLike, Protocol):
     def data(self) -> MeasurementsLike | None: ...
     @property
     def level(self) -> float: ...
-    @property
-    def success(self) -> bool: ...
-    @property
-    def status(self) -> str: ...
 
 
 @runtime_checkable
-class DesignsLike(Protocol):
+class DesignsLike(OutcomeLike, Protocol):
     """Experiments, the best first: sensors, horizon, score, and the deviations to be expected (designs, parameters)."""
 
     @property
@@ -107,9 +99,5 @@ class DesignsLike(Protocol):
     def unseen(self) -> np.ndarray: ...
     @property
     def deviations(self) -> np.ndarray: ...
-    @property
-    def success(self) -> bool: ...
-    @property
-    def status(self) -> str: ...
     @property
     def provenance(self) -> Mapping[str, Any]: ...

@@ -5,11 +5,11 @@ import plotly.graph_objects as go
 
 from dalembert.report.charts.logarithm import logarithmic, positive
 from dalembert.report.look import LIGHT, themed
-from dalembert.report.needs import BandFitLike, FitLike
+from dalembert.report.needs import IdentifiedLike
 from dalembert.report.thin import thin
 
 
-def convergence(fit: FitLike | BandFitLike, *, title: str = "Convergence") -> go.Figure:
+def convergence(fit: IdentifiedLike, *, title: str = "Convergence") -> go.Figure:
     """Best fitness so far over the number of simulations, one line a start, the winning start in colour.
 
     Parameters
@@ -50,7 +50,7 @@ def convergence(fit: FitLike | BandFitLike, *, title: str = "Convergence") -> go
     return figure.update_layout(showlegend=True)
 
 
-def winner(fit: FitLike | BandFitLike) -> int:
+def winner(fit: IdentifiedLike) -> int:
     """Number of the start with the lowest fitness at its end."""
     ends = [start.fitness if np.isfinite(start.fitness) else np.inf for start in fit.starts]
     return int(np.argmin(ends)) if ends else 0

@@ -4,12 +4,12 @@ import numpy as np
 import plotly.graph_objects as go
 
 from dalembert.report.look import LIGHT, plain, themed
-from dalembert.report.needs import BandFitLike, FitLike
+from dalembert.report.needs import BandFitLike, IdentifiedLike
 
 MOST_TEXTS = 12
 
 
-def correlation(fit: FitLike | BandFitLike, *, title: str = "Correlation of the estimates") -> go.Figure:
+def correlation(fit: IdentifiedLike, *, title: str = "Correlation of the estimates") -> go.Figure:
     """Heat map of the correlation matrix (parameters, parameters), from −1 to 1.
 
     Parameters
@@ -48,7 +48,7 @@ def correlation(fit: FitLike | BandFitLike, *, title: str = "Correlation of the 
     return figure.update_layout(margin_t=56)
 
 
-def unknowns(fit: FitLike | BandFitLike) -> tuple[str, ...]:
+def unknowns(fit: IdentifiedLike) -> tuple[str, ...]:
     """Names of what was identified: parameters, or the middles and radii of their intervals."""
     return fit.unknowns if isinstance(fit, BandFitLike) else fit.parameters.names
 

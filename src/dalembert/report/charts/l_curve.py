@@ -6,10 +6,10 @@ import plotly.graph_objects as go
 from dalembert.report.charts.logarithm import logarithmic, positive
 from dalembert.report.charts.starts import ranked
 from dalembert.report.look import LIGHT, themed
-from dalembert.report.needs import BandFitLike, FitLike, RegularisedStepLike
+from dalembert.report.needs import IdentifiedLike, RegularisedStepLike
 
 
-def l_curve(fit: FitLike | BandFitLike, *, title: str = "L-curves") -> go.Figure:
+def l_curve(fit: IdentifiedLike, *, title: str = "L-curves") -> go.Figure:
     """Length of a step over the residual that it would leave, for all weights, with the weight chosen and that taken.
 
     One curve a step of the best start; in colour the last one that has a corner.
@@ -57,7 +57,7 @@ def l_curve(fit: FitLike | BandFitLike, *, title: str = "L-curves") -> go.Figure
     return figure.update_yaxes(title="length of the step", **logarithmic(figure))
 
 
-def accounts(fit: FitLike | BandFitLike) -> list[RegularisedStepLike]:
+def accounts(fit: IdentifiedLike) -> list[RegularisedStepLike]:
     """Accounts of the steps of the best start that has several of them, or of the best that has any."""
     best: list[RegularisedStepLike] = []
     for start in ranked(fit):

@@ -7,6 +7,7 @@ from plotly.subplots import make_subplots
 from dalembert.report.digits import shown
 from dalembert.report.focus import size_label, unit_of
 from dalembert.report.look import LIGHT, plain, themed
+from dalembert.report.needs import OverParameterLike
 from dalembert.report.needs_frequency import CurveFamilyLike, ResonanceTrackLike
 from dalembert.report.prefixes import prefixed
 from dalembert.report.quantities import labelled
@@ -58,13 +59,13 @@ def resonance_track(track: ResonanceTrackLike, *, title: str | None = None) -> g
     return _drawn(track, values, heights, frequencies, track.dof, track.kind, title)
 
 
-def value_text(over: CurveFamilyLike | ResonanceTrackLike, value: float) -> str:
+def value_text(over: OverParameterLike, value: float) -> str:
     """A value of the parameter with its unit."""
     return f"{shown(float(value))} {plain(over.unit)}".rstrip()
 
 
 def _drawn(
-    over: CurveFamilyLike | ResonanceTrackLike,
+    over: OverParameterLike,
     values: np.ndarray,
     heights: np.ndarray,
     frequencies: np.ndarray,

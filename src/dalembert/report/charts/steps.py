@@ -7,10 +7,10 @@ from plotly.subplots import make_subplots
 from dalembert.report.charts.l_curve import accounts
 from dalembert.report.charts.logarithm import positive
 from dalembert.report.look import LIGHT, themed
-from dalembert.report.needs import BandFitLike, FitLike
+from dalembert.report.needs import IdentifiedLike
 
 
-def steps(fit: FitLike | BandFitLike, *, title: str = "Steps of the best start") -> go.Figure:
+def steps(fit: IdentifiedLike, *, title: str = "Steps of the best start") -> go.Figure:
     """Residual before each step, weights chosen and taken, and agreement with the linear model, over the steps.
 
     Parameters

@@ -7,7 +7,7 @@ from dalembert.report import charts
 from dalembert.report.charts.correlation import unknowns
 from dalembert.report.charts.l_curve import accounts
 from dalembert.report.charts.starts import ranked
-from dalembert.report.needs import BandFitLike, FitLike
+from dalembert.report.needs import IdentifiedLike
 from dalembert.report.plot import Plot
 from dalembert.report.sections.section import Section
 from dalembert.report.table import Table, cell
@@ -19,7 +19,7 @@ class Search(Section):
 
     name: ClassVar[str] = "search"
     heading: ClassVar[str] = "Search"
-    fit: FitLike | BandFitLike
+    fit: IdentifiedLike
 
     @property
     def plots(self) -> tuple[Plot, ...]:

@@ -6,7 +6,7 @@ from typing import ClassVar
 
 from dalembert.report import charts
 from dalembert.report.charts.correlation import unknowns
-from dalembert.report.needs import BandFitLike, FitLike
+from dalembert.report.needs import IdentifiedLike
 from dalembert.report.plot import Plot
 from dalembert.report.sections.section import Section
 
@@ -19,7 +19,7 @@ class Telling(Section):
 
     name: ClassVar[str] = "telling"
     heading: ClassVar[str] = "What the data tell"
-    fit: FitLike | BandFitLike
+    fit: IdentifiedLike
     sentences: Sequence[str] = ()
     spectrum: Plot | None = None
 

@@ -15,6 +15,7 @@ from dalembert.inverse.problem import Problem
 from dalembert.inverse.segments import State
 from dalembert.inverse.spread import spread_points
 from dalembert.optimize import Squares
+from dalembert.settings import expect_at_least
 
 WORSE = 1.1
 """Ratio of misfits up to which fewer segments are taken to explain the data as well as more of them."""
@@ -78,8 +79,7 @@ class MultipleShooting:
     segments: int = 8
 
     def __post_init__(self) -> None:
-        if self.segments < 2:
-            raise InputError(f"MultipleShooting: segments is {self.segments}; expected at least 2")
+        expect_at_least(self, 2, "segments")
         if not self.states:
             raise InputError(
                 "MultipleShooting: no states were given; expected all parameters of the initial state, each with the "

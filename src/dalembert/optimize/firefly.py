@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dalembert.errors import InputError
 from dalembert.optimize.minimum import Minimum, Objective, OnIteration, Progress, box, fitness_of
+from dalembert.settings import expect, expect_at_least, expect_positive
 
 
 @dataclass(frozen=True)
@@ -61,17 +61,10 @@ class Firefly:
     resolution: float = 1e-10
 
     def __post_init__(self) -> None:
-        for name in ("fireflies", "generations"):
-            if getattr(self, name) < 1:
-                raise InputError(f"Firefly: {name} is {getattr(self, name)}; expected at least 1")
-        for name in ("absorption", "target", "resolution"):
-            if not getattr(self, name) >= 0:
-                raise InputError(f"Firefly: {name} is {getattr(self, name)}; expected no negative number")
-        for name in ("attraction", "exponent"):
-            if not getattr(self, name) > 0:
-                raise InputError(f"Firefly: {name} is {getattr(self, name)}; expected a positive number")
-        if not 0 <= self.randomness < 1:
-            raise InputError(f"Firefly: randomness is {self.randomness}; expected a number from 0 to below 1")
+        expect_at_least(self, 1, "fireflies", "generations")
+        expect(self, "no negative number", lambda given: given >= 0, "absorption", "target", "resolution")
+        expect_positive(self, "attraction", "exponent")
+        expect(self, "a number from 0 to below 1", lambda given: 0 <= given < 1, "randomness")
 
     def minimise(
         self,

@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import least_squares
 
-from dalembert.errors import InputError
-from dalembert.optimize.minimum import Minimum, OnIteration, Progress, box
+from dalembert.optimize.minimum import Minimum, OnIteration, Progress, box, expect_reachable
+from dalembert.settings import expect_at_least
 
 
 @dataclass(frozen=True)
@@ -43,11 +43,8 @@ class LeastSquares:
     gain: float = 1e-8
 
     def __post_init__(self) -> None:
-        if self.trials < 1:
-            raise InputError(f"LeastSquares: trials is {self.trials}; expected at least 1")
-        for name in ("tolerance", "gain"):
-            if not np.finfo(float).eps < getattr(self, name) < 1:
-                raise InputError(f"LeastSquares: {name} is {getattr(self, name)}; expected a number from 3e-16 to 1")
+        expect_at_least(self, 1, "trials")
+        expect_reachable(self, "tolerance", "gain")
 
     def minimise(
         self,

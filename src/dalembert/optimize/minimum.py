@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from dalembert.errors import InputError
+from dalembert.settings import expect
 
 Objective = Callable[[np.ndarray], np.ndarray]
 """Fitness of a batch, (batch, parameters) to (batch,); NaN or an infinity marks a sample that failed."""
@@ -116,3 +117,8 @@ def box(lower: ArrayLike, upper: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
             f"bounds are {low.tolist()} and {high.tolist()}; expected two vectors of one length, finite, lower < upper"
         )
     return low, high
+
+
+def expect_reachable(method: object, *names: str) -> None:
+    """Refuse tolerances of a method that are lost in rounding, or are none."""
+    expect(method, "a number from 3e-16 to 1", lambda given: np.finfo(float).eps < given < 1, *names)

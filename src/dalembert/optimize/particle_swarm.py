@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dalembert.errors import InputError
 from dalembert.optimize.swarm import Swarm, SwarmState, pulled
+from dalembert.settings import expect
 
 
 @dataclass(frozen=True)
@@ -43,8 +43,7 @@ class ParticleSwarm(Swarm):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.velocity_limit is not None and not self.velocity_limit > 0:
-            raise InputError(f"ParticleSwarm: velocity_limit is {self.velocity_limit}; expected a positive fraction")
+        expect(self, "a positive fraction", lambda given: given is None or given > 0, "velocity_limit")
 
     def velocity_bound(self, lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
         return (upper - lower) * (1.0 if self.velocity_limit is None else self.velocity_limit)

@@ -8,8 +8,9 @@ from numpy.typing import ArrayLike
 
 from dalembert.errors import InputError, unknown
 from dalembert.optimize.linear_model import LinearModel
-from dalembert.optimize.minimum import Minimum, OnIteration, Progress, RegularisedStep, box
+from dalembert.optimize.minimum import Minimum, OnIteration, Progress, RegularisedStep, box, expect_reachable
 from dalembert.optimize.tikhonov import Regularised
+from dalembert.settings import expect, expect_at_least
 
 REGULARISATIONS = ("l-curve", "gcv", "discrepancy")
 
@@ -82,18 +83,11 @@ class ResponseSensitivity:
                 f"{where}: regularisation 'discrepancy' needs noise, the standard deviation of a weighted residual; "
                 "give noise=1.0 where the data have deviations"
             )
-        if self.noise is not None and not 0 < self.noise < np.inf:
-            raise InputError(f"{where}: noise is {self.noise}; expected a positive number")
-        if not 0.25 <= self.agreement <= 0.75:
-            raise InputError(f"{where}: agreement is {self.agreement}; expected a number from 0.25 to 0.75")
-        if not 1 < self.growth < np.inf:
-            raise InputError(f"{where}: growth is {self.growth}; expected a number above 1, such as 2 to 5")
-        for name in ("trials", "iterations"):
-            if getattr(self, name) < 1:
-                raise InputError(f"{where}: {name} is {getattr(self, name)}; expected at least 1")
-        for name in ("tolerance", "gain"):
-            if not np.finfo(float).eps < getattr(self, name) < 1:
-                raise InputError(f"{where}: {name} is {getattr(self, name)}; expected a number from 3e-16 to 1")
+        expect(self, "a positive number", lambda given: given is None or 0 < given < np.inf, "noise")
+        expect(self, "a number from 0.25 to 0.75", lambda given: 0.25 <= given <= 0.75, "agreement")
+        expect(self, "a number above 1, such as 2 to 5", lambda given: 1 < given < np.inf, "growth")
+        expect_at_least(self, 1, "trials", "iterations")
+        expect_reachable(self, "tolerance", "gain")
 
     def minimise(
         self,

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dalembert.errors import InputError
 from dalembert.optimize.minimum import Minimum, Objective, OnIteration, Progress, box, fitness_of
+from dalembert.settings import expect_at_least
 
 
 @dataclass(frozen=True)
@@ -70,9 +70,7 @@ class Swarm(ABC):
     iterations: int = 100
 
     def __post_init__(self) -> None:
-        for name in ("particles", "iterations"):
-            if getattr(self, name) < 1:
-                raise InputError(f"{type(self).__name__}: {name} is {getattr(self, name)}; expected at least 1")
+        expect_at_least(self, 1, "particles", "iterations")
 
     def start(
         self, objective: Objective, lower: ArrayLike, upper: ArrayLike, seed: int, start: ArrayLike | None = None

@@ -7,6 +7,7 @@ from typing import Literal
 import numpy as np
 
 from dalembert.errors import InputError, unknown
+from dalembert.settings import expect_at_least, expect_positive
 from dalembert.surrogate.decay import by_direction, by_total_degree
 from dalembert.surrogate.growth import Growth
 from dalembert.surrogate.runs import Runs
@@ -63,10 +64,8 @@ class Adaptive:
     basis: Literal["sparse", "total-degree", "tensor"] = "sparse"
 
     def __post_init__(self) -> None:
-        if not self.tolerance > 0:
-            raise InputError(f"Adaptive: tolerance is {self.tolerance}; expected a positive number")
-        if self.most_runs < 1:
-            raise InputError(f"Adaptive: most_runs is {self.most_runs}; expected at least 1")
+        expect_positive(self, "tolerance")
+        expect_at_least(self, 1, "most_runs")
         if self.basis not in BASES:
             raise InputError(unknown("basis", self.basis, BASES, "Adaptive"))
 

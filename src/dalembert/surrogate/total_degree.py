@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import lstsq, qr
 
-from dalembert.errors import InputError, SolveError
+from dalembert.errors import SolveError
+from dalembert.settings import expect, expect_at_least
 from dalembert.surrogate.basis import chebyshev, products, roots, terms_of, total_degree
 from dalembert.surrogate.decay import by_total_degree, tail
 from dalembert.surrogate.runs import Runs, failed
@@ -49,10 +50,8 @@ class TotalDegree:
     oversampling: float = 2.0
 
     def __post_init__(self) -> None:
-        if self.order < 1:
-            raise InputError(f"TotalDegree: order is {self.order}; expected at least 1")
-        if not 1 <= self.oversampling < np.inf:
-            raise InputError(f"TotalDegree: oversampling is {self.oversampling}; expected a finite number, at least 1")
+        expect_at_least(self, 1, "order")
+        expect(self, "a finite number, at least 1", lambda given: 1 <= given < np.inf, "oversampling")
 
     def runs(self, directions: int) -> int:
         """Number M of runs that it takes."""

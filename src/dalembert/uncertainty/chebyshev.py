@@ -6,6 +6,7 @@ from typing import ClassVar, Literal
 import numpy as np
 
 from dalembert.errors import InputError, unknown
+from dalembert.settings import expect, expect_positive
 from dalembert.surrogate import Adaptive, Surrogate, bounds, fit
 from dalembert.surrogate.bounds import METHODS
 from dalembert.surrogate.scheme import Scheme
@@ -59,10 +60,8 @@ class Chebyshev:
     def __post_init__(self) -> None:
         if self.bounds not in METHODS:
             raise InputError(unknown("way to bound a polynomial", self.bounds, METHODS, "Chebyshev, bounds"))
-        if not self.tolerance > 0:
-            raise InputError(f"Chebyshev: tolerance is {self.tolerance}; expected a positive number")
-        if self.held_out < 0:
-            raise InputError(f"Chebyshev: held_out is {self.held_out}; expected zero or more")
+        expect_positive(self, "tolerance")
+        expect(self, "zero or more", lambda given: given >= 0, "held_out")
 
     def most(self, runs: Runs) -> int | None:
         return None

@@ -6,7 +6,7 @@ from typing import ClassVar
 import numpy as np
 from scipy.stats import qmc
 
-from dalembert.errors import InputError
+from dalembert.settings import expect
 from dalembert.uncertainty.found import Found
 from dalembert.uncertainty.runs import Runs
 from dalembert.uncertainty.search import Search
@@ -43,10 +43,8 @@ class Optimise:
     most_runs: int = 3000
 
     def __post_init__(self) -> None:
-        if not 0 < self.tolerance < 1:
-            raise InputError(f"Optimise: tolerance is {self.tolerance}; expected a number between 0 and 1")
-        if self.start is not None and self.start < 0:
-            raise InputError(f"Optimise: start is {self.start}; expected zero points or more")
+        expect(self, "a number between 0 and 1", lambda given: 0 < given < 1, "tolerance")
+        expect(self, "zero points or more", lambda given: given is None or given >= 0, "start")
 
     def most(self, runs: Runs) -> int | None:
         return None

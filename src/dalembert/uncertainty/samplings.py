@@ -10,6 +10,7 @@ from scipy.stats import qmc
 
 from dalembert.errors import InputError
 from dalembert.intervals import Box
+from dalembert.settings import expect, expect_at_least
 from dalembert.uncertainty.found import Extremes, Found
 from dalembert.uncertainty.runs import Runs
 
@@ -104,8 +105,7 @@ class Scan(Sampling):
     most_runs: int = 1_000_000
 
     def __post_init__(self) -> None:
-        if self.points_each < 2:
-            raise InputError(f"Scan: points_each is {self.points_each}; expected at least 2, the ends of each interval")
+        expect(self, "at least 2, the ends of each interval", lambda given: given >= 2, "points_each")
 
     def size(self, box: Box) -> int:
         return _grid_size(self.name, self.points_each, box, self.most_runs, "fewer points a parameter, or Optimise()")
@@ -120,7 +120,28 @@ class Scan(Sampling):
 
 
 @dataclass(frozen=True)
-class MonteCarlo(Sampling):
+class Drawn(Sampling):
+    """Runs at points drawn by chance, in halves: what the second half still widened is the estimated error."""
+
+    runs: int
+
+    def __post_init__(self) -> None:
+        expect_at_least(self, 2, "runs")
+
+    def size(self, box: Box) -> int:
+        return self.runs
+
+    def points(self, box: Box, seed: int) -> tuple[np.ndarray, np.ndarray]:
+        points = box.points(2 * self.shares(len(box), seed) - 1)
+        return points[: self.runs // 2], points[self.runs // 2 :]
+
+    @abstractmethod
+    def shares(self, dimensions: int, seed: int) -> np.ndarray:
+        """Points (runs, dimensions) of the unit cube."""
+
+
+@dataclass(frozen=True)
+class MonteCarlo(Drawn):
     """Runs at points drawn evenly from the box.
 
     Parameters
@@ -136,19 +157,12 @@ class MonteCarlo(Sampling):
     )
     runs: int = 1000
 
-    def __post_init__(self) -> None:
-        _check_runs(self)
-
-    def size(self, box: Box) -> int:
-        return self.runs
-
-    def points(self, box: Box, seed: int) -> tuple[np.ndarray, np.ndarray]:
-        eta = np.random.default_rng(seed).uniform(-1, 1, (self.runs, len(box)))
-        return np.split(box.points(eta), [self.runs // 2])  # pyright: ignore[reportReturnType]
+    def shares(self, dimensions: int, seed: int) -> np.ndarray:
+        return np.random.default_rng(seed).random((self.runs, dimensions))
 
 
 @dataclass(frozen=True)
-class LatinHypercube(Sampling):
+class LatinHypercube(Drawn):
     """Runs at the points of a Latin hypercube: one in each of as many slices along every parameter.
 
     Parameters
@@ -164,20 +178,8 @@ class LatinHypercube(Sampling):
     )
     runs: int = 200
 
-    def __post_init__(self) -> None:
-        _check_runs(self)
-
-    def size(self, box: Box) -> int:
-        return self.runs
-
-    def points(self, box: Box, seed: int) -> tuple[np.ndarray, np.ndarray]:
-        eta = 2 * qmc.LatinHypercube(len(box), rng=seed).random(self.runs) - 1
-        return np.split(box.points(eta), [self.runs // 2])  # pyright: ignore[reportReturnType]
-
-
-def _check_runs(method: MonteCarlo | LatinHypercube) -> None:
-    if method.runs < 2:
-        raise InputError(f"{type(method).__name__}: runs is {method.runs}; expected at least 2")
+    def shares(self, dimensions: int, seed: int) -> np.ndarray:
+        return qmc.LatinHypercube(dimensions, rng=seed).random(self.runs)
 
 
 def _grid_size(name: str, each: int, box: Box, most: int, instead: str) -> int:

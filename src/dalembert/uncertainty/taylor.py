@@ -5,7 +5,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from dalembert.errors import InputError
+from dalembert.settings import expect
 from dalembert.uncertainty.found import Found
 from dalembert.uncertainty.runs import Runs
 
@@ -25,8 +25,7 @@ class Taylor:
     held_out: int = 4
 
     def __post_init__(self) -> None:
-        if self.held_out < 0:
-            raise InputError(f"Taylor: held_out is {self.held_out}; expected zero or more")
+        expect(self, "zero or more", lambda given: given >= 0, "held_out")
 
     def most(self, runs: Runs) -> int:
         return 1 + len(runs.box) + self.held_out * bool(len(runs.free))

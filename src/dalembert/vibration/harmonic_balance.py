@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from dalembert.errors import InputError
+from dalembert.settings import expect
 
 AUTOMATIC = "automatic"
 
@@ -75,9 +76,7 @@ class HarmonicBalance:
             raise InputError(
                 f"HarmonicBalance: {self.samples} samples of a period were asked for; expected at most {MOST_GIVEN}"
             )
-        for name in ("sampling", "tolerance", "resolution"):
-            if not 0 < getattr(self, name) < 1:
-                raise InputError(f"HarmonicBalance: {name} is {getattr(self, name)}; expected a number between 0 and 1")
+        expect(self, "a number between 0 and 1", lambda given: 0 < given < 1, "sampling", "tolerance", "resolution")
 
     @property
     def orders(self) -> tuple[int, ...]:

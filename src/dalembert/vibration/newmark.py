@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dalembert.errors import InputError
+from dalembert.settings import expect
 from dalembert.vibration.contacts import require_positive
 from dalembert.vibration.time_steps import Scheme
 
@@ -51,12 +52,9 @@ class Newmark:
             raise InputError(f"Newmark: {self.steps_per_period} steps of a period were asked for; expected at least 8")
         if self.periods < 1:
             raise InputError(f"Newmark: {self.periods} periods were allowed; expected at least 1")
-        if self.spectral_radius is not None and not 0 <= self.spectral_radius <= 1:
-            raise InputError(
-                f"Newmark: spectral_radius is {self.spectral_radius}; expected a number in [0, 1], or none"
-            )
-        if not 0 < self.tolerance < 1:
-            raise InputError(f"Newmark: tolerance is {self.tolerance}; expected a number between 0 and 1")
+        in_range = "a number in [0, 1], or none"
+        expect(self, in_range, lambda given: given is None or 0 <= given <= 1, "spectral_radius")
+        expect(self, "a number between 0 and 1", lambda given: 0 < given < 1, "tolerance")
         require_positive("Newmark: stand_in", "", self.stand_in)
 
     def scheme(self, omega: float) -> Scheme:

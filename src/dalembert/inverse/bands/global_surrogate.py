@@ -5,7 +5,6 @@ from functools import partial
 
 import numpy as np
 
-from dalembert.errors import InputError
 from dalembert.inverse.bands.band_problem import BandProblem
 from dalembert.inverse.bands.candidate import Candidate, candidate
 from dalembert.inverse.bands.check import Check, check, scale
@@ -16,6 +15,7 @@ from dalembert.inverse.events import Checked
 from dalembert.inverse.matching import place
 from dalembert.inverse.surrogates import surrogate_of
 from dalembert.optimize import LeastSquares, Minimum
+from dalembert.settings import expect, expect_at_least
 from dalembert.surrogate import Adaptive, Surrogate
 from dalembert.surrogate.scheme import Scheme
 
@@ -76,11 +76,9 @@ class GlobalSurrogate:
     held_out: int = 4
 
     def __post_init__(self) -> None:
-        for name, least in (("starts", 1), ("checks", 0), ("held_out", 0)):
-            if getattr(self, name) < least:
-                raise InputError(f"GlobalSurrogate: {name} is {getattr(self, name)}; expected at least {least}")
-        if not 0 < self.tolerance < np.inf:
-            raise InputError(f"GlobalSurrogate: tolerance is {self.tolerance}; expected a positive number")
+        expect_at_least(self, 1, "starts")
+        expect_at_least(self, 0, "checks", "held_out")
+        expect(self, "a positive number", lambda given: 0 < given < np.inf, "tolerance")
 
     @property
     def name(self) -> str:

@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from dalembert.errors import InputError
 from dalembert.multibody.assemble import redundancy
 from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha
 from dalembert.multibody.integrators.integrator import Integrator
@@ -13,6 +12,7 @@ from dalembert.multibody.integrators.radau_iia import RadauIIA
 from dalembert.multibody.integrators.run import Run
 from dalembert.multibody.integrators.stabilisation import Partitioning
 from dalembert.multibody.lowering import Lowered
+from dalembert.settings import expect_positive
 
 _FIRST = 1e-3  # of the motion: the first step of an adaptive one
 _DEFORMABLE = ("beams", "cables")
@@ -45,8 +45,7 @@ class Automatic(Integrator):
     tolerance: float = field(default=1e-6, metadata={"unit": ""})
 
     def __post_init__(self) -> None:
-        if not self.tolerance > 0:
-            raise InputError(f"Automatic: tolerance is {self.tolerance}; expected a positive number")
+        expect_positive(self, "tolerance")
 
     def suiting(self, lowered: Lowered, end: float) -> Integrator:
         """The integrator for a mechanism's motion until ``end`` (s)."""

@@ -16,6 +16,7 @@ from dalembert.multibody.integrators.run import Run, cut, explain, resting, stac
 from dalembert.multibody.kernels.motion import Motion
 from dalembert.multibody.lowering import Lowered
 from dalembert.optimize import Firefly, LeastSquares, Minimiser, ResponseSensitivity, Squares, Swarm
+from dalembert.settings import expect, expect_at_least
 
 
 @dataclass(frozen=True)
@@ -31,8 +32,7 @@ class GaussNewton:
     iterations: int = 3
 
     def __post_init__(self) -> None:
-        if self.iterations < 1:
-            raise InputError(f"GaussNewton: iterations is {self.iterations}; expected at least 1")
+        expect_at_least(self, 1, "iterations")
 
 
 @dataclass(frozen=True)
@@ -84,14 +84,10 @@ class Collocation(Integrator):
     seed: int = 0
 
     def __post_init__(self) -> None:
-        if not (np.isfinite(self.step) and self.step > 0):
-            raise InputError(f"Collocation: step is {self.step}; expected a positive number of seconds")
-        if self.degree < 2:
-            raise InputError(f"Collocation: degree is {self.degree}; expected at least 2")
-        if self.gauss_points < self.degree - 1:
-            raise InputError(
-                f"Collocation: gauss_points is {self.gauss_points}; expected at least degree - 1 = {self.degree - 1}"
-            )
+        expect(self, "a positive number of seconds", lambda given: 0 < given < np.inf, "step")
+        expect_at_least(self, 2, "degree")
+        least = self.degree - 1
+        expect(self, f"at least degree - 1 = {least}", lambda given: given >= least, "gauss_points")
         if not isinstance(self.minimiser, GaussNewton | Firefly | Squares | Swarm | Minimiser):
             raise InputError(
                 f"Collocation: minimiser is {self.minimiser!r}; expected GaussNewton(), Firefly(), LeastSquares() or "

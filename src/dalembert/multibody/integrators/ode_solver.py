@@ -17,6 +17,7 @@ from dalembert.multibody.integrators.run import Run, cut, explain, resting, stac
 from dalembert.multibody.integrators.stabilisation import Projection, Stabilisation, posed
 from dalembert.multibody.kernels.motion import Motion, row
 from dalembert.multibody.lowering import Lowered
+from dalembert.settings import expect, expect_positive
 
 EXPLICIT, IMPLICIT = ("RK45", "DOP853"), ("Radau", "BDF", "LSODA")
 _FINEST = 1e-12  # relative tolerance; SciPy takes none below 100 roundings, which derivatives divide further
@@ -69,12 +70,8 @@ class OdeSolver(Integrator):
     def __post_init__(self) -> None:
         if self.method not in EXPLICIT + IMPLICIT:
             raise InputError(unknown("method", self.method, EXPLICIT + IMPLICIT, "OdeSolver"))
-        if not _FINEST <= self.relative_tolerance < 1:
-            raise InputError(
-                f"OdeSolver: relative_tolerance is {self.relative_tolerance}; expected a number from {_FINEST:g} to 1"
-            )
-        if not self.absolute_tolerance > 0:
-            raise InputError(f"OdeSolver: absolute_tolerance is {self.absolute_tolerance}; expected a positive number")
+        expect(self, f"a number from {_FINEST:g} to 1", lambda given: _FINEST <= given < 1, "relative_tolerance")
+        expect_positive(self, "absolute_tolerance")
         if self.method == "LSODA" and self.stabilisation.way == PROJECTED:
             raise InputError(
                 "OdeSolver: LSODA keeps a memory of past steps that a projection cannot move; give "

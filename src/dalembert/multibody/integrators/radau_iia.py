@@ -5,7 +5,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from dalembert.errors import InputError
 from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.matrices import damps, pattern_of
 from dalembert.multibody.integrators.problem import DONE, Log, Problem
@@ -14,6 +13,7 @@ from dalembert.multibody.integrators.radau_loop import Settings, integrate
 from dalembert.multibody.integrators.run import Run, cut, explain, resting, stack, starts
 from dalembert.multibody.kernels.motion import Motion
 from dalembert.multibody.lowering import Lowered
+from dalembert.settings import expect, expect_positive
 
 _ROOM = 100_000  # steps whose Newton counts are kept, where their number is not known before
 
@@ -66,13 +66,10 @@ class RadauIIA(Integrator):
     most_steps: int = 10_000_000
 
     def __post_init__(self) -> None:
-        if self.step is not None and not (np.isfinite(self.step) and self.step > 0):
-            raise InputError(f"RadauIIA: step is {self.step}; expected a positive number of seconds, or none")
-        for name in ("tolerance", "newton_tolerance"):
-            if not getattr(self, name) > 0:
-                raise InputError(f"RadauIIA: {name} is {getattr(self, name)}; expected a positive number")
-        if self.stages not in (3, 5, 7):
-            raise InputError(f"RadauIIA: stages is {self.stages}; expected 3, 5 or 7")
+        in_range = "a positive number of seconds, or none"
+        expect(self, in_range, lambda given: given is None or 0 < given < np.inf, "step")
+        expect_positive(self, "tolerance", "newton_tolerance")
+        expect(self, "3, 5 or 7", lambda given: given in (3, 5, 7), "stages")
 
     @property
     def order(self) -> int:

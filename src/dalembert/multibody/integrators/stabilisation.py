@@ -10,6 +10,7 @@ from dalembert.multibody.assemble import redundancy
 from dalembert.multibody.integrators.index1 import AS_THEY_COME, PARTITIONED, PROJECTED, Terms
 from dalembert.multibody.integrators.problem import Problem
 from dalembert.multibody.lowering import Lowered
+from dalembert.settings import expect
 
 
 class Stabilisation:
@@ -125,8 +126,7 @@ class Partitioning(Stabilisation):
     way = PARTITIONED
 
     def __post_init__(self) -> None:
-        if not self.limit > 1:
-            raise InputError(f"Partitioning: limit is {self.limit}; expected a number greater than 1")
+        expect(self, "a number greater than 1", lambda given: given > 1, "limit")
 
 
 def posed(

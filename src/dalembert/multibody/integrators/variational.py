@@ -6,7 +6,6 @@ from typing import ClassVar
 
 import numpy as np
 
-from dalembert.errors import InputError
 from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.matrices import damps, pattern_of
 from dalembert.multibody.integrators.midpoint_loop import Settings, integrate
@@ -15,6 +14,7 @@ from dalembert.multibody.integrators.run import Run, cut, explain, resting, stac
 from dalembert.multibody.integrators.symmetries import rigid_motions
 from dalembert.multibody.kernels.motion import Motion
 from dalembert.multibody.lowering import Lowered
+from dalembert.settings import expect, expect_positive
 
 
 @dataclass(frozen=True)
@@ -55,11 +55,8 @@ class Variational(Integrator):
     _conserving: ClassVar[bool] = False  # the energy
 
     def __post_init__(self) -> None:
-        name = type(self).__name__
-        if not (np.isfinite(self.step) and self.step > 0):
-            raise InputError(f"{name}: step is {self.step}; expected a positive number of seconds")
-        if not self.newton_tolerance > 0:
-            raise InputError(f"{name}: newton_tolerance is {self.newton_tolerance}; expected a positive number")
+        expect(self, "a positive number of seconds", lambda given: 0 < given < np.inf, "step")
+        expect_positive(self, "newton_tolerance")
 
     def integrate(
         self,

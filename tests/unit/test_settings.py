@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
+from tests.support import says
 
 from dalembert.errors import InputError
 from dalembert.settings import expect, expect_at_least, expect_positive
-from tests.support import says
 
 
 @dataclass(frozen=True)

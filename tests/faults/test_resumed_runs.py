@@ -40,7 +40,7 @@ BANDS = """
 file = "bands.csv"
 columns = { x = ["low", "high"] }
 """
-CURVES = """
+STRUCTURE = """
 [parameters]
 preload = { lower = 0.0, upper = 8.0, start = 1.0 }
 [[model.mass]]
@@ -66,7 +66,32 @@ preload = "preload"
 law = { kind = "Elastic", tangential_stiffness = 0.8 }
 [harmonic_balance]
 harmonics = 9
-[frequency_response]
+"""
+CURVES = STRUCTURE + "[frequency_response]\n"
+MECHANISM = """
+[model]
+gravity = [0.0, -9.81]
+[[model.body]]
+kind = "RigidBar"
+name = "bar"
+length = 1.0
+mass = 1.0
+[[model.joint]]
+kind = "RevoluteJoint"
+name = "pin"
+a = "ground"
+b = "bar.start"
+[work_precision]
+end = "5 s"
+channels = ["bar.end.x"]
+reference = [{ step = 1e-4 }, { step = 2e-4 }]
+[[work_precision.series]]
+solver = { step = 0.01 }
+over = { step = [1e-2, 5e-3, 2e-3, 1e-3, 5e-4] }
+[[work_precision.series]]
+name = "adaptive"
+solver = { step = 0.01, adaptive = true }
+over = { tolerance = [1e-4, 1e-5, 1e-6, 1e-7] }
 """
 STUDIES = {
     "least-squares": HEAD + DATA + "[identify]\nstarts = 8\nprofile = true\nprediction = true\n",
@@ -85,6 +110,11 @@ STUDIES |= {
     "family of curves": CURVES + "frequencies = { start = 0.12, end = 0.3, count = 120 }\nstability = true\n"
     'sweep = { parameter = "preload", values = [0.0, 1.0, 2.0, 4.0, 8.0] }\n',
     "curve past folds": CURVES + 'between = [0.1, 0.4]\ncontinuation = "arc-length"\n',
+    "mode over given amplitudes": STRUCTURE + "[backbone]\namplitudes = { start = 0.1, end = 20.0, count = 80 }\n",
+    "mode past corners": STRUCTURE + "[backbone]\nbetween = [0.1, 20.0]\n",
+    "tracked resonance": STRUCTURE + '[track_resonance]\nparameter = "preload"\nbetween = [0.1, 0.4]\ndof = "m"\n'
+    "values = { count = 17 }\n",
+    "compared integrators": MECHANISM,
 }
 KILLS = 2
 MANY = 25
@@ -114,5 +144,5 @@ def test_killed_at_random_moments_a_study_ends_the_same(tmp_path, study):
 @pytest.mark.slow
 @pytest.mark.parametrize("study", STUDIES)
 def test_killed_very_often_a_study_ends_the_same(tmp_path, study):
-    """25 kills of each of ten kinds of study: 250 in all."""
+    """25 kills of each of fourteen kinds of study: 350 in all."""
     assert killed(tmp_path, study, MANY, seed=2)["kills"] == MANY

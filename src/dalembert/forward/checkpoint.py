@@ -2,10 +2,10 @@
 
 import json
 import sqlite3
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from threading import Lock
-from time import monotonic
+from time import monotonic, perf_counter
 from types import TracebackType
 from typing import Self
 
@@ -100,6 +100,15 @@ class Checkpoint:
             self._own.add(key)
             if monotonic() - self._written >= EVERY:
                 self._write()
+
+    def once(self, key: bytes, compute: Callable[[], Sequence[np.ndarray]]) -> Sequence[np.ndarray]:
+        """The arrays kept by a key; where there are none they are computed and kept."""
+        known = self.recall(key)
+        if known is None:
+            began = perf_counter()
+            known = compute()
+            self.keep(key, known, perf_counter() - began)
+        return known
 
     def close(self) -> None:
         """Write what has come, and let go of the file."""

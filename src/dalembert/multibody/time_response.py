@@ -1,6 +1,5 @@
 """The response of a mechanism in time as a forward model."""
 
-import hashlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -12,6 +11,7 @@ from dalembert.forward import Channel, Coordinate, Responses, ensemble
 from dalembert.forward.builders import cores, inexact, restructured
 from dalembert.multibody.assemble import assembled, refuse_kinks, refuse_redundancy
 from dalembert.multibody.callbacks import in_complex_numbers
+from dalembert.multibody.fingerprint import fingerprint
 from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.problem import Problem
 from dalembert.multibody.integrators.run import Run, make_problem
@@ -106,13 +106,8 @@ class TimeResponse:
 
     @cached_property
     def _fingerprint(self) -> str:
-        lowered = self._frame.lowered
-        digest = hashlib.sha256(repr((self.parameters.names, self.channel_names, self.solver)).encode())
-        for array in (self.times, lowered.x, lowered.v, lowered.signal_data, lowered.knots, *lowered.data.values()):
-            digest.update(np.ascontiguousarray(array).tobytes())
-        for kind in lowered.structure.index:
-            digest.update(lowered.structure.index[kind].tobytes() + lowered.structure.meta[kind].tobytes())
-        return digest.hexdigest()
+        asked = self.parameters.names, self.channel_names, self.solver
+        return fingerprint(self._frame.lowered, self.times, *asked)
 
     def evaluate(self, vectors: np.ndarray) -> Responses:
         """Responses of a batch over all cores; ``vectors`` (batch, parameters), values (batch, samples, channels).

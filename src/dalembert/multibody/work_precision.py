@@ -1,17 +1,22 @@
 """Integrators compared on one motion: error against run time."""
 
+import hashlib
 import json
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
+from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
 
 from dalembert.errors import DalembertError, InputError
+from dalembert.forward import Checkpoint
 from dalembert.multibody.callbacks import in_complex_numbers
+from dalembert.multibody.fingerprint import fingerprint
 from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.run import make_problem
+from dalembert.multibody.lowering import lower
 from dalembert.multibody.simulate import prepared, simulate
 from dalembert.multibody.system import System
 from dalembert.multibody.trajectory import Trajectory
@@ -153,6 +158,7 @@ def work_precision(
     reference: Sequence[Integrator],
     samples: int = 41,
     repeats: int = 3,
+    checkpoint: Checkpoint | None = None,
     on_row: OnRow | None = None,
 ) -> WorkPrecision:
     """Errors and run times of integrators on one motion.
@@ -174,6 +180,9 @@ def work_precision(
     repeats : int
         Runs of each, after one that is not timed (it may compile); the fastest counts, because other load on the
         machine only ever adds.
+    checkpoint : Checkpoint, optional
+        Where the references and the rows are kept as they are found, with their times; begun again with the same file
+        the comparison goes on with those that are missing.
     on_row : callable, optional
         Is called with each `Row` when it is there.
 
@@ -209,43 +218,74 @@ def work_precision(
     if not any(solvers.values()):
         raise InputError("work_precision: no integrators were given; expected at least one series of them")
     times = np.linspace(0.0, end, samples)
-    known, beside = (simulate(system, end, solver, times).channels(channels) for solver in reference)
+    compared = _Comparison(system, end, times, tuple(channels), reference[0], repeats, checkpoint)
+    known, beside = map(compared.motion, reference)
     rows = []
     for method, series in solvers.items():
         for solver in series:
-            rows.append(_row(method, solver, system, end, times, tuple(channels), known, repeats))
+            rows.append(compared.row(method, solver, known))
             if on_row:
                 on_row(rows[-1])
     return WorkPrecision(tuple(channels), float(end), str(reference[0]), _distance(beside, known), tuple(rows))
 
 
-def _row(
-    method: str,
-    solver: Integrator,
-    system: System,
-    end: float,
-    times: np.ndarray,
-    channels: tuple[str, ...],
-    known: np.ndarray,
-    repeats: int,
-) -> Row:
-    try:
-        motion = simulate(system, end, solver, times)
-        seconds = _seconds(system, end, solver, times, repeats)
-    except DalembertError as error:  # it ended early, or is not made for this mechanism
-        return Row(method, str(solver), failure=str(error))
-    worst = {level: float(np.max(values)) for level, values in motion.violations.items()}
-    return Row(
-        method,
-        str(solver),
-        _distance(motion.channels(channels), known),
-        seconds,
-        int(motion.run.counts[0]),
-        worst["position"],
-        worst["velocity"],
-        worst["acceleration"],
-        _imbalance(motion),
-    )
+@dataclass(frozen=True)
+class _Comparison:
+    """A motion whose runs are kept where there is a checkpoint."""
+
+    system: System
+    end: float
+    times: np.ndarray
+    channels: tuple[str, ...]
+    reference: Integrator
+    repeats: int
+    checkpoint: Checkpoint | None
+
+    def motion(self, solver: Integrator) -> np.ndarray:
+        """Channels of a run, (samples, channels)."""
+        return self._once(lambda: self._simulated(solver).channels(self.channels), "motion", solver)
+
+    def row(self, method: str, solver: Integrator, known: np.ndarray) -> Row:
+        """An integrator beside the channels of the reference."""
+
+        def compute() -> np.ndarray:
+            return np.frombuffer(json.dumps(asdict(self._row(method, solver, known))).encode(), np.uint8)
+
+        return Row(**json.loads(self._once(compute, "row", method, solver, self.repeats).tobytes()))
+
+    def _simulated(self, solver: Integrator) -> Trajectory:
+        return simulate(self.system, self.end, solver, self.times)
+
+    def _row(self, method: str, solver: Integrator, known: np.ndarray) -> Row:
+        try:
+            motion = self._simulated(solver)
+            seconds = _seconds(self.system, self.end, solver, self.times, self.repeats)
+        except DalembertError as error:  # it ended early, or is not made for this mechanism
+            return Row(method, str(solver), failure=str(error))
+        worst = {level: float(np.max(values)) for level, values in motion.violations.items()}
+        return Row(
+            method,
+            str(solver),
+            _distance(motion.channels(self.channels), known),
+            seconds,
+            int(motion.run.counts[0]),
+            worst["position"],
+            worst["velocity"],
+            worst["acceleration"],
+            _imbalance(motion),
+        )
+
+    def _once(self, compute: Callable[[], np.ndarray], *what: object) -> np.ndarray:
+        """What the checkpoint holds of this, or what is computed now."""
+        if self.checkpoint is None:
+            return compute()
+        key = hashlib.sha256(repr((self._mechanism, *what)).encode()).digest()
+        return self.checkpoint.once(key, lambda: (compute(),))[0]
+
+    @cached_property
+    def _mechanism(self) -> str:
+        with in_complex_numbers(strict=False):
+            return fingerprint(lower(self.system), self.times, self.end, self.channels, self.reference)
 
 
 def _seconds(system: System, end: float, solver: Integrator, times: np.ndarray, repeats: int) -> float:

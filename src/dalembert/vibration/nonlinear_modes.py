@@ -8,11 +8,13 @@ import scipy
 
 import dalembert
 from dalembert.errors import InputError
+from dalembert.forward import Checkpoint
 from dalembert.vibration.backbone import Backbone
 from dalembert.vibration.continuation import EASY, MOST_POINTS, SHORTEST, STEADY
 from dalembert.vibration.equations import Equations, equations
 from dalembert.vibration.harmonic_balance import HarmonicBalance
 from dalembert.vibration.mode_equations import Linear, ModeEquations, Motion, Plane
+from dalembert.vibration.recorded_modes import recorded_modes
 from dalembert.vibration.system import StaticForce, VibrationSystem
 from dalembert.vibration.threads import one_thread
 
@@ -33,6 +35,7 @@ def backbone(
     method: HarmonicBalance | None = None,
     *,
     dof: str | None = None,
+    checkpoint: Checkpoint | None = None,
 ) -> Backbone:
     r"""Frequency and damping of a nonlinear mode over its amplitude, by the extended periodic motion concept.
 
@@ -48,6 +51,9 @@ def backbone(
     method : HarmonicBalance, optional
     dof : str, optional
         Degree of freedom by which the amplitude is measured; the one that moves most in the linear mode if not given.
+    checkpoint : Checkpoint, optional
+        Where motions are kept as they are found; begun again with the same file the mode is followed to where it was
+        in a part of the time, and on from there to the same bits.
 
     Returns
     -------
@@ -95,7 +101,7 @@ def backbone(
         linear = ModeEquations(free, -1).linear(mode)
         names = free.lowered.structure.dofs
         row = int(np.abs(linear.shape).argmax()) if dof is None else names.index(dof)
-        own, start = ModeEquations(free, row), _scaled(linear, row, names.names[row])
+        own, start = recorded_modes(free, row, checkpoint), _scaled(linear, row, names.names[row])
         first = _first(own, start, float(sizes[0]))
         if ends:
             found = list(_along(own, first, float(sizes[0]), float(sizes[1])))

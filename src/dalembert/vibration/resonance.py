@@ -16,6 +16,7 @@ from scipy.optimize import brentq
 
 import dalembert
 from dalembert.errors import InputError
+from dalembert.forward import Checkpoint
 from dalembert.vibration.amplitudes import Amplitude
 from dalembert.vibration.continuation import Path, direction_at
 from dalembert.vibration.curve import FrequencyCurve
@@ -24,6 +25,7 @@ from dalembert.vibration.fourier import synthesis
 from dalembert.vibration.frequency_response import ARC_LENGTH, frequency_response, response_of, restarted
 from dalembert.vibration.harmonic_balance import HarmonicBalance
 from dalembert.vibration.newton import Plane, Solution
+from dalembert.vibration.recorded import recorded
 from dalembert.vibration.resonance_track import ResonanceTrack
 from dalembert.vibration.system import VibrationSystem
 from dalembert.vibration.threads import one_thread
@@ -49,6 +51,7 @@ def track_resonance(
     dof: str,
     kind: str = "peak",
     unit: str = "",
+    checkpoint: Checkpoint | None = None,
 ) -> ResonanceTrack:
     """The peak of a response over a parameter of the system, such as a preload or the level of a force.
 
@@ -68,6 +71,9 @@ def track_resonance(
         ``"peak"``, ``"rms"``, or ``"harmonic 1"`` and so on.
     unit : str
         Of the parameter.
+    checkpoint : Checkpoint, optional
+        Where solutions are kept as they are found; begun again with the same file the peak is followed to where it was
+        in a part of the time, and on from there to the same bits.
 
     Returns
     -------
@@ -103,7 +109,7 @@ def track_resonance(
         raise InputError(f"track_resonance: the values of {parameter!r} are {values}; expected one or more numbers")
 
     def problem(value: float) -> Equations:
-        return equations(builder(**{parameter: value}), method)
+        return recorded(equations(builder(**{parameter: value}), method), checkpoint)
 
     with one_thread():
         first, size = problem(float(numbers[0])), Amplitude(kind, method.orders)
@@ -111,7 +117,9 @@ def track_resonance(
         curve = start
         if not isinstance(curve, FrequencyCurve):
             system = builder(**{parameter: float(numbers[0])})
-            curve = frequency_response(system, curve, method, continuation=ARC_LENGTH, observe=[name])
+            curve = frequency_response(
+                system, curve, method, continuation=ARC_LENGTH, observe=[name], checkpoint=checkpoint
+            )
         begin = restarted(first, curve, _top(curve, name, size), "track_resonance")
         row = first.lowered.structure.dofs.index(name)
         peaks = list(_followed(problem, _Climber(row, size), numbers, _Peak(float(numbers[0]), first, begin)))

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from dalembert.errors import InputError
+from dalembert.forward import Checkpoint
 from dalembert.multibody import GeneralizedAlpha, RevoluteJoint, RigidBar, System, WorkPrecision, work_precision
 from support import says
 
@@ -63,6 +64,36 @@ def test_it_is_read_again_as_it_was_written(found: WorkPrecision, tmp_path) -> N
 def test_the_figure_has_a_line_an_integrator_and_leaves_out_what_ended_early(found: WorkPrecision) -> None:
     lines = found.figures()["work-precision"].data
     assert [(line.name, len(line.x)) for line in lines] == [("generalized-alpha", 2), ("too long", 0)]
+
+
+def test_a_comparison_that_was_interrupted_goes_on_with_what_is_missing(tmp_path, monkeypatch) -> None:
+    stiff = {"too long": [GeneralizedAlpha(step=1e-3, adaptive=True, tolerance=1e-9, most_steps=3)]}
+    ran, told, simulate = [], [], work_precision.__globals__["simulate"]
+
+    def compare(stop: bool) -> WorkPrecision:
+        def on_row(row) -> None:
+            told.append(row)
+            if stop and len(told) == 2:
+                raise KeyboardInterrupt
+
+        told.clear()
+        with Checkpoint(tmp_path / "checkpoint") as checkpoint:
+            options = {"reference": FINE, "samples": 11, "repeats": 2, "checkpoint": checkpoint, "on_row": on_row}
+            return work_precision(pendulum(), 1.0, ["bar.end.x"], COARSE | stiff, **options)
+
+    def simulated(system, end, solver, times):
+        ran.append(str(solver))
+        return simulate(system, end, solver, times)
+
+    monkeypatch.setitem(work_precision.__globals__, "simulate", simulated)
+    with pytest.raises(KeyboardInterrupt):
+        compare(stop=True)
+    before = tuple(told)
+    resumed, again = compare(stop=False), compare(stop=False)
+    assert len(ran) == len(set(ran)) == 5  # two references, three rows
+    assert resumed.rows[:2] == before  # with the times that were measured
+    assert again.to_xarray().identical(resumed.to_xarray())
+    assert resumed.rows[2].failure
 
 
 def test_one_reference_is_not_enough() -> None:

@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from dalembert.errors import InputError, SolveError
+from dalembert.forward import Checkpoint
 from dalembert.structure import lumped
 from dalembert.vibration import Backbone, FrictionContact, Gap, HarmonicBalance, StaticForce, VibrationSystem, backbone
+from dalembert.vibration.mode_equations import ModeEquations
 from support import says
 from vibrating_systems import chain, duffing, two_masses
 
@@ -70,6 +72,36 @@ def test_given_amplitudes_do_not_jump_to_another_mode() -> None:
     given = backbone(chain(), np.array([0.6, 0.9, 1.1]), method=METHOD)
     np.testing.assert_array_equal(given.converged, [True, False, False])
     assert "not found: 0.9 m, 1.1 m" in given.summary()
+
+
+@pytest.mark.parametrize("amplitudes", [(0.1, 10.0), np.geomspace(0.1, 10.0, 8)], ids=["path", "given"])
+def test_a_mode_that_was_interrupted_goes_on_where_it_was(amplitudes, tmp_path: Path, monkeypatch) -> None:
+    solve, turn, places, left = ModeEquations.solve, ModeEquations.direction, [], [5]
+
+    def limited(own: ModeEquations, guess, plane, samples: int):
+        places.append(guess.harmonics.tobytes() + plane.direction.tobytes() + bytes([samples.bit_length()]))
+        if not left[0]:
+            raise KeyboardInterrupt
+        left[0] -= 1
+        return solve(own, guess, plane, samples)
+
+    def turned(own: ModeEquations, motion, before):
+        places.append(motion.harmonics.tobytes() + before.tobytes())
+        return turn(own, motion, before)
+
+    undisturbed = backbone(two_masses(), amplitudes, 1, METHOD).to_xarray()
+    monkeypatch.setattr(ModeEquations, "solve", limited)
+    monkeypatch.setattr(ModeEquations, "direction", turned)
+    with pytest.raises(KeyboardInterrupt), Checkpoint(tmp_path / "checkpoint") as checkpoint:
+        backbone(two_masses(), amplitudes, 1, METHOD, checkpoint=checkpoint)
+    left[0] = 10_000
+    del places[-1]  # the one that the interruption hit
+    for _ in range(2):
+        with Checkpoint(tmp_path / "checkpoint") as checkpoint:
+            resumed = backbone(two_masses(), amplitudes, 1, METHOD, checkpoint=checkpoint)
+        assert resumed.to_xarray().identical(undisturbed)
+        assert checkpoint.spared > 0
+    assert len(places) == len(set(places))
 
 
 def free() -> VibrationSystem:

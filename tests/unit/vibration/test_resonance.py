@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from dalembert.errors import InputError
+from dalembert.forward import Checkpoint
 from dalembert.structure import lumped
 from dalembert.vibration import (
     CubicSpring,
@@ -18,6 +19,7 @@ from dalembert.vibration import (
     frequency_response,
     track_resonance,
 )
+from dalembert.vibration.equations import Equations
 from support import says
 
 METHOD = HarmonicBalance(3)
@@ -74,6 +76,32 @@ def test_a_peak_that_is_not_found_is_marked_and_the_track_goes_on() -> None:
     np.testing.assert_array_equal(track.converged, [True, False, True])
     assert np.isnan(track.frequencies[1])
     assert "not found where force is 5" in track.summary()
+
+
+def test_a_track_that_was_interrupted_goes_on_where_it_was(tmp_path: Path, monkeypatch) -> None:
+    asked = rubbing, "preload", [2.0, 4.0, 8.0], (0.1, 0.3), METHOD
+    solve, calls, left = Equations.solve, [], []
+
+    def limited(own: Equations, *given, **more):
+        calls.append(own)
+        if len(calls) == left[0]:
+            raise KeyboardInterrupt
+        return solve(own, *given, **more)
+
+    monkeypatch.setattr(Equations, "solve", limited)
+    left.append(0)
+    undisturbed, once = track_resonance(*asked, dof="m").to_xarray(), len(calls)
+    calls.clear()
+    left[0] = once - 10
+    with pytest.raises(KeyboardInterrupt), Checkpoint(tmp_path / "checkpoint") as checkpoint:
+        track_resonance(*asked, dof="m", checkpoint=checkpoint)
+    left[0] = 0
+    for _ in range(2):
+        with Checkpoint(tmp_path / "checkpoint") as checkpoint:
+            resumed = track_resonance(*asked, dof="m", checkpoint=checkpoint)
+        assert resumed.to_xarray().identical(undisturbed)
+        assert checkpoint.spared > 0
+    assert len(calls) == once + 1  # the one that the interruption hit
 
 
 @pytest.mark.parametrize(

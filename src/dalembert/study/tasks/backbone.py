@@ -51,7 +51,7 @@ class BackboneTable(StudyTable):
         from dalembert.vibration import backbone
 
         along = self.given if self.amplitudes is None else np.array(self.given)
-        return backbone(system, along, self.mode, study.balance, dof=self.dof)
+        return backbone(system, along, self.mode, study.balance, dof=self.dof, checkpoint=study.checkpoint)
 
 
 class BackboneTask(Task):

@@ -131,6 +131,7 @@ class CompareIntegrators(Task):
             reference=[one.settings() for one in table.reference],
             samples=table.samples,
             repeats=table.repeats,
+            checkpoint=study.checkpoint,
             on_row=on_row,
         )
         return _outcome(study, found)

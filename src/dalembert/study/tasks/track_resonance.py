@@ -93,6 +93,7 @@ def _track(study: "Study", values: np.ndarray) -> Any:
         dof=table.dof,
         kind=table.amplitude,
         unit=next(item.unit for item in study.parameters if item.name == name),
+        checkpoint=study.checkpoint,
     )
 
 

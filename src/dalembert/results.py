@@ -1,6 +1,9 @@
 """What the results of this package have in common: they can be kept, drawn and reported."""
 
+import json
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -47,3 +50,28 @@ class Result(ABC):
     def report(self, path: str | Path, **options: Any) -> Any:
         """Write an HTML report that opens offline; options as those of :func:`dalembert.report.report`."""
         return hook("report")(self, path, **options)
+
+
+def stored_facts(result: Result, names: Sequence[str], **told: Any) -> dict[str, Any]:
+    """Attributes of a dataset: the format of a result, its numbers and words by name, and, as JSON, what is told."""
+    types = _types(type(result))
+    facts = {name: getattr(result, name) for name in names}
+    # NetCDF has no truth values.
+    plain = {name: int(fact) if types.get(name) is bool else fact for name, fact in facts.items()}
+    return {"format": result.FORMAT, **plain, "settings": json.dumps(told, sort_keys=True)}
+
+
+def facts_of(kind: type[Result], dataset: "Dataset", names: Sequence[str]) -> dict[str, Any]:
+    """Numbers and words of a result that :func:`stored_facts` kept, each of the type of its field."""
+    types = _types(kind)
+    return {name: types[name](dataset.attrs[name]) for name in names}
+
+
+def told_of(dataset: "Dataset") -> dict[str, Any]:
+    """What :func:`stored_facts` was told."""
+    return json.loads(dataset.attrs["settings"])
+
+
+def _types(kind: type[Result]) -> dict[str, Any]:
+    """Types of the fields of a dataclass."""
+    return {field.name: field.type for field in fields(kind)}  # pyright: ignore[reportArgumentType]

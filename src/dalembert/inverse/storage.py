@@ -1,6 +1,5 @@
 """A fit as a labelled dataset, and in a NetCDF file."""
 
-import json
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
@@ -11,9 +10,13 @@ from dalembert.inverse.stored_parts import parts_of, stored_parts, told_parts
 from dalembert.inverse.stored_search import search_of, stored_ends, stored_search
 from dalembert.inverse.validation import Validation
 from dalembert.parameters import Parameter, Parameters
+from dalembert.results import facts_of, stored_facts, told_of
 
 if TYPE_CHECKING:
     from xarray import Dataset
+
+
+FACTS = ("method", "status", "success", "fitness", "simulations")
 
 
 def to_xarray(fit: Fit) -> "Dataset":
@@ -51,21 +54,12 @@ def to_xarray(fit: Fit) -> "Dataset":
         if fit.validation is None
         else {"what": fit.validation.what, "misfit": fit.validation.misfit, "fitted": fit.validation.fitted},
     }
-    attributes = {
-        "format": Fit.FORMAT,
-        "method": fit.method,
-        "status": fit.status,
-        "success": int(fit.success),
-        "fitness": fit.fitness,
-        "simulations": fit.simulations,
-        "settings": json.dumps(told, sort_keys=True),
-    }
-    return Dataset(variables, coordinates, attributes)
+    return Dataset(variables, coordinates, stored_facts(fit, FACTS, **told))
 
 
 def from_xarray(dataset: "Dataset") -> Fit:
     """The fit that :func:`to_xarray` turned into a dataset."""
-    told = json.loads(dataset.attrs["settings"])
+    told = told_of(dataset)
     a = {str(name): variable.values for name, variable in dataset.variables.items()}
     history, starts = search_of(a, told["ends"], told["samples"])
     validation = told["validation"]
@@ -76,16 +70,12 @@ def from_xarray(dataset: "Dataset") -> Fit:
         correlation=a["correlation"],
         singular_values=a["singular_values"],
         directions=a["directions"],
-        fitness=float(dataset.attrs["fitness"]),
+        **facts_of(Fit, dataset, FACTS),
         response=a["response"],
         data=data_of(dataset),
         weights=a["weights"],
         history=history,
         starts=starts,
-        success=bool(dataset.attrs["success"]),
-        status=str(dataset.attrs["status"]),
-        method=str(dataset.attrs["method"]),
-        simulations=int(dataset.attrs["simulations"]),
         provenance=told["provenance"],
         parts=parts_of(a, told["parts"]),
         validation=None if validation is None else Validation(weights=a["validation_weights"], **validation),

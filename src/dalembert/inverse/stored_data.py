@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING, Any
 
 from dalembert.data import Measurements
-from dalembert.forward import Coordinate
+from dalembert.forward.stored_coordinate import coordinate_of, stored_coordinate
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -21,19 +21,15 @@ def stored_data(data: Measurements) -> dict[str, Any]:
 
 def data_labels(data: Measurements) -> dict[str, Any]:
     """Coordinates ``channel`` and ``coordinate``."""
-    along = data.coordinate
-    return {
-        "channel": ("channel", list(data.channels)),
-        "coordinate": ("sample", along.values, {"long_name": along.name, "units": along.unit}),
-    }
+    return {"channel": ("channel", list(data.channels)), "coordinate": stored_coordinate(data.coordinate)}
 
 
 def data_of(dataset: "Dataset") -> Measurements:
     """The measurements that are in a dataset."""
-    along, channels = dataset["coordinate"], tuple(map(str, dataset["channel"].values))
+    channels = tuple(map(str, dataset["channel"].values))
     wraps = dataset["data_wraps"].values.astype(bool) if "data_wraps" in dataset else [False] * len(channels)
     return Measurements(
-        Coordinate(along.attrs["long_name"], along.attrs["units"], along.values),
+        coordinate_of(dataset["coordinate"]),
         channels,
         dataset["data"].values,
         dataset["data_deviations"].values if "data_deviations" in dataset else None,

@@ -20,7 +20,7 @@ from dalembert.multibody.lowering import lower
 from dalembert.multibody.simulate import prepared, simulate
 from dalembert.multibody.system import System
 from dalembert.multibody.trajectory import Trajectory
-from dalembert.results import Result
+from dalembert.results import Result, facts_of, stored_facts, told_of
 
 OnRow = Callable[["Row"], None]
 
@@ -128,25 +128,19 @@ class WorkPrecision(Result):
         from xarray import Dataset
 
         rows = [asdict(row) for row in self.rows]
-        told = {"channels": self.channels, "reference": self.reference}
         return Dataset(
             {name: ("run", [row[name] for row in rows]) for name in Row.__dataclass_fields__},
-            attrs={
-                "format": self.FORMAT,
-                "end": self.end,
-                "apart": self.apart,
-                "settings": json.dumps(told, sort_keys=True),
-            },
+            attrs=stored_facts(self, ("end", "apart"), channels=self.channels, reference=self.reference),
         )
 
     @classmethod
     def from_xarray(cls, dataset: Any) -> "WorkPrecision":
         """The comparison that :meth:`to_xarray` turned into a dataset."""
-        told = json.loads(dataset.attrs["settings"])
+        told = told_of(dataset)
         columns = {name: dataset[name].values.tolist() for name in Row.__dataclass_fields__}
         rows = tuple(Row(**dict(zip(columns, values, strict=True))) for values in zip(*columns.values(), strict=True))
-        end, apart = float(dataset.attrs["end"]), float(dataset.attrs["apart"])
-        return cls(tuple(told["channels"]), end, told["reference"], apart, rows)
+        facts = facts_of(cls, dataset, ("end", "apart"))
+        return cls(tuple(told["channels"]), reference=told["reference"], rows=rows, **facts)
 
 
 def work_precision(

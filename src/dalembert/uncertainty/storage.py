@@ -1,10 +1,10 @@
 """Propagations and comparisons as labelled datasets, and in NetCDF files."""
 
-import json
 from typing import TYPE_CHECKING, Any
 
-from dalembert.forward import Coordinate
+from dalembert.forward.stored_coordinate import coordinate_of, stored_coordinate
 from dalembert.intervals import Box
+from dalembert.results import facts_of, stored_facts, told_of
 from dalembert.uncertainty.comparison import Comparison
 from dalembert.uncertainty.propagation import Propagation
 
@@ -12,11 +12,14 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
 
+FACTS = ("method", "kind", "runs", "success", "status", "seconds")
+
+
 def to_xarray(result: Propagation) -> "Dataset":
     """Dataset over sample coordinate, channel and parameter; what is not an array stands in attributes."""
     from xarray import Dataset
 
-    along, bands = result.coordinate, ("sample", "channel")
+    bands = ("sample", "channel")
     variables: dict[str, Any] = {
         "lower": (bands, result.lower),
         "upper": (bands, result.upper),
@@ -32,43 +35,28 @@ def to_xarray(result: Propagation) -> "Dataset":
         "parameter": ("parameter", list(result.box.names)),
         "channel": ("channel", list(result.channels)),
         "unit": ("channel", list(result.units)),
-        "coordinate": ("sample", along.values, {"long_name": along.name, "units": along.unit}),
+        "coordinate": stored_coordinate(result.coordinate),
     }
-    attributes = {
-        "format": Propagation.FORMAT,
-        "method": result.method,
-        "kind": result.kind,
-        "runs": result.runs,
-        "success": int(result.success),
-        "status": result.status,
-        "seconds": result.seconds,
-        "settings": json.dumps({"failures": result.failures, "provenance": result.provenance}, sort_keys=True),
-    }
+    attributes = stored_facts(result, FACTS, failures=result.failures, provenance=result.provenance)
     return Dataset(variables, coordinates, attributes)
 
 
 def from_xarray(dataset: "Dataset") -> Propagation:
     """The propagation that :func:`to_xarray` turned into a dataset."""
-    told = json.loads(dataset.attrs["settings"])
+    told = told_of(dataset)
     a = {str(name): variable.values for name, variable in dataset.variables.items()}
-    along = dataset["coordinate"]
     return Propagation(
-        coordinate=Coordinate(along.attrs["long_name"], along.attrs["units"], a["coordinate"]),
+        coordinate=coordinate_of(dataset["coordinate"]),
         channels=tuple(map(str, a["channel"])),
         lower=a["lower"],
         upper=a["upper"],
         units=tuple(map(str, a["unit"])),
         box=Box(tuple(map(str, a["parameter"])), a["box_lower"], a["box_upper"]),
-        method=str(dataset.attrs["method"]),
-        kind=str(dataset.attrs["kind"]),
-        runs=int(dataset.attrs["runs"]),
+        **facts_of(Propagation, dataset, FACTS),
         error=a.get("error"),
         at_lower=a.get("at_lower"),
         at_upper=a.get("at_upper"),
         failures=tuple(told["failures"]),
-        success=bool(dataset.attrs["success"]),
-        status=str(dataset.attrs["status"]),
-        seconds=float(dataset.attrs["seconds"]),
         provenance=told["provenance"],
     )
 
@@ -82,17 +70,14 @@ def compared(comparison: Comparison) -> "Dataset":
     stacked = concat(
         parts, "method", data_vars="all", coords="minimal", compat="override", join="override", combine_attrs="drop"
     )
-    told = {"results": own, "refused": comparison.refused}
     return stacked.assign_coords(method=[result.method for result in comparison.results]).assign_attrs(
-        format=Comparison.FORMAT,
-        reference=comparison.reference,
-        settings=json.dumps(told, sort_keys=True),
+        stored_facts(comparison, ("reference",), results=own, refused=comparison.refused)
     )
 
 
 def comparison_from(dataset: "Dataset") -> Comparison:
     """The comparison that :func:`compared` turned into a dataset."""
-    told = json.loads(dataset.attrs["settings"])
+    told = told_of(dataset)
     results = tuple(
         from_xarray(dataset.isel(method=place)[own["variables"]].assign_attrs(own["attributes"]))
         for place, own in enumerate(told["results"])

@@ -1,17 +1,17 @@
 """An identification from bands as a labelled dataset, and in a NetCDF file."""
 
-import json
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from dalembert.data import Bands
-from dalembert.forward import Coordinate
+from dalembert.forward.stored_coordinate import coordinate_of, stored_coordinate
 from dalembert.intervals import Box
 from dalembert.inverse.bands.band_fit import BandFit
 from dalembert.inverse.stored_search import search_of, stored_ends, stored_search
 from dalembert.parameters import Parameter, Parameters
+from dalembert.results import facts_of, stored_facts, told_of
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 TABLES = ("weights", "lower", "upper", "error")
 """Fields of shape (samples, channels)."""
 
+FACTS = ("method", "status", "success", "fitness", "simulations", "seconds")
 ARRAYS = ("middle_deviations", "radius_deviations", "correlation", "singular_values", "directions", *TABLES)
 
 
@@ -27,7 +28,6 @@ def to_xarray(fit: BandFit) -> "Dataset":
     """Dataset over parameter, unknown, sample, channel, step and start; what is no array stands in attributes."""
     from xarray import Dataset
 
-    along = fit.bands.coordinate
     variables: dict[str, Any] = {
         "box_lower": ("parameter", fit.box.lower),
         "box_upper": ("parameter", fit.box.upper),
@@ -48,7 +48,7 @@ def to_xarray(fit: BandFit) -> "Dataset":
         "parameter": ("parameter", list(fit.parameters.names)),
         "unknown": ("unknown", list(fit.unknowns)),
         "channel": ("channel", list(fit.bands.channels)),
-        "coordinate": ("sample", along.values, {"long_name": along.name, "units": along.unit}),
+        "coordinate": stored_coordinate(fit.bands.coordinate),
     }
     told = {
         "parameters": [asdict(item) for item in fit.parameters],
@@ -57,25 +57,15 @@ def to_xarray(fit: BandFit) -> "Dataset":
         "ends": stored_ends(fit.starts),
         "provenance": fit.provenance,
     }
-    attributes = {
-        "format": BandFit.FORMAT,
-        "method": fit.method,
-        "status": fit.status,
-        "success": int(fit.success),
-        "fitness": fit.fitness,
-        "simulations": fit.simulations,
-        "seconds": fit.seconds,
-        "settings": json.dumps(told, sort_keys=True),
-    }
-    return Dataset(variables, coordinates, attributes)
+    return Dataset(variables, coordinates, stored_facts(fit, FACTS, **told))
 
 
 def from_xarray(dataset: "Dataset") -> BandFit:
     """The result that :func:`to_xarray` turned into a dataset."""
-    told = json.loads(dataset.attrs["settings"])
+    told = told_of(dataset)
     a = {str(name): variable.values for name, variable in dataset.variables.items()}
-    along = dataset["coordinate"]
-    history, starts = search_of(a, told["ends"], along.size)
+    along = coordinate_of(dataset["coordinate"])
+    history, starts = search_of(a, told["ends"], len(along.values))
     parameters = Parameters(tuple(Parameter(**item) for item in told["parameters"]))
     return BandFit(
         parameters=parameters,
@@ -83,22 +73,12 @@ def from_xarray(dataset: "Dataset") -> BandFit:
         box=Box(parameters.names, a["box_lower"], a["box_upper"]),
         unknowns=tuple(map(str, a["unknown"])),
         **{name: a[name] for name in ARRAYS},
-        fitness=float(dataset.attrs["fitness"]),
-        bands=Bands(
-            Coordinate(along.attrs["long_name"], along.attrs["units"], a["coordinate"]),
-            tuple(map(str, a["channel"])),
-            a["given_lower"],
-            a["given_upper"],
-        ),
+        **facts_of(BandFit, dataset, FACTS),
+        bands=Bands(along, tuple(map(str, a["channel"])), a["given_lower"], a["given_upper"]),
         checked_lower=a.get("checked_lower"),
         checked_upper=a.get("checked_upper"),
         checked_fitness=told["checked_fitness"],
         history=history,
         starts=starts,
-        success=bool(dataset.attrs["success"]),
-        status=str(dataset.attrs["status"]),
-        method=str(dataset.attrs["method"]),
-        simulations=int(dataset.attrs["simulations"]),
-        seconds=float(dataset.attrs["seconds"]),
         provenance=told["provenance"],
     )

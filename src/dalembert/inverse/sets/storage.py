@@ -1,6 +1,5 @@
 """A set of consistent parameters as a labelled dataset, and in a NetCDF file."""
 
-import json
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
@@ -10,9 +9,13 @@ from dalembert.intervals import Box
 from dalembert.inverse.sets.parameter_set import ParameterSet
 from dalembert.inverse.stored_data import data_labels, data_of, stored_data
 from dalembert.parameters import Parameter, Parameters
+from dalembert.results import facts_of, stored_facts, told_of
 
 if TYPE_CHECKING:
     from xarray import Dataset
+
+
+FACTS = ("status", "success", "resolution", "runs", "seconds")
 
 
 def to_xarray(found: ParameterSet) -> "Dataset":
@@ -35,21 +38,12 @@ def to_xarray(found: ParameterSet) -> "Dataset":
         **data_labels(found.data),
     }
     told = {"parameters": [asdict(item) for item in found.parameters], "provenance": found.provenance}
-    attributes = {
-        "format": ParameterSet.FORMAT,
-        "status": found.status,
-        "success": int(found.success),
-        "resolution": found.resolution,
-        "runs": found.runs,
-        "seconds": found.seconds,
-        "settings": json.dumps(told, sort_keys=True),
-    }
-    return Dataset(variables, coordinates, attributes)
+    return Dataset(variables, coordinates, stored_facts(found, FACTS, **told))
 
 
 def from_xarray(dataset: "Dataset") -> ParameterSet:
     """The result that :func:`to_xarray` turned into a dataset."""
-    told = json.loads(dataset.attrs["settings"])
+    told = told_of(dataset)
     a = {str(name): variable.values for name, variable in dataset.variables.items()}
     parameters = Parameters(tuple(Parameter(**item) for item in told["parameters"]))
     is_inside = a["is_inside"].astype(bool)
@@ -63,10 +57,6 @@ def from_xarray(dataset: "Dataset") -> ParameterSet:
         outer=boxes["outer"],
         inner=boxes["inner"],
         surrogate_error=a["surrogate_error"],
-        resolution=float(dataset.attrs["resolution"]),
-        runs=int(dataset.attrs["runs"]),
-        seconds=float(dataset.attrs["seconds"]),
-        success=bool(dataset.attrs["success"]),
-        status=str(dataset.attrs["status"]),
+        **facts_of(ParameterSet, dataset, FACTS),
         provenance=told["provenance"],
     )

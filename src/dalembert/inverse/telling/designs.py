@@ -1,6 +1,5 @@
 """The result of a design: experiments in order of what they would tell."""
 
-import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, Self
@@ -10,12 +9,15 @@ import numpy as np
 from dalembert.errors import listed
 from dalembert.inverse.summary import table
 from dalembert.parameters import Parameter, Parameters
-from dalembert.results import Result
+from dalembert.results import Result, facts_of, stored_facts, told_of
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
 CRITERIA = {"D": "geometric mean of the deviations", "E": "largest deviation"}
+
+
+FACTS = ("criterion", "along", "unit", "simulations")
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,30 +132,19 @@ class Designs(Result):
                 "singular_values": (("design", "combination"), self.singular_values),
             },
             {"parameter": ("parameter", list(self.parameters.names))},
-            {
-                "format": self.FORMAT,
-                "criterion": self.criterion,
-                "along": self.along,
-                "unit": self.unit,
-                "status": self.status,
-                "simulations": self.simulations,
-                "settings": json.dumps(told, sort_keys=True),
-            },
+            stored_facts(self, (*FACTS, "status"), **told),
         )
 
     @classmethod
     def from_xarray(cls, dataset: "Dataset") -> Self:
         """The designs that :meth:`to_xarray` turned into a dataset."""
-        told = json.loads(dataset.attrs["settings"])
-        a = {str(name): variable.values for name, variable in dataset.data_vars.items()}
+        told = told_of(dataset)
+        a: dict[str, Any] = {str(name): variable.values for name, variable in dataset.data_vars.items()}
         return cls(
             parameters=Parameters(tuple(Parameter(**item) for item in told["parameters"])),
-            criterion=str(dataset.attrs["criterion"]),
+            **facts_of(cls, dataset, FACTS),
             noise=told["noise"],
-            along=str(dataset.attrs["along"]),
-            unit=str(dataset.attrs["unit"]),
             sensors=tuple(tuple(chosen) for chosen in told["sensors"]),
-            simulations=int(dataset.attrs["simulations"]),
             provenance=told["provenance"],
             **a,
         )

@@ -1,6 +1,5 @@
 """The result of a prediction: a response and its bands."""
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, Self
@@ -10,11 +9,15 @@ import numpy as np
 from dalembert.data import Measurements
 from dalembert.errors import listed
 from dalembert.forward import Coordinate
+from dalembert.forward.stored_coordinate import coordinate_of, stored_coordinate
 from dalembert.inverse.summary import table
-from dalembert.results import Result
+from dalembert.results import Result, facts_of, stored_facts, told_of
 
 if TYPE_CHECKING:
     from xarray import Dataset
+
+
+FACTS = ("level", "quantile", "simulations")
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,7 +128,6 @@ class Prediction(Result):
 
         from dalembert.inverse.stored_data import stored_data
 
-        along = self.coordinate
         variables: dict[str, Any] = {
             "response": (("sample", "channel"), self.response),
             "deviations": (("sample", "channel"), self.deviations),
@@ -135,28 +137,20 @@ class Prediction(Result):
         }
         told: dict[str, Any] = {"units": self.units, "provenance": self.provenance, "known": self.known}
         if self.data is not None:
-            given, measured = stored_data(self.data), self.data.coordinate
+            given = stored_data(self.data)
             names = {"sample": "measured_sample", "channel": "measured_channel"}
             for name, (over, *rest) in given.items():
                 over = over if isinstance(over, tuple) else (over,)
                 variables[name] = (tuple(names[dimension] for dimension in over), *rest)
-            labels = {"long_name": measured.name, "units": measured.unit}
-            variables["measured_at"] = ("measured_sample", measured.values, labels)
+            variables["measured_at"] = stored_coordinate(self.data.coordinate, "measured_sample")
             told["measured"] = self.data.channels
         return Dataset(
             variables,
             {
                 "channel": ("channel", list(self.channels)),
-                "coordinate": ("sample", along.values, {"long_name": along.name, "units": along.unit}),
+                "coordinate": stored_coordinate(self.coordinate),
             },
-            {
-                "format": self.FORMAT,
-                "level": self.level,
-                "quantile": self.quantile,
-                "status": self.status,
-                "simulations": self.simulations,
-                "settings": json.dumps(told, sort_keys=True),
-            },
+            stored_facts(self, (*FACTS, "status"), **told),
         )
 
     @classmethod
@@ -164,24 +158,22 @@ class Prediction(Result):
         """The prediction that :meth:`to_xarray` turned into a dataset."""
         from dalembert.inverse.stored_data import data_of
 
-        told = json.loads(dataset.attrs["settings"])
-        along, data = dataset["coordinate"], None
+        told = told_of(dataset)
+        data = None
         if "measured" in told:
             own = dataset.drop_vars(["channel", "coordinate"]).drop_dims(["sample", "channel"])
             own = own.rename({"measured_sample": "sample", "measured_channel": "channel"})
             own = own.rename_vars({"measured_at": "coordinate"}).assign_coords(channel=told["measured"])
             data = data_of(own)
         return cls(
-            coordinate=Coordinate(along.attrs["long_name"], along.attrs["units"], along.values),
+            coordinate=coordinate_of(dataset["coordinate"]),
             channels=tuple(map(str, dataset["channel"].values)),
             units=tuple(told["units"]),
             response=dataset["response"].values,
             deviations=dataset["deviations"].values,
             noise=dataset["noise"].values,
             data=data,
-            level=float(dataset.attrs["level"]),
-            quantile=float(dataset.attrs["quantile"]),
+            **facts_of(cls, dataset, FACTS),
             known=bool(told["known"]),
-            simulations=int(dataset.attrs["simulations"]),
             provenance=told["provenance"],
         )

@@ -1,6 +1,5 @@
 """The result of a profile likelihood: how the misfit grows as one parameter after the other is held elsewhere."""
 
-import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, Self
@@ -10,7 +9,7 @@ import numpy as np
 from dalembert.errors import listed
 from dalembert.inverse.summary import table
 from dalembert.parameters import Parameter, Parameters
-from dalembert.results import Result
+from dalembert.results import Result, facts_of, stored_facts, told_of
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -54,6 +53,9 @@ class Profile:
     open: tuple[bool, bool]
     broken: tuple[str, str] = ("", "")
     elsewhere: tuple[tuple[float, float], ...] = ()
+
+
+FACTS = ("level", "threshold", "variance", "simulations")
 
 
 @dataclass(frozen=True, eq=False)
@@ -205,21 +207,13 @@ class Profiles(Result):
                 "parameter": ("parameter", list(self.parameters.names)),
                 "profile": ("profile", [curve.name for curve in self.curves]),
             },
-            {
-                "format": self.FORMAT,
-                "level": self.level,
-                "threshold": self.threshold,
-                "variance": self.variance,
-                "status": self.status,
-                "simulations": self.simulations,
-                "settings": json.dumps(told, sort_keys=True),
-            },
+            stored_facts(self, (*FACTS, "status"), **told),
         )
 
     @classmethod
     def from_xarray(cls, dataset: "Dataset") -> Self:
         """The profiles that :meth:`to_xarray` turned into a dataset."""
-        told = json.loads(dataset.attrs["settings"])
+        told = told_of(dataset)
         a = {str(name): variable.values for name, variable in dataset.variables.items()}
         ends = np.cumsum(a["count"])[:-1]
         along, excess, points = (np.split(a[name], ends) for name in ("along", "excess", "points"))
@@ -242,10 +236,7 @@ class Profiles(Result):
             values=a["values"],
             deviations=a["deviations"],
             curves=curves,
-            level=float(dataset.attrs["level"]),
-            threshold=float(dataset.attrs["threshold"]),
-            variance=float(dataset.attrs["variance"]),
+            **facts_of(cls, dataset, FACTS),
             known=bool(told["known"]),
-            simulations=int(dataset.attrs["simulations"]),
             provenance=told["provenance"],
         )

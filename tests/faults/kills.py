@@ -37,6 +37,12 @@ def content(path: Path) -> dict[str, bytes]:
     return held
 
 
+def held(folder: RunFolder) -> dict[str, bytes]:
+    """All that a run's result holds, and what stands beside it."""
+    every = {path.name: content(path) for path in sorted(folder.path.glob("*.nc"))}
+    return {f"{file} {name}": value for file, own in every.items() for name, value in own.items()}
+
+
 def untimed(value: object) -> str:
     """An attribute without the measured times that JSON in it tells."""
     return re.sub(r'"seconds": [^,}]+', "", str(value))
@@ -94,11 +100,11 @@ def main(study: Path, out: Path, kills: int, seed: int) -> None:
     began = time.perf_counter()
     os.waitpid(forked(lambda: run_study(load(study), out / "timed")), 0)
     longest, dice, survived, runs = time.perf_counter() - began, random.Random(seed), 0, 0
-    wanted, events = content(reference.result), kinds(reference)
+    wanted, events = held(reference), kinds(reference)
     while survived < kills:
         folder = RunFolder(out / f"killed-{runs}")
         survived += killed(study, folder, kills - survived, longest, dice)
-        found = content(folder.result)
+        found = held(folder)
         wrong = [name for name in wanted | found if wanted.get(name) != found.get(name)]
         if wrong or kinds(folder) != events:
             raise SystemExit(f"{folder.path} differs in {wrong or 'its events'}")

@@ -1,5 +1,6 @@
 """Points of a curve by harmonic balance beside integration in time."""
 
+import hashlib
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
@@ -8,9 +9,12 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from dalembert.errors import InputError
-from dalembert.forward import ensemble
+from dalembert.forward import Checkpoint, ensemble
 from dalembert.results import Result
 from dalembert.vibration.curve import FrequencyCurve
+from dalembert.vibration.fingerprint import fingerprint
+from dalembert.vibration.harmonic_balance import HarmonicBalance
+from dalembert.vibration.lowering import lower
 from dalembert.vibration.newmark import Newmark
 from dalembert.vibration.system import VibrationSystem
 from dalembert.vibration.threads import one_thread
@@ -123,6 +127,7 @@ def compare_in_time(
     method: Newmark | None = None,
     way: str = LONG_RUN,
     kind: str = "peak",
+    checkpoint: Checkpoint | None = None,
 ) -> TimeComparison:
     """Some points of a curve beside integration in time, which starts from them; over all cores.
 
@@ -143,6 +148,9 @@ def compare_in_time(
         As in :func:`steady_state`.
     kind : str
         Of the sizes: ``"peak"``, ``"rms"`` or ``"harmonic 1"`` and so on.
+    checkpoint : Checkpoint, optional
+        Where the sizes of each motion are kept when it is found; begun again with the same file only the missing ones
+        are integrated.
 
     Raises
     ------
@@ -163,16 +171,27 @@ def compare_in_time(
     """
     method, chosen = method or Newmark(), _chosen(curve, points, frequencies, kind)
 
-    def run(point: int) -> tuple[list[float], int, float, bool]:
+    def run(point: int) -> tuple[np.ndarray, np.ndarray]:
         motion = steady_state(
             system, float(curve.frequencies[point]), method, way=way, start=(curve, point), observe=curve.dofs
         )
-        sizes = [motion.amplitude(dof, kind) for dof in curve.dofs]
-        return sizes, motion.periods, motion.residual, motion.converged
+        sizes = np.array([motion.amplitude(dof, kind) for dof in curve.dofs])
+        return sizes, np.array([motion.periods, motion.residual, motion.converged], dtype=float)
+
+    balance = HarmonicBalance(**curve.provenance["method"])
+    asked = (
+        b"" if checkpoint is None else fingerprint(lower(system).real, balance, method, way, kind, curve.dofs).encode()
+    )
+
+    def once(point: int) -> Sequence[np.ndarray]:
+        if checkpoint is None:
+            return run(point)
+        start = (own[point].tobytes() for own in (curve.unknowns, curve.frequencies, curve.samples))
+        return checkpoint.once(hashlib.sha256(b"in time" + asked + b"".join(start)).digest(), lambda: run(point))
 
     with one_thread():
-        runs = list(ensemble(run, chosen.tolist()))
-    sizes, periods, residuals, converged = zip(*runs, strict=True)
+        sizes, how = zip(*ensemble(once, chosen.tolist()), strict=True)
+    periods, residuals, converged = np.array(how).T
     return TimeComparison(
         dofs=curve.dofs,
         kind=kind,
@@ -180,9 +199,9 @@ def compare_in_time(
         frequencies=curve.frequencies[chosen],
         balance=np.stack([curve.amplitude(dof, kind)[chosen] for dof in curve.dofs], axis=1),
         time=np.array(sizes),
-        periods=np.array(periods),
-        residuals=np.array(residuals),
-        converged=np.array(converged),
+        periods=periods.astype(int),
+        residuals=residuals,
+        converged=converged.astype(bool),
         provenance={"method": asdict(method), "way": way},
     )
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from dalembert.errors import InputError, ModelError
+from dalembert.forward import Checkpoint
 from dalembert.structure import Dofs, Structure, lumped
 from dalembert.vibration import (
     BilinearStop,
@@ -216,6 +217,30 @@ def test_the_points_that_are_compared() -> None:
     assert len(comparison) == len(comparison.points)
     assert compare_in_time(one_mass(), curve, frequencies=[0.2, 0.111], **quick).points.tolist() == [8, 1]
     assert compare_in_time(one_mass(), curve, points=[7, 2], **quick).points.tolist() == [7, 2]
+
+
+def test_points_that_were_compared_are_not_integrated_again(tmp_path: Path, monkeypatch) -> None:
+    curve = frequency_response(one_mass(), np.linspace(0.1, 0.25, 13), HarmonicBalance(3, samples=64))
+    ran, steady = [], steady_state
+
+    def counted(system: VibrationSystem, frequency: float, *given, **more) -> PeriodicMotion:
+        ran.append(frequency)
+        return steady(system, frequency, *given, **more)
+
+    def compare(points: list[int], steps: int = 32) -> TimeComparison:
+        with Checkpoint(tmp_path / "checkpoint") as checkpoint:
+            return compare_in_time(one_mass(), curve, points=points, method=Newmark(steps), checkpoint=checkpoint)
+
+    monkeypatch.setitem(compare_in_time.__globals__, "steady_state", counted)
+    first = compare([2, 7])
+    every = compare([2, 5, 7])
+    assert sorted(ran) == curve.frequencies[[2, 5, 7]].tolist()
+    assert first.time.tobytes() == every.time[[0, 2]].tobytes()
+    alone = compare_in_time(one_mass(), curve, points=[2, 5, 7], method=Newmark(32))
+    assert every.to_xarray().identical(alone.to_xarray())
+    ran.clear()
+    compare([2], steps=64)
+    assert len(ran) == 1
 
 
 def test_a_motion_that_is_not_periodic_yet_is_said_to_be_so() -> None:

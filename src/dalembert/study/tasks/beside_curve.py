@@ -47,7 +47,13 @@ def beside(study: "Study", curve: Any, system: Any) -> dict[str, Any]:
         asked = table.compare_in_time
         method = None if asked.method is None else asked.method.settings()
         told[COMPARISON] = compare_in_time(
-            system, curve, frequencies=asked.frequencies, method=method, way=asked.way, kind=table.amplitude
+            system,
+            curve,
+            frequencies=asked.frequencies,
+            method=method,
+            way=asked.way,
+            kind=table.amplitude,
+            checkpoint=study.checkpoint,
         )
     if table.backbone is not None:
         told[BACKBONE] = table.backbone.follow(study, system)

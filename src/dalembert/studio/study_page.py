@@ -75,7 +75,8 @@ def study_page(workspace: Workspace, jobs: Jobs, name: str) -> None:
             verdict = ui.label("").props("role=status aria-live=polite")
         does = ui.label("").classes("break-words")
         wrong = ui.column().classes("gap-1 w-full")
-        editor = ui.codemirror(path.read_text(encoding="utf-8"), language="TOML", line_wrapping=True)
+        text = path.read_text(encoding="utf-8")
+        editor = ui.codemirror(text, language="TOML", theme="vscodeLight", line_wrapping=True)
         editor.classes("w-full border rounded").props("aria-label='The study as text'").style("height: 60vh")
         drawn = ui.column().classes("w-full")
 

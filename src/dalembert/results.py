@@ -54,15 +54,18 @@ class Result(ABC):
 
 def stored_facts(result: Result, names: Sequence[str], **told: Any) -> dict[str, Any]:
     """Attributes of a dataset: the format of a result, its numbers and words by name, and, as JSON, what is told."""
+    return {"format": result.FORMAT, **plain_facts(result, names), "settings": json.dumps(told, sort_keys=True)}
+
+
+def plain_facts(result: Result, names: Sequence[str]) -> dict[str, Any]:
+    """Numbers and words of a result by name; NetCDF has no truth values, so these are 0 or 1."""
     types = _types(type(result))
     facts = {name: getattr(result, name) for name in names}
-    # NetCDF has no truth values.
-    plain = {name: int(fact) if types.get(name) is bool else fact for name, fact in facts.items()}
-    return {"format": result.FORMAT, **plain, "settings": json.dumps(told, sort_keys=True)}
+    return {name: int(fact) if types.get(name) is bool else fact for name, fact in facts.items()}
 
 
 def facts_of(kind: type[Result], dataset: "Dataset", names: Sequence[str]) -> dict[str, Any]:
-    """Numbers and words of a result that :func:`stored_facts` kept, each of the type of its field."""
+    """Numbers and words of a result that :func:`plain_facts` gave, each of the type of its field."""
     types = _types(kind)
     return {name: types[name](dataset.attrs[name]) for name in names}
 

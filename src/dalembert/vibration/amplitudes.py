@@ -1,11 +1,12 @@
-"""Sizes of periodic motions from their harmonics."""
+"""Sizes of periodic motions of observed degrees of freedom, from their harmonics."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from dalembert.errors import InputError
+from dalembert.errors import InputError, unknown
 from dalembert.vibration.fourier import synthesis
 
 PHASES = 4096
@@ -75,3 +76,18 @@ class Amplitude:
 
 def _listed(orders: tuple[int, ...]) -> str:
     return ", ".join(map(str, orders))
+
+
+def observed_column(dofs: Sequence[str], dof: str) -> int:
+    """Place of a degree of freedom among the observed ones; a node with only one may stand alone.
+
+    Raises
+    ------
+    InputError
+        For one that was not observed.
+    """
+    own = [name for name in dofs if name.rpartition(".")[0] == dof]
+    name = own[0] if len(own) == 1 else dof
+    if name not in dofs:
+        raise InputError(unknown("observed degree of freedom", dof, dofs))
+    return dofs.index(name)

@@ -1,8 +1,7 @@
 """A response over frequency."""
 
-import json
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -11,8 +10,9 @@ from scipy.optimize import minimize_scalar
 
 from dalembert.errors import InputError, unknown
 from dalembert.results import Result
-from dalembert.vibration.amplitudes import Amplitude
+from dalembert.vibration.amplitudes import Amplitude, observed_column
 from dalembert.vibration.fourier import synthesis
+from dalembert.vibration.storage import fields_of, stored
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -115,11 +115,7 @@ class FrequencyCurve(Result):
         InputError
             For one that was not observed.
         """
-        own = [name for name in self.dofs if name.rpartition(".")[0] == dof]
-        name = own[0] if len(own) == 1 else dof
-        if name not in self.dofs:
-            raise InputError(unknown("observed degree of freedom", dof, self.dofs))
-        return self.response[:, self.dofs.index(name)]
+        return self.response[:, observed_column(self.dofs, dof)]
 
     def amplitude(self, dof: str, kind: str = "peak") -> np.ndarray:
         """Size of the motion at each point, m, (points,): ``"peak"``, ``"rms"`` or ``"harmonic 1"`` and so on.
@@ -237,26 +233,13 @@ class FrequencyCurve(Result):
 
     def to_xarray(self) -> "Dataset":
         """Everything as an :class:`xarray.Dataset`, with units as attributes."""
-        import xarray as xr
-
-        variables = {
-            name: (dimensions, getattr(self, name), {"units": _UNITS[name]} if name in _UNITS else {})
-            for name, dimensions in _DIMENSIONS.items()
-        }
-        names = json.dumps({name: getattr(self, name) for name in _NAMES})
-        provenance = json.dumps(dict(self.provenance))
-        return xr.Dataset(variables, attrs={"format": self.FORMAT, "names": names, "provenance": provenance})
+        return stored(self, _DIMENSIONS, _UNITS, _NAMES)
 
     @classmethod
     def from_xarray(cls, dataset: "Dataset") -> "FrequencyCurve":
         """The curve that :meth:`to_xarray` turned into a dataset."""
-        values = {name: dataset[name].values for name in _DIMENSIONS if name in dataset}
-        for name in ("converged", "fold"):
-            values[name] = values[name].astype(bool)
-        names = {name: tuple(own) for name, own in json.loads(dataset.attrs["names"]).items()}
+        values = fields_of(dataset, _DIMENSIONS, ("converged", "fold"))
         if "stable" not in values:  # written before curves kept their stability
             values["stable"] = np.full(len(values["fold"]), -1, dtype=np.int8)
-            names["markers"] = tuple(("fold", int(point)) for point in np.flatnonzero(values["fold"]))
-        names["markers"] = tuple((kind, point) for kind, point in names["markers"])
-        provenance = json.loads(dataset.attrs["provenance"])
-        return cls(**{field.name: {**values, **names, "provenance": provenance}[field.name] for field in fields(cls)})
+            values["markers"] = tuple(("fold", int(point)) for point in np.flatnonzero(values["fold"]))
+        return cls(**values)

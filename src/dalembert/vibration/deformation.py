@@ -1,6 +1,5 @@
 """The motion of a whole structure at one point of a curve, and what its contacts do there, to be drawn."""
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -16,6 +15,7 @@ from dalembert.vibration.curve import FrequencyCurve
 from dalembert.vibration.equations import equations
 from dalembert.vibration.fourier import synthesis
 from dalembert.vibration.harmonic_balance import HarmonicBalance
+from dalembert.vibration.storage import fields_of, stored
 from dalembert.vibration.system import VibrationSystem
 from dalembert.vibration.threads import one_thread
 
@@ -86,23 +86,12 @@ class Deformation(Result):
 
     def to_xarray(self) -> "Dataset":
         """Everything as an :class:`xarray.Dataset`, with units as attributes."""
-        import xarray as xr
-
-        variables = {
-            name: (dimensions, getattr(self, name), {"units": _UNITS[name]} if name in _UNITS else {})
-            for name, dimensions in _DIMENSIONS.items()
-        }
-        names = json.dumps({name: getattr(self, name) for name in _NAMES})
-        provenance = json.dumps(dict(self.provenance), sort_keys=True)
-        return xr.Dataset(variables, attrs={"format": self.FORMAT, "names": names, "provenance": provenance})
+        return stored(self, _DIMENSIONS, _UNITS, _NAMES)
 
     @classmethod
     def from_xarray(cls, dataset: "Dataset") -> "Deformation":
         """The deformation that :meth:`to_xarray` turned into a dataset."""
-        names: dict[str, Any] = json.loads(dataset.attrs["names"])
-        names |= {name: tuple(names[name]) for name in ("orders", "contacts")}
-        values: dict[str, Any] = {name: dataset[name].values for name in _DIMENSIONS}
-        return cls(**names, **values, provenance=json.loads(dataset.attrs["provenance"]))
+        return cls(**fields_of(dataset, _DIMENSIONS))
 
 
 def deformation(system: VibrationSystem, curve: FrequencyCurve, point: int | None = None) -> Deformation:

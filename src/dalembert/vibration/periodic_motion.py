@@ -1,6 +1,5 @@
 """A periodic motion in time."""
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -8,8 +7,9 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from dalembert.errors import InputError, unknown
-from dalembert.results import Result
-from dalembert.vibration.amplitudes import PHASES, Amplitude
+from dalembert.results import Result, facts_of, plain_facts
+from dalembert.vibration.amplitudes import PHASES, Amplitude, observed_column
+from dalembert.vibration.storage import fields_of, stored
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -23,6 +23,7 @@ _DIMENSIONS = {
 }
 _UNITS = {"times": "s", "displacements": "m", "relative": "m", "forces": "N"}
 _NAMES = ("dofs", "coordinates", "contacts")
+_FACTS = ("frequency", "periods", "residual", "converged")
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,11 +78,7 @@ class PeriodicMotion(Result):
         InputError
             For one that was not observed.
         """
-        own = [name for name in self.dofs if name.rpartition(".")[0] == dof]
-        name = own[0] if len(own) == 1 else dof
-        if name not in self.dofs:
-            raise InputError(unknown("observed degree of freedom", dof, self.dofs))
-        return self.displacements[:, self.dofs.index(name)]
+        return self.displacements[:, observed_column(self.dofs, dof)]
 
     def harmonics(self, dof: str, highest: int) -> np.ndarray:
         """Coefficients of the harmonics 0, 1, ... up to a highest: the mean, then a cosine and a sine each."""
@@ -128,39 +125,12 @@ class PeriodicMotion(Result):
 
     def to_xarray(self) -> "Dataset":
         """Everything as an :class:`xarray.Dataset`, with units as attributes."""
-        import xarray as xr
-
-        variables = {
-            name: (dimensions, getattr(self, name), {"units": _UNITS[name]} if name in _UNITS else {})
-            for name, dimensions in _DIMENSIONS.items()
-        }
-        attributes = {
-            "format": self.FORMAT,
-            "names": json.dumps({name: getattr(self, name) for name in _NAMES}),
-            "frequency": self.frequency,
-            "periods": self.periods,
-            "residual": self.residual,
-            "converged": int(self.converged),
-            "provenance": json.dumps(dict(self.provenance), sort_keys=True),
-        }
-        return xr.Dataset(variables, attrs=attributes)
+        return stored(self, _DIMENSIONS, _UNITS, _NAMES).assign_attrs(plain_facts(self, _FACTS))
 
     @classmethod
     def from_xarray(cls, dataset: "Dataset") -> "PeriodicMotion":
         """The motion that :meth:`to_xarray` turned into a dataset."""
-        attributes, values = dataset.attrs, {name: dataset[name].values for name in _DIMENSIONS}
-        dofs, coordinates, contacts = (tuple(json.loads(attributes["names"])[name]) for name in _NAMES)
-        return cls(
-            dofs,
-            coordinates,
-            contacts,
-            **values,
-            frequency=float(attributes["frequency"]),
-            periods=int(attributes["periods"]),
-            residual=float(attributes["residual"]),
-            converged=bool(attributes["converged"]),
-            provenance=json.loads(attributes["provenance"]),
-        )
+        return cls(**fields_of(dataset, _DIMENSIONS), **facts_of(cls, dataset, _FACTS))
 
 
 def _coefficients(samples: np.ndarray, highest: int) -> np.ndarray:

@@ -1,0 +1,36 @@
+"""What results on vibration have in common as datasets: arrays with units; names, numbers and provenance as JSON."""
+
+import json
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+Dimensions = Mapping[str, tuple[str, ...]]
+"""Names of arrays of a result, each with the names of its dimensions."""
+
+
+def stored(result: Any, dimensions: Dimensions, units: Mapping[str, str], names: Sequence[str]) -> "Dataset":
+    """A :class:`~dalembert.results.Result` as a dataset: arrays; as attributes its format, ``names`` and provenance."""
+    import xarray as xr
+
+    variables = {
+        name: (over, getattr(result, name), {"units": units[name]} if units.get(name) else {})
+        for name, over in dimensions.items()
+    }
+    told = {"names": {name: getattr(result, name) for name in names}, "provenance": dict(result.provenance)}
+    return xr.Dataset(variables, attrs={"format": result.FORMAT, **{key: json.dumps(own) for key, own in told.items()}})
+
+
+def fields_of(dataset: "Dataset", dimensions: Dimensions, truths: Sequence[str] = ()) -> dict[str, Any]:
+    """Fields of a result that was :func:`stored`; the arrays ``truths`` are of truth values."""
+    arrays = {name: dataset[name].values for name in dimensions if name in dataset}
+    names = {name: _tuples(own) for name, own in json.loads(dataset.attrs["names"]).items()}
+    provenance = json.loads(dataset.attrs["provenance"])
+    return {**arrays, **{name: arrays[name].astype(bool) for name in truths}, **names, "provenance": provenance}
+
+
+def _tuples(given: Any) -> Any:
+    """The same with tuples in place of lists."""
+    return tuple(map(_tuples, given)) if isinstance(given, list) else given

@@ -1,30 +1,31 @@
 """The result of following a nonlinear mode."""
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from dalembert.errors import InputError, unknown
 from dalembert.results import Result
-from dalembert.vibration.amplitudes import Amplitude
+from dalembert.vibration.amplitudes import Amplitude, observed_column
+from dalembert.vibration.storage import fields_of, stored
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
-_UNITS = {
-    "amplitudes": "m",
-    "frequencies": "Hz",
-    "damping": "",
-    "energies": "J",
-    "forces": "N",
-    "iterations": "",
-    "residuals": "",
-    "converged": "",
-    "samples": "",
+_DIMENSIONS = {
+    "amplitudes": ("point",),
+    "frequencies": ("point",),
+    "damping": ("point",),
+    "energies": ("point",),
+    "forces": ("point",),
+    "iterations": ("point",),
+    "residuals": ("point",),
+    "converged": ("point",),
+    "samples": ("point",),
+    "shapes": ("point", "dof", "coefficient"),
 }
+_UNITS = {"amplitudes": "m", "frequencies": "Hz", "energies": "J", "forces": "N", "shapes": "m"}
 _NAMES = ("mode", "dof", "dofs", "orders")
 
 
@@ -92,11 +93,7 @@ class Backbone(Result):
         InputError
             For another kind, or an unknown degree of freedom.
         """
-        own = [name for name in self.dofs if name.rpartition(".")[0] == dof]
-        name = own[0] if len(own) == 1 else dof
-        if name not in self.dofs:
-            raise InputError(unknown("observed degree of freedom", dof, self.dofs))
-        return Amplitude(kind, self.orders).of(self.shapes[:, self.dofs.index(name)])
+        return Amplitude(kind, self.orders).of(self.shapes[:, observed_column(self.dofs, dof)])
 
     @property
     def success(self) -> bool:
@@ -130,23 +127,9 @@ class Backbone(Result):
 
     def to_xarray(self) -> "Dataset":
         """Everything as an :class:`xarray.Dataset`, with units as attributes."""
-        import xarray as xr
-
-        variables: dict = {
-            name: (("point",), getattr(self, name), {"units": unit} if unit else {}) for name, unit in _UNITS.items()
-        }
-        variables["shapes"] = (("point", "dof", "coefficient"), self.shapes, {"units": "m"})
-        names = json.dumps({name: getattr(self, name) for name in _NAMES})
-        provenance = json.dumps(dict(self.provenance))
-        return xr.Dataset(variables, attrs={"format": self.FORMAT, "names": names, "provenance": provenance})
+        return stored(self, _DIMENSIONS, _UNITS, _NAMES)
 
     @classmethod
     def from_xarray(cls, dataset: "Dataset") -> "Backbone":
         """The backbone that :meth:`to_xarray` turned into a dataset."""
-        values = {name: dataset[name].values for name in (*_UNITS, "shapes")}
-        names = json.loads(dataset.attrs["names"])
-        return cls(
-            **(values | {"converged": values["converged"].astype(bool)}),
-            **(names | {name: tuple(names[name]) for name in ("dofs", "orders")}),
-            provenance=json.loads(dataset.attrs["provenance"]),
-        )
+        return cls(**fields_of(dataset, _DIMENSIONS, ("converged",)))

@@ -1,6 +1,5 @@
 """The result of following a resonance over a parameter."""
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -9,11 +8,12 @@ import numpy as np
 
 from dalembert.errors import InputError
 from dalembert.results import Result
+from dalembert.vibration.storage import Dimensions, fields_of, stored
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
-_ARRAYS = ("values", "frequencies", "amplitudes", "solves", "converged")
+_DIMENSIONS = dict.fromkeys(("values", "frequencies", "amplitudes", "solves", "converged"), ("value",))
 _NAMES = ("parameter", "unit", "dof", "kind")
 
 
@@ -96,19 +96,10 @@ class ResonanceTrack(Result):
 
     def to_xarray(self) -> "Dataset":
         """Everything as an :class:`xarray.Dataset`, with units as attributes."""
-        import xarray as xr
-
-        units = {"frequencies": "Hz", "amplitudes": "m"} | ({"values": self.unit} if self.unit else {})
-        variables = {
-            name: (("value",), getattr(self, name), {"units": units[name]} if name in units else {}) for name in _ARRAYS
-        }
-        names = json.dumps({name: getattr(self, name) for name in _NAMES})
-        provenance = json.dumps(dict(self.provenance))
-        return xr.Dataset(variables, attrs={"format": self.FORMAT, "names": names, "provenance": provenance})
+        units = {"values": self.unit, "frequencies": "Hz", "amplitudes": "m"}
+        return stored(self, _DIMENSIONS, units, _NAMES)
 
     @classmethod
     def from_xarray(cls, dataset: "Dataset") -> "ResonanceTrack":
         """The track that :meth:`to_xarray` turned into a dataset."""
-        values = {name: dataset[name].values for name in _ARRAYS}
-        values["converged"] = values["converged"].astype(bool)
-        return cls(**values, **json.loads(dataset.attrs["names"]), provenance=json.loads(dataset.attrs["provenance"]))
+        return cls(**fields_of(dataset, _DIMENSIONS, ("converged",)))

@@ -1,7 +1,6 @@
 """Points of a curve by harmonic balance beside integration in time."""
 
 import hashlib
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -16,6 +15,7 @@ from dalembert.vibration.fingerprint import fingerprint
 from dalembert.vibration.harmonic_balance import HarmonicBalance
 from dalembert.vibration.lowering import lower
 from dalembert.vibration.newmark import Newmark
+from dalembert.vibration.storage import fields_of, stored
 from dalembert.vibration.system import VibrationSystem
 from dalembert.vibration.threads import one_thread
 from dalembert.vibration.time_reference import LONG_RUN, steady_state
@@ -98,24 +98,12 @@ class TimeComparison(Result):
 
     def to_xarray(self) -> "Dataset":
         """Everything as an :class:`xarray.Dataset`, with units as attributes."""
-        import xarray as xr
-
-        variables = {
-            name: (dimensions, getattr(self, name), {"units": _UNITS[name]} if name in _UNITS else {})
-            for name, dimensions in _DIMENSIONS.items()
-        }
-        names = json.dumps({"dofs": self.dofs, "kind": self.kind})
-        provenance = json.dumps(dict(self.provenance), sort_keys=True)
-        return xr.Dataset(variables, attrs={"format": self.FORMAT, "names": names, "provenance": provenance})
+        return stored(self, _DIMENSIONS, _UNITS, ("dofs", "kind"))
 
     @classmethod
     def from_xarray(cls, dataset: "Dataset") -> "TimeComparison":
         """The comparison that :meth:`to_xarray` turned into a dataset."""
-        values = {name: dataset[name].values for name in _DIMENSIONS}
-        values["converged"] = values["converged"].astype(bool)
-        names = json.loads(dataset.attrs["names"])
-        provenance = json.loads(dataset.attrs["provenance"])
-        return cls(**values, dofs=tuple(names["dofs"]), kind=names["kind"], provenance=provenance)
+        return cls(**fields_of(dataset, _DIMENSIONS, ("converged",)))
 
 
 def compare_in_time(

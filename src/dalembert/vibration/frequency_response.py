@@ -1,7 +1,7 @@
 """The response of a vibrating system over frequency."""
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -28,7 +28,8 @@ ALL = 60
 """Size up to which all degrees of freedom are observed if none are named."""
 
 
-class FollowedPoint(NamedTuple):
+@dataclass(frozen=True)
+class FollowedPoint:
     """A point of a curve when it is found.
 
     Parameters

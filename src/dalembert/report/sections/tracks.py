@@ -38,7 +38,7 @@ class Tracks(Findings):
         told = f"The peak of {track.dof} is smallest with {track.parameter} = {value_text(track, track.values[low])}: "
         told += f"{least}; largest with {value_text(track, track.values[top])}: {most}."
         followed = (
-            f"FollowedPoint by {int(np.sum(track.solves))} balanced points, without whole curves; it is the peak that "
+            f"Followed by {int(np.sum(track.solves))} balanced points, without whole curves; it is the peak that "
         )
         return (told, followed + "goes on from the first one, and another one may have become larger.")
 

@@ -13,7 +13,13 @@ from dalembert.vibration.storage import Dimensions, fields_of, stored
 if TYPE_CHECKING:
     from xarray import Dataset
 
-_DIMENSIONS = dict.fromkeys(("values", "frequencies", "amplitudes", "solves", "converged"), ("value",))
+_DIMENSIONS: Dimensions = {
+    "values": ("value",),
+    "frequencies": ("value",),
+    "amplitudes": ("value",),
+    "solves": ("value",),
+    "converged": ("value",),
+}
 _NAMES = ("parameter", "unit", "dof", "kind")
 
 

@@ -1,5 +1,6 @@
 """The equations of a system under harmonic balance, ready to be solved at any frequency."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -87,6 +88,10 @@ class Equations:
             return min(best, other, key=lambda one: one.error)
         loaded = self.solve(by_force(self.balance(samples), self.method, point), omega, samples, point=point)
         return loaded if loaded.converged else min(best, other, loaded, key=lambda one: one.error)
+
+    def once(self, what: str, solution: Solution, compute: Callable[[], np.ndarray]) -> np.ndarray:
+        """What follows from a solution, by name; it is kept where solutions are."""
+        return compute()
 
     def _sampling_error(self, solution: Solution) -> float:
         finer = self.balance(2 * solution.samples)

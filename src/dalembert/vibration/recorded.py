@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from time import perf_counter
@@ -48,6 +49,11 @@ class RecordedEquations(Equations):
         numbers = (found.omega, found.iterations, found.error, found.converged, found.samples, found.sampling_error)
         self.checkpoint.keep(key, (found.unknowns, np.array(numbers, dtype=float)), perf_counter() - began)
         return found
+
+    def once(self, what: str, solution: Solution, compute: Callable[[], np.ndarray]) -> np.ndarray:
+        assert self.checkpoint is not None
+        key = what.encode() + self._key(solution.unknowns, solution.omega, solution.samples, None)
+        return self.checkpoint.once(key, lambda: (compute(),))[0]
 
     def _restored(self, unknowns: np.ndarray, numbers: np.ndarray) -> Solution:
         """A solution from what is kept of it."""

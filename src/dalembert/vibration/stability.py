@@ -46,11 +46,15 @@ def remembers(problem: Equations) -> bool:
 def exponents(problem: Equations, solution: Solution, way: str = AUTOMATIC) -> Exponents:
     """Floquet exponents at a solution: by Hill's method, or by the time map where there are contacts with friction."""
     if way == HILL or (way == AUTOMATIC and not remembers(problem)):
-        return Exponents(hill(problem, solution))
+        return Exponents(problem.once(HILL, solution, lambda: hill(problem, solution)))
+    return Exponents(problem.once(TIME_MAP, solution, lambda: _by_time_map(problem, solution)))
+
+
+def _by_time_map(problem: Equations, solution: Solution) -> np.ndarray:
     balance = problem.balance(solution.samples)
     linear = balance.linear(solution.point.stiffness, solution.point.force, solution.unknowns)
     series = Fourier(problem.method.orders, max(FEWEST, solution.samples))
     system = Uncondensed(problem.lowered, problem.condensation, series)
     factors = np.linalg.eigvals(monodromy(system, linear, solution.unknowns, solution.omega)).astype(complex)
     values = np.log(factors[np.abs(factors) > FORGOTTEN]) / (2 * np.pi)
-    return Exponents(np.array(sorted(values, key=lambda value: (-value.real, abs(value.imag), value.imag))))
+    return np.array(sorted(values, key=lambda value: (-value.real, abs(value.imag), value.imag)))

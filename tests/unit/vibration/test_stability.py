@@ -7,6 +7,7 @@ import pytest
 
 from dalembert.errors import InputError
 from dalembert.files import write_dataset
+from dalembert.forward import Checkpoint
 from dalembert.structure import Dofs, Structure
 from dalembert.vibration import (
     CubicSpring,
@@ -19,6 +20,7 @@ from dalembert.vibration import (
     VibrationSystem,
     floquet_multipliers,
     frequency_response,
+    stability,
 )
 from support import says
 from vibrating_systems import duffing, one_mass, two_masses
@@ -49,6 +51,30 @@ def test_stability_is_kept_with_a_curve(duffings_curve: FrequencyCurve, tmp_path
     assert again.markers == duffings_curve.markers
     assert again.stable.dtype == np.int8
     np.testing.assert_array_equal(again.stable, duffings_curve.stable)
+
+
+@pytest.mark.parametrize(("system", "way"), [(duffing, "hill"), (two_masses, "_by_time_map")])
+def test_stability_that_is_known_is_not_found_again(system, way: str, tmp_path: Path, monkeypatch) -> None:
+    def follow(**options) -> FrequencyCurve:
+        ends = 0.8 / TURN, 1.6 / TURN
+        return frequency_response(system(), ends, METHOD, continuation="arc-length", stability=True, **options)
+
+    found, find = [], getattr(stability, way)
+
+    def counted(problem, solution):
+        found.append(solution.unknowns.tobytes() + np.float64(solution.omega).tobytes())
+        if len(found) == 12:
+            raise KeyboardInterrupt
+        return find(problem, solution)
+
+    undisturbed = follow().to_xarray()
+    monkeypatch.setattr(stability, way, counted)
+    with pytest.raises(KeyboardInterrupt), Checkpoint(tmp_path / "checkpoint") as checkpoint:
+        follow(checkpoint=checkpoint)
+    for _ in range(2):
+        with Checkpoint(tmp_path / "checkpoint") as checkpoint:
+            assert follow(checkpoint=checkpoint).to_xarray().identical(undisturbed)
+    assert len(found) == len(set(found)) + 1  # the one that the interruption hit
 
 
 def test_a_curve_written_before_stability_was_kept_is_read(duffings_curve: FrequencyCurve, tmp_path: Path) -> None:

@@ -1,6 +1,7 @@
 """Bounds of a response over its samples: a band a channel, and how wide it is."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import plotly.graph_objects as go
@@ -49,19 +50,8 @@ def bands(given: BandsLike, channels: Sequence[str] | None = None, *, title: str
     for place, name in enumerate(chosen):
         column, colour = given.channels.index(name), LIGHT.series[place % len(LIGHT.series)]
         draw_band(figure, given, column, colour)
-        at, width = given.coordinate.values, given.upper[:, column] - given.lower[:, column]
-        kept = thin(width)
-        figure.add_scatter(
-            x=at[kept],
-            y=width[kept],
-            name=f"{plain(name)}, width",
-            legendgroup=plain(name),
-            showlegend=False,
-            mode="lines",
-            line={"color": colour, "width": 1.5},
-            row=2,
-            col=1,
-        )
+        width, look = given.upper[:, column] - given.lower[:, column], {"color": colour, "width": 1.5}
+        draw_line(figure, given.coordinate.values, width, f"{plain(name)}, width", plain(name), look, row=2)
     return dressed(figure, given, chosen, title, below="width").update_yaxes(rangemode="tozero", row=2)
 
 
@@ -78,33 +68,62 @@ def draw_band(figure: go.Figure, given: BandsLike, column: int, colour: str, *, 
     """One channel's band in the first row: its inside faint, its two bounds as lines."""
     at, name = given.coordinate.values, plain(given.channels[column])
     bounds = {"upper": given.upper[:, column], "lower": given.lower[:, column]}
-    x, y = outline(at, bounds["lower"], bounds["upper"])
+    fill_band(figure, at, bounds["lower"], bounds["upper"], f"{name}{legend}", name, colour, faint(colour))
+    for side, values in bounds.items():
+        draw_line(figure, at, values, f"{name}, {side}", name, {"color": colour, "width": 1.5}, row=1)
+
+
+def fill_band(
+    figure: go.Figure,
+    at: np.ndarray,
+    lower: np.ndarray,
+    upper: np.ndarray,
+    name: str,
+    group: str,
+    colour: str,
+    inside: str,
+) -> None:
+    """A band in the first row, filled with the colour of its inside."""
+    x, y = outline(at, lower, upper)
     figure.add_scatter(
         x=x,
         y=y,
-        name=f"{name}{legend}",
-        legendgroup=name,
+        name=name,
+        legendgroup=group,
         mode="lines",
         line={"width": 0, "color": colour},
         fill="toself",
-        fillcolor=faint(colour),
+        fillcolor=inside,
         hoverinfo="skip",
         row=1,
         col=1,
     )
-    for side, values in bounds.items():
-        kept = thin(values)
-        figure.add_scatter(
-            x=at[kept],
-            y=values[kept],
-            name=f"{name}, {side}",
-            legendgroup=name,
-            showlegend=False,
-            mode="lines",
-            line={"color": colour, "width": 1.5},
-            row=1,
-            col=1,
-        )
+
+
+def draw_line(
+    figure: go.Figure,
+    at: np.ndarray,
+    values: np.ndarray,
+    name: str,
+    group: str,
+    look: dict[str, Any],
+    *,
+    row: int,
+    legend: bool = False,
+) -> None:
+    """A line over the samples in one of the rows, thinned."""
+    kept = thin(values)
+    figure.add_scatter(
+        x=at[kept],
+        y=values[kept],
+        name=name,
+        legendgroup=group,
+        showlegend=legend,
+        mode="lines",
+        line=look,
+        row=row,
+        col=1,
+    )
 
 
 def outline(at: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -6,7 +6,7 @@ import numpy as np
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
-from dalembert.report.charts.bands import dressed, outline, selected
+from dalembert.report.charts.bands import draw_line, dressed, fill_band, selected
 from dalembert.report.charts.responses import FEW
 from dalembert.report.look import LIGHT, faint, plain
 from dalembert.report.needs_telling import PredictionLike
@@ -50,38 +50,11 @@ def _channel(figure: go.Figure, result: PredictionLike, column: int, colour: str
     for word, lower, upper, opacity, dash in bands:
         if not np.all(np.isfinite(upper - lower)):
             continue
-        x, y = outline(at, lower, upper)
-        figure.add_scatter(
-            x=x,
-            y=y,
-            name=f"{name}, {100 * result.level:g} % of {word}",
-            legendgroup=name,
-            mode="lines",
-            line={"width": 0, "color": colour},
-            fill="toself",
-            fillcolor=faint(colour, opacity),
-            hoverinfo="skip",
-            row=1,
-            col=1,
-        )
-        half = (upper - lower) / 2
-        kept = thin(half)
-        figure.add_scatter(
-            x=at[kept],
-            y=half[kept],
-            name=f"{name}, ± {word}",
-            legendgroup=name,
-            showlegend=False,
-            mode="lines",
-            line={"color": colour, "width": 1.5, "dash": dash},
-            row=2,
-            col=1,
-        )
-    kept = thin(centre)
-    line = {"color": colour, "width": 2}
-    figure.add_scatter(
-        x=at[kept], y=centre[kept], name=f"{name} predicted", legendgroup=name, mode="lines", line=line, row=1, col=1
-    )
+        legend = f"{name}, {100 * result.level:g} % of {word}"
+        fill_band(figure, at, lower, upper, legend, name, colour, faint(colour, opacity))
+        look = {"color": colour, "width": 1.5, "dash": dash}
+        draw_line(figure, at, (upper - lower) / 2, f"{name}, ± {word}", name, look, row=2)
+    draw_line(figure, at, centre, f"{name} predicted", name, {"color": colour, "width": 2}, row=1, legend=True)
     if result.data is not None and result.channels[column] in result.data.channels:
         measured = result.data.values[:, result.data.channels.index(result.channels[column])]
         kept, when = thin(measured), result.data.coordinate.values

@@ -5,10 +5,9 @@ from collections.abc import Sequence
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
-from dalembert.report.charts.bands import draw_band, dressed, selected
+from dalembert.report.charts.bands import draw_band, draw_line, dressed, selected
 from dalembert.report.look import LIGHT, plain
 from dalembert.report.needs import BandFitLike
-from dalembert.report.thin import thin
 
 DASHES = {"lower": "solid", "upper": "dot"}
 
@@ -52,18 +51,7 @@ def _channel(figure: go.Figure, fit: BandFitLike, column: int, colour: str) -> N
             (1, values, "reproduced", {"color": LIGHT.ink, "width": 1.5, "dash": "dash"}),
             (2, values - given, "residual", {"color": colour, "width": 1.5, "dash": DASHES[side]}),
         ):
-            kept = thin(series)
-            figure.add_scatter(
-                x=at[kept],
-                y=series[kept],
-                name=f"{name} {word}, {side}",
-                legendgroup=name,
-                showlegend=False,
-                mode="lines",
-                line=line,
-                row=row,
-                col=1,
-            )
+            draw_line(figure, at, series, f"{name} {word}, {side}", name, line, row=row)
 
 
 def reproduced(fit: BandFitLike) -> dict:

@@ -112,7 +112,8 @@ STUDIES |= {
     "curve past folds": CURVES + 'between = [0.1, 0.4]\ncontinuation = "arc-length"\n',
     "curve beside its points in time and its mode": CURVES + "frequencies = { start = 0.12, end = 0.3, count = 40 }\n"
     "[frequency_response.compare_in_time]\nfrequencies = [0.13, 0.16, 0.19, 0.22, 0.25]\n"
-    "method = { steps_per_period = 1024 }\n[frequency_response.backbone]\namplitudes = { start = 0.1, end = 20.0, count = 20 }\n",
+    "method = { steps_per_period = 1024 }\n[frequency_response.backbone]\n"
+    "amplitudes = { start = 0.1, end = 20.0, count = 20 }\n",
     "mode past corners": STRUCTURE + "[backbone]\nbetween = [0.1, 20.0]\n",
     "tracked resonance": STRUCTURE + '[track_resonance]\nparameter = "preload"\nbetween = [0.1, 0.4]\ndof = "m"\n'
     "values = { count = 17 }\n",

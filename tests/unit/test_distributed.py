@@ -154,7 +154,7 @@ def test_a_model_in_a_model_is_sent_without_what_it_computed(client):
     model = da.Sensors(inner, {inner.channels[0].name: da.Sensor(gain=(0.5, 2.0))})
     model.evaluate(np.array([[0.7, 0.5, 1.0]]))
     assert "_frame" in vars(inner)
-    sent = distributed._bare(model)
+    sent = distributed.bare(model)
     assert "_frame" not in vars(sent.model)
     assert (sent.model.workers, inner.workers) == (1, cores())
 

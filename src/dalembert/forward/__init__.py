@@ -5,6 +5,7 @@ from dalembert.forward.cluster import Executor, connected, takes_executor
 from dalembert.forward.distributed import Distributed, on_cluster
 from dalembert.forward.ensemble import ensemble
 from dalembert.forward.model import Channel, Coordinate, ForwardModel
+from dalembert.forward.prefetch import prefetched
 from dalembert.forward.python_model import PythonModel
 from dalembert.forward.recorded import Recorded
 from dalembert.forward.responses import Responses
@@ -27,5 +28,6 @@ __all__ = [
     "connected",
     "ensemble",
     "on_cluster",
+    "prefetched",
     "takes_executor",
 ]

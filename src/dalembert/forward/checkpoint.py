@@ -60,7 +60,7 @@ class Checkpoint:
         self.path = path
         self._lock = Lock()
         self._written = monotonic()
-        self._own: set[bytes] = set()
+        self._counted: set[bytes] = set()
         self.spared = 0.0
         try:
             self._file = sqlite3.connect(path, check_same_thread=False, isolation_level=None)
@@ -83,8 +83,9 @@ class Checkpoint:
             found = self._ask("SELECT shapes, content, seconds FROM results WHERE key = ?", (key,)).fetchone()
         if found is None:
             return None
-        if key not in self._own:
+        if key not in self._counted:
             self.spared += found[2]
+            self._counted.add(key)
         arrays, begin = [], 0
         for kind, shape in json.loads(found[0]):
             arrays.append(np.ndarray(tuple(shape), kind, found[1], begin).copy())
@@ -97,7 +98,7 @@ class Checkpoint:
         content = b"".join(np.ascontiguousarray(array).tobytes() for array in arrays)
         with self._lock:
             self._ask("INSERT OR REPLACE INTO results VALUES (?, ?, ?, ?)", (key, shapes, content, seconds))
-            self._own.add(key)
+            self._counted.add(key)
             if monotonic() - self._written >= EVERY:
                 self._write()
 

@@ -3,6 +3,7 @@
 A connection belongs to the call that makes it, and ends with it.
 """
 
+import pickle
 import sys
 import sysconfig
 from collections.abc import Callable, Iterator
@@ -66,8 +67,8 @@ def takes_executor(method: M) -> M:
     return cast(M, with_client)
 
 
-def sent(client: "Client", thing: Any) -> "Future":
-    """A model or a function on the cluster; a worker that comes later, or in place of a lost one, gets it too.
+def packed(thing: Any) -> bytes:
+    """A model or a function as it is sent to a cluster; ``pickle.loads`` makes it anew.
 
     Raises
     ------
@@ -78,14 +79,24 @@ def sent(client: "Client", thing: Any) -> "Future":
 
     try:
         with _own_modules():
-            content = cloudpickle.dumps(thing)
+            return cloudpickle.dumps(thing)
     except Exception as error:  # what cannot be sent, and why, is the user's to know
         raise InputError(
             f"the model cannot be sent to the cluster: {error}; a function of the model must not hold open files, "
             "locks or other things of this process"
         ) from error
+
+
+def sent(client: "Client", thing: Any) -> "Future":
+    """A model or a function on the cluster; a worker that comes later, or in place of a lost one, gets it too.
+
+    Raises
+    ------
+    InputError
+        Where it holds what cannot leave this process.
+    """
     # Each time under a name of its own: one that is asked for again while the scheduler lets go of it may never come.
-    return client.submit(cloudpickle.loads, content, pure=False)
+    return client.submit(pickle.loads, packed(thing), pure=False)
 
 
 @contextmanager

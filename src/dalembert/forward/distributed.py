@@ -1,14 +1,15 @@
 """Batches of a model on a Dask cluster."""
 
+from collections.abc import Callable
 from copy import copy
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import chain
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from dalembert.errors import InputError
+from dalembert.errors import DalembertError, InputError
 from dalembert.forward.cluster import RETRIES, Executor, asked_of, sent
 from dalembert.forward.model import ForwardModel
 from dalembert.forward.responses import Responses
@@ -20,10 +21,16 @@ if TYPE_CHECKING:
 PARTS = 4
 """Parts of a batch a thread of the cluster: enough that few wait at the end, and each worth its message."""
 
+Key: TypeAlias = tuple[str, int, bytes]
+"""What was asked of a model: the name of its method, how many samples it has, and the parameter vector."""
+
+Answers: TypeAlias = "dict[Key, tuple[Any, ...] | DalembertError]"
+"""Values and failure, or response and jacobian, or why there is none, by what was asked."""
+
 
 @dataclass(frozen=True)
 class Distributed(Wrapped):
-    """A forward model whose batches are computed by a Dask cluster; single linearisations stay in this process.
+    """A forward model whose batches are computed by a Dask cluster; a single vector is computed in this process.
 
     Parameters
     ----------
@@ -31,6 +38,8 @@ class Distributed(Wrapped):
         It is sent to the workers, with the modules that no package brought; they need the same versions of the
         packages. Its answer to a vector must not depend on the others of a batch.
     client : distributed.Client
+    prefetched : dict
+        Answers that the cluster computed before they are asked for (see :func:`dalembert.forward.prefetched`).
 
     Notes
     -----
@@ -40,6 +49,7 @@ class Distributed(Wrapped):
     """
 
     client: "Client" = field(repr=False)
+    prefetched: Answers = field(default_factory=dict, repr=False, compare=False)
 
     def evaluate(self, vectors: np.ndarray) -> Responses:
         """Responses of a batch; ``vectors`` (batch, parameters), values (batch, samples, channels).
@@ -52,12 +62,16 @@ class Distributed(Wrapped):
         from distributed import as_completed
 
         vectors = np.atleast_2d(np.asarray(vectors, dtype=float))
+        known = [self.prefetched.get(key_of("evaluate", self, vector)) for vector in vectors]
+        if known and all(isinstance(answer, tuple) for answer in known):
+            values, failures = zip(*known, strict=True)
+            return Responses(np.array(values), failures)
         if len(vectors) < 2:
             return self.model.evaluate(vectors)
         with asked_of(self.client, f"a part of a batch of {len(vectors)}") as asked:
             workers: Any = self.client.nthreads()
             parts = np.array_split(vectors, min(len(vectors), PARTS * max(1, sum(workers.values()))))
-            model = sent(self.client, _bare(self.model))
+            model = sent(self.client, bare(self.model))
             asked += self.client.map(_answered, [model] * len(parts), parts, pure=False, retries=RETRIES)
             for part in as_completed(asked, loop=self.client.loop):  # gather would complain of each that is cancelled
                 if part.status != "finished":
@@ -65,6 +79,13 @@ class Distributed(Wrapped):
             answers: Any = self.client.gather(asked)
         values, failures = zip(*answers, strict=True)
         return Responses(np.concatenate(values), tuple(chain.from_iterable(failures)))
+
+    def linearise(self, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Response (samples, channels) and its jacobian (samples, channels, parameters)."""
+        known = self.prefetched.get(key_of("linearise", self, vector))
+        if isinstance(known, DalembertError):
+            raise known
+        return self.model.linearise(vector) if known is None else (known[0], known[1])
 
 
 def on_cluster(model: ForwardModel, client: Executor) -> ForwardModel:
@@ -95,23 +116,40 @@ def on_cluster(model: ForwardModel, client: Executor) -> ForwardModel:
     return Distributed(model, client)
 
 
-def _answered(model: ForwardModel, vectors: np.ndarray) -> tuple[np.ndarray, tuple[str | None, ...]]:
-    """Values and failures of a part of a batch, on a worker."""
-    found = model.evaluate(vectors)
-    return found.values, found.failures
+def key_of(method: str, model: ForwardModel, vector: np.ndarray) -> Key:
+    """What is asked of a model, or of its first samples."""
+    return method, len(model.coordinate.values), np.asarray(vector, dtype=float).tobytes()
 
 
-def _bare(model: ForwardModel) -> ForwardModel:
-    """A copy for one thread, without what it has computed of itself, addresses of compiled functions among it.
+def rebuilt(model: ForwardModel, change: Callable[[ForwardModel], ForwardModel | None]) -> ForwardModel:
+    """What a change makes of a model; else a copy with what it makes of the models that it holds.
 
-    The same of a model that it holds.
+    Without what it has computed of itself, addresses of compiled functions among it.
     """
+    changed = change(model)
+    if changed is not None:
+        return changed
     own = copy(model)
     for name, held in list(vars(own).items()):
         if isinstance(getattr(type(own), name, None), cached_property):
             del vars(own)[name]
         elif isinstance(held, ForwardModel):
-            object.__setattr__(own, name, _bare(held))
+            object.__setattr__(own, name, rebuilt(held, change))
+        elif isinstance(held, tuple) and any(isinstance(one, ForwardModel) for one in held):
+            several = tuple(rebuilt(one, change) if isinstance(one, ForwardModel) else one for one in held)
+            object.__setattr__(own, name, several)
+    return own
+
+
+def bare(model: ForwardModel) -> ForwardModel:
+    """A copy for one thread, of the models that it holds too, without what they have computed of themselves."""
+    own = rebuilt(model, lambda one: None if one is model else bare(one))
     if hasattr(own, "workers"):
         object.__setattr__(own, "workers", 1)
     return own
+
+
+def _answered(model: ForwardModel, vectors: np.ndarray) -> tuple[np.ndarray, tuple[str | None, ...]]:
+    """Values and failures of a part of a batch, on a worker."""
+    found = model.evaluate(vectors)
+    return found.values, found.failures

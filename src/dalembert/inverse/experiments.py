@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from dalembert.data import Measurements
 from dalembert.errors import DalembertError, InputError, unknown
-from dalembert.forward import Channel, Coordinate, ForwardModel, Responses
+from dalembert.forward import Channel, Coordinate, Executor, ForwardModel, Responses, on_cluster
 from dalembert.inverse.matching import check_finite, check_samples, columns_of, weights_of
 from dalembert.parameters import Parameter, Parameters
 
@@ -227,6 +227,15 @@ def joint(experiments: Sequence[Experiment]) -> tuple[JointModel, Measurements]:
     models, names = tuple(item.model for item in experiments), frozenset(item.name for item in experiments)
     model = JointModel(models, parts, tuple(picked), wiring, parameters, channels, along, names)
     return model, _measurements(experiments, model)
+
+
+def placed(model: ForwardModel | Sequence[Experiment], executor: Executor) -> ForwardModel | Sequence[Experiment]:
+    """The model, or the model of each experiment, where its batches are computed."""
+    if executor is None:
+        return model
+    if isinstance(model, Sequence):
+        return [replace(item, model=on_cluster(item.model, executor)) for item in model]
+    return on_cluster(model, executor)
 
 
 def joint_weights(model: JointModel, given: Mapping[str, ArrayLike] | None) -> np.ndarray | None:

@@ -8,11 +8,11 @@ from numpy.typing import ArrayLike
 
 from dalembert.data import Measurements
 from dalembert.errors import DalembertError, InputError, SolveError, unknown
-from dalembert.forward import Executor, ForwardModel, on_cluster, takes_executor
+from dalembert.forward import Executor, ForwardModel, takes_executor
 from dalembert.forward.provenance import provenance
 from dalembert.inverse.estimate import Estimate, estimate
 from dalembert.inverse.events import Finished, OnEvent
-from dalembert.inverse.experiments import Experiment, JointModel, Part, joint, joint_weights
+from dalembert.inverse.experiments import Experiment, JointModel, Part, joint, joint_weights, placed
 from dalembert.inverse.fit import Fit
 from dalembert.inverse.journal import Journal
 from dalembert.inverse.loss import loss_of
@@ -142,7 +142,7 @@ def identify(
         raise InputError(unknown("horizon", str(horizon), [name for name in HORIZONS if name]))
     if spread not in SPREADS:
         raise InputError(unknown("spread", str(spread), SPREADS))
-    model, data, weights, parts = _joined(_placed(model, executor), data, weights)
+    model, data, weights, parts = _joined(placed(model, executor), data, weights)
     given = data.deviations is not None and weights is None
     journal = Journal(len(data.coordinate.values), on_event)
     posed = replace(pose(model, data, weights, journal), loss=loss_of(loss, loss_scale, known=given))
@@ -268,15 +268,6 @@ def _told(problem: Problem, at: Linearisation | None, fitness: float, known: boo
     plain = replace(problem, loss=None)
     counted = plain.residual(at.response)[problem.weights.ravel() > 0]
     return estimate(plain.slopes(at, scale), scale, problem.loss.variance(counted, freedom))
-
-
-def _placed(model: ForwardModel | Sequence[Experiment], executor: Executor) -> ForwardModel | Sequence[Experiment]:
-    """The model, or the model of each experiment, where its batches are computed."""
-    if executor is None:
-        return model
-    if isinstance(model, Sequence):
-        return [replace(item, model=on_cluster(item.model, executor)) for item in model]
-    return on_cluster(model, executor)
 
 
 def _joined(

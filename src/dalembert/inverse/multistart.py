@@ -1,17 +1,24 @@
 """Many starts of least squares, chosen among screened points and led by a growing horizon."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from itertools import count
+from functools import partial
+from itertools import count, islice
+from typing import TypeAlias
 
 import numpy as np
 
 from dalembert.inverse.descent import End, descend
 from dalembert.inverse.neighbours import neighbours
 from dalembert.inverse.noise import NoiseFloor, random_residuals
+from dalembert.inverse.prefetch import Work, prefetched
 from dalembert.inverse.problem import Problem
+from dalembert.inverse.search import Search
 from dalembert.inverse.spread import spread_points
 from dalembert.optimize import Squares
+
+Attempt: TypeAlias = tuple[np.ndarray, int]
+"""A search point (parameters,) to start from, and the rung of the ladder of horizons to begin on."""
 
 HORIZONS = ("growing", None)
 
@@ -42,10 +49,11 @@ def multistart(
     reached twice and leaves residuals that look like noise. With more than one start each is left once a step gains
     less than a thousandth of the fitness; the best end is to be polished.
     """
-    ladder = [problem.first(samples) for samples in horizons(problem, horizon)]
+    sizes = horizons(problem, horizon)
+    ladder = [problem.first(samples) for samples in sizes]
     hasty = method if starts == 1 else replace(method, gain=max(1e-3, method.gain))
     ends: list[End] = []
-    for point, rung in _attempts(ladder, starts, seed, spread, start):
+    for point, rung in _attempts(ladder, partial(_ahead, sizes, hasty), starts, seed, spread, start):
         ends.append(_descent(ladder[rung:], hasty, point))
         if floor.conclusive and ends[-1].fitness <= floor.fitness:
             return ends
@@ -64,11 +72,19 @@ def _descent(ladder: list[Problem], method: Squares, point: np.ndarray) -> End:
     return end
 
 
+def _ahead(sizes: Sequence[int], method: Squares, problem: Problem, attempt: tuple[np.ndarray, int]) -> None:
+    """The same descent on a worker of a cluster."""
+    point, rung = attempt
+    descend([problem.first(samples) for samples in sizes[rung:]], method, point)
+
+
 def _beside(problem: Problem, method: Squares, best: End, most: int) -> list[End]:
     """Ends of up to ``most`` descents from beside the best end, and from beside a better one that they lead to."""
     ends: list[End] = []
+    ahead = partial(_ahead, [problem.samples], method)
     while True:
-        for point in neighbours(problem, best)[: min(BESIDE, most - len(ends))]:
+        points = neighbours(problem, best)[: min(BESIDE, most - len(ends))]
+        for point, _ in prefetched(problem, ahead, [(point, 0) for point in points]):
             ends.append(_descent([problem], method, point))
             if ends[-1].fitness < (1 - method.gain) * best.fitness:
                 best = ends[-1]
@@ -88,18 +104,26 @@ def horizons(problem: Problem, horizon: str | None) -> list[int]:
 
 
 def _attempts(
-    ladder: list[Problem], starts: int, seed: int, spread: str, first: np.ndarray
-) -> Iterator[tuple[np.ndarray, int]]:
-    """Search points to start from, each with the rung of the ladder to begin on.
+    ladder: list[Problem], ahead: Work[Attempt], starts: int, seed: int, spread: str, first: np.ndarray
+) -> Iterator[Attempt]:
+    """Up to ``starts`` search points to start from, each with the rung of the ladder to begin on.
 
     The given start comes first, its horizon growing from the shortest. Then points spread over the box are simulated in
-    one batch, and the horizons, half of the samples, a quarter, an eighth, take turns to name the best point left
-    by the misfit over themselves and to grow from it: the longer ones stand above the noise, the shorter ones hold
-    fewer false minima.
+    one batch to choose the others from, which a cluster works on at once.
     """
     yield first, 0
     points, scores = _screen(ladder, SCREENED * starts * len(first), seed, spread)
-    search, longest = ladder[-1].search, max(0, len(ladder) - 2)
+    others = list(islice(_chosen(ladder[-1].search, points, scores), starts - 1))
+    yield from prefetched(ladder[-1], ahead, others)
+
+
+def _chosen(search: Search, points: np.ndarray, scores: np.ndarray) -> Iterator[Attempt]:
+    """Screened points (number, parameters) to start from, by their misfit over each horizon (rungs, number).
+
+    The horizons, half of the samples, a quarter, an eighth, take turns to name the best point left by the misfit over
+    themselves and to grow from it: the longer ones stand above the noise, the shorter ones hold fewer false minima.
+    """
+    longest = max(0, len(scores) - 2)
     free = np.isfinite(scores[-1])
     for turn in count():
         if not free.any():

@@ -2,6 +2,8 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
+from itertools import chain
 
 import numpy as np
 
@@ -11,6 +13,7 @@ from dalembert.inverse.continuity import Chain, Found
 from dalembert.inverse.descent import End, descend
 from dalembert.inverse.nodes import Nodes
 from dalembert.inverse.noise import NoiseFloor
+from dalembert.inverse.prefetch import prefetched
 from dalembert.inverse.problem import Problem
 from dalembert.inverse.segments import State
 from dalembert.inverse.spread import spread_points
@@ -100,8 +103,8 @@ def shots(
 ) -> list[End]:
     """Ends of up to ``starts`` shots, the first from the search point ``start``, as soon as one reaches the floor."""
     ends: list[End] = []
-    others = spread_points(problem, starts, seed, spread)[1:] if starts > 1 else []
-    for point in (start, *others):
+    others = list(spread_points(problem, starts, seed, spread)[1:]) if starts > 1 else []
+    for point in chain([start], prefetched(problem, partial(_ahead, shooting, method, floor), others)):
         values = problem.search.vectors(point)
         problem.journal.began(values)
         end = _shot(problem, shooting, method, floor, values)
@@ -111,6 +114,11 @@ def shots(
         if end.fitness <= floor.fitness:
             break
     return ends
+
+
+def _ahead(shooting: MultipleShooting, method: Squares, floor: NoiseFloor, problem: Problem, point: np.ndarray) -> None:
+    """The same shot on a worker of a cluster."""
+    _shot(problem, shooting, method, floor, problem.search.vectors(point))
 
 
 def _shot(problem: Problem, shooting: MultipleShooting, method: Squares, floor: NoiseFloor, values: np.ndarray) -> End:

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.spatial import KDTree
 
+from dalembert.forward import prefetched
 from dalembert.uncertainty.expansions import Expansions, expand, maxima
 from dalembert.uncertainty.found import Extremes
 from dalembert.uncertainty.runs import Runs
@@ -86,10 +87,11 @@ class Search:
     def run(self, etas: np.ndarray) -> None:
         """Run the model with its gradients at coordinates (n, f)."""
         box, free = self.runs.box, self.runs.free
-        for eta in etas:
-            whole = np.zeros(len(box))
-            whole[free] = eta
-            point = box.points(whole)
+        whole = np.zeros((len(etas), len(box)))
+        whole[:, free] = etas
+        points = [box.points(row) for row in whole]
+        asked = prefetched(self.runs.model, lambda model, point: model.linearise(point), points)
+        for eta, point in zip(etas, asked, strict=True):
             at = self.runs.linearised(point)
             self.tried.append(eta)
             self.failed.append(at is None)

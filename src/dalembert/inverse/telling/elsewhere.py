@@ -1,11 +1,14 @@
 """Further intervals of a profile: values beyond its first crossings that the data do not contradict either."""
 
+from functools import partial
+
 import numpy as np
 from scipy.stats import qmc
 
 from dalembert.errors import SolveError
 from dalembert.inverse.descent import Memo
 from dalembert.inverse.neighbours import dips
+from dalembert.inverse.prefetch import prefetched
 from dalembert.inverse.problem import Problem
 from dalembert.inverse.telling.walk import Walk, walked
 
@@ -29,19 +32,29 @@ def elsewhere(
     whose basin lies between two values of the scan is not seen.
     """
     found = [interval]
-    for point in _starts(problem, vector, k, interval):
-        memo, search = Memo(problem), problem.search
-        try:
-            end = walk.method.minimise(memo.residual, memo.jacobian, search.lower, search.upper, point)
-            excess, there = (end.fitness - walk.best) / walk.variance, search.vectors(end.x)
-            if not excess < walk.threshold or any(lower <= there[k] <= upper for lower, upper in found):
-                continue
-            at = problem.linearise(there)
-        except SolveError:
-            continue
-        lower, upper = (walked(problem, at, k, side, walk, excess).end for side in (-1, 1))
-        found.append((lower, upper))
+    starts = list(_starts(problem, vector, k, interval))
+    for point in prefetched(problem, partial(_around, k, walk, found[:1]), starts):
+        further = _around(k, walk, found, problem, point)
+        if further is not None:
+            found.append(further)
     return tuple(sorted(found[1:]))
+
+
+def _around(
+    k: int, walk: Walk, found: list[tuple[float, float]], problem: Problem, point: np.ndarray
+) -> tuple[float, float] | None:
+    """Interval around where the misfit is least near a search point, apart from those found; None if there is none."""
+    memo, search = Memo(problem), problem.search
+    try:
+        end = walk.method.minimise(memo.residual, memo.jacobian, search.lower, search.upper, point)
+        excess, there = (end.fitness - walk.best) / walk.variance, search.vectors(end.x)
+        if not excess < walk.threshold or any(lower <= there[k] <= upper for lower, upper in found):
+            return None
+        at = problem.linearise(there)
+    except SolveError:
+        return None
+    lower, upper = (walked(problem, at, k, side, walk, excess).end for side in (-1, 1))
+    return lower, upper
 
 
 def _starts(problem: Problem, vector: np.ndarray, k: int, interval: tuple[float, float]) -> np.ndarray:

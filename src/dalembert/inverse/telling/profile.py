@@ -2,20 +2,22 @@
 
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from scipy.stats import chi2, f
 
 from dalembert.data import Measurements
 from dalembert.errors import InputError, unknown
-from dalembert.forward import ForwardModel
+from dalembert.forward import Executor, ForwardModel, takes_executor
 from dalembert.forward.provenance import provenance
 from dalembert.inverse.confidence import check_level, freedom, noise_is_known, variance
 from dalembert.inverse.events import OnEvent
-from dalembert.inverse.experiments import Experiment, joint
+from dalembert.inverse.experiments import Experiment, joint, placed
 from dalembert.inverse.fit import Fit
 from dalembert.inverse.journal import Journal
-from dalembert.inverse.problem import Problem, pose
+from dalembert.inverse.prefetch import prefetched
+from dalembert.inverse.problem import Linearisation, Problem, pose
 from dalembert.inverse.telling.elsewhere import elsewhere
 from dalembert.inverse.telling.profiles import Profile, Profiles
 from dalembert.inverse.telling.walk import Walk, walked
@@ -25,6 +27,7 @@ POINTS = 12
 """Values of a parameter on each side of the identified one, at most, if not given."""
 
 
+@takes_executor
 def profile(
     model: ForwardModel | Sequence[Experiment],
     data: Measurements | None,
@@ -34,6 +37,7 @@ def profile(
     level: float = 0.95,
     points: int = POINTS,
     on_event: OnEvent | None = None,
+    executor: Executor = None,
 ) -> Profiles:
     """Profile likelihood of identified parameters, and the intervals where the data do not contradict them.
 
@@ -53,6 +57,9 @@ def profile(
         Values on each side of the identified one at most, from 4.
     on_event : callable, optional
         Called with an event a value.
+    executor : str or distributed.Client, optional
+        Address of a Dask cluster, such as ``"tcp://10.0.0.1:8786"``, or a client of one, to which batches and both
+        sides of each profile go.
 
     Returns
     -------
@@ -101,7 +108,7 @@ def profile(
             "with the loss 'linear', the outliers left out"
         )
     chosen = _names(fit, names)
-    problem = _problem(model, data, fit, on_event)
+    problem = _problem(placed(model, executor), data, fit, on_event)
     noise, values = variance(fit), fit.values
     if not noise > 0:
         raise InputError(
@@ -112,10 +119,14 @@ def profile(
     best = float(np.sum(problem.residuals(values, at.response) ** 2))
     known = noise_is_known(fit)
     threshold = float(chi2.ppf(level, 1) if known else f.ppf(level, 1, freedom(fit)))
-    curves = []
-    for k in (fit.parameters.names.index(name) for name in chosen):
-        walk = Walk(best, noise, threshold, points, LeastSquares(trials=30))
-        curve = _curve(fit, k, [walked(problem, at, k, side, walk) for side in (-1, 1)])
+    walk = Walk(best, noise, threshold, points, LeastSquares(trials=30))
+    ways = [(fit.parameters.names.index(name), side) for name in chosen for side in (-1, 1)]
+    curves, sides = [], []
+    for k, side in prefetched(problem, partial(_ahead, at, walk), ways):
+        sides.append(walked(problem, at, k, side, walk))
+        if side < 0:
+            continue
+        curve = _curve(fit, k, sides[-2:])
         further = elsewhere(problem, values, k, (curve.lower, curve.upper), walk)
         curves.append(replace(curve, elsewhere=further))
     return Profiles(
@@ -130,6 +141,11 @@ def profile(
         simulations=problem.journal.simulations,
         provenance=provenance(problem.model, LeastSquares(trials=30), level=level, points=points),
     )
+
+
+def _ahead(at: Linearisation, walk: Walk, problem: Problem, way: tuple[int, int]) -> None:
+    """The same side on a worker of a cluster."""
+    walked(problem, at, *way, walk)
 
 
 def _names(fit: Fit, names: Collection[str] | None) -> Iterable[str]:

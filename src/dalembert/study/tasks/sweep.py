@@ -10,7 +10,7 @@ from pydantic import Discriminator, Field, Tag, model_validator
 
 from dalembert.errors import InputError, told, unknown
 from dalembert.files import replacing
-from dalembert.forward import ForwardModel
+from dalembert.forward import ForwardModel, prefetched
 from dalembert.parameters import Parameters
 from dalembert.study.numbers import MOST, fixed, samples
 from dalembert.study.table import Read, StudyTable, problem
@@ -230,7 +230,7 @@ def _fill(study: "Study", model: ForwardModel, curve: Curve) -> Iterator[tuple[i
                 curve.responses[row] = responses.values[row - first, sample, columns]
                 yield row, failure
         return
-    for row, vector in enumerate(vectors):
+    for row, vector in enumerate(prefetched(model, lambda model, vector: model.linearise(vector), list(vectors))):
         failure = None
         try:
             response, jacobian = model.linearise(vector)

@@ -1,0 +1,172 @@
+"""What methods will ask of a model, computed on a Dask cluster before they ask.
+
+Several things that do not depend on each other, whole descents even, are done one after the other in this process, as
+without a cluster. But first workers do them too, each its own, and send what the model answered them; then they are
+done here, with these answers. So events, counts and checkpoints come in one order, and from one process, and the
+results are those of this process alone, bit for bit. What a worker was not asked is computed here, as always.
+"""
+
+import pickle
+from collections.abc import Callable, Generator, Iterator, Sequence
+from contextlib import closing, suppress
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Any, NoReturn, TypeVar
+
+import numpy as np
+from threadpoolctl import ThreadpoolController
+
+from dalembert.errors import DalembertError, SolveError, told
+from dalembert.forward.cluster import packed
+from dalembert.forward.distributed import Answers, Distributed, bare, key_of, rebuilt
+from dalembert.forward.ensemble import ensemble
+from dalembert.forward.model import ForwardModel
+from dalembert.forward.recorded import Recorded
+from dalembert.forward.responses import Responses
+from dalembert.forward.wrapped import Wrapped
+
+Item = TypeVar("Item")
+Work = Callable[[ForwardModel, Item], object]
+
+
+def prefetched(model: ForwardModel, work: Work[Item], items: Sequence[Item]) -> Generator[Item, None, None]:
+    """The items, in their order; work on each can be done when it comes, and asks no more of a cluster.
+
+    Parameters
+    ----------
+    model : ForwardModel
+        Where batches of it, or of models in it, go to a cluster, so do the items; else they come as they are.
+    work : callable
+        Called on the workers with a copy of the model and an item; what it returns is not needed. It must ask the same
+        of any model that gives the same answers.
+    items : sequence
+        Items that are not asked for are taken from the cluster.
+
+    Raises
+    ------
+    SolveError
+        Where the cluster lost an item, and why.
+
+    Examples
+    --------
+    >>> from dalembert.forward import PythonModel
+    >>> model = PythonModel(lambda rate: np.exp(-rate * np.linspace(0, 1, 3)), {"rate": (0, 2)}, ["x"], [0, 0.5, 1])
+    >>> work = lambda model, rate: model.jacobian(np.array([rate]))
+    >>> [float(work(model, rate)[-1, 0, 0].round(3)) for rate in prefetched(model, work, [0.5, 1.0])]
+    [-0.607, -0.368]
+    """
+    if len(items) < 2 or not any(_distributed(model)):
+        yield from items
+        return
+    copy = _Copy.of(model)
+    silent = rebuilt(model, lambda one: _Unasked(one.model) if isinstance(one, Distributed) else None)
+    missing = [not _known(silent, work, item) for item in items]
+    asked = partial(_answers, packed((work, copy.model, copy.answers)), _threads())
+    wanted = [item for item, lacks in zip(items, missing, strict=True) if lacks]
+    with closing(ensemble(asked, wanted, executor=copy.parts[0].client)) as found:
+        for item, lacks in zip(items, missing, strict=True):
+            if lacks:
+                for part, answers in zip(copy.parts, next(found), strict=True):
+                    part.prefetched.update(answers)
+            try:
+                yield item
+            finally:
+                for part in copy.parts:
+                    part.prefetched.clear()
+
+
+@dataclass(frozen=True)
+class _Answering(Wrapped):
+    """A model on a worker that keeps its answers."""
+
+    answers: Answers
+
+    def evaluate(self, vectors: np.ndarray) -> Responses:
+        vectors = np.atleast_2d(np.asarray(vectors, dtype=float))
+        found = self.model.evaluate(vectors)
+        for vector, values, failure in zip(vectors, found.values, found.failures, strict=True):
+            self.answers[key_of("evaluate", self, vector)] = (values, failure)
+        return found
+
+    def linearise(self, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        key = key_of("linearise", self, vector)
+        try:
+            found = self.model.linearise(vector)
+        except Exception as error:
+            self.answers[key] = error if isinstance(error, DalembertError) else SolveError(told(error))
+            raise
+        self.answers[key] = found
+        return found
+
+
+class _Unknown(BaseException):
+    """Something is asked that no checkpoint knows; no failure of a simulation, which methods go on after."""
+
+
+@dataclass(frozen=True)
+class _Unasked(Wrapped):
+    """A model that answers nothing."""
+
+    def evaluate(self, vectors: np.ndarray) -> NoReturn:
+        raise _Unknown
+
+    def linearise(self, vector: np.ndarray) -> NoReturn:
+        raise _Unknown
+
+
+@dataclass(frozen=True)
+class _Copy:
+    """A model for the workers, the parts of it whose batches go to a cluster, and for each of them its answers."""
+
+    model: ForwardModel
+    parts: list[Distributed] = field(default_factory=list)
+    answers: list[Answers] = field(default_factory=list)
+
+    @classmethod
+    def of(cls, model: ForwardModel) -> "_Copy":
+        parts: list[Distributed] = []
+        answers: list[Answers] = []
+
+        def placed(one: ForwardModel) -> ForwardModel | None:
+            if isinstance(one, Recorded):
+                return rebuilt(one.model, placed)
+            if isinstance(one, Distributed):
+                parts.append(one)
+                answers.append({})
+                return _Answering(bare(one.model), answers[-1])
+            return None
+
+        return cls(rebuilt(model, placed), parts, answers)
+
+
+def _distributed(model: ForwardModel) -> Iterator[bool]:
+    """Whether batches go to a cluster, of a model and of those that it holds."""
+    yield isinstance(model, Distributed)
+    for held in getattr(model, "__dict__", {}).values():
+        for one in held if isinstance(held, tuple) else (held,):
+            if isinstance(one, ForwardModel):
+                yield from _distributed(one)
+
+
+def _known(silent: ForwardModel, work: Work[Item], item: Item) -> bool:
+    """Whether checkpoints have all answers that work on an item asks for, as those of a run that is resumed may."""
+    try:
+        work(silent, item)
+    except _Unknown:
+        return False
+    except Exception:  # told where the work is done
+        return True
+    return True
+
+
+def _answers(content: bytes, threads: int, item: Any) -> list[Answers]:
+    """On a worker: what the parts of a model answered while an item was worked on."""
+    work, model, answers = pickle.loads(content)
+    with ThreadpoolController().limit(limits=threads, user_api="blas"), suppress(Exception):  # told where it is asked
+        work(model, item)
+    return answers
+
+
+def _threads() -> int:
+    """Threads of linear algebra, on which the order of sums depends, and so which answers are asked next."""
+    return max((one["num_threads"] for one in ThreadpoolController().select(user_api="blas").info()), default=1)

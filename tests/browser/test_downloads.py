@@ -154,10 +154,20 @@ def _frame(chromium: Chromium) -> Tab:
     return Tab(chromium, session)
 
 
+FOCUS = "window.focused = new Promise((moved) => addEventListener('focusin', moved, {once: true}))"
+FOCUSED = f"""(async () => {{
+    await Promise.race([window.focused, new Promise((later) => setTimeout(later, 2000))])
+    {FOCUS}
+    return document.activeElement
+}})()"""
+
+
 def _press_tab_to(tab: Tab, frame: Tab, script: str) -> None:
+    """The frame is another process: where the focus comes is waited for, or the next key passes by."""
+    frame.run(f"{FOCUS}; true")
     for _ in range(80):
         tab.press("Tab")
-        if frame.run(f"document.activeElement === {script}"):
+        if frame.run(f"{FOCUSED}.then((found) => found === {script})"):
             return
     raise AssertionError(f"Tab never came to {script}")
 

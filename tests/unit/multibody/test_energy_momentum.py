@@ -7,7 +7,6 @@ import dalembert.multibody as mb
 from dalembert.errors import InputError
 from dalembert.multibody.assemble import assembled
 from dalembert.multibody.integrators.symmetries import rigid_motions
-from driven_rope import response
 from mechanisms import cable, plate
 from slopes import errors
 from support import says
@@ -16,13 +15,6 @@ from support import says
 def test_settings_that_cannot_be_meant() -> None:
     with pytest.raises(InputError, match=says("EnergyMomentum: step is -1.0; expected a positive number of seconds")):
         mb.EnergyMomentum(step=-1.0)
-
-
-def test_derivatives_are_slopes_of_its_own_motion() -> None:
-    """With losses and loads; outputs lie on the steps and between them."""
-    error, size = errors(response(mb.EnergyMomentum(step=8e-3)))
-    assert min(size.values()) > 1e-5
-    assert max(error.values()) < 1e-6
 
 
 def spun(x: float, mass: float, stiffness: float, rate: float) -> mb.System:

@@ -1,12 +1,10 @@
-"""The variational integrator: settings, derivatives of its discrete solution, batches, jumps of loads."""
+"""The variational integrator: settings, steps that fail."""
 
 import numpy as np
 import pytest
 
 import dalembert.multibody as mb
 from dalembert.errors import InputError, SolveError
-from driven_rope import response
-from slopes import errors
 from support import says
 
 
@@ -23,34 +21,6 @@ from support import says
 def test_settings_that_cannot_be_meant(settings: dict, sentence: str) -> None:
     with pytest.raises(InputError, match=says(sentence)):
         mb.Variational(**settings)
-
-
-def test_derivatives_are_slopes_of_its_own_motion() -> None:
-    """Outputs lie on the steps and between them."""
-    error, size = errors(response(mb.Variational(step=8e-3)))
-    assert min(size.values()) > 1e-5
-    assert max(error.values()) < 1e-6
-
-
-def test_a_batch_has_the_bits_of_single_runs() -> None:
-    model = response(mb.Variational(step=2e-3), 2)
-    vectors = np.array([[2e5, 1.0, 0.3, 20.0, 2.0], [5e5, 0.6, 0.5, 40.0, 1.2], [4e5, 1.5, 0.4, 15.0, 3.0]])
-    together = model.evaluate(vectors)
-    assert together.failures == (None,) * 3
-    for vector, values in zip(vectors, together.values, strict=True):
-        np.testing.assert_array_equal(model.evaluate(vector).only()[0], values)
-
-
-def test_a_step_ends_where_a_load_jumps() -> None:
-    """A mass under a force that is switched on and off: the midpoint rule is exact on each parabola."""
-    system = mb.System(gravity=(0.0, 0.0))
-    mass = system.add(mb.PointMass("mass", 2.0, (0.0, 0.0)))
-    system.add(mb.Force("push", mass.centre, x=mb.Step(6.0, 0.31, 0.73)))
-    times = np.array([0.2, 0.31, 0.5, 0.73, 1.0])
-    values = mb.simulate(system, 1.0, mb.Variational(step=0.02), times).channels(["mass.centre.x", "mass.centre.vx"])
-    speed = 3.0 * np.clip(times - 0.31, 0.0, 0.42)
-    place = 1.5 * np.clip(times - 0.31, 0.0, 0.42) ** 2 + 3.0 * 0.42 * np.clip(times - 0.73, 0.0, None)
-    np.testing.assert_allclose(values, np.column_stack([place, speed]), atol=1e-13)
 
 
 def test_a_step_that_fails_is_cut_down_and_then_told() -> None:

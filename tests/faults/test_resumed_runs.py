@@ -8,6 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from study_texts import BAR, SLIDER
+
 HERE = Path(__file__).parent
 MODEL = """
 import time
@@ -40,47 +42,22 @@ BANDS = """
 file = "bands.csv"
 columns = { x = ["low", "high"] }
 """
-STRUCTURE = """
-[parameters]
-preload = { lower = 0.0, upper = 8.0, start = 1.0 }
-[[model.mass]]
-name = "m"
-mass = 1.0
-[[model.spring]]
-first = "m"
-stiffness = 1.0
-damping = 0.04
+STRUCTURE = (
+    SLIDER
+    + """
 [[model.spring]]
 kind = "CubicSpring"
 name = "hardening"
 first = "m"
 stiffness = 0.1
-[[model.force]]
-dof = "m"
-amplitude = 1.0
-[[model.contact]]
-name = "slider"
-first = "m"
-friction = 0.5
-preload = "preload"
-law = { kind = "Elastic", tangential_stiffness = 0.8 }
 [harmonic_balance]
 harmonics = 9
 """
+)
 CURVES = STRUCTURE + "[frequency_response]\n"
-MECHANISM = """
-[model]
-gravity = [0.0, -9.81]
-[[model.body]]
-kind = "RigidBar"
-name = "bar"
-length = 1.0
-mass = 1.0
-[[model.joint]]
-kind = "RevoluteJoint"
-name = "pin"
-a = "ground"
-b = "bar.start"
+MECHANISM = (
+    BAR
+    + """
 [work_precision]
 end = "5 s"
 channels = ["bar.end.x"]
@@ -93,6 +70,7 @@ name = "adaptive"
 solver = { step = 0.01, adaptive = true }
 over = { tolerance = [1e-4, 1e-5, 1e-6, 1e-7] }
 """
+)
 STUDIES = {
     "least-squares": HEAD + DATA + "[identify]\nstarts = 8\nprofile = true\nprediction = true\n",
     "improved-swarm": HEAD

@@ -17,6 +17,7 @@ from dalembert.study import RunFolder, load, run_study
 from faults.kills import content, kinds
 from flexible_pendulum import tip
 from loopback_cluster import QUIET, cluster
+from study_texts import SLIDER
 from support import says
 
 TIMES = np.linspace(0, 1, 11)
@@ -221,29 +222,14 @@ def content_of(curve) -> dict[str, bytes]:
     return {str(name): array.values.tobytes() for name, array in dataset.items()} | {"attributes": str(dataset.attrs)}
 
 
-FAMILY = """
-[parameters]
-preload = { lower = 0.0, upper = 8.0, start = 1.0 }
-[[model.mass]]
-name = "m"
-mass = 1.0
-[[model.spring]]
-first = "m"
-stiffness = 1.0
-damping = 0.04
-[[model.force]]
-dof = "m"
-amplitude = 1.0
-[[model.contact]]
-name = "slider"
-first = "m"
-friction = 0.5
-preload = "preload"
-law = { kind = "Elastic", tangential_stiffness = 0.8 }
+FAMILY = (
+    SLIDER
+    + """
 [frequency_response]
 frequencies = { start = 0.12, end = 0.3, count = 60 }
 sweep = { parameter = "preload", values = { count = 8 } }
 """
+)
 
 
 @pytest.mark.slow

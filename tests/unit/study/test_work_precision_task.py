@@ -6,23 +6,11 @@ from dalembert.errors import InputError
 from dalembert.study import load, run_study
 from dalembert.study.runner import plan, takes
 from dalembert.study.tasks import TASKS
+from study_texts import BAR
 
-STUDY = """
-[model]
-gravity = [0.0, -9.81]
-
-[[model.body]]
-kind = "RigidBar"
-name = "bar"
-length = 1.0
-mass = 1.0
-
-[[model.joint]]
-kind = "RevoluteJoint"
-name = "pin"
-a = "ground"
-b = "bar.start"
-
+STUDY = (
+    BAR
+    + """
 [work_precision]
 end = "1 s"
 channels = ["bar.end.x"]
@@ -33,6 +21,7 @@ reference = [{ step = 1e-4 }, { step = 2e-4 }]
 solver = { step = 0.01 }
 over = { step = [0.02, 0.01] }
 """
+)
 SECOND = """
 [[work_precision.series]]
 solver = { step = 0.01, spectral_radius = 0.5 }

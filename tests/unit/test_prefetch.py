@@ -126,6 +126,16 @@ def test_shots_go_there_with_the_same_bits(client):
     assert [repr(start) for start in other.starts] == [repr(start) for start in one.starts]
 
 
+def test_starts_of_a_minimiser_go_there_with_the_same_bits_and_events(client, model, data, here):
+    events, asked = ([], []), dict(method="Nelder-Mead", starts=3, start=[6.0, 0.2])
+    one, before = da.identify(model, data, **asked, on_event=events[0].append), here.stat().st_size
+    other = da.identify(model, data, **asked, on_event=events[1].append, executor=client)
+    assert len(one.starts) == 3
+    assert repr(events[0]) == repr(events[1])
+    assert other.values.tobytes() == one.values.tobytes()
+    assert here.stat().st_size - before < before / 10
+
+
 def test_gradients_of_a_search_for_bounds_go_there(client, model, here):
     box = {"rate": (6.0, 6.5), "damping": (0.05, 0.1)}
     one, before = da.propagate(model, box, "optimise"), here.stat().st_size

@@ -90,7 +90,8 @@ def identify(
     on_event : callable, optional
         Called with each event (see :mod:`dalembert.inverse.events`) as it happens.
     executor : str or distributed.Client, optional
-        Address of a Dask cluster, such as ``"tcp://10.0.0.1:8786"``, or a client of one, to which batches go.
+        Address of a Dask cluster, such as ``"tcp://10.0.0.1:8786"``, or a client of one, to which batches and
+        starts beyond the first go.
 
     Returns
     -------

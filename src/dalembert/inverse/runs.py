@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 
 from dalembert.inverse.descent import End, descend
 from dalembert.inverse.noise import NoiseFloor
+from dalembert.inverse.prefetch import prefetched
 from dalembert.inverse.problem import Problem
 from dalembert.inverse.spread import spread_points
 from dalembert.optimize import Minimiser, Minimum, Objective, OnIteration, Progress, Squares
@@ -46,11 +47,19 @@ def runs(
     if isinstance(method, Minimiser):
         points[1:] = list(spread_points(problem, starts, seed, spread))[1:]
     ends: list[End] = []
-    for number, point in enumerate(points):
+    attempts = list(enumerate(points))
+    alone = isinstance(method, Minimiser) and not method.batched
+    for number, point in prefetched(problem, partial(_ahead, method, seed), attempts) if alone else attempts:
         ends.append(_run(problem, method, seed + number, point))
         if floor.conclusive and ends[-1].fitness <= floor.fitness:
             break
     return ends
+
+
+def _ahead(method: Method, seed: int, problem: Problem, attempt: tuple[int, np.ndarray | None]) -> None:
+    """The same run on a worker of a cluster."""
+    number, point = attempt
+    _run(problem, method, seed + number, point)
 
 
 def polished(problem: Problem, method: Squares, best: End) -> End:

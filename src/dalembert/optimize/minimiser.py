@@ -17,6 +17,7 @@ BOUNDED = ("Nelder-Mead", "Powell", "L-BFGS-B", "TNC", "COBYLA", "COBYQA", "SLSQ
 UNBOUNDED = ("CG", "BFGS", "Newton-CG")
 GRADIENT = ("CG", "BFGS", "Newton-CG", "L-BFGS-B", "TNC", "SLSQP", "trust-constr")
 GLOBAL = ("differential_evolution", "dual_annealing", "basinhopping", "shgo", "direct")
+BATCHED = "differential_evolution"
 NAMES = (*BOUNDED, *UNBOUNDED, *GLOBAL)
 
 FAILED = 10.0
@@ -71,6 +72,11 @@ class Minimiser:
             for option in self.options:
                 if option not in taken:
                     raise InputError(unknown("option", option, taken, f"Minimiser({self.name!r})"))
+
+    @property
+    def batched(self) -> bool:
+        """Whether it asks for the fitness of many points at once."""
+        return self.name == BATCHED
 
     def minimise(
         self,
@@ -133,7 +139,7 @@ class Minimiser:
 
     def _global(self, watched: "_Watched", x0: np.ndarray, seed: int) -> so.OptimizeResult:
         bounds = so.Bounds(watched.low, watched.high)  # pyright: ignore[reportArgumentType]
-        if self.name == "differential_evolution":
+        if self.batched:
             settings = {"updating": "deferred", "vectorized": True, **self.options}
             return so.differential_evolution(watched.columns, bounds, rng=seed, **settings)
         if self.name == "dual_annealing":

@@ -273,6 +273,30 @@ def response(rate, damping):
 """
 
 
+SWEEP = """
+[parameters]
+rate = { lower = 0.5, upper = 8.0, start = 2.0 }
+damping = { lower = 0.0, upper = 0.5, start = 0.3 }
+[model]
+forward = "swing.py:swing"
+[sweep]
+at = 2.5
+channels = ["x"]
+over = { rate = { count = 9 }, damping = [0.1, 0.2] }
+"""
+
+
+def test_sensitivities_of_a_sweep_go_there(client, tmp_path):
+    (tmp_path / "swing.py").write_text(MODEL)
+    (tmp_path / "study.toml").write_text(SWEEP)
+    study = load(tmp_path / "study.toml")
+    (here, _), (there, _) = (
+        run_study(study, tmp_path / name, executor=executor) for name, executor in (("here", None), ("there", client))
+    )
+    assert content(there.result) == content(here.result)
+    assert kinds(there) == kinds(here)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(("event", "there"), [("start-ended", False), ("profiled", True)])
 def test_a_run_that_is_killed_in_the_midst_goes_on_there_or_here(started, client, data, tmp_path, event, there):

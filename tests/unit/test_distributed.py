@@ -16,27 +16,11 @@ from dalembert.structure import lumped
 from dalembert.study import RunFolder, load, run_study
 from faults.kills import content, kinds
 from flexible_pendulum import tip
-from loopback_cluster import QUIET, cluster
+from loopback_cluster import QUIET
 from study_texts import SLIDER
 from support import says
 
 TIMES = np.linspace(0, 1, 11)
-
-
-@pytest.fixture(scope="module")
-def started():
-    with cluster(workers=2) as started:
-        yield started
-
-
-@pytest.fixture(scope="module")
-def client(started):
-    from distributed import Client
-
-    with Client(started.address, timeout=60, set_as_default=False) as client:
-        client.wait_for_workers(2, timeout=60)
-        yield client
-    assert all(worker.poll() is None for worker in started.workers[:2])
 
 
 def slowly(rate):

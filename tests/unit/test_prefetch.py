@@ -18,25 +18,9 @@ from dalembert.forward import PythonModel, prefetch, prefetched
 from dalembert.forward.cluster import packed
 from dalembert.study import RunFolder, load, run_study
 from faults.kills import content, kinds
-from loopback_cluster import QUIET, cluster
+from loopback_cluster import QUIET
 
 TIMES = np.linspace(0, 10, 41)
-
-
-@pytest.fixture(scope="module")
-def started():
-    with cluster(workers=2) as started:
-        yield started
-
-
-@pytest.fixture(scope="module")
-def client(started):
-    from distributed import Client
-
-    with Client(started.address, timeout=60, set_as_default=False) as client:
-        client.wait_for_workers(2, timeout=60)
-        yield client
-    assert all(worker.poll() is None for worker in started.workers[:2])
 
 
 def swung(rate, damping):

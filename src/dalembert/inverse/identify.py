@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from dalembert.data import Measurements
-from dalembert.errors import DalembertError, InputError, SolveError, unknown
+from dalembert.errors import DalembertError, InputError, SolveError, StorageError, unknown
 from dalembert.forward import Executor, ForwardModel, takes_executor
 from dalembert.forward.provenance import provenance
 from dalembert.inverse.estimate import Estimate, estimate
@@ -250,6 +250,8 @@ def _linearised(problem: Problem, vector: np.ndarray) -> Linearisation | None:
     """Response and jacobian at the identified values; None where the model gives no jacobian."""
     try:
         return problem.linearise(vector)
+    except StorageError:
+        raise
     except DalembertError:
         return None
 

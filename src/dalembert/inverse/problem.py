@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from dalembert.data import Measurements
-from dalembert.errors import InputError, SolveError, told
+from dalembert.errors import InputError, SolveError, StorageError, told
 from dalembert.forward import ForwardModel
 from dalembert.inverse.journal import Journal
 from dalembert.inverse.loss import Loss
@@ -111,7 +111,7 @@ class Problem:
             response, jacobian = self.model.linearise(vector)
             if not (np.all(np.isfinite(response)) and np.all(np.isfinite(jacobian))):
                 raise SolveError("the response or its jacobian is not finite")
-        except InputError:  # a model that cannot be differentiated at all: no other vector will do better
+        except (InputError, StorageError):  # no other vector will do better
             raise
         except Exception as error:  # whatever a user's function raises is this vector's failure
             self.journal.failures.append(f"{told(error)} (at {named(self.model, vector)})")

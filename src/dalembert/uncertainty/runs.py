@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from dalembert.errors import InputError, SolveError, told
+from dalembert.errors import InputError, SolveError, StorageError, told
 from dalembert.forward import ForwardModel
 from dalembert.intervals import Box
 from dalembert.uncertainty.events import Event, OnEvent, Ran
@@ -81,7 +81,7 @@ class Runs:
             response, jacobian = self.model.linearise(point)
             if not (np.all(np.isfinite(response)) and np.all(np.isfinite(jacobian))):
                 raise SolveError("the response or its jacobian is not finite")
-        except InputError:
+        except (InputError, StorageError):  # no other point will do better
             raise
         except Exception as error:  # whatever a user's function raises is this point's failure
             self._failed(point, told(error))

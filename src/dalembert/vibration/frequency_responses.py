@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from dalembert.errors import DalembertError, InputError, SolveError, told
+from dalembert.errors import DalembertError, InputError, SolveError, StorageError, told
 from dalembert.forward import Checkpoint, Executor, ensemble
 from dalembert.vibration.curve import FrequencyCurve
 from dalembert.vibration.curve_family import CurveFamily
@@ -142,6 +142,8 @@ class _One:
         began = perf_counter()
         try:
             curve = frequency_response(self.system(value), self.frequencies, self.method, **self.options, **more)
+        except StorageError:  # no other value will do better
+            raise
         except DalembertError as error:
             return None, error, 0.0
         except Exception as error:  # the user's builder or law raised: this value's failure, not the others'

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dalembert.errors import InputError, SolveError, told, unknown
+from dalembert.errors import InputError, SolveError, StorageError, told, unknown
 from dalembert.forward import ForwardModel
 
 
@@ -58,7 +58,7 @@ def linearised(model: ForwardModel, vector: np.ndarray) -> tuple[np.ndarray, np.
     at = ", ".join(f"{name} = {value:.6g}" for name, value in model.parameters.mapping(vector).items())
     try:
         response, jacobian = model.linearise(vector)
-    except InputError:
+    except (InputError, StorageError):  # no other vector will do better
         raise
     except Exception as error:  # whatever a user's function raises is this vector's failure
         raise SolveError(f"{told(error)} (at {at}); look at the model there, or look elsewhere") from error

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy as np
 from pydantic import Discriminator, Field, Tag, model_validator
 
-from dalembert.errors import InputError, told, unknown
+from dalembert.errors import InputError, StorageError, told, unknown
 from dalembert.files import replacing
 from dalembert.forward import ForwardModel, prefetched
 from dalembert.parameters import Parameters
@@ -236,7 +236,7 @@ def _fill(study: "Study", model: ForwardModel, curve: Curve) -> Iterator[tuple[i
             response, jacobian = model.linearise(vector)
             curve.responses[row] = response[sample, columns]
             curve.sensitivities[row] = jacobian[sample, columns, place]
-        except InputError:  # a model that cannot be differentiated at all
+        except (InputError, StorageError):  # no other point will do better
             raise
         except Exception as error:  # whatever a user's function raises is this point's failure
             failure = told(error)

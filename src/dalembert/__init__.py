@@ -27,7 +27,7 @@ _MODULES = (
 )
 
 _NAMES = {
-    "errors": "DalembertError InputError ModelError SolveError DataError StorageError",
+    "errors": "DalembertError InputError ModelError SolveError ClusterError DataError StorageError",
     "parameters": "Parameter Parameters",
     "intervals": "Box Interval",
     "forward": """

@@ -23,6 +23,7 @@ from dalembert.data import read_mat as read_mat
 from dalembert.data import read_netcdf as read_netcdf
 from dalembert.data import read_parquet as read_parquet
 from dalembert.data import read_uff as read_uff
+from dalembert.errors import ClusterError as ClusterError
 from dalembert.errors import DalembertError as DalembertError
 from dalembert.errors import DataError as DataError
 from dalembert.errors import InputError as InputError

@@ -28,6 +28,10 @@ class SolveError(DalembertError):
     """A solver that could not go on; the message names the time and the component."""
 
 
+class ClusterError(SolveError):
+    """A cluster that lost what it was asked for, so that there is no answer; no simulation failed."""
+
+
 class DataError(DalembertError):
     """Measured data with a defect: a NaN, a missing column, a time that goes backwards."""
 

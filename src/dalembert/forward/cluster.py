@@ -11,7 +11,7 @@ from contextlib import contextmanager, suppress
 from functools import wraps
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, cast
 
-from dalembert.errors import DalembertError, InputError, SolveError
+from dalembert.errors import ClusterError, DalembertError, InputError
 
 if TYPE_CHECKING:
     from distributed import Client, Future
@@ -110,7 +110,7 @@ def asked_of(client: "Client", what: str) -> Iterator["list[Future]"]:
             client.cancel(asked, force=True)
         if isinstance(error, DalembertError) or not isinstance(error, Exception):
             raise
-        raise SolveError(
+        raise ClusterError(
             f"the cluster lost {what} ({type(error).__name__}: {error}); see its workers' logs, and resume the run"
         ) from error
 

@@ -56,7 +56,7 @@ class Distributed(Wrapped):
 
         Raises
         ------
-        SolveError
+        ClusterError
             Where the cluster lost the batch, and why.
         """
         from distributed import as_completed

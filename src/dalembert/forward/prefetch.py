@@ -44,7 +44,7 @@ def prefetched(model: ForwardModel, work: Work[Item], items: Sequence[Item]) -> 
 
     Raises
     ------
-    SolveError
+    ClusterError
         Where the cluster lost an item, and why.
 
     Examples

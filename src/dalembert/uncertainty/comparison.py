@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from dalembert.errors import DalembertError, InputError, StorageError
+from dalembert.errors import ClusterError, DalembertError, InputError, StorageError
 from dalembert.forward import Executor, ForwardModel, on_cluster, takes_executor
 from dalembert.results import Result
 from dalembert.uncertainty.events import OnEvent
@@ -173,7 +173,7 @@ def compare(
         try:
             results.append(propagate(model, box, method, seed=seed, on_event=on_event))
         except DalembertError as error:
-            if method == known or isinstance(error, StorageError):
+            if method == known or isinstance(error, StorageError | ClusterError):
                 raise
             refused.append((label(method), str(error)))
     return Comparison(tuple(results), label(known), tuple(refused))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dalembert.errors import InputError, SolveError
+from dalembert.errors import ClusterError, InputError, SolveError
 from dalembert.forward import PythonModel
 from dalembert.surrogate import TotalDegree
 from dalembert.uncertainty import Chebyshev, MonteCarlo, Scan, Vertex, compare, propagate
@@ -51,6 +51,22 @@ def test_a_method_that_gives_no_bounds_is_told_and_the_others_stay():
 def test_a_reference_that_gives_no_bounds_is_an_error():
     with pytest.raises(SolveError, match="the surrogate of order 2 is wrong by about"):
         compare(WAVE, {"w": (3.0, 7.0)}, ["vertex"], reference=Chebyshev(TotalDegree(2)))
+
+
+def test_a_cluster_that_lost_a_method_ends_the_comparison(monkeypatch):
+    answered = []
+
+    def lost(self, vectors):
+        answered.append(len(vectors))
+        if len(answered) == 1:
+            raise ClusterError("the cluster lost a part")
+        return evaluate(self, vectors)
+
+    evaluate = PythonModel.evaluate
+    monkeypatch.setattr(PythonModel, "evaluate", lost)
+    with pytest.raises(ClusterError, match="lost a part"):
+        compare(WAVE, {"w": (3.0, 7.0)}, ["vertex"], reference="scan")
+    assert len(answered) == 1
 
 
 def test_a_method_given_twice_is_refused():

@@ -72,6 +72,19 @@ def unknown(what: str, given: str, known: Iterable[str], where: str = "") -> str
     return f"{prefix}unknown {what} {given!r}; known: {', '.join(names) or 'none'}"
 
 
+def no_text(path: object, error: UnicodeDecodeError) -> str:
+    """Sentence for a file that is not UTF-8 text, with the line where that shows.
+
+    >>> try:
+    ...     b"t,x\\n0,\\xe9".decode()
+    ... except UnicodeDecodeError as error:
+    ...     no_text("motion.csv", error)
+    'motion.csv, line 2: the file is not UTF-8 text; save it as UTF-8'
+    """
+    line = error.object[: error.start].count(b"\n") + 1
+    return f"{path}, line {line}: the file is not UTF-8 text; save it as UTF-8"
+
+
 def listed(words: Sequence[str]) -> str:
     """Words in a row.
 

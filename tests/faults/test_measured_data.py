@@ -66,6 +66,73 @@ FILES = {
         {},
         "{path}, line 3: 2 cells; expected 3, as the header has",
     ),
+    "semicolons": (
+        "t;angle\n0;1\n",
+        {},
+        "{path}, line 1: 't;angle' is read as the name of one column; the cells seem to be separated by semicolons; "
+        'give separator = ";"',
+    ),
+    "semicolons and decimal commas": (
+        "t;angle\n0,0;1,5\n",
+        {},
+        "{path}, line 1: 't;angle' is read as the name of one column; the cells seem to be separated by semicolons; "
+        'give separator = ";" and decimal = ","',
+    ),
+    "tabs": (
+        "t\tangle\n0\t1\n",
+        {},
+        "{path}, line 1: 't\\tangle' is read as the name of one column; the cells seem to be separated by tabs; "
+        'give separator = "\\t"',
+    ),
+    "commas where there should be semicolons": (
+        "t,angle\n0,1\n",
+        {"separator": ";"},
+        "{path}, line 1: 't,angle' is read as the name of one column; the cells seem to be separated by commas; "
+        'give separator = ","',
+    ),
+    "decimal commas": (
+        "t;x\n0,0;1,5\n",
+        {"separator": ";"},
+        "{path}, line 2, column 't': '0,0' is not a number; for numbers with decimal commas give decimal = \",\"",
+    ),
+    "points beside decimal commas": (
+        "t;x\n0,0;1.500,5\n",
+        {"separator": ";", "decimal": ","},
+        "{path}, line 2, column 'x': '1.500,5' is not a number",
+    ),
+    "thousands beside decimal commas": (
+        "t;x\n0,0;1.500\n",
+        {"separator": ";", "decimal": ","},
+        "{path}, line 2, column 'x': '1.500' is not a number",
+    ),
+    "one mark for cells and decimals": (
+        "t,x\n0,1\n",
+        {"decimal": ","},
+        "{path}: ',' stands between the cells and before the decimals; give separator the character that stands "
+        "between the cells, such as ';'",
+    ),
+    "no mark of decimals": (
+        "t,x\n0,1\n",
+        {"decimal": ":"},
+        "{path}: decimal is ':'; expected '.' or ','",
+    ),
+    "a separator of two characters": (
+        "t,x\n0,1\n",
+        {"separator": ", "},
+        "{path}: separator is ', '; expected one character, such as ';'",
+    ),
+    "no header": (
+        "0.0,-0.6098\n0.1,-0.6\n",
+        {},
+        "{path}, line 1: the first line holds numbers only (0.0,-0.6098); expected the names of the columns; "
+        "put a line with them above it",
+    ),
+    "a line of units": (
+        "t,angle\ns,deg\n0,1\n",
+        {},
+        "{path}, line 2: no cell holds a number ('t' is 's', 'angle' is 'deg'); expected numbers below the names; "
+        "if these are the units of the columns, delete the line and give them by units",
+    ),
     "a deviation that is missing": (
         "t,x,y\n0,1,2\n",
         {"deviations": {"x": 0.1}},
@@ -91,12 +158,22 @@ def test_a_file_that_is_not_there_is_answered_with_its_neighbours(tmp_path):
     assert str(error.value) == f"folder {tmp_path}: unknown file 'motions.csv'; did you mean 'motion.csv'?"
 
 
-def test_a_file_that_is_not_text_is_told(tmp_path):
+@pytest.mark.parametrize(
+    ("content", "line"),
+    [(b"t,x\n\xff\xfe\xfa", 2), ("t,größe\n0,1\n".encode("latin-1"), 1), ("t,x\n0,1\n".encode("utf-16"), 1)],
+)
+def test_a_file_that_is_not_utf_8_text_is_told(content, line, tmp_path):
     path = tmp_path / "motion.csv"
-    path.write_bytes(b"t,x\n\xff\xfe\xfa")
+    path.write_bytes(content)
     with pytest.raises(DataError) as error:
         read_csv(path)
-    assert str(error.value).startswith(f"{path}: cannot be read as text with columns (")
+    assert str(error.value) == f"{path}, line {line}: the file is not UTF-8 text; save it as UTF-8"
+
+
+def test_a_folder_is_no_file_of_data(tmp_path):
+    with pytest.raises(DataError) as error:
+        read_csv(tmp_path)
+    assert str(error.value).startswith(f"{tmp_path}: cannot be read as text with columns (")
 
 
 BAND_FILES = {

@@ -16,6 +16,7 @@ def read_bands(
     columns: Mapping[str, tuple[str, str]] | None = None,
     *,
     separator: str = ",",
+    decimal: str = ".",
     units: Mapping[str, str] | None = None,
     format: str | None = None,  # noqa: A002
     frequency: str | None = None,
@@ -30,7 +31,7 @@ def read_bands(
     columns : mapping of str to (str, str), optional
         Columns of each channel's lower and upper bounds, for example ``{"AB.end.x": ("x_lower", "x_upper")}``. If not
         given, every pair of columns ``name_lower`` and ``name_upper`` is the channel ``name``.
-    separator, units, format, frequency
+    separator, decimal, units, format, frequency
         As in :func:`read`.
 
     Raises
@@ -53,7 +54,8 @@ def read_bands(
             if isinstance(pair, str) or len(pair) != 2:
                 raise DataError(f"columns, channel {name!r}: {pair!r} was given; expected two names, (lower, upper)")
     names = None if columns is None else [column for pair in columns.values() for column in pair]
-    found = columns_in(path, frequency or time, names, separator=separator, units=[*(units or ())], format=format)
+    text = {"separator": separator, "decimal": decimal}
+    found = columns_in(path, frequency or time, names, units=[*(units or ())], format=format, **text)
     along, table = replace(found, frequency=found.frequency or frequency is not None).converted(units)
     pairs = _pairs(path, table) if columns is None else columns
     with told_of(path):

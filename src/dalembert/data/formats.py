@@ -28,6 +28,7 @@ def columns_in(
     *,
     missing: str = "refuse",
     separator: str = ",",
+    decimal: str = ".",
     units: Collection[str] = (),
     format: str | None = None,  # noqa: A002
 ) -> Columns:
@@ -42,7 +43,7 @@ def columns_in(
     """
     kind = format_of(path) if format is None else format
     if kind == "csv":
-        return csv_columns(path, time, names, missing, separator)
+        return csv_columns(path, time, names, missing, separator, decimal)
     if kind == "uff":
         return uff_columns(path, names, missing, units)
     readers = {"parquet": parquet_columns, "mat": mat_columns, "netcdf": netcdf_columns}

@@ -23,6 +23,7 @@ def read(
     wraps: Iterable[str] = (),
     format: str | None = None,  # noqa: A002
     separator: str = ",",
+    decimal: str = ".",
     frequency: str | None = None,
 ) -> Measurements:
     """Measurements from a file: CSV, Parquet, MAT (version 5 and 7.3), UFF (dataset 58) or NetCDF.
@@ -50,6 +51,8 @@ def read(
         By the file's suffix if not given.
     separator : str
         Of the cells of a CSV file.
+    decimal : {".", ","}
+        What stands before the decimals of the numbers of a CSV file.
     frequency : str, optional
         Column of the frequencies along which the samples lie, in place of the times.
 
@@ -72,7 +75,8 @@ def read(
     """
     path = Path(path)
     names = None if columns is None else columns.values()
-    options: Any = {"missing": missing, "separator": separator, "units": [*(units or ())], "format": format}
+    text = {"separator": separator, "decimal": decimal}
+    options: Any = {"missing": missing, "units": [*(units or ())], "format": format, **text}
     found = columns_in(path, frequency or time, names, **options)
     along, table = replace(found, frequency=found.frequency or frequency is not None).converted(units)
     chosen = {name: name for name in table} if columns is None else columns
@@ -88,6 +92,7 @@ def read_csv(
     deviations: Mapping[str, float] | ArrayLike | None = None,
     *,
     separator: str = ",",
+    decimal: str = ".",
     units: Mapping[str, str] | None = None,
     missing: str = "refuse",
     wraps: Iterable[str] = (),
@@ -109,8 +114,8 @@ def read_csv(
     ...     read_csv(file, columns={"AB.end.x": "x"}).values.tolist()
     [[1.0], [0.9]]
     """
-    more: dict[str, Any] = {"units": units, "missing": missing, "wraps": wraps, "separator": separator}
-    return read(path, time, columns, deviations, format="csv", **more)
+    more: dict[str, Any] = {"units": units, "missing": missing, "wraps": wraps}
+    return read(path, time, columns, deviations, format="csv", separator=separator, decimal=decimal, **more)
 
 
 def read_parquet(

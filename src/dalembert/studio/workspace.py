@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
 
-from dalembert.errors import InputError, unknown
+from dalembert.errors import InputError, no_text, unknown
 from dalembert.files import replacing
 from dalembert.study.folder import RunFolder, find_runs
 from dalembert.study.loader import LARGEST
@@ -178,8 +178,7 @@ def as_text(content: bytes, name: str) -> str:
     try:
         return content.decode("utf-8")
     except UnicodeDecodeError as error:
-        line = content[: error.start].count(b"\n") + 1
-        raise InputError(f"{name}, line {line}: the file is not UTF-8 text") from None
+        raise InputError(no_text(name, error)) from None
 
 
 def _is_study(path: Path) -> bool:

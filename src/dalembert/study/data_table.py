@@ -58,11 +58,12 @@ class FileTable(StudyTable):
     )
     units: dict[str, str] = Field({}, description="unit of each column that is not in SI units: case1_x = 'mm'")
     separator: str = Field(",", min_length=1, max_length=1, description="of the cells of a CSV file")
+    decimal: Literal[".", ","] = Field(".", description="what stands before the decimals of a CSV file's numbers")
 
     @property
     def how(self) -> dict[str, Any]:
         """Arguments that say how the file is read."""
-        own = {"format": self.format, "units": self.units, "separator": self.separator}
+        own = {"format": self.format, "units": self.units, "separator": self.separator, "decimal": self.decimal}
         return own if self.frequency is None else {**own, "frequency": self.frequency}
 
     @property

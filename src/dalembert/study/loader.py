@@ -7,7 +7,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from dalembert.errors import InputError, unknown
+from dalembert.errors import InputError, no_text, unknown
 from dalembert.study.context import Context
 from dalembert.study.schema import study_file
 from dalembert.study.sentences import mistakes
@@ -82,8 +82,7 @@ def _read(path: Path) -> tuple[bytes, dict[str, Any]]:
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror}") from None
     except UnicodeDecodeError as error:
-        line = error.object[: error.start].count(b"\n") + 1
-        raise InputError(f"{path}, line {line}: the file is not UTF-8 text") from None
+        raise InputError(no_text(path, error)) from None
     except tomllib.TOMLDecodeError as error:
         raise InputError(f"{path}: no valid TOML: {error}") from None
     except (RecursionError, ValueError) as error:

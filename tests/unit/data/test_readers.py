@@ -40,6 +40,24 @@ def test_another_separator_and_a_byte_order_mark_are_read(tmp_path):
     assert read_csv(path, time="zeit", separator=";").values.tolist() == [[1.0], [2.0]]
 
 
+def test_decimal_commas_are_read_where_they_are_said(tmp_path):
+    path = tmp_path / "motion.csv"
+    path.write_text("t;x_lower;x_upper\n0,0;-1,5;2\n0,25;;2,5e1\n")
+    said = {"separator": ";", "decimal": ","}
+    data = read_csv(path, missing="leave-out", **said)
+    assert data.coordinate.values.tolist() == [0.0, 0.25]
+    np.testing.assert_array_equal(data.values, [[-1.5, 2.0], [np.nan, 25.0]])
+    path.write_text("t;x_lower;x_upper\n0,0;-1,5;2,5\n")
+    bands = read_bands(path, **said)
+    assert (bands.lower.tolist(), bands.upper.tolist()) == ([[-1.5]], [[2.5]])
+
+
+def test_names_of_columns_may_be_numbers(tmp_path):
+    path = tmp_path / "motion.csv"
+    path.write_text("0,1\n0.0,2.0\n0.5,3.0\n")
+    assert read_csv(path, time="0", columns={"x": "1"}).values.tolist() == [[2.0], [3.0]]
+
+
 @pytest.mark.parametrize("name", WRITERS)
 def test_every_format_gives_the_same_numbers(name, tmp_path):
     columns = WRITERS[name](tmp_path / name)

@@ -77,7 +77,7 @@ def test_what_is_too_large_or_no_text_is_refused(workspace, monkeypatch):
     monkeypatch.setattr(module, "MOST_BYTES", 3)
     with pytest.raises(InputError, match=says("'a.csv' has 4 bytes; expected at most 3")):
         workspace.put(study, "a.csv", b"1234")
-    with pytest.raises(InputError, match=says("a.toml, line 2: the file is not UTF-8 text")):
+    with pytest.raises(InputError, match=says("a.toml, line 2: the file is not UTF-8 text; save it as UTF-8")):
         as_text(b"a = 1\nb = '\xff'", "a.toml")
     monkeypatch.setattr(module, "LARGEST", 3)
     with pytest.raises(InputError, match=says("a.toml has more than 3 bytes; expected a study file")):

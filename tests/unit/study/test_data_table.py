@@ -216,3 +216,13 @@ def test_bands_are_read_in_other_units(tmp_path):
     bands = BandsTable.model_validate(given, context=Context(tmp_path)).read()
     assert bands.coordinate.values.tolist() == [0.0, 0.01]
     assert bands.upper.tolist() == [[0.002], [0.004]]
+
+
+def test_a_text_file_with_semicolons_and_decimal_commas(study, tmp_path):
+    (tmp_path / "run.csv").write_text("t;angle\n0,0;0,0\n2,0;5,0\n")
+    columns = 'columns = { "crank.angle" = "angle" }\n'
+    read = study(columns + 'separator = ";"\ndecimal = ","', file="run.csv").data()
+    assert (read.coordinate.values.tolist(), read.values.tolist()) == ([0.0, 2.0], [[0.0], [5.0]])
+    sentence = "study.toml: [data], decimal: ';' was given; expected '.' or ','"
+    with pytest.raises(InputError, match=says(sentence)):
+        study(columns + 'decimal = ";"', file="run.csv")

@@ -396,7 +396,7 @@ def test_an_error_in_the_users_file_is_placed(write, tmp_path):
     [
         (b"a = \n", "{path}: no valid TOML: Invalid value (at line 1, column 5)"),
         (b"a = 1\na = 2\n", "{path}: no valid TOML: Cannot overwrite a value (at line 2, column 6)"),
-        (b"[study]\ntitle = \"caf\xe9\"\n", "{path}, line 2: the file is not UTF-8 text"),
+        (b"[study]\ntitle = \"caf\xe9\"\n", "{path}, line 2: the file is not UTF-8 text; save it as UTF-8"),
         (b"", "study.toml: the key 'model' is missing"),
         (b"model = 3\n[simulate]\nend=1\n", "study.toml: model: 3 was given; expected a table"),
         (b"a = " + b"[" * 5000, "{path}: no valid TOML: "),

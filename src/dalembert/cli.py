@@ -1,4 +1,4 @@
-"""The command line: ``dalembert run | resume | check | list | report | studio | compile | schema``.
+"""The command line: ``dalembert new | run | resume | check | list | report | studio | compile | schema``.
 
 Exit codes: 0 done, 1 the solver could not, 2 the input is wrong, 130 stopped by the user.
 """
@@ -55,6 +55,27 @@ Version = Annotated[bool, typer.Option("--version", help="Say the version and en
 @app.callback()
 def _options(version: Version = False) -> None:
     pass
+
+
+@app.command()
+def new(
+    template: Annotated[
+        str | None, typer.Argument(metavar="TEMPLATE", help="Without it, all are listed.", show_default=False)
+    ] = None,
+    folder: Annotated[
+        Path | None, typer.Argument(metavar="FOLDER", help="Made for the study; by default as the template is called.")
+    ] = None,
+) -> None:
+    """Begin a study from a template."""
+    with _exit_codes():
+        from dalembert.study.template import begin, templates
+
+        if template is None:
+            for one in templates().values():
+                typer.echo(f"{one.name:10}{one.title}: {one.description}")
+            typer.echo("Begin with one of them by: dalembert new TEMPLATE FOLDER")
+        else:
+            typer.echo(f"run it by: dalembert run {begin(template, folder or Path(template))}")
 
 
 @app.command()

@@ -20,7 +20,7 @@ from study_documents import ODD, places, toml
 COMMAND = Path(sys.executable).with_name("dalembert")
 ROOT = Path(__file__).parents[2]
 STUDIES = ROOT / "studies"
-FILES = [*STUDIES.glob("*/*.toml"), *(ROOT / "src" / "dalembert" / "studio" / "templates").glob("*/*.toml")]
+FILES = [*STUDIES.glob("*/*.toml"), *(ROOT / "src" / "dalembert" / "study" / "templates").glob("*/*.toml")]
 KEPT = {path: path.read_text(encoding="utf-8") for path in sorted(FILES) if path.name != "expected.toml"}
 STUDY_FILES = [path for path, text in KEPT.items() if re.search(r"^\[model", text, re.M) and "[study]" in text]
 QUICK = [path for path in STUDY_FILES if path.parent.name != "patched-plate"]

@@ -63,6 +63,16 @@ def test_run_list_report(dalembert, tmp_path):
     assert dalembert("report", "runs/decay").stdout == made.stdout
 
 
+def test_a_study_from_a_template(dalembert, tmp_path):
+    listed = dalembert("new").stdout.splitlines()
+    assert listed[1].startswith("identify  Parameters from a measured motion: The drag of")
+    assert listed[-1] == "Begin with one of them by: dalembert new TEMPLATE FOLDER"
+    begun = dalembert("new", "identify", "mine/rod")
+    assert (begun.returncode, begun.stdout) == (0, "run it by: dalembert run mine/rod/rod.toml\n")
+    assert sorted(path.name for path in (tmp_path / "mine" / "rod").iterdir()) == ["motion.csv", "rod.toml"]
+    assert "in order; it identifies drag, angle" in dalembert("check", "mine/rod/rod.toml").stdout
+
+
 def test_check(dalembert):
     checked = dalembert("check", "decay.toml")
     assert checked.returncode == 0
@@ -100,6 +110,9 @@ def test_exit_code_2_if_the_input_is_wrong(dalembert, tmp_path, command):
     ("arguments", "message"),
     [
         (["run", "dekay.toml"], "unknown study file 'dekay.toml'; did you mean 'decay.toml'?"),
+        (["new", "identfy"], "unknown template 'identfy'; did you mean 'identify'?"),
+        (["new", "identify", "."], ". is there already; name another folder for the study"),
+        (["new", "motion", "decay.py/run"], "the folder decay.py/run cannot be made: Not a directory; name another"),
         (["report", "nothing"], "nothing is no run folder: it has no state.json"),
         (["run", "decay.toml", "--out", "decay.py"], "decay.py is a file; expected a folder for the run"),
         (

@@ -14,10 +14,11 @@ from dalembert.studio.figures import on_any_page, plot
 from dalembert.studio.frame import button, complain, frame
 from dalembert.studio.jobs import Jobs
 from dalembert.studio.lines import line_of
-from dalembert.studio.workspace import MOST_BYTES, Workspace, as_text, templates
+from dalembert.studio.workspace import MOST_BYTES, Workspace, as_text
 from dalembert.study import load, plan
 from dalembert.study.loader import StudyError
 from dalembert.study.study import Study
+from dalembert.study.template import templates
 
 AFTER = 0.4  # s after the last key until the text is read
 WRONG = "wrong"  # the class of lines with mistakes; frame.LOOKS
@@ -30,11 +31,11 @@ def new_page(workspace: Workspace) -> None:
         name = ui.input("Name (one is made up if this is empty)", placeholder="my-pendulum")
         name.classes("w-full max-w-md").props("outlined")
 
-        def create(text: str, beside: dict[str, bytes], otherwise: str) -> None:
+        def create(text: str, beside: dict[str, str], otherwise: str) -> None:
             try:
                 study = workspace.create(name.value or workspace.free(otherwise), text)
                 for file, content in beside.items():
-                    workspace.put(study, file, content)
+                    workspace.put(study, file, content.encode())
             except DalembertError as error:
                 complain(error)
                 return
@@ -42,9 +43,9 @@ def new_page(workspace: Workspace) -> None:
 
         ui.label("Begin with").classes("text-xl font-bold").props("role=heading aria-level=2")
         with ui.element("div").classes("grid grid-cols-1 sm:grid-cols-2 gap-3 w-full"):
-            for title, one in templates().items():
+            for one in templates().values():
                 with ui.column().classes("border rounded p-3 gap-2"):
-                    button(title, partial(create, one.text, one.beside, one.name), icon="description")
+                    button(one.title, partial(create, one.text, one.beside, one.name), icon="description")
                     ui.label(one.description).classes("text-sm")
         ui.label("or with a study file of yours").classes("text-xl font-bold").props("role=heading aria-level=2")
 

@@ -3,7 +3,6 @@
 import re
 import tomllib
 from dataclasses import dataclass
-from importlib.resources import files
 from pathlib import Path
 
 from dalembert.errors import InputError, no_text, unknown
@@ -16,7 +15,6 @@ NAME = re.compile(r"\w[\w .-]{0,99}")
 """What a study, a file or a run may be called: no separators of folders, and nothing that begins with a dot."""
 MOST_BYTES = 200_000_000
 """Of an uploaded file."""
-TEMPLATES = files("dalembert.studio") / "templates"
 
 
 @dataclass(frozen=True)
@@ -132,37 +130,6 @@ def checked(name: str) -> str:
             "letter or digit first, and at most 100 of them"
         )
     return name
-
-
-@dataclass(frozen=True)
-class Template:
-    """A study to begin with.
-
-    Parameters
-    ----------
-    name : str
-        What a study made from it is called, unless it is given another name.
-    description : str
-    text : str
-    beside : dict of str to bytes
-        Files beside it.
-    """
-
-    name: str
-    description: str
-    text: str
-    beside: dict[str, bytes]
-
-
-def templates() -> dict[str, Template]:
-    """Studies to begin with, by what they are for."""
-    found = {}
-    for folder in sorted(TEMPLATES.iterdir(), key=lambda entry: entry.name):
-        text = (folder / "study.toml").read_text(encoding="utf-8")
-        beside = {entry.name: entry.read_bytes() for entry in folder.iterdir() if entry.name != "study.toml"}
-        about = tomllib.loads(text)["study"]
-        found[about["title"]] = Template(folder.name.partition("-")[2], about["description"], text, beside)
-    return found
 
 
 def as_text(content: bytes, name: str) -> str:

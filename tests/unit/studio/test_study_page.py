@@ -2,9 +2,9 @@
 
 from dalembert.studio.lines import line_of
 from dalembert.studio.study_page import _read
-from dalembert.studio.workspace import templates
+from dalembert.study.template import templates
 
-TEXT = templates()["A motion of a mechanism"].text
+TEXT = templates()["motion"].text
 
 
 def lines_of(tmp_path, text: str) -> list[tuple[str, str]]:

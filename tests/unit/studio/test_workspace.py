@@ -4,8 +4,9 @@ import pytest
 
 from dalembert.errors import InputError
 from dalembert.studio import workspace as module
-from dalembert.studio.workspace import Workspace, as_text, templates
+from dalembert.studio.workspace import Workspace, as_text
 from dalembert.study import load
+from dalembert.study.template import templates
 from support import says
 
 BAD = [
@@ -86,11 +87,10 @@ def test_what_is_too_large_or_no_text_is_refused(workspace, monkeypatch):
         workspace.create("other", "1234")
 
 
-@pytest.mark.parametrize("title", templates())
-def test_a_template_is_a_study_in_order(workspace, title):
-    one = templates()[title]
+@pytest.mark.parametrize("one", templates().values(), ids=lambda one: one.name)
+def test_a_template_is_a_study_in_order(workspace, one):
     study = workspace.create(one.name, one.text)
     assert workspace.free(one.name) == f"{one.name}-2"
     for name, content in one.beside.items():
-        workspace.put(study, name, content)
-    assert load(workspace.study(study)).title == title
+        workspace.put(study, name, content.encode())
+    assert load(workspace.study(study)).title == one.title

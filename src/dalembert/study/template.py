@@ -1,0 +1,67 @@
+"""Studies to begin with."""
+
+import tomllib
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
+
+from dalembert.errors import InputError, unknown
+from dalembert.files import write_text
+
+TEMPLATES = files("dalembert.study") / "templates"
+
+
+@dataclass(frozen=True)
+class Template:
+    """A study to begin with.
+
+    Parameters
+    ----------
+    name : str
+        What a study made from it is called, unless it is given another name.
+    title, description : str
+    text : str
+    beside : dict of str to str
+        Files beside it.
+    """
+
+    name: str
+    title: str
+    description: str
+    text: str
+    beside: dict[str, str]
+
+
+def templates() -> dict[str, Template]:
+    """Studies to begin with, by their names."""
+    found = {}
+    for folder in sorted(TEMPLATES.iterdir(), key=lambda entry: entry.name):
+        texts = {entry.name: entry.read_text(encoding="utf-8") for entry in folder.iterdir()}
+        text, name = texts.pop("study.toml"), folder.name.partition("-")[2]
+        about = tomllib.loads(text)["study"]
+        found[name] = Template(name, about["title"], about["description"], text, texts)
+    return found
+
+
+def begin(template: str, folder: Path) -> Path:
+    """Write a template's files into a new folder; the path of its study, which has the folder's name.
+
+    Raises
+    ------
+    InputError
+        For a template that there is not, and a folder that is there already or cannot be made.
+    """
+    known = templates()
+    if template not in known:
+        raise InputError(unknown("template", template, known))
+    try:
+        folder.mkdir(parents=True)
+    except FileExistsError:
+        raise InputError(f"{folder} is there already; name another folder for the study") from None
+    except OSError as error:
+        raise InputError(f"the folder {folder} cannot be made: {error.strerror}; name another") from None
+    study = folder / f"{folder.resolve().name}.toml"
+    write_text(study, known[template].text)
+    for name, text in known[template].beside.items():
+        write_text(folder / name, text)
+    return study

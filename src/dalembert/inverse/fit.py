@@ -8,6 +8,7 @@ import numpy as np
 
 from dalembert.data import Measurements
 from dalembert.errors import InputError
+from dalembert.inverse.doubts import doubts
 from dalembert.inverse.estimate import Estimate, Identifiability
 from dalembert.inverse.events import StartEnd, Step
 from dalembert.inverse.experiment_fit import ExperimentFit, experiment_fit
@@ -116,6 +117,15 @@ class Fit(Result):
         told = Estimate(self.deviations, self.correlation, self.singular_values, self.directions)
         found = sentences(self.parameters, self.values, told)
         return Identifiability(self.singular_values, self.directions, found, self.deviations, self.correlation)
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """Why the values are to be doubted although the search ended well, each reason in a few words.
+
+        The residuals are no mere noise or too large for the given deviations, another minimum explains the data as
+        well, or parameters sit on a bound or are not told, or not apart; empty where nothing speaks against them.
+        """
+        return doubts(self.status, self.identifiability())
 
     def intervals(self, level: float = 0.95) -> dict[str, tuple[float, float]]:
         """Interval of each parameter that holds its true value with a probability, by name: value ∓ q × deviation.

@@ -3,6 +3,7 @@
 import numpy as np
 
 from dalembert.inverse.descent import End
+from dalembert.inverse.doubts import EXCESSIVE, RIVALLED, UNEXPLAINED
 from dalembert.inverse.noise import NoiseFloor, autocorrelation, random_residuals, signal
 from dalembert.inverse.problem import Problem
 from dalembert.inverse.rivals import rivals
@@ -22,7 +23,7 @@ def status(problem: Problem, best: End, response: np.ndarray, floor: NoiseFloor)
     if alike:
         worse = (alike[0].fitness - best.fitness) / best.fitness
         parts.append(
-            f"Another minimum, at {named(problem.model, alike[0].end)}, explains the data as well (its misfit is "
+            f"{RIVALLED} {named(problem.model, alike[0].end)}, explains the data as well (its misfit is "
             f"{100 * worse:.2g} % larger, less than the noise can tell); measure another channel, or narrow the bounds."
         )
     failed = len(problem.journal.failures)
@@ -44,12 +45,12 @@ def status(problem: Problem, best: End, response: np.ndarray, floor: NoiseFloor)
     elif not random_residuals(residual, problem.weights.shape, problem.data.present):
         together = autocorrelation(residual, problem.weights.shape, problem.data.present)
         parts.append(
-            f"The residuals are no mere noise, neighbouring samples correlate by {together:.2f}; look whether the "
+            f"{UNEXPLAINED}, neighbouring samples correlate by {together:.2f}; look whether the "
             "model lacks something, the bounds leave the true values out, or more starts find a better minimum."
         )
     elif floor.source == "given deviations":
         parts.append(
-            f"The misfit is {np.sqrt(best.fitness / floor.fitness):.2g} times what the given deviations allow; look "
+            f"The misfit is {np.sqrt(best.fitness / floor.fitness):.2g} times {EXCESSIVE}; look "
             "whether they are too small, the model lacks something, or more starts find a better minimum."
         )
     else:

@@ -40,6 +40,17 @@ def quantity(channel: str, unit: str = "") -> str:
     return labelled(*_known(channel, unit))
 
 
+def unit(channel: str, given: str = "") -> str:
+    """Unit of a channel; the given one if its name does not tell it.
+
+    Examples
+    --------
+    >>> unit("AB.end.x"), unit("A.rx peak"), unit("gauge 7", "V"), unit("gauge 7")
+    ('m', 'rad', 'V', '')
+    """
+    return _known(channel, given)[1]
+
+
 def derivative(channel: str, along: str, unit: str = "") -> str:
     """Axis label of a channel's derivative by something that has the unit ``along``.
 

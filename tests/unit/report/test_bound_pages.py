@@ -28,6 +28,7 @@ def test_bounds_have_their_report(tmp_path):
     assert float(x[1]) == np.max(result.upper - result.lower)
     assert (float(x[2]), float(x[4])) == (2.0, 2.5e-6)
     assert float(x[5]) == 20 / 41  # of the samples, at both bounds
+    assert x[6] == "m"
     samples = np.array(page.table("bounds")[1:], dtype=float)
     np.testing.assert_array_equal(samples[:, 1::2], result.lower)
     np.testing.assert_array_equal(samples[:, 2::2], result.upper)
@@ -38,7 +39,7 @@ def test_bounds_of_a_method_that_knows_no_error_and_no_places(tmp_path):
     result = propagation("scan", "inner bound")
     result.at_lower = result.at_upper = None
     page = read_page(report(result, tmp_path / "a.html"))
-    assert page.table("widths")[0] == ["channel", "largest width", "at time (s)", "mean width"]
+    assert page.table("widths")[0] == ["channel", "largest width", "at time (s)", "mean width", "unit"]
     assert "estimated error" not in page.text
 
 
@@ -126,6 +127,7 @@ def test_residuals_of_the_bands_are_those_of_the_true_runs(intervals):
     rows = intervals.table("band-residuals")
     residual = (fit.checked_lower - fit.bands.lower)[:, 0]
     assert rows[1][:2] == ["AB.end.x", "lower"]
+    assert (rows[0][-1], rows[1][-1]) == ("unit", "m")
     np.testing.assert_allclose(float(rows[1][2]), np.sqrt(np.mean(residual**2)))
     np.testing.assert_allclose(float(rows[1][3]), np.abs(residual).max())
     samples = np.array(intervals.table("bands")[1:], dtype=float)

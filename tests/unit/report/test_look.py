@@ -24,6 +24,13 @@ def test_text_and_lines_can_be_read_on_their_ground(palette):
     assert all(_contrast(colour, palette.surface) >= 3 for colour in palette.series)
 
 
+@pytest.mark.parametrize("palette", [LIGHT, DARK])
+def test_a_verdict_can_be_read_on_the_page_and_its_sign_and_border_be_seen(palette):
+    assert _contrast(palette.ink, palette.page) >= 7
+    green, amber, orange = (palette.series[place] for place in (2, 4, 1))
+    assert all(_contrast(colour, palette.page) >= 3 for colour in (green, amber, orange))
+
+
 def test_each_light_colour_has_one_dark_counterpart():
     assert len(exchanged()) == len(LIGHT.colours) == len(set(LIGHT.colours))
 

@@ -177,6 +177,33 @@ def test_a_fit_that_failed_says_so(tmp_path):
     assert any(attrs.get("class") == "verdict bad" for _, attrs in page.tags)
 
 
+def test_a_fit_that_ended_well_without_doubts_is_identified(tmp_path):
+    page = read_page(report(fit(), tmp_path / "a.html"))
+    assert "✓ identified" in page.text
+    assert "with doubts" not in page.text
+    assert any(attrs.get("class") == "verdict good" for _, attrs in page.tags)
+
+
+def test_doubts_stand_beside_the_verdict(tmp_path):
+    result = fit()
+    result.doubts = ("'theta2' sits on its upper bound 0.65", "The residuals are <no> mere noise")
+    page = read_page(report(result, tmp_path / "a.html"))
+    assert "? identified, with doubts" in page.text
+    assert all(doubt in page.text for doubt in result.doubts)
+    assert any(attrs.get("class") == "verdict doubtful" for _, attrs in page.tags)
+    result.success = False
+    page = read_page(report(result, tmp_path / "a.html"))
+    assert "! not identified" in page.text
+    assert not any(attrs.get("class") == "doubts" for _, attrs in page.tags)
+
+
+def test_residuals_have_the_units_of_their_channels_where_names_tell_them(tmp_path):
+    rows = read_page(report(fit(), tmp_path / "a.html")).table("residuals")
+    assert [row[-1] for row in rows] == ["unit", "m", "m"]
+    rows = read_page(report(fit(channels=("gauge 1", "gauge 2")), tmp_path / "a.html")).table("residuals")
+    assert rows[0][-1] == "deviation of the data"
+
+
 def test_a_sweep_has_its_report(tmp_path):
     page = read_page(report(sweep(), tmp_path / "sweep.html", title="Sensitivity"))
     assert page.table("sweep-1")[0] == [

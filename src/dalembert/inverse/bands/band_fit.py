@@ -8,6 +8,7 @@ import numpy as np
 
 from dalembert.data import Bands
 from dalembert.intervals import Box
+from dalembert.inverse.doubts import doubts
 from dalembert.inverse.estimate import Estimate, Identifiability
 from dalembert.inverse.events import StartEnd, Step
 from dalembert.parameters import Parameters
@@ -123,6 +124,11 @@ class BandFit(Result):
         from dalembert.inverse.bands.telling import sentences
 
         return Identifiability(self.singular_values, self.directions, sentences(self))
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """Why the intervals are to be doubted although the search ended well, each reason in a few words."""
+        return doubts(self.status, self.identifiability())
 
     def summary(self) -> str:
         """The result as a text table with its status."""

@@ -8,7 +8,7 @@ from dalembert.report.charts.methods import reference
 from dalembert.report.digits import counted, interval, shown
 from dalembert.report.needs import BandFitLike, ComparisonLike, ParameterSetLike, PropagationLike
 from dalembert.report.quantities import labelled
-from dalembert.report.sections.headline import MOST_VALUES, Fact, Headline
+from dalembert.report.sections.headline import MOST_VALUES, Fact, Headline, of_identified
 
 
 def of_propagation(result: PropagationLike, title: str | None, notes: Sequence[str]) -> Headline:
@@ -55,8 +55,7 @@ def of_band_fit(fit: BandFitLike, title: str | None, notes: Sequence[str]) -> He
         *([] if checked is None else [Fact("fitness by true runs", shown(checked, digits=3))]),
         Fact("simulations", counted(fit.simulations)),
     ]
-    verdict = "identified" if fit.success else "not identified"
-    return Headline(title or "Identified intervals", verdict, fit.success, fit.status, facts, notes)
+    return of_identified(fit, title or "Identified intervals", facts, notes)
 
 
 def of_set(found: ParameterSetLike, title: str | None, notes: Sequence[str]) -> Headline:

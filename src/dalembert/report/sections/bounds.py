@@ -9,10 +9,10 @@ from dalembert.report import charts
 from dalembert.report.look import plain
 from dalembert.report.needs import BoxLike, PropagationLike
 from dalembert.report.plot import Plot
-from dalembert.report.quantities import by_quantity, labelled
+from dalembert.report.quantities import by_quantity, labelled, unit
 from dalembert.report.sections.samples import samples
 from dalembert.report.sections.section import Section
-from dalembert.report.table import Cell, Table, cell
+from dalembert.report.table import Cell, Table, cell, noted
 
 MEANING = {
     "inner bound": "Runs of the model within the box reach both sides of the band; the true one may be wider",
@@ -59,13 +59,14 @@ class Bounds(Section):
                 cell(float(width[:, column].mean())),
                 *([] if result.error is None else [cell(float(result.error[:, column].max()), digits=2)]),
                 *([] if corners is None else [_percent(corners[column])]),
+                cell(unit(channel, result.units[column])),
             )
             for column, channel in enumerate(result.channels)
         ]
         columns = ["channel", "largest width", labelled(f"at {along.name}", along.unit), "mean width"]
         columns += [] if result.error is None else ["estimated error"]
         columns += [] if corners is None else ["taken at corners of the box"]
-        return Table("widths", "Widths, in the units of their channels", columns, rows)
+        return noted(Table("widths", "Widths", [*columns, "unit"], rows))
 
     @property
     def samples(self) -> Table | None:

@@ -9,10 +9,10 @@ from dalembert.report import charts
 from dalembert.report.look import LIGHT, plain
 from dalembert.report.needs import FitLike, ResponseLike
 from dalembert.report.plot import Plot
-from dalembert.report.quantities import by_quantity, labelled
+from dalembert.report.quantities import by_quantity, labelled, unit
 from dalembert.report.sections.samples import samples
 from dalembert.report.sections.section import Section
-from dalembert.report.table import Cell, Table, cell
+from dalembert.report.table import Cell, Table, cell, noted
 
 HOW = "Lines are computed with the identified values, circles are data; below, computed minus measured."
 SHADED = "The shaded part was not fitted."
@@ -39,8 +39,8 @@ class Comparison(Section):
     def table(self) -> Table:
         rows = [tuple(row) for row in residual_cells(self.fit)]
         at = labelled(f"largest at {self.fit.data.coordinate.name}", self.fit.data.coordinate.unit)
-        columns = ("channel", "rms residual", "largest residual", at, "deviation of the data")
-        return Table("residuals", "Residuals, in the units of their channels", columns, rows)
+        columns = ("channel", "rms residual", "largest residual", at, "deviation of the data", "unit")
+        return noted(Table("residuals", "Residuals", columns, rows))
 
     @property
     def samples(self) -> Table | None:
@@ -81,7 +81,7 @@ def first_predicted(compared: ResponseLike) -> float | None:
 
 
 def residual_cells(compared: ResponseLike) -> list[list[Cell]]:
-    """Cells of each channel: its name, rms and largest residual, where that is, and the deviation of the data."""
+    """Cells of each channel: its name, rms and largest residual, where that is, deviation of the data, and unit."""
     data = compared.data
     residuals = np.where(np.isfinite(compared.residuals), compared.residuals, 0.0)  # 0 where a value is missing
     counts = np.count_nonzero(np.isfinite(data.values), axis=0)
@@ -93,6 +93,7 @@ def residual_cells(compared: ResponseLike) -> list[list[Cell]]:
             cell(float(np.abs(residuals[:, column]).max()), digits=4),
             cell(float(data.coordinate.values[np.abs(residuals[:, column]).argmax()])),
             cell(float(deviations[column])),
+            cell(unit(channel)),
         ]
         for column, channel in enumerate(data.channels)
     ]

@@ -44,9 +44,10 @@ class Experiments(Section):
             "largest residual",
             "largest at",
             "deviation of the data",
+            "unit",
             "note",
         )
-        return noted(Table("residuals", "Residuals, in the units of their channels", columns, rows))
+        return noted(Table("residuals", "Residuals", columns, rows))
 
     @property
     def samples(self) -> list[tuple[str, Table]]:

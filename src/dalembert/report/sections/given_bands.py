@@ -10,10 +10,10 @@ from dalembert.report.charts.residual_bands import reproduced
 from dalembert.report.look import plain
 from dalembert.report.needs import BandFitLike
 from dalembert.report.plot import Plot
-from dalembert.report.quantities import by_quantity, labelled
+from dalembert.report.quantities import by_quantity, labelled, unit
 from dalembert.report.sections.samples import samples
 from dalembert.report.sections.section import Section
-from dalembert.report.table import Table, cell
+from dalembert.report.table import Table, cell, noted
 
 
 @dataclass(frozen=True)
@@ -53,11 +53,12 @@ class GivenBands(Section):
                         cell(float(np.sqrt(np.mean(residual**2))), digits=3),
                         cell(float(residual.max()), digits=3),
                         cell(float(bands.coordinate.values[residual.argmax()])),
+                        cell(unit(channel)),
                     )
                 )
         at = labelled(f"largest at {bands.coordinate.name}", bands.coordinate.unit)
-        columns = ("channel", "bound", "rms residual", "largest residual", at)
-        return Table("band-residuals", "Residuals of the bounds, in the units of their channels", columns, rows)
+        columns = ("channel", "bound", "rms residual", "largest residual", at, "unit")
+        return noted(Table("band-residuals", "Residuals of the bounds", columns, rows))
 
     @property
     def samples(self) -> Table | None:

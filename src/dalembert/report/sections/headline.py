@@ -7,7 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from dalembert.report.digits import counted, shown, with_deviation
-from dalembert.report.needs import FitLike, SweepLike, TrajectoryLike
+from dalembert.report.needs import FitLike, IdentifiedLike, SweepLike, TrajectoryLike
 from dalembert.report.needs_integrators import WorkPrecisionLike
 from dalembert.report.quantities import labelled
 from dalembert.report.sections.section import Section
@@ -27,7 +27,7 @@ class Fact:
 
 @dataclass(frozen=True)
 class Headline(Section):
-    """Title, verdict with advice, and the few numbers that matter."""
+    """Title, verdict with advice and reasons to doubt it, and the few numbers that matter."""
 
     name: ClassVar[str] = "headline"
     heading: ClassVar[str] = "Result"
@@ -37,6 +37,12 @@ class Headline(Section):
     status: str
     facts: Sequence[Fact]
     notes: Sequence[str] = ()
+    doubts: Sequence[str] = ()
+
+    @property
+    def badge(self) -> str:
+        """How the verdict is shown: ``"good"``, ``"doubtful"`` or ``"bad"``."""
+        return "bad" if not self.success else "doubtful" if self.doubts else "good"
 
 
 def of_fit(fit: FitLike, title: str | None, notes: Sequence[str]) -> Headline:
@@ -52,8 +58,14 @@ def of_fit(fit: FitLike, title: str | None, notes: Sequence[str]) -> Headline:
         Fact("simulations", counted(fit.simulations)),
         *([Fact("starts converged", f"{ended} of {len(fit.starts)}")] if len(fit.starts) > 1 else []),
     ]
-    verdict = "identified" if fit.success else "not identified"
-    return Headline(title or "Identified parameters", verdict, fit.success, fit.status, facts, notes)
+    return of_identified(fit, title or "Identified parameters", facts, notes)
+
+
+def of_identified(fit: IdentifiedLike, title: str, facts: Sequence[Fact], notes: Sequence[str]) -> Headline:
+    """Headline of something identified, with what speaks against it."""
+    doubts = tuple(getattr(fit, "doubts", ())) if fit.success else ()
+    verdict = "not identified" if not fit.success else "identified, with doubts" if doubts else "identified"
+    return Headline(title, verdict, fit.success, fit.status, facts, notes, doubts)
 
 
 def of_trajectory(trajectory: TrajectoryLike, title: str | None, notes: Sequence[str]) -> Headline:

@@ -12,6 +12,10 @@ from dalembert.report.plot import Plot
 from dalembert.report.sections.section import Section
 from dalembert.report.table import Table, cell
 
+GREW = "Fewer samples were fitted first: a line begins where all are compared, its simulations counting those before."
+LEAST_SQUARES = ("LeastSquares", "ResponseSensitivity")
+"""Methods whose horizon may grow."""
+
 
 @dataclass(frozen=True)
 class Search(Section):
@@ -23,8 +27,9 @@ class Search(Section):
 
     @property
     def plots(self) -> tuple[Plot, ...]:
-        come = Plot("convergence", charts.convergence(self.fit), "One line a start; the winning one in colour.")
-        plots = [come]
+        lines = "One line a start; the winning one in colour."
+        come = f"{lines} {GREW}" if grew(self.fit) else lines
+        plots = [Plot("convergence", charts.convergence(self.fit), come)]
         if len(self.fit.starts) > 1:
             ends = "Starts in order of their final fitness; a flat step is a minimum that many starts lead to."
             plots.append(Plot("starts", charts.starts(self.fit), ends))
@@ -58,3 +63,11 @@ class Search(Section):
             for number, start in ((number, fit.starts[number]) for number in ranked(fit))
         ]
         return Table("starts", "Where each start ended, best first", columns, rows)
+
+
+def grew(fit: IdentifiedLike) -> bool:
+    """Whether the horizon of the first start grew: more was simulated than the one linearised run of a first step."""
+    facts = fit.provenance
+    asked = facts.get("horizon") == "growing" and facts.get("method", {}).get("name") in LEAST_SQUARES
+    first = next((step.simulations for step in fit.history if step.start == 0), 0)
+    return asked and getattr(fit, "nodes", None) is None and first > 1 + len(fit.parameters)

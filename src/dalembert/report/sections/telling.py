@@ -15,7 +15,7 @@ MOST_BESIDE = 3
 
 @dataclass(frozen=True)
 class Telling(Section):
-    """Sentences on identifiability, singular values and correlation."""
+    """Sentences on identifiability; of several unknowns, singular values and correlation."""
 
     name: ClassVar[str] = "telling"
     heading: ClassVar[str] = "What the data tell"
@@ -30,6 +30,8 @@ class Telling(Section):
 
     @property
     def plots(self) -> tuple[Plot, ...]:
+        if len(unknowns(self.fit)) == 1:
+            return ()
         pairs = "Near 1 or −1, the data tell a combination of the two parameters but not each of them."
         heat = Plot("correlation", charts.correlation(self.fit), pairs)
         return (heat,) if self.spectrum is None else (heat, self.spectrum)

@@ -1,0 +1,28 @@
+"""Why an answer that the search found is to be doubted, each reason in a few words."""
+
+import re
+
+import numpy as np
+
+from dalembert.inverse.estimate import Identifiability
+
+UNEXPLAINED = "The residuals are no mere noise"
+RIVALLED = "Another minimum, at"
+EXCESSIVE = "what the given deviations allow"
+NO_BOX = "No box of these parameters has these bands"
+AGAINST = (UNEXPLAINED, RIVALLED, EXCESSIVE, NO_BOX)
+"""Words of the sentences of a status that speak against the answer."""
+
+
+def doubts(status: str, told: Identifiability) -> tuple[str, ...]:
+    """Reasons from the status, then parameters on a bound, untold or not told apart; each sentence without its advice.
+
+    Examples
+    --------
+    >>> told = Identifiability(np.ones(1), np.eye(1), ("'k' sits on its upper bound 2; widen the bound.",))
+    >>> doubts("Converged. The residuals are no mere noise, neighbours correlate by 0.93; look at the model.", told)
+    ('The residuals are no mere noise, neighbours correlate by 0.93', "'k' sits on its upper bound 2")
+    """
+    against = [sentence for sentence in re.split(r"(?<=\.) ", status) if any(words in sentence for words in AGAINST)]
+    known = bool(np.all(np.isfinite(told.singular_values)))  # without sensitivities nothing is found wrong
+    return tuple(re.split(r"[;:] | \(", sentence)[0] for sentence in (*against, *(told.sentences if known else ())))

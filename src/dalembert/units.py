@@ -6,6 +6,9 @@ from functools import cache
 
 from dalembert.errors import InputError
 
+# Units of a structure's degrees of freedom by their direction: displacements, rotations, twist, modal coordinate.
+OF_DIRECTION = {"x": "m", "y": "m", "z": "m", "rx": "rad", "ry": "rad", "rz": "rad", "rxy": "1/m", "q": "m √kg"}
+
 # What a unit measures, and an example that a user may write in another unit.
 KNOWN = {
     "m": ("length", "400 mm"),
@@ -185,3 +188,12 @@ def _registry():
     import pint  # a third of a second that only a study with unit strings pays
 
     return pint.UnitRegistry()
+
+
+def unit_of(dof: str) -> str:
+    """Unit of a degree of freedom, by its direction; m of a name without one.
+
+    >>> unit_of("A.x"), unit_of("A.ry"), unit_of("m2")
+    ('m', 'rad', 'm')
+    """
+    return OF_DIRECTION.get(dof.rpartition(".")[2], "m")

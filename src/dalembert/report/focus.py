@@ -6,19 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from dalembert.report.needs_frequency import CurveFamilyLike, FrequencyCurveLike
+from dalembert.units import OF_DIRECTION, unit_of
 
-UNITS = {"x": "m", "y": "m", "z": "m", "rx": "rad", "ry": "rad", "rz": "rad", "rxy": "1/m", "q": "m √kg"}
 MOST = 6
 """Lines that a figure shows unless more are named."""
-
-
-def unit_of(dof: str) -> str:
-    """Unit of a degree of freedom, by its direction.
-
-    >>> unit_of("A.x"), unit_of("A.ry")
-    ('m', 'rad')
-    """
-    return UNITS.get(dof.rpartition(".")[2], "m")
 
 
 def size_label(kind: str) -> str:
@@ -64,7 +55,7 @@ class Look:
 
 def movers(curve: FrequencyCurveLike, most: int = MOST) -> tuple[str, ...]:
     """The degrees of freedom that move most, by their rms; displacements before rotations and modes."""
-    kinds = [[dof for dof in curve.dofs if unit_of(dof) == unit] for unit in dict.fromkeys(UNITS.values())]
+    kinds = [[dof for dof in curve.dofs if unit_of(dof) == unit] for unit in dict.fromkeys(OF_DIRECTION.values())]
     own = next(filter(None, kinds), list(curve.dofs))
     return foremost({dof: float(np.nanmax(curve.amplitude(dof, "rms")[curve.converged])) for dof in own}, most)
 

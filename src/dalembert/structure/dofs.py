@@ -5,8 +5,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from dalembert.errors import InputError, unknown
+from dalembert.units import OF_DIRECTION
 
-DIRECTIONS = ("x", "y", "z", "rx", "ry", "rz", "rxy", "q")
+DIRECTIONS = tuple(OF_DIRECTION)
 """Displacements, rotations, the twist ∂²w/∂x∂y of a plate, and a modal coordinate."""
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from dalembert.results import Result
+from dalembert.units import unit_of
 from dalembert.vibration.amplitudes import Amplitude, observed_column
 from dalembert.vibration.storage import fields_of, stored
 
@@ -113,7 +114,7 @@ class Backbone(Result):
             ranges = [
                 f"{name} {values[found].min():.6g} to {values[found].max():.6g}{unit}"
                 for name, values, unit in (
-                    ("amplitudes", self.amplitudes, " m"),
+                    ("amplitudes", self.amplitudes, f" {unit_of(self.dof)}"),
                     ("frequencies", self.frequencies, " Hz"),
                     ("damping ratios", self.damping, ""),
                     ("energies", self.energies, " J"),
@@ -121,13 +122,13 @@ class Backbone(Result):
             ]
             lines.append(", ".join(ranges))
         if not found.all():
-            lost = ", ".join(f"{value:.6g} m" for value in self.amplitudes[~found][:5])
+            lost = ", ".join(f"{value:.6g} {unit_of(self.dof)}" for value in self.amplitudes[~found][:5])
             lines.append(f"not found: {lost}")
         return "\n".join(lines)
 
     def to_xarray(self) -> "Dataset":
         """Everything as an :class:`xarray.Dataset`, with units as attributes."""
-        return stored(self, _DIMENSIONS, _UNITS, _NAMES)
+        return stored(self, _DIMENSIONS, {**_UNITS, "amplitudes": unit_of(self.dof)}, _NAMES)
 
     @classmethod
     def from_xarray(cls, dataset: "Dataset") -> "Backbone":

@@ -10,6 +10,7 @@ from scipy.optimize import minimize_scalar
 
 from dalembert.errors import InputError, unknown
 from dalembert.results import Result
+from dalembert.units import unit_of
 from dalembert.vibration.amplitudes import Amplitude, observed_column
 from dalembert.vibration.fourier import synthesis
 from dalembert.vibration.storage import fields_of, stored
@@ -215,7 +216,7 @@ class FrequencyCurve(Result):
             lines += self._bifurcations()
             for dof in self.dofs[:8]:
                 peak = self.peak(dof)
-                lines.append(f"{dof}: largest {peak.amplitude:.6g} m at {peak.frequency:.6g} Hz")
+                lines.append(f"{dof}: largest {peak.amplitude:.6g} {unit_of(dof)} at {peak.frequency:.6g} Hz")
         return "\n".join(lines)
 
     def _bifurcations(self) -> list[str]:

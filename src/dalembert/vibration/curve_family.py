@@ -9,6 +9,7 @@ import numpy as np
 
 from dalembert.errors import InputError
 from dalembert.results import Result
+from dalembert.units import unit_of
 from dalembert.vibration.curve import FrequencyCurve, Peak
 
 if TYPE_CHECKING:
@@ -133,7 +134,8 @@ class CurveFamily(Result):
             peaks, more = self.peaks(dof), 0.0 - self.reduction(dof)
             lines.append(f"{dof}: smallest peak at {self.parameter} = {_quantity(self.best(dof), self.unit)}")
             lines += [
-                f"  {_quantity(value, self.unit)}: {peak.amplitude:.6g} m at {peak.frequency:.6g} Hz ({part:+.1%})"
+                f"  {_quantity(value, self.unit)}: {_quantity(peak.amplitude, unit_of(dof))} at "
+                f"{peak.frequency:.6g} Hz ({part:+.1%})"
                 for value, peak, part in zip(self.values, peaks, more, strict=True)
             ]
         return "\n".join(lines)

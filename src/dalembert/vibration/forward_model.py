@@ -10,6 +10,7 @@ from dalembert.errors import InputError, SolveError, told
 from dalembert.forward import Channel, Coordinate, Responses, ensemble
 from dalembert.forward.builders import cores, inexact, restructured
 from dalembert.parameters import Parameter, Parameters
+from dalembert.units import unit_of
 from dalembert.vibration.amplitudes import Amplitude
 from dalembert.vibration.continuation import at_frequencies
 from dalembert.vibration.curve import FrequencyCurve
@@ -91,7 +92,7 @@ class FrequencyResponse:
     @property
     def channels(self) -> tuple[Channel, ...]:
         """Channels with their units."""
-        return tuple(Channel(name, "m") for name in self.channel_names)
+        return tuple(Channel(name, unit_of(name.partition(" ")[0])) for name in self.channel_names)
 
     @property
     def coordinate(self) -> Coordinate:

@@ -8,6 +8,7 @@ import numpy as np
 
 from dalembert.errors import InputError, unknown
 from dalembert.results import Result, facts_of, plain_facts
+from dalembert.units import unit_of
 from dalembert.vibration.amplitudes import PHASES, Amplitude, observed_column
 from dalembert.vibration.storage import fields_of, stored
 
@@ -120,7 +121,7 @@ class PeriodicMotion(Result):
             f"{state} after {self.periods} periods of {len(self.times)} steps at {self.frequency:.6g} Hz; "
             f"the last one changed {self.residual:.1e} of the motion"
         ]
-        lines += [f"{dof}: largest {self.amplitude(dof):.6g} m" for dof in self.dofs[:8]]
+        lines += [f"{dof}: largest {self.amplitude(dof):.6g} {unit_of(dof)}" for dof in self.dofs[:8]]
         return "\n".join(lines)
 
     def to_xarray(self) -> "Dataset":

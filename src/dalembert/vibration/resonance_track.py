@@ -8,6 +8,7 @@ import numpy as np
 
 from dalembert.errors import InputError
 from dalembert.results import Result
+from dalembert.units import unit_of
 from dalembert.vibration.storage import Dimensions, fields_of, stored
 
 if TYPE_CHECKING:
@@ -92,7 +93,7 @@ class ResonanceTrack(Result):
         if found.any():
             ends = ("smallest", np.nanargmin(self.amplitudes)), ("largest", np.nanargmax(self.amplitudes))
             for word, place in ends:
-                peak = f"{self.amplitudes[place]:.6g} m at {self.frequencies[place]:.6g} Hz"
+                peak = f"{self.amplitudes[place]:.6g} {unit_of(self.dof)} at {self.frequencies[place]:.6g} Hz"
                 where = f"{self.parameter} is {self.values[place]:.6g} {self.unit}".rstrip()
                 lines.append(f"{word} {peak}, where {where}")
         if not found.all():
@@ -102,7 +103,7 @@ class ResonanceTrack(Result):
 
     def to_xarray(self) -> "Dataset":
         """Everything as an :class:`xarray.Dataset`, with units as attributes."""
-        units = {"values": self.unit, "frequencies": "Hz", "amplitudes": "m"}
+        units = {"values": self.unit, "frequencies": "Hz", "amplitudes": unit_of(self.dof)}
         return stored(self, _DIMENSIONS, units, _NAMES)
 
     @classmethod

@@ -129,14 +129,17 @@ def resume(run: Run, cluster: Cluster = None) -> None:
 def check(study: StudyFile) -> None:
     """Check a study, and say what it would run, about how many simulations and how long."""
     with _exit_codes():
+        from dalembert.errors import ModelError
         from dalembert.study import load, plan
         from dalembert.study.runner import foreseen, takes
+        from dalembert.study.table import placed
 
         read = load(study)
-        typer.echo(f"{study}: in order; it {plan(read)}")
-        typer.echo(takes(read))
-        for sentence in foreseen(read):
-            typer.echo(sentence)
+        with placed(study.name), placed(study.name, ModelError):
+            typer.echo(f"{study}: in order; it {plan(read)}")
+            typer.echo(takes(read))
+            for sentence in foreseen(read):
+                typer.echo(sentence)
 
 
 @app.command("list")
@@ -221,10 +224,15 @@ def _ended(folder: "RunFolder", outcome: "Outcome") -> None:
 
 
 def _folder(run: Path) -> "RunFolder":
-    from dalembert.study.folder import RunFolder
+    from dalembert.errors import InputError, unknown
+    from dalembert.study.folder import RunFolder, find_runs
 
     named = RunFolder(Path("runs") / run)
-    return named if not run.exists() and named.is_run else RunFolder(run)
+    if run.exists() or named.is_run:
+        return named if not run.exists() else RunFolder(run)
+    root = Path("runs") if run.parent == Path() else run.parent
+    sentence = unknown("run", run.name, [folder.path.name for folder in find_runs(root)], f"folder {root}")
+    raise InputError(f"{sentence}{'' if sentence.endswith('?') else '.'} 'dalembert list' shows all")
 
 
 @contextmanager

@@ -106,6 +106,14 @@ def test_exit_code_2_if_the_input_is_wrong(dalembert, tmp_path, command):
     assert not (tmp_path / "runs").exists()
 
 
+def test_what_is_wrong_with_a_model_is_told_with_the_file_too(dalembert, tmp_path):
+    bar = 'kind = "RigidBar"\nname = "bar"\nlength = 1\nmass = -0.5\nangle = 0\n'
+    (tmp_path / "bar.toml").write_text(f"[solver]\nstep = 0.1\n[simulate]\nend = 1\n[[model.body]]\n{bar}")
+    checked = dalembert("check", "bar.toml")
+    assert (checked.returncode, checked.stdout) == (2, "")
+    assert checked.stderr == "bar.toml: rigid bar 'bar': mass is -0.5; expected a positive number\n"
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
@@ -113,7 +121,9 @@ def test_exit_code_2_if_the_input_is_wrong(dalembert, tmp_path, command):
         (["new", "identfy"], "unknown template 'identfy'; did you mean 'identify'?"),
         (["new", "identify", "."], ". is there already; name another folder for the study"),
         (["new", "motion", "decay.py/run"], "the folder decay.py/run cannot be made: Not a directory; name another"),
-        (["report", "nothing"], "nothing is no run folder: it has no state.json"),
+        (["report", "nothing"], "folder runs: unknown run 'nothing'; known: none. 'dalembert list' shows all"),
+        (["resume", "runs/nothing"], "folder runs: unknown run 'nothing'; known: none. 'dalembert list' shows all"),
+        (["report", "."], ". is no run folder: it has no state.json; name a run that 'dalembert list' shows"),
         (["run", "decay.toml", "--out", "decay.py"], "decay.py is a file; expected a folder for the run"),
         (
             ["run", "decay.toml", "--out", "decay.py/run"],

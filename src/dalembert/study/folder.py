@@ -90,7 +90,9 @@ class RunFolder:
         try:
             state = json.loads(self._state.read_text(encoding="utf-8"))
         except FileNotFoundError:
-            raise InputError(f"{self.path} is no run folder: it has no state.json") from None
+            raise InputError(
+                f"{self.path} is no run folder: it has no state.json; name a run that 'dalembert list' shows"
+            ) from None
         except ValueError:  # no JSON, or no text at all
             state = None
         if not isinstance(state, dict) or not isinstance(state.get("state"), str):

@@ -13,6 +13,7 @@ from dalembert.study.schema import study_file
 from dalembert.study.sentences import mistakes
 from dalembert.study.study import Study
 from dalembert.study.table import placed
+from dalembert.study.tasks import TASKS
 
 LARGEST = 10_000_000  # bytes; a study of this size is some other file
 
@@ -56,6 +57,7 @@ def load(
     path = Path(path)
     context = Context(folder or path.parent, files=dict(files or {}))
     content, document = _read(path)
+    _refuse_parts(document, path)
     shared = _with_model_file(document, context, path)
     names = {name for table in ("parameters", "constants") for name in _table(document, table)}
     context.names = frozenset(names)
@@ -71,6 +73,9 @@ def load(
 def _read(path: Path) -> tuple[bytes, dict[str, Any]]:
     """Content of a TOML file, and its document."""
     try:
+        if path.is_dir():
+            inside = sorted(path.glob("*.toml"))
+            raise InputError(f"{path} is a folder; expected a study file{f' such as {inside[0]}' if inside else ''}")
         if path.stat().st_size > LARGEST:
             raise InputError(f"{path} has more than {LARGEST} bytes; expected a study file")
         content = path.read_bytes()
@@ -87,6 +92,20 @@ def _read(path: Path) -> tuple[bytes, dict[str, Any]]:
         raise InputError(f"{path}: no valid TOML: {error}") from None
     except (RecursionError, ValueError) as error:
         raise InputError(f"{path}: no valid TOML: {error}") from None
+
+
+def _refuse_parts(document: Mapping[str, Any], path: Path) -> None:
+    """Refuse a file that asks for nothing: an empty one, or a model alone."""
+    if document.keys() <= {"model", "constants"}:
+        given, more = "the file holds no tables", ""
+        if document:
+            given, more = (
+                "no task is given",
+                f"; a study in another file names a model by file = '{path.name}' in [model]",
+            )
+        tasks = ", ".join(f"[{name}]" for name in TASKS)
+        sentence = f"{given}; a study needs a [model] and one task, one of {tasks}{more}"
+        raise StudyError(f"{path.name}: {sentence}", [((), sentence)])
 
 
 def _with_model_file(document: dict[str, Any], context: Context, path: Path) -> str:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from dalembert.errors import InputError, ModelError, unknown
+from dalembert.errors import DataError, InputError, ModelError, unknown
 from dalembert.forward import Checkpoint, Executor, ForwardModel, Recorded, on_cluster
 from dalembert.parameters import Parameters
 from dalembert.study.builder import FunctionBuilder, SystemBuilder
@@ -51,6 +51,18 @@ def _require_given(channels: Sequence[str], model: ForwardModel) -> None:
     for name in channels:
         if name not in names:
             raise InputError(unknown("channel", name, names))
+
+
+def _refuse_outside(files: str, times: np.ndarray) -> None:
+    """Refuse times of data before the motion begins, or at its beginning alone."""
+    if files and times[0] < 0:
+        raise DataError(
+            f"{files}: the times reach from {times[0]:g} to {times[-1]:g} s, and the motion begins at 0 s; shift the "
+            "times in the file so that 0 s is where the motion begins, or keep those from there on by between in the "
+            "study file"
+        )
+    if files and times[-1] == 0:
+        raise DataError(f"{files}: the last of the times is 0 s; expected samples of a motion of some duration")
 
 
 @dataclass(frozen=True)
@@ -187,10 +199,18 @@ class Study:
         given += [f"[{name}], columns" for name in ("data", "bands") if getattr(self.file, name) is not None]
         return " or ".join(given) or "[[experiments]], columns"
 
+    @property
+    def _measured_in(self) -> str:
+        """Files that say where the samples of the model lie."""
+        tables = [self.file.data, self.file.bands, *self.file.experiments]
+        return " or ".join(dict.fromkeys(str(table.file) for table in tables if table is not None))
+
     def _forward(self, channels: Sequence[str], samples: np.ndarray) -> ForwardModel:
         if self.has_system:
             from dalembert.multibody import TimeResponse
 
+            if len(samples) and not getattr(self.table, "times", None):
+                _refuse_outside(self._measured_in, samples)
             response: Any = TimeResponse(self.builder, self.parameters, channels, samples, solver=self.solver)
             return response
         if self.file.vibrates:

@@ -218,6 +218,50 @@ def test_bands_are_read_in_other_units(tmp_path):
     assert bands.upper.tolist() == [[0.002], [0.004]]
 
 
+SWINGING = """
+[parameters]
+viscous = { lower = 0.01, upper = 0.1 }
+[model]
+[[model.body]]
+kind = "RigidBar"
+name = "bar"
+length = 1.0
+mass = 0.5
+angle = 0.0
+[[model.joint]]
+kind = "RevoluteJoint"
+name = "pin"
+a = "ground"
+b = "bar.start"
+viscous = "viscous"
+[solver]
+step = "5 ms"
+[data]
+file = "swing.csv"
+columns = { "bar.end.x" = "x" }
+[identify]
+starts = 1
+"""
+
+
+@pytest.mark.parametrize(
+    ("lines", "sentence"),
+    [
+        (
+            "-3,1\n2,1\n",
+            "the times reach from -3 to 2 s, and the motion begins at 0 s; shift the times in the file so that 0 s is "
+            "where the motion begins, or keep those from there on by between in the study file",
+        ),
+        ("0,1\n", "the last of the times is 0 s; expected samples of a motion of some duration"),
+    ],
+)
+def test_times_of_data_outside_the_motion_are_told_with_the_file(lines, sentence, tmp_path):
+    (tmp_path / "study.toml").write_text(SWINGING)
+    (tmp_path / "swing.csv").write_text(f"t,x\n{lines}")
+    with pytest.raises(DataError, match=says(f"{tmp_path / 'swing.csv'}: {sentence}")):
+        plan(load(tmp_path / "study.toml"))
+
+
 def test_a_text_file_with_semicolons_and_decimal_commas(study, tmp_path):
     (tmp_path / "run.csv").write_text("t;angle\n0,0;0,0\n2,0;5,0\n")
     columns = 'columns = { "crank.angle" = "angle" }\n'

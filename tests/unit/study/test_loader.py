@@ -8,6 +8,8 @@ import pytest
 from dalembert.errors import InputError
 from dalembert.study import json_schema, load, plan
 from dalembert.study.builder import named_values
+from dalembert.study.tasks import TASKS
+from support import says
 
 DECAY = """
 import numpy as np
@@ -397,7 +399,11 @@ def test_an_error_in_the_users_file_is_placed(write, tmp_path):
         (b"a = \n", "{path}: no valid TOML: Invalid value (at line 1, column 5)"),
         (b"a = 1\na = 2\n", "{path}: no valid TOML: Cannot overwrite a value (at line 2, column 6)"),
         (b"[study]\ntitle = \"caf\xe9\"\n", "{path}, line 2: the file is not UTF-8 text; save it as UTF-8"),
-        (b"", "study.toml: the key 'model' is missing"),
+        (b"", "study.toml: the file holds no tables; a study needs a [model] and one task, one of [simulate], "),
+        (
+            b"[model]\nbody = []\n[constants]\na = 1\n",
+            "study.toml: no task is given; a study needs a [model] and one task, one of [simulate], ",
+        ),
         (b"model = 3\n[simulate]\nend=1\n", "study.toml: model: 3 was given; expected a table"),
         (b"a = " + b"[" * 5000, "{path}: no valid TOML: "),
     ],
@@ -417,8 +423,21 @@ def test_a_file_that_is_not_there_names_the_near_one(write):
     assert (
         str(caught.value) == f"folder {path.parent}: unknown study file 'pendulun.toml'; did you mean 'pendulum.toml'?"
     )
-    with pytest.raises(InputError, match=r"cannot be read: Is a directory$"):
+    with pytest.raises(InputError, match=says(f"{path.parent} is a folder; expected a study file such as {path}")):
         load(path.parent)
+    (path.parent / "empty").mkdir()
+    with pytest.raises(InputError, match=says(f"{path.parent / 'empty'} is a folder; expected a study file")):
+        load(path.parent / "empty")
+
+
+def test_a_model_alone_is_told_how_a_study_names_it(write):
+    with pytest.raises(InputError) as caught:
+        load(write("[model]\nbody = []\n", "pendulum.toml"))
+    tasks = ", ".join(f"[{name}]" for name in TASKS)
+    assert str(caught.value) == (
+        f"pendulum.toml: no task is given; a study needs a [model] and one task, one of {tasks}; a study in another "
+        "file names a model by file = 'pendulum.toml' in [model]"
+    )
 
 
 def test_the_json_schema_knows_all_kinds():

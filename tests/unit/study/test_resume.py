@@ -162,5 +162,7 @@ def test_a_damaged_state_is_listed_and_told(content, tmp_path, monkeypatch):
 
 def test_a_folder_that_is_no_run_is_not_resumed(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(InputError, match=says("plain is no run folder: it has no state.json")):
+    with pytest.raises(
+        InputError, match=says("plain is no run folder: it has no state.json; name a run that 'dalembert list' shows")
+    ):
         RunFolder(Path("plain")).kept()

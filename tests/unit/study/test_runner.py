@@ -13,6 +13,7 @@ from dalembert.study import RunFolder, load, report_run, run_study
 from dalembert.study.events import read_events
 from dalembert.study.folder import find_runs, new_folder
 from dalembert.study.listing import rows
+from support import says
 
 DECAY = """
 import numpy as np
@@ -102,7 +103,9 @@ def test_a_report_is_made_anew_from_the_result(study):
 
 
 def test_a_report_needs_a_run_and_a_result(study):
-    with pytest.raises(InputError, match=r"^nowhere is no run folder: it has no state\.json$"):
+    with pytest.raises(
+        InputError, match=says("nowhere is no run folder: it has no state.json; name a run that 'dalembert list' shows")
+    ):
         report_run(RunFolder(Path("nowhere")))
     folder, _ = run_study(load(study))
     folder.result.unlink()

@@ -241,7 +241,6 @@ FREQUENCY_CASES: dict[str, Case] = {
             "Resonance over preload",
             "The peak was found at 6 of 6 values of preload.",
             "The peak of m2.x is smallest with preload = 4 N:",
-            "largest with preload = 12 N: ",
             "Followed by ",
             " balanced points, without whole curves; it is the peak",
         ),

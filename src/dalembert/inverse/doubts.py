@@ -25,4 +25,4 @@ def doubts(status: str, told: Identifiability) -> tuple[str, ...]:
     """
     against = [sentence for sentence in re.split(r"(?<=\.) ", status) if any(words in sentence for words in AGAINST)]
     known = bool(np.all(np.isfinite(told.singular_values)))  # without sensitivities nothing is found wrong
-    return tuple(re.split(r"[;:] | \(", sentence)[0] for sentence in (*against, *(told.sentences if known else ())))
+    return tuple(re.split(r"[;:]\s|\s\(", sentence)[0] for sentence in (*against, *(told.sentences if known else ())))

@@ -228,8 +228,10 @@ def _folder(run: Path) -> "RunFolder":
     from dalembert.study.folder import RunFolder, find_runs
 
     named = RunFolder(Path("runs") / run)
-    if run.exists() or named.is_run:
-        return named if not run.exists() else RunFolder(run)
+    if run.exists():
+        return RunFolder(run)
+    if named.is_run:
+        return named
     root = Path("runs") if run.parent == Path() else run.parent
     sentence = unknown("run", run.name, [folder.path.name for folder in find_runs(root)], f"folder {root}")
     raise InputError(f"{sentence}{'' if sentence.endswith('?') else '.'} 'dalembert list' shows all")

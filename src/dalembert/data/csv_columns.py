@@ -21,7 +21,7 @@ _SEPARATORS = {";": "semicolons", "\t": "tabs", ",": "commas"}
 
 
 def csv_columns(
-    path: Path, time: str, names: Iterable[str] | None, missing: str, separator: str = ",", decimal: str = "."
+    path: Path, time: str, names: Iterable[str] | None, missing: str, separator: str, decimal: str
 ) -> Columns:
     """Times and columns by their names in the file.
 

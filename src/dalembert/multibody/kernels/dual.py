@@ -10,7 +10,7 @@ import math
 from numba import types
 from numba.extending import overload
 
-from dalembert.multibody.kernels.compiled import kernel
+from dalembert.kernels.kernel import inner
 
 #: Size of the imaginary step. Second-order terms vanish below the rounding of the first.
 STEP = 1e-30
@@ -115,7 +115,7 @@ def _reciprocal(x):
     return dual
 
 
-@kernel
+@inner
 def wrapped(angle):
     """The angle moved by whole turns into (-pi, pi]."""
     turns = math.floor(real(angle) / (2.0 * math.pi) + 0.5)

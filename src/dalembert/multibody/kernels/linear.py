@@ -9,7 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dalembert.multibody.kernels.compiled import compiled, inlined, kernel
+from dalembert.kernels.kernel import inlined, inner, kernel
+from dalembert.kernels.words import Address, Integers, Reals
 from dalembert.multibody.kernels.vector import LANES, add_multiple, add_two_multiples
 
 DENSE, BAND = range(2)
@@ -27,16 +28,18 @@ class Layout(NamedTuple):
     size: int
     reach: int
     lead: int
-    order: np.ndarray
+    order: Integers
+    factorise: Address
+    solve: Address
 
 
 class Factors(NamedTuple):
     """A matrix (flat, by columns) that its factorisation overwrites; pivots, first row of each column, a vector."""
 
-    matrix: np.ndarray
-    pivots: np.ndarray
-    tops: np.ndarray
-    buffer: np.ndarray
+    matrix: Reals
+    pivots: Integers
+    tops: Integers
+    buffer: Reals
 
 
 def padded(count: int) -> int:
@@ -44,20 +47,32 @@ def padded(count: int) -> int:
     return -(-count // LANES) * LANES
 
 
-@compiled
-def storage(layout):
+def storage(layout: Layout) -> Factors:
     """Room for a matrix and its factorisation."""
     size = layout.size
     whole = np.zeros(size, np.int64)
     return Factors(np.zeros(layout.lead * size), whole, np.zeros(size, np.int64), np.zeros(size + 3 * layout.reach))
 
 
-@kernel
+@inlined
+def resized(layout, size):
+    """Layout of another dense matrix."""
+    lead = -(-size // LANES) * LANES
+    return Layout(layout.kind, size, layout.reach, lead, layout.order, layout.factorise, layout.solve)
+
+
+@inlined
 def factorise(layout, factors):
     """Factorise (or invert) the matrix in its place; whether it was regular."""
-    if layout.kind == DENSE:
-        return _invert(layout.size, layout.lead, factors.matrix, factors.pivots)
-    return _factorise_band(layout.size, layout.reach, layout.lead, factors.matrix, factors.pivots, factors.tops)
+    return _factorise_at(
+        layout.factorise, layout.size, layout.reach, layout.lead, factors.matrix, factors.pivots, factors.tops
+    )
+
+
+@inlined
+def solve(layout, factors, given, answer):
+    """Solve for the first N entries of ``given``, into those of ``answer``."""
+    _solve_at(layout.solve, layout, factors, given, answer)
 
 
 @inlined
@@ -78,8 +93,8 @@ def _exchange(a, i, j):
 
 
 @kernel
-def _invert(size, lead, a, pivots):
-    """Gauss and Jordan's inverse."""
+def invert_dense(size: int, reach: int, lead: int, a: Reals, pivots: Integers, tops: Integers) -> bool:
+    """Gauss and Jordan's inverse of a dense matrix by columns; whether it is regular."""
     for k in range(size):
         own = k * lead
         p = pivots[k] = k + _largest(a, own + k, size - k)
@@ -127,8 +142,8 @@ def _pivot(size, reach, lead, a, pivots, tops, k, last):
 
 
 @kernel
-def _factorise_band(size, reach, lead, a, pivots, tops):
-    """Triangular factors; the lower one has ones on its diagonal, of the upper one the diagonal is inverted.
+def factorise_band(size: int, reach: int, lead: int, a: Reals, pivots: Integers, tops: Integers) -> bool:
+    """Triangular factors of a band matrix; whether it is regular. The lower one has ones on its diagonal, of the upper one the diagonal is inverted.
 
     Two columns at a time where the second one needs no exchange of rows, which halves the passes over the others.
     """
@@ -183,13 +198,16 @@ def _multiply(matrix, size, lead, given, answer):
 
 
 @kernel
-def solve(layout, factors, given, answer):
-    """Solve for the first N entries of ``given``, into those of ``answer``."""
+def solve_dense(layout: Layout, factors: Factors, given: Reals, answer: Reals) -> None:
+    """Multiply by the inverse."""
+    _multiply(factors.matrix, layout.size, layout.lead, given, answer)
+
+
+@kernel
+def solve_band(layout: Layout, factors: Factors, given: Reals, answer: Reals) -> None:
+    """Solve with the triangular factors."""
     size, reach, lead, order = layout.size, layout.reach, layout.lead, layout.order
     a, pivots, tops, x = factors.matrix, factors.pivots, factors.tops, factors.buffer
-    if layout.kind == DENSE:
-        _multiply(a, size, lead, given, answer)
-        return
     above = 2 * reach  # room before the first unknown, and behind the last one
     for i in range(size):
         x[above + order[i]] = given[i]
@@ -218,3 +236,19 @@ def solve(layout, factors, given, answer):
             k -= 1
     for i in range(size):
         answer[i] = x[above + order[i]]
+
+
+DENSE_KERNELS, BAND_KERNELS = (invert_dense, solve_dense), (factorise_band, solve_band)
+_factorise_at, _solve_at = invert_dense.at, solve_dense.at
+
+
+def dense_layout(size: int) -> Layout:
+    """Layout of a dense matrix."""
+    order = np.zeros(0, dtype=np.int64)
+    return Layout(DENSE, size, 0, padded(size), order, invert_dense.address, solve_dense.address)
+
+
+def band_layout(order: np.ndarray, reach: int) -> Layout:
+    """Layout of a band of that reach, with the position of each unknown in it."""
+    lead = 3 * reach + 2
+    return Layout(BAND, len(order), reach, lead, order, factorise_band.address, solve_band.address)

@@ -1,39 +1,30 @@
-"""The compiled form of any model: arrays, one block a kind of component.
+"""Models as kernels see them: tables of blocks, made by NumPy, kept alive by Python, known by their address."""
 
-All arrays of unknowns have length N + 1 for n coordinates and m multipliers, N = n + m: coordinates, multipliers, and a
-last entry that stays zero, to which absent slots of a component point.
-"""
-
-from typing import NamedTuple
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
-from dalembert.multibody.kernels import beam, body, cable, friction, joints, load, spring, user
-from dalembert.multibody.kernels.compiled import compiled, inlined, template
+from dalembert.multibody.kernels.kind import Kind
+from dalembert.multibody.kernels.records import BLOCK, CALL, MODEL
+from dalembert.multibody.kernels.signals import EVALUATE
 
-#: The kinds in the order of the fields of `Model`.
-KINDS = {
-    "beams": beam,
-    "cables": cable,
-    "bodies": body,
-    "joints": joints,
-    "frictions": friction,
-    "springs": spring,
-    "loads": load,
-    "users": user,
-}
-WIDEST = 12
+#: Fields of a block that hold kernels, which are compiled when they are first needed.
+ROLES = ("residual", "rates", "energy", "outputs")
 
 
-class Block(NamedTuple):
-    """Components of one kind: unknowns (count, width), integers (count, -) and numbers (count, -)."""
+@dataclass(frozen=True)
+class Blocks:
+    """Components of each kind: unknowns (count, width), integers (count, -), numbers (count, -)."""
 
-    index: np.ndarray
-    meta: np.ndarray
-    data: np.ndarray
+    index: Mapping[Kind, np.ndarray]
+    integers: Mapping[Kind, np.ndarray]
+    numbers: Mapping[Kind, np.ndarray]
 
 
-class Signals(NamedTuple):
+@dataclass(frozen=True)
+class Signals:
     """Functions of time, see :mod:`signals`."""
 
     index: np.ndarray
@@ -41,78 +32,107 @@ class Signals(NamedTuple):
     data: np.ndarray
 
 
-class Model(NamedTuple):
-    """A whole model in real numbers, or in complex ones as a direction of differentiation."""
+@dataclass(frozen=True, eq=False)
+class Model:
+    """A whole model in real numbers, or in complex ones as a direction of differentiation.
 
-    beams: Block
-    cables: Block
-    bodies: Block
-    joints: Block
-    frictions: Block
-    springs: Block
-    loads: Block
-    users: Block
+    Parameters
+    ----------
+    blocks : Blocks
+    signals : Signals
+    callbacks : int array
+    size : int
+        Unknowns.
+    coordinates : int
+        Unknowns that are no multipliers.
+    dtype : float or complex
+    """
+
+    blocks: Blocks
     signals: Signals
     callbacks: np.ndarray
+    size: int
+    coordinates: int
+    dtype: type
+    _words: tuple[np.ndarray, np.ndarray] = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        kinds = list(self.blocks.index)
+        rows, head = np.zeros(max(len(kinds), 1), BLOCK), np.zeros(1, MODEL)
+        for row, kind in zip(rows, kinds, strict=False):
+            row["count"] = len(self.blocks.index[kind])
+            row["index"] = self.blocks.index[kind].ctypes.data
+            row["integers"] = self.blocks.integers[kind].ctypes.data
+            row["numbers"] = self.blocks.numbers[kind].ctypes.data
+            row["joins"] = kind.multipliers > 0
+        own = head[0]
+        own["blocks"], own["block_count"] = rows.ctypes.data, len(kinds)
+        own["signal_count"], own["signal_index"] = len(self.signals.index), self.signals.index.ctypes.data
+        own["knots"], own["signal_data"] = self.signals.knots.ctypes.data, self.signals.data.ctypes.data
+        own["callbacks"] = self.callbacks.ctypes.data
+        own["evaluate"] = EVALUATE[self.dtype].address
+        object.__setattr__(self, "_words", (head, rows))
+        self.need("residual")
+
+    def need(self, *roles: str) -> "Model":
+        """Load the kernels of these roles, and hand the model back."""
+        for row, kind in zip(self._words[1], self.blocks.index, strict=False):
+            for role in roles:
+                if row[role] == 0 and kind.has(role):
+                    row[role] = kind.kernel(role, self.dtype).address
+        return self
+
+    @property
+    def address(self) -> int:
+        """Address of the table."""
+        return self._words[0].ctypes.data
+
+    def evaluate(self, call: "Call", t: float, within: float) -> None:
+        """Evaluate the signals of a call."""
+        EVALUATE[self.dtype](call.set(t=t, within=within).address, self.address)
+
+    def each(self, role: str, call: "Call", slots: np.ndarray | None = None) -> None:
+        """Call the kernels of a role, block by block."""
+        self.need(role)
+        for k, kind in enumerate(self.blocks.index):
+            if kind.has(role):
+                if slots is not None:
+                    call.set(slots=slots[k])
+                kind.kernel(role, self.dtype)(call.address, self._words[1][k : k + 1].ctypes.data)
+
+    def call(self) -> "Call":
+        """A call in the arithmetic of the model."""
+        return Call(self.size, self.coordinates, len(self.signals.index), self.dtype, self.callbacks)
 
 
-class Slots(NamedTuple):
-    """Places of the local matrix entries of each kind in a stored matrix, (count, width, width)."""
+class Call:
+    """The record of a call, with room for the signals."""
 
-    beams: np.ndarray
-    cables: np.ndarray
-    bodies: np.ndarray
-    joints: np.ndarray
-    frictions: np.ndarray
-    springs: np.ndarray
-    loads: np.ndarray
-    users: np.ndarray
+    def __init__(
+        self, size: int, coordinates: int, signals: int, dtype: type, callbacks: np.ndarray | None = None
+    ) -> None:
+        self.signals = np.zeros((signals, 3), dtype)
+        self._callbacks = np.zeros(1, np.int64) if callbacks is None else callbacks
+        self._words = np.zeros(1, CALL)
+        own = self._words[0]
+        own["last"], own["coordinates"] = size, coordinates
+        own["signals"], own["signal_count"] = self.signals.ctypes.data, signals
+        own["callbacks"] = self._callbacks.ctypes.data
 
+    @property
+    def address(self) -> int:
+        return self._words.ctypes.data
 
-class Work(NamedTuple):
-    """Local vectors of one component, the signals' values, and a local vector and matrix in real numbers."""
-
-    x: np.ndarray
-    v: np.ndarray
-    a: np.ndarray
-    r: np.ndarray
-    signals: np.ndarray
-    real: np.ndarray
-    matrix: np.ndarray
-
-
-@template
-def _select(stack, d):
-    return Model(
-        Block(stack.beams.index, stack.beams.meta, stack.beams.data[d]),
-        Block(stack.cables.index, stack.cables.meta, stack.cables.data[d]),
-        Block(stack.bodies.index, stack.bodies.meta, stack.bodies.data[d]),
-        Block(stack.joints.index, stack.joints.meta, stack.joints.data[d]),
-        Block(stack.frictions.index, stack.frictions.meta, stack.frictions.data[d]),
-        Block(stack.springs.index, stack.springs.meta, stack.springs.data[d]),
-        Block(stack.loads.index, stack.loads.meta, stack.loads.data[d]),
-        Block(stack.users.index, stack.users.meta, stack.users.data[d]),
-        Signals(stack.signals.index, stack.signals.knots, stack.signals.data[d]),
-        stack.callbacks[d],
-    )
+    def set(self, **fields: Any) -> "Call":
+        """Write fields of the record; contiguous arrays by their addresses."""
+        for name, value in fields.items():
+            if isinstance(value, np.ndarray):
+                assert value.flags.c_contiguous, name
+                value = value.ctypes.data
+            self._words[name][0] = value
+        return self
 
 
-@compiled
-def select(stack, d):
-    """Model ``d`` of a stack, whose numbers and callbacks have one more leading axis."""
-    return _select(stack, d)
-
-
-@inlined
-def glance(stack, d):
-    """The same inside functions that do not count references."""
-    return _select(stack, d)
-
-
-@compiled
-def workspace(model):
-    """Local vectors in the arithmetic of the model."""
-    zero = model.signals.data[:1] * 0
-    local = np.zeros((4, WIDEST), zero.dtype)
-    values = np.zeros((len(model.signals.index), 3), zero.dtype)
-    return Work(local[0], local[1], local[2], local[3], values, np.zeros(WIDEST), np.zeros((WIDEST, WIDEST)))
+def addresses(models: Iterable[Model]) -> np.ndarray:
+    """Addresses of models, which the caller keeps alive."""
+    return np.array([model.address for model in models], dtype=np.int64)

@@ -4,7 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dalembert.multibody.kernels.compiled import compiled, inlined, kernel, template
+from dalembert.kernels.kernel import inlined, inner
+from dalembert.kernels.words import Reals, Reals2, Reals3
 
 
 class Motion(NamedTuple):
@@ -13,10 +14,28 @@ class Motion(NamedTuple):
     The same four arrays hold a state's derivative along one direction of the parameters.
     """
 
-    x: np.ndarray
-    v: np.ndarray
-    a: np.ndarray
-    w: np.ndarray
+    x: Reals
+    v: Reals
+    a: Reals
+    w: Reals
+
+
+class Motions(NamedTuple):
+    """A stack of states: arrays (states, N + 1)."""
+
+    x: Reals2
+    v: Reals2
+    a: Reals2
+    w: Reals2
+
+
+class Histories(NamedTuple):
+    """A stack of stacks of states: arrays (-, states, N + 1)."""
+
+    x: Reals3
+    v: Reals3
+    a: Reals3
+    w: Reals3
 
 
 class Coefficients(NamedTuple):
@@ -31,44 +50,38 @@ class Coefficients(NamedTuple):
     gamma: float
 
 
-@compiled
-def still(size):
-    """A state of zeros."""
-    return Motion(np.zeros(size), np.zeros(size), np.zeros(size), np.zeros(size))
+def resting(*shape: int) -> Motion:
+    """Arrays of states, all zero; of more than one axis for stacks."""
+    return Motion(np.zeros(shape), np.zeros(shape), np.zeros(shape), np.zeros(shape))
 
 
-@kernel
+@inner
 def clear(array):
     """Fill a vector with zeros."""
     for i in range(len(array)):
         array[i] = 0
 
 
-@kernel
+@inner
 def copy(source, target):
     """Copy one state into another."""
     for i in range(len(source.x)):
         target.x[i], target.v[i], target.a[i], target.w[i] = source.x[i], source.v[i], source.a[i], source.w[i]
 
 
-@template
-def _row(stack, d):
+@inlined
+def row(stack, d):
+    """State ``d`` of a stack of states."""
     return Motion(stack.x[d], stack.v[d], stack.a[d], stack.w[d])
 
 
-@compiled
-def row(stack, d):
-    """State ``d`` of a stack of states."""
-    return _row(stack, d)
-
-
 @inlined
-def glance(stack, d):
-    """The same inside functions that do not count references."""
-    return _row(stack, d)
+def rows(stack, d):
+    """Stack ``d`` of a stack of stacks."""
+    return Motions(stack.x[d], stack.v[d], stack.a[d], stack.w[d])
 
 
-@kernel
+@inner
 def coefficients(step, spectral_radius):
     """Coefficients of generalized-alpha (Arnold and Bruels 2007) for a step and a spectral radius at infinity."""
     alpha_m = (2 * spectral_radius - 1) / (spectral_radius + 1)
@@ -79,7 +92,7 @@ def coefficients(step, spectral_radius):
     return Coefficients(step, step * step * beta * share, step * gamma * share, alpha_m, alpha_f, beta, gamma)
 
 
-@kernel
+@inner
 def advance(n, c, old, new):
     """Algorithmic accelerations, velocities and coordinates of the new accelerations; linear in its states."""
     h = c.step
@@ -96,7 +109,7 @@ def advance(n, c, old, new):
         new.v[i] = old.v[i] + early * w0 + late * w1
 
 
-@kernel
+@inner
 def interpolate(n, h, s, old, new, x, v, a):
     """State at the fraction ``s`` of a step ``h``: cubic for coordinates and velocities, linear for the rest."""
     if s > 1.0 - 1e-9:
@@ -113,7 +126,7 @@ def interpolate(n, h, s, old, new, x, v, a):
         x[i] = (1 - s) * old.x[i] + s * new.x[i]
 
 
-@kernel
+@inner
 def subtract(n, correction, state):
     """Take a correction off the accelerations and multipliers, which are also the algorithmic accelerations."""
     for i in range(n):

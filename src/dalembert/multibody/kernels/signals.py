@@ -4,16 +4,16 @@ Each signal has a row of `index`: kind, first entry and number of entries in `da
 Signal 0 is the time itself.
 """
 
-import numpy as np
-
+from dalembert.kernels.kernel import BlockKernel, inner
+from dalembert.kernels.views import complexes, complexes2, integers, integers2, reals, reals2, stack
 from dalembert.multibody.kernels.callback import call
-from dalembert.multibody.kernels.compiled import compiled, kernel
 from dalembert.multibody.kernels.dual import sin_cos
+from dalembert.multibody.kernels.records import call_at, model_at
 
 TIME, CONSTANT, STEP, HARMONIC, POLYNOMIAL, PIECEWISE, CUSTOM = range(7)
 
 
-@kernel
+@inner
 def _polynomial(data, first, count, t):
     """Value and two derivatives of data[first] + data[first + 1] t + ..."""
     value, rate, second = 0.0 * data[first], 0.0 * data[first], 0.0 * data[first]
@@ -24,7 +24,7 @@ def _polynomial(data, first, count, t):
     return value, rate, second
 
 
-@kernel
+@inner
 def _segment(knots, first, count, t):
     """Number of the interval of `count` + 1 knots that holds t; the last one beyond the end."""
     low, high = 0, count - 1
@@ -37,43 +37,60 @@ def _segment(knots, first, count, t):
     return low
 
 
-@compiled
-def evaluate(index, data, knots, callbacks, t, within, out):
-    """Fill ``out`` (signals, 3) with values, rates and second rates at time ``t``.
+@inner
+def _evaluate(kind, first, count, knot, data, knots, callbacks, t, within, out):
+    """Value, rate and second rate of one signal, into ``out`` (3,)."""
+    out[0], out[1], out[2] = 0.0, 0.0, 0.0
+    if kind == TIME:
+        out[0], out[1] = t, 1.0
+    elif kind == CONSTANT:
+        out[0] = data[first]
+    elif kind == STEP:
+        if knots[knot] <= within < knots[knot + 1]:
+            out[0] = data[first]
+    elif kind == HARMONIC:
+        omega = data[first + 1]
+        s, c = sin_cos(omega * t + data[first + 2])
+        out[0] = data[first] * s + data[first + 3]
+        out[1] = data[first] * omega * c
+        out[2] = -data[first] * omega * omega * s
+    elif kind == POLYNOMIAL:
+        out[0], out[1], out[2] = _polynomial(data, first, count, t)
+    elif kind == PIECEWISE:
+        low, high = knots[knot], knots[knot + count // 4]
+        if low <= t <= high:
+            part = _segment(knots, knot, count // 4, t)
+            out[0], out[1], out[2] = _polynomial(data, first + 4 * part, 4, t - knots[knot + part])
+        else:  # held beyond the ends
+            part = 0 if t < low else count // 4 - 1
+            at = 0.0 if t < low else high - knots[knot + part]
+            out[0] = _polynomial(data, first + 4 * part, 4, at)[0]
+    elif kind == CUSTOM:
+        given, answer = stack(data, 1), stack(data, 3)
+        given[0] = t
+        call(callbacks[first], given, answer)
+        out[0], out[1], out[2] = answer[0], answer[1], answer[2]
 
-    ``within`` is a time strictly inside the present smooth stretch of motion; it decides on which side of a jump the
-    time ``t`` lies when the two coincide.
-    """
-    for n in range(len(index)):
-        kind, first, count = index[n, 0], index[n, 1], index[n, 2]
-        out[n, 0], out[n, 1], out[n, 2] = 0.0, 0.0, 0.0
-        if kind == TIME:
-            out[n, 0], out[n, 1] = t, 1.0
-        elif kind == CONSTANT:
-            out[n, 0] = data[first]
-        elif kind == STEP:
-            if knots[index[n, 3]] <= within < knots[index[n, 3] + 1]:
-                out[n, 0] = data[first]
-        elif kind == HARMONIC:
-            omega = data[first + 1]
-            s, c = sin_cos(omega * t + data[first + 2])
-            out[n, 0] = data[first] * s + data[first + 3]
-            out[n, 1] = data[first] * omega * c
-            out[n, 2] = -data[first] * omega * omega * s
-        elif kind == POLYNOMIAL:
-            out[n, 0], out[n, 1], out[n, 2] = _polynomial(data, first, count, t)
-        elif kind == PIECEWISE:
-            knot = index[n, 3]
-            low, high = knots[knot], knots[knot + count // 4]
-            if low <= t <= high:
-                part = _segment(knots, knot, count // 4, t)
-                out[n, 0], out[n, 1], out[n, 2] = _polynomial(data, first + 4 * part, 4, t - knots[knot + part])
-            else:  # held beyond the ends
-                part = 0 if t < low else count // 4 - 1
-                at = 0.0 if t < low else high - knots[knot + part]
-                out[n, 0] = _polynomial(data, first + 4 * part, 4, at)[0]
-        elif kind == CUSTOM:
-            given, answer = np.zeros(1, data.dtype), np.zeros(3, data.dtype)
-            given[0] = t
-            call(callbacks[first], given, answer)
-            out[n, 0], out[n, 1], out[n, 2] = answer[0], answer[1], answer[2]
+
+def _kernel(dtype: type) -> BlockKernel:
+    view, view2 = (complexes, complexes2) if dtype is complex else (reals, reals2)
+
+    def evaluate(work, model):
+        """Fill the signals of a call at its time.
+
+        ``within`` is a time strictly inside the present smooth stretch of motion; it decides on which side of a jump
+        the time ``t`` lies when the two coincide.
+        """
+        own, table = call_at(work), model_at(model)
+        index, out = integers2(table.signal_index, table.signal_count, 4), view2(own.signals, table.signal_count, 3)
+        data, knots, callbacks = view(table.signal_data, 1), reals(table.knots, 1), integers(table.callbacks, 1)
+        for n in range(table.signal_count):
+            _evaluate(
+                index[n, 0], index[n, 1], index[n, 2], index[n, 3], data, knots, callbacks, own.t, own.within, out[n]
+            )
+
+    return BlockKernel(evaluate, f"dal_signals_{dtype.__name__}")
+
+
+EVALUATE_REAL, EVALUATE_COMPLEX = _kernel(float), _kernel(complex)
+EVALUATE = {float: EVALUATE_REAL, complex: EVALUATE_COMPLEX}

@@ -3,20 +3,19 @@
 Local coordinates: (r, r') at both nodes, 8 in all. Axial strain |r'| - 1 (five Gauss points), curvature
 (r' x r'')/|r'|^2 (three Gauss points).
 
-Data: length h, axial stiffness EA, bending stiffness EI, mass, retardation time of the material damping,
-gravity (gx, gy).
+Numbers: length h, axial stiffness EA, bending stiffness EI, mass, retardation time of the material damping, gravity.
 """
 
 import math
 
 import numpy as np
 
-from dalembert.multibody.kernels import hermite
-from dalembert.multibody.kernels.compiled import inlined, kernel
+from dalembert.kernels.kernel import inlined, inner
+from dalembert.multibody.components.planar import hermite
 from dalembert.multibody.kernels.dual import reciprocal, root
+from dalembert.multibody.kernels.kind import Kind
 
 WIDTH = 8
-DAMPING = 4  # column of the retardation time
 SLOTS = (0, 2, 6)  # of r1, r1' and r2'; forces on r2 are those on r1, their sign turned
 INNER = (0, 1, 2, 3, 6, 7)  # of all their components
 
@@ -49,15 +48,15 @@ def _curvature(tx, ty, cx, cy):
 
 
 @inlined
-def undamped(data, meta, e):
+def undamped(p, m):
     """Whether an element is without material damping, so that `tangent` holds for it."""
-    return data[e, DAMPING] == 0.0
+    return p.delay == 0.0
 
 
 @inlined
-def residual(x, v, a, signals, callbacks, data, meta, e, r):
+def residual(x, v, a, p, m, inputs, r):
     """M a + elastic and damping forces - weight."""
-    h, axial, bending, mass, delay = data[e, 0], data[e, 1], data[e, 2], data[e, 3], data[e, 4]
+    h, axial, bending, mass, delay = p.length, p.axial, p.bending, p.mass, p.delay
     across = reciprocal(h)
     # Sums over Gauss points of the force against r1 - r2, r1' and r2'; in local variables, which is twice as fast.
     nothing = 0.0 * h
@@ -92,13 +91,13 @@ def residual(x, v, a, signals, callbacks, data, meta, e, r):
     r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7] = fx, fy, gx, gy, -fx, -fy, kx, ky
     hermite.inertia(mass, h, 0, 2, 4, 6, a, r)
     hermite.inertia(mass, h, 1, 3, 5, 7, a, r)
-    hermite.weight(mass, h, data[e, 5], 0, 2, 4, 6, r)
-    hermite.weight(mass, h, data[e, 6], 1, 3, 5, 7, r)
+    hermite.weight(mass, h, p.gravity_x, 0, 2, 4, 6, r)
+    hermite.weight(mass, h, p.gravity_y, 1, 3, 5, 7, r)
 
 
-@kernel
-def tangent(x, data, e, by, matrix):
-    """Fill the local ``matrix`` (8, 8) with by[0] K + by[2] M of an element without damping; real numbers.
+@inner
+def tangent(x, p, m, by_x, by_a, matrix):
+    """Fill the local ``matrix`` (8, 8) with by_x K + by_a M of an element without damping; real numbers.
 
     Stretch: EA ((1 - 1/g) I + t t^T / g^3), t = r', g = |t|. Bending: EI (k_z k_z^T + k k_zz) for z = (t, c), c = r'',
     with k = t x c / g^2, p = (c_y, -c_x), k_t = p / g^2 - 2 k t / g^2,
@@ -108,13 +107,13 @@ def tangent(x, data, e, by, matrix):
     for i in range(WIDTH):
         for j in range(WIDTH):
             matrix[i, j] = 0.0
-    h, axial, bending, mass = data[e, 0].real, data[e, 1].real, data[e, 2].real, data[e, 3].real
+    h, axial, bending, mass = p.length.real, p.axial.real, p.bending.real, p.mass.real
     across = 1.0 / h
     for g in range(5):
         s = A1[g] * across, A2[g], A5[g]
         tx, ty = _line(s[0], s[1], s[2], x)
         inverse = 1.0 / math.sqrt(tx * tx + ty * ty)
-        w = by[0] * AW[g] * h * axial
+        w = by_x * AW[g] * h * axial
         cubed, rest = w * inverse * inverse * inverse, w * (1.0 - inverse)
         block = rest + tx * tx * cubed, tx * ty * cubed, tx * ty * cubed, rest + ty * ty * cubed
         for i in range(3):
@@ -128,7 +127,7 @@ def tangent(x, data, e, by, matrix):
         kappa, px, py, square = _curvature(tx, ty, cx, cy)
         qx, qy = -ty * square, tx * square
         two, eight = 2 * kappa * square, 8 * kappa * square * square
-        w = by[0] * BW[g] * h * bending
+        w = by_x * BW[g] * h * bending
         tt = (
             w * (px * px + kappa * (-4 * cy * tx * square * square - two + eight * tx * tx)),
             w * (px * py + kappa * (2 * (cx * tx - cy * ty) * square * square + eight * tx * ty)),
@@ -154,16 +153,16 @@ def tangent(x, data, e, by, matrix):
                 hermite.spread(matrix, SLOTS[i], SLOTS[j], 1.0, block)
     hermite.mirror(matrix, INNER)
     hermite.oppose(matrix, 4, WIDTH)
-    hermite.mass_matrix(mass, h, 0, 2, 4, 6, by[2], matrix)
-    hermite.mass_matrix(mass, h, 1, 3, 5, 7, by[2], matrix)
+    hermite.mass_matrix(mass, h, 0, 2, 4, 6, by_a, matrix)
+    hermite.mass_matrix(mass, h, 1, 3, 5, 7, by_a, matrix)
 
 
-@kernel
-def energy(x, v, signals, callbacks, data, meta, e):
+@inner
+def energy(x, v, p, m, inputs):
     """Kinetic energy, strain and gravity energy, power of the material damping."""
-    h, axial, bending, mass, delay = data[e, 0], data[e, 1], data[e, 2], data[e, 3], data[e, 4]
+    h, axial, bending, mass, delay = p.length, p.axial, p.bending, p.mass, p.delay
     kinetic = hermite.kinetic(mass, h, 0, 2, 4, 6, v) + hermite.kinetic(mass, h, 1, 3, 5, 7, v)
-    potential = -mass * (data[e, 5] * hermite.centre(h, 0, 2, 4, 6, x) + data[e, 6] * hermite.centre(h, 1, 3, 5, 7, x))
+    potential = -mass * (p.gravity_x * hermite.centre(h, 0, 2, 4, 6, x) + p.gravity_y * hermite.centre(h, 1, 3, 5, 7, x))
     power = 0.0 * h
     across = 1.0 / h
     for g in range(5):
@@ -186,3 +185,17 @@ def energy(x, v, signals, callbacks, data, meta, e):
         potential += 0.5 * BW[g] * h * bending * kappa * kappa
         power -= BW[g] * h * bending * delay * rate * rate
     return kinetic, potential, power
+
+
+CABLE = Kind(
+    "ancf_cable",
+    coordinates=WIDTH,
+    numbers=("length", "axial", "bending", "mass", "delay", "gravity_x", "gravity_y"),
+    residual=residual,
+    tangent=tangent,
+    known=undamped,
+    energy=energy,
+    lengths=("length",),
+    gravity=("gravity_x", "gravity_y"),
+    dissipates="delay",
+)

@@ -3,7 +3,7 @@
 Coordinates of one direction: (r1, r1', r2, r2') at slots (i, j, k, l); length ``h``, mass ``m``.
 """
 
-from dalembert.multibody.kernels.compiled import inlined
+from dalembert.kernels.kernel import inlined
 
 
 @inlined

@@ -12,7 +12,7 @@ NODE    x, y, gx, gy               phi: angle of the frame against the gradient 
 ======  =========================  ====================================================
 """
 
-from dalembert.multibody.kernels.compiled import inlined
+from dalembert.kernels.kernel import inlined
 from dalembert.multibody.kernels.dual import angle_of, reciprocal, root, sin_cos
 
 GROUND, RIGID, MASS, NODE = range(4)

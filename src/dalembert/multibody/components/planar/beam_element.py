@@ -4,15 +4,16 @@ Local coordinates: (r, r_x, r_y) at both nodes, two components each, 12 in all. 
 across it, r_x = s1'(r1 - r2) + s2' r1_x + s5' r2_x + y d and r_y = (1 - xi) r1_y + xi r2_y, d = (r2_y - r1_y)/h.
 Green-Lagrange strain, Saint-Venant-Kirchhoff material, Gauss points 3 along by 2 across.
 
-Data: length h, height, width, mass, rotatory mass (density x second moment of area x length), stiffnesses C11, C12, G,
-retardation time of the material damping, gravity (gx, gy).
+Numbers: length h, height, width, mass, rotatory mass (density x second moment of area x length), stiffnesses C11, C12
+and G, retardation time of the material damping, gravity.
 """
 
 import numpy as np
 
-from dalembert.multibody.kernels import hermite
-from dalembert.multibody.kernels.compiled import inlined, kernel
+from dalembert.kernels.kernel import inlined, inner
+from dalembert.multibody.components.planar import hermite
 from dalembert.multibody.kernels.dual import reciprocal
+from dalembert.multibody.kernels.kind import Kind
 
 WIDTH = 12
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(3)
@@ -20,23 +21,20 @@ XI, W = (_POINTS + 1) / 2, _WEIGHTS / 2
 ACROSS = np.array([-0.5, 0.5]) / np.sqrt(3.0)
 AXIAL = (0, 2, 8)  # slots of r1, r1_x and r2_x; forces on r2 are those on r1, their sign turned
 INNER = (0, 1, 2, 3, 8, 9, 4, 5, 10, 11)  # slots of all but r2, in the order in which blocks are filled
-DAMPING = 8  # column of the retardation time
 S1, S2, S5 = 6 * XI * (XI - 1), 1 - 4 * XI + 3 * XI**2, 3 * XI**2 - 2 * XI
 
 
 @inlined
-def undamped(data, meta, e):
+def undamped(p, m):
     """Whether an element is without material damping, so that `tangent` holds for it."""
-    return data[e, DAMPING] == 0.0
+    return p.delay == 0.0
 
 
 @inlined
-def residual(x, v, a, signals, callbacks, data, meta, e, r):
+def residual(x, v, a, p, m, inputs, r):
     """M a + elastic and damping forces - weight."""
-    for i in range(WIDTH):
-        r[i] = 0.0
-    h, height = data[e, 0], data[e, 1]
-    c11, c12, shear, delay = data[e, 5], data[e, 6], data[e, 7], data[e, 8]
+    h, height = p.length, p.height
+    c11, c12, shear, delay = p.c11, p.c12, p.shear, p.delay
     across = reciprocal(h)
     dx, dy = (x[10] - x[4]) * across, (x[11] - x[5]) * across
     for g in range(3):
@@ -62,7 +60,7 @@ def residual(x, v, a, signals, callbacks, data, meta, e, r):
             sx, sy = sx + px, sy + py
             tx, ty = tx + y * px, ty + y * py
             ux, uy = ux + sxy * fx + syy * nx, uy + sxy * fy + syy * ny
-        w = 0.5 * W[g] * h * height * data[e, 2]
+        w = 0.5 * W[g] * h * height * p.width
         sx, sy, tx, ty, ux, uy = w * sx, w * sy, w * tx * across, w * ty * across, w * ux, w * uy
         r[0] += s1 * sx
         r[1] += s1 * sy
@@ -76,11 +74,11 @@ def residual(x, v, a, signals, callbacks, data, meta, e, r):
         r[9] += s5 * sy
         r[10] += xi * ux + tx
         r[11] += xi * uy + ty
-    mass, rotatory = data[e, 3], data[e, 4]
+    mass, rotatory = p.mass, p.rotatory
     hermite.inertia(mass, h, 0, 2, 6, 8, a, r)
     hermite.inertia(mass, h, 1, 3, 7, 9, a, r)
-    hermite.weight(mass, h, data[e, 9], 0, 2, 6, 8, r)
-    hermite.weight(mass, h, data[e, 10], 1, 3, 7, 9, r)
+    hermite.weight(mass, h, p.gravity_x, 0, 2, 6, 8, r)
+    hermite.weight(mass, h, p.gravity_y, 1, 3, 7, 9, r)
     for i in range(4, 6):
         r[i] += rotatory * (a[i] / 3 + a[i + 6] / 6)
         r[i + 6] += rotatory * (a[i] / 6 + a[i + 6] / 3)
@@ -113,9 +111,9 @@ def _add(a, factor, b):
     return a[0] + factor * b[0], a[1] + factor * b[1], a[2] + factor * b[2], a[3] + factor * b[3]
 
 
-@kernel
-def tangent(x, data, e, by, matrix):
-    """Fill the local ``matrix`` (12, 12) with by[0] K + by[2] M of an element without damping; real numbers.
+@inner
+def tangent(x, p, m, by_x, by_a, matrix):
+    """Fill the local ``matrix`` (12, 12) with by_x K + by_a M of an element without damping; real numbers.
 
     With F = [r_x r_y], the derivative of the force between two vectors with axial derivatives a_i, a_j and transverse
     ones b_i, b_j of their shape functions is a_i a_j P + a_i b_j Q + b_i a_j Q^T + b_i b_j R, where
@@ -125,7 +123,7 @@ def tangent(x, data, e, by, matrix):
     for i in range(WIDTH):
         for j in range(WIDTH):
             matrix[i, j] = 0.0
-    h, height, c11, c12, shear = data[e, 0].real, data[e, 1].real, data[e, 5].real, data[e, 6].real, data[e, 7].real
+    h, height, c11, c12, shear = p.length.real, p.height.real, p.c11.real, p.c12.real, p.shear.real
     across = 1.0 / h
     dx, dy = (x[10] - x[4]) * across, (x[11] - x[5]) * across
     nothing = 0.0, 0.0, 0.0, 0.0
@@ -141,12 +139,12 @@ def tangent(x, data, e, by, matrix):
             y = ACROSS[b] * height
             fx, fy = cx + y * dx, cy + y * dy
             exx, twice = 0.5 * (fx * fx + fy * fy - 1.0), fx * nx + fy * ny
-            p = _sum(_outer(c11, fx, fy, fx, fy), _outer(shear, nx, ny, nx, ny), c11 * exx + c12 * eyy)
+            xx = _sum(_outer(c11, fx, fy, fx, fy), _outer(shear, nx, ny, nx, ny), c11 * exx + c12 * eyy)
             q = _sum(_outer(c12, fx, fy, nx, ny), _outer(shear, nx, ny, fx, fy), shear * twice)
             r = _sum(_outer(c11, nx, ny, nx, ny), _outer(shear, fx, fy, fx, fy), c12 * exx + c11 * eyy)
-            p0, p1, p2 = _add(p0, 1.0, p), _add(p1, y, p), _add(p2, y * y, p)
+            p0, p1, p2 = _add(p0, 1.0, xx), _add(p1, y, xx), _add(p2, y * y, xx)
             q0, q1, r0 = _add(q0, 1.0, q), _add(q1, y, q), _add(r0, 1.0, r)
-        w = by[0] * 0.5 * W[g] * h * height * data[e, 2].real
+        w = by_x * 0.5 * W[g] * h * height * p.width.real
         along = s1, s2, s5
         for i in range(3):
             row = AXIAL[i]
@@ -165,9 +163,9 @@ def tangent(x, data, e, by, matrix):
                 hermite.spread(matrix, 4 + 6 * i, 4 + 6 * j, w, _add(block, lift_i * lift_j, r0))
     hermite.mirror(matrix, INNER)
     hermite.oppose(matrix, 6, WIDTH)
-    mass, rotatory = data[e, 3].real, by[2] * data[e, 4].real
-    hermite.mass_matrix(mass, h, 0, 2, 6, 8, by[2], matrix)
-    hermite.mass_matrix(mass, h, 1, 3, 7, 9, by[2], matrix)
+    mass, rotatory = p.mass.real, by_a * p.rotatory.real
+    hermite.mass_matrix(mass, h, 0, 2, 6, 8, by_a, matrix)
+    hermite.mass_matrix(mass, h, 1, 3, 7, 9, by_a, matrix)
     for i in range(4, 6):
         matrix[i, i] += rotatory / 3
         matrix[i + 6, i + 6] += rotatory / 3
@@ -175,15 +173,15 @@ def tangent(x, data, e, by, matrix):
         matrix[i + 6, i] += rotatory / 6
 
 
-@kernel
-def energy(x, v, signals, callbacks, data, meta, e):
+@inner
+def energy(x, v, p, m, inputs):
     """Kinetic energy, strain and gravity energy, power of the material damping."""
-    h, height, mass, rotatory = data[e, 0], data[e, 1], data[e, 3], data[e, 4]
-    c11, c12, shear, delay = data[e, 5], data[e, 6], data[e, 7], data[e, 8]
+    h, height, mass, rotatory = p.length, p.height, p.mass, p.rotatory
+    c11, c12, shear, delay = p.c11, p.c12, p.shear, p.delay
     kinetic = hermite.kinetic(mass, h, 0, 2, 6, 8, v) + hermite.kinetic(mass, h, 1, 3, 7, 9, v)
     for i in range(4, 6):
         kinetic += rotatory / 6 * (v[i] * v[i] + v[i] * v[i + 6] + v[i + 6] * v[i + 6])
-    potential = -mass * (data[e, 9] * hermite.centre(h, 0, 2, 6, 8, x) + data[e, 10] * hermite.centre(h, 1, 3, 7, 9, x))
+    potential = -mass * (p.gravity_x * hermite.centre(h, 0, 2, 6, 8, x) + p.gravity_y * hermite.centre(h, 1, 3, 7, 9, x))
     power = 0.0 * h
     across = 1.0 / h
     for g in range(3):
@@ -195,8 +193,24 @@ def energy(x, v, signals, callbacks, data, meta, e):
             fx = s1 * (x[0] - x[6]) + s2 * x[2] + s5 * x[8] + y * (x[10] - x[4])
             fy = s1 * (x[1] - x[7]) + s2 * x[3] + s5 * x[9] + y * (x[11] - x[5])
             exx, eyy, twice = 0.5 * (fx * fx + fy * fy - 1), 0.5 * (nx * nx + ny * ny - 1), fx * nx + fy * ny
-            w = 0.5 * W[g] * h * height * data[e, 2]
+            w = 0.5 * W[g] * h * height * p.width
             potential += 0.5 * w * (c11 * (exx * exx + eyy * eyy) + 2 * c12 * exx * eyy + shear * twice * twice)
             dxx, dyy, dxy = _strain_rates(v, xi, s1, s2, s5, y, fx, fy, nx, ny)
             power -= delay * w * (c11 * (dxx * dxx + dyy * dyy) + 2 * c12 * dxx * dyy + shear * dxy * dxy)
     return kinetic, potential, power
+
+
+BEAM = Kind(
+    "ancf_beam",
+    coordinates=WIDTH,
+    numbers=(
+        "length", "height", "width", "mass", "rotatory", "c11", "c12", "shear", "delay", "gravity_x", "gravity_y",
+    ),
+    residual=residual,
+    tangent=tangent,
+    known=undamped,
+    energy=energy,
+    lengths=("length",),
+    gravity=("gravity_x", "gravity_y"),
+    dissipates="delay",
+)  # fmt: skip

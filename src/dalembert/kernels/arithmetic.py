@@ -1,0 +1,43 @@
+"""Kernels in real and in complex numbers, made from one function."""
+
+from collections.abc import Callable
+from types import FunctionType
+from typing import Annotated, Any, ParamSpec, TypeVar, cast, get_args, get_origin, get_type_hints
+
+import numpy as np
+
+from dalembert.kernels.kernel import Kernel, kernel
+from dalembert.kernels.words import ArrayOf
+
+P, R = ParamSpec("P"), TypeVar("R")
+
+_OPEN = ""
+#: Arrays of the numbers that a kernel is made for.
+Numbers = Annotated[np.ndarray, ArrayOf(_OPEN, 1)]
+Numbers2 = Annotated[np.ndarray, ArrayOf(_OPEN, 2)]
+Numbers3 = Annotated[np.ndarray, ArrayOf(_OPEN, 3)]
+
+
+def kernels(function: Callable[P, R]) -> tuple[Kernel[P, R], Kernel[P, R]]:
+    """The kernels of a function whose annotations leave open the numbers of arrays: for real and for complex ones."""
+    return _kernel_of(function, "real", "f8"), _kernel_of(function, "complex", "c16")
+
+
+def _kernel_of(function: Callable[P, R], numbers: str, dtype: str) -> Kernel[P, R]:
+    given = cast(FunctionType, function)
+    own = FunctionType(
+        given.__code__, given.__globals__, f"{given.__name__}_{numbers}", given.__defaults__, given.__closure__
+    )
+    own.__module__, own.__doc__ = given.__module__, given.__doc__
+    hints = get_type_hints(function, include_extras=True)
+    own.__annotations__ = {name: _closed(annotation, dtype) for name, annotation in hints.items()}
+    return kernel(cast(Callable[P, R], own))
+
+
+def _closed(annotation: Any, dtype: str) -> Any:
+    """An annotation with the dtype of arrays that it leaves open."""
+    if get_origin(annotation) is Annotated:
+        leaf = get_args(annotation)[1]
+        if leaf.dtype == _OPEN:
+            return Annotated[np.ndarray, ArrayOf(dtype, leaf.axes)]
+    return annotation

@@ -1,0 +1,304 @@
+"""From a Python function to an object file with one C function, by Numba and LLVM.
+
+Numba optimises, and turns into machine code, each inner function by itself, though only its copy inside its callers is
+used. Here inner functions stay as they come from Numba, and the whole of a kernel is optimised once.
+"""
+
+import gc
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import cache
+from types import SimpleNamespace
+from typing import Annotated, Any, get_args, get_origin
+
+import llvmlite.binding as ll
+from llvmlite import ir
+from numba import types
+from numba.core import cgutils, compiler
+from numba.core.codegen import CPUCodeLibrary
+from numba.core.compiler_lock import global_compiler_lock
+from numba.core.registry import CPUDispatcher, cpu_target
+from numba.core.typing.templates import AbstractTemplate, infer_global, make_concrete_template
+from numba.extending import lower_builtin
+
+from dalembert.kernels.views import array_at, intrinsic
+from dalembert.kernels.words import ArrayOf, count, fields, leaves
+
+_WORD = ir.IntType(64)
+_SCALARS = {int: types.int64, float: types.float64, bool: types.boolean}
+_ITEMS = {"u1": types.uint8, "i8": types.int64, "f8": types.float64, "c16": types.complex128}
+_OPTIMISATION = 3
+
+
+#: What Numba's environments of Python objects are given to: kernels have none.
+_NO_ENVIRONMENT = SimpleNamespace(set_env=lambda name, environment: None)
+
+
+class _Library(CPUCodeLibrary):
+    """Code that stays as it is until a kernel takes it in."""
+
+    def _optimize_functions(self, ll_module: Any) -> None:
+        ll_module.data_layout = self._codegen._data_layout
+
+    def finalize(self) -> None:
+        self._finalized = True
+
+    def get_pointer_to_function(self, name: str) -> int:
+        return 0  # it has no machine code
+
+    @property
+    def codegen(self) -> Any:
+        return _NO_ENVIRONMENT
+
+    def _get_module_for_linking(self) -> Any:  # for a function compiled elsewhere that shares some of the inner ones
+        if self._shared_module is None:
+            self._shared_module = _linked(self)
+        return self._shared_module
+
+
+def _linked(library: CPUCodeLibrary) -> Any:
+    """One module of a library and of all that it calls."""
+    whole = ll.parse_assembly(str(library._codegen._create_empty_module(library.name)))
+    for part in _reached(library):
+        module = part._final_module.clone() if isinstance(part, _Library) else part._get_module_for_linking().clone()
+        for function in module.functions:
+            if not function.is_declaration and function.linkage == ll.Linkage.external:
+                function.linkage = "weak_odr"
+        whole.link_in(module)
+    return whole
+
+
+def _reached(library: CPUCodeLibrary) -> list[CPUCodeLibrary]:
+    reached, ahead = [], [library]
+    while ahead:
+        own = ahead.pop()
+        if own not in reached:
+            reached.append(own)
+            ahead += own._linking_libraries
+    return reached
+
+
+@contextmanager
+def _apart() -> Iterator[None]:
+    """Compile without machine code for inner functions, and without collecting garbage (a seventh of the time)."""
+    codegen = cpu_target.target_context.codegen()
+    usual, collects = codegen._library_class, gc.isenabled()
+    codegen._library_class = _Library
+    gc.disable()
+    try:
+        yield
+    finally:
+        codegen._library_class = usual
+        if collects:
+            gc.enable()
+
+
+class Inner(CPUDispatcher):
+    """A function for kernels. It is not specialised by literal arguments; from Python it is the function itself."""
+
+    def __call__(self, *arguments: Any, **named: Any) -> Any:
+        return self.py_func(*arguments, **named)
+
+    def get_call_template(self, args: Any, kws: Any) -> Any:
+        """One signature, that of these arguments: others would be tried, too, records as if they were alike."""
+        positional, named = map(types.unliteral, args), {name: types.unliteral(kind) for name, kind in kws.items()}
+        folded, given = self._compiler.fold_argument_types(tuple(positional), named)
+        self.compile(tuple(given))
+        signature = self.overloads[tuple(given)].signature
+        template = make_concrete_template(
+            f"CallTemplate({self.py_func.__name__})", key=self.py_func.__name__, signatures=[signature]
+        )
+        return template, folded, given, {}
+
+
+def numba_type(annotation: Any) -> types.Type:
+    """Numba's type of an argument."""
+    if annotation in _SCALARS:
+        return _SCALARS[annotation]
+    if get_origin(annotation) is Annotated:
+        leaf = next(leaves(annotation))
+        return types.Array(_ITEMS[leaf.dtype], leaf.axes, "C")
+    if get_origin(annotation) is tuple:
+        return types.Tuple([numba_type(entry) for entry in get_args(annotation)])
+    return types.BaseTuple.from_types([numba_type(entry) for entry in fields(annotation).values()], annotation)
+
+
+def _load(context: Any, builder: Any, annotation: Any, words: Any, at: int) -> Any:
+    """Generate an argument from its words."""
+
+    def word(k: int) -> Any:
+        return builder.gep(words, [_WORD(k)])
+
+    if annotation is float:
+        return builder.load(builder.bitcast(word(at), ir.DoubleType().as_pointer()))
+    if annotation is bool:
+        return builder.icmp_unsigned("!=", builder.load(word(at)), _WORD(0))
+    if annotation is int:
+        return builder.load(word(at))
+    if get_origin(annotation) is Annotated:
+        leaf, kind = next(leaves(annotation)), numba_type(annotation)
+        shape = [builder.load(word(at + 1 + axis)) for axis in range(leaf.axes)]
+        return array_at(context, builder, kind, builder.load(word(at)), shape)
+    values = []
+    for entry in fields(annotation).values():
+        values.append(_load(context, builder, entry, words, at))
+        at += count(entry)
+    return context.make_tuple(builder, numba_type(annotation), values)
+
+
+def _store(context: Any, builder: Any, annotation: Any, value: Any, words: Any, at: int) -> None:
+    """Generate the words of an argument."""
+
+    def put(entry: Any, k: int) -> None:
+        place = builder.gep(words, [_WORD(k)])
+        builder.store(entry, builder.bitcast(place, entry.type.as_pointer()))
+
+    if annotation is bool:
+        put(builder.zext(value, _WORD), at)
+    elif annotation in _SCALARS:
+        put(value, at)
+    elif get_origin(annotation) is Annotated:
+        leaf = next(leaves(annotation))
+        array = cgutils.create_struct_proxy(numba_type(annotation))(context, builder, value=value)
+        put(builder.ptrtoint(array.data, _WORD), at)
+        for axis, length in enumerate(cgutils.unpack_tuple(builder, array.shape, leaf.axes)):
+            put(length, at + 1 + axis)
+    else:
+        entries = get_args(annotation) if get_origin(annotation) is tuple else list(fields(annotation).values())
+        for k, entry in enumerate(entries):
+            _store(context, builder, entry, builder.extract_value(value, k), words, at)
+            at += count(entry)
+
+
+def entry_point(function: Callable, arguments: tuple[Any, ...], result: Any) -> Callable:
+    """A function of one address: of the words of the arguments, behind which it writes those of the result."""
+    kinds = types.Tuple([numba_type(annotation) for annotation in arguments])
+    behind = sum(map(count, arguments))
+
+    @intrinsic
+    def load(typingctx, address):
+        def generate(context, builder, signature, values):
+            words, at, loaded = builder.inttoptr(values[0], _WORD.as_pointer()), 0, []
+            for annotation in arguments:
+                loaded.append(_load(context, builder, annotation, words, at))
+                at += count(annotation)
+            return context.make_tuple(builder, kinds, loaded)
+
+        return kinds(types.int64), generate
+
+    @intrinsic
+    def store(typingctx, address, value):
+        if result is None:
+            return types.void(types.int64, value), lambda context, *_: context.get_dummy_value()
+
+        def generate(context, builder, signature, values):
+            words = builder.inttoptr(values[0], _WORD.as_pointer())
+            _store(context, builder, result, values[1], words, behind)
+            return context.get_dummy_value()
+
+        return types.void(types.int64, numba_type(result)), generate
+
+    def entry(address):
+        store(address, function(*load(address)))
+
+    return entry
+
+
+def caller(handle: Any, symbol: str | None, arguments: tuple[Any, ...], result: Any) -> None:
+    """Let compiled functions call a kernel, as ``handle`` in their source: by its symbol, or by an address before all.
+
+    The words are written to the stack of the caller.
+    """
+    leading = () if symbol else (types.int64,)
+    kinds = (*leading, *(numba_type(annotation) for annotation in arguments))
+    answer = types.none if result is None else numba_type(result)
+    behind = sum(map(count, arguments))
+    size = behind + (0 if result is None else count(result))
+
+    class Template(AbstractTemplate):
+        key = handle
+
+        def generic(self, args: Any, kws: Any) -> Any:
+            return answer(*kinds)
+
+    @lower_builtin(handle, *kinds)
+    def lower(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        with builder.goto_entry_block():
+            words = builder.alloca(_WORD, size=max(size, 1))
+        at = 0
+        for annotation, value in zip(arguments, values[len(leading) :], strict=True):
+            _store(context, builder, annotation, value, words, at)
+            at += count(annotation)
+        kind = ir.FunctionType(ir.VoidType(), [_WORD])
+        if symbol:
+            function = cgutils.get_or_insert_function(builder.module, kind, symbol)
+        else:
+            function = builder.inttoptr(values[0], kind.as_pointer())
+        builder.call(function, [builder.ptrtoint(words, _WORD)])
+        if result is None:
+            return context.get_dummy_value()
+        if get_origin(result) is not tuple:
+            return _load(context, builder, result, words, behind)
+        entries = enumerate(get_args(result))
+        return context.make_tuple(
+            builder, answer, [_load(context, builder, entry, words, behind + k) for k, entry in entries]
+        )
+
+    infer_global(handle, types.Function(Template))
+
+
+def _flags() -> Any:
+    flags = compiler.Flags()
+    flags.nrt = False
+    flags.release_gil = True
+    flags.error_model = "numpy"
+    flags.no_cpython_wrapper = True
+    flags.no_cfunc_wrapper = True
+    return flags
+
+
+@global_compiler_lock
+def object_code(function: Callable, symbol: str, addresses: int, cpu: str | None = None) -> bytes:
+    """Machine code of a function of so many addresses that returns nothing, under a symbol."""
+    with _apart():
+        context = cpu_target.target_context
+        context.refresh()
+        cpu_target.typing_context.refresh()
+        arguments = (types.int64,) * addresses
+        compiled = compiler.compile_extra(
+            cpu_target.typing_context, context, function, arguments, types.none, _flags(), {}
+        )
+        module = _linked(compiled.library)
+        return _emitted(module, compiled.fndesc.llvm_func_name, symbol, addresses, cpu)
+
+
+def _emitted(module: Any, native: str, symbol: str, addresses: int, cpu: str | None) -> bytes:
+    given = ", ".join(f"i64 %{k}" for k in range(addresses))
+    stub = ll.parse_assembly(
+        f'declare i32 @"{native}"(ptr, ptr{", i64" * addresses})\n'
+        f'define void @"{symbol}"({given}) {{\n'
+        f"  %r = alloca ptr\n  %e = alloca ptr\n"
+        f'  %s = call i32 @"{native}"(ptr %r, ptr %e, {given})\n  ret void\n}}'
+    )
+    stub.triple, stub.data_layout = module.triple, module.data_layout
+    module.link_in(stub)
+    for entry in (*module.functions, *module.global_variables):
+        if not entry.is_declaration and entry.name != symbol:
+            entry.linkage = "internal"
+    machine = target_machine(cpu)
+    options = ll.create_pipeline_tuning_options(speed_level=_OPTIMISATION)
+    options.loop_vectorization, options.slp_vectorization = True, False
+    builder = ll.create_pass_builder(machine, options)
+    passes = builder.getModulePassManager()
+    passes.run(module, builder)
+    return machine.emit_object(module)
+
+
+@cache
+def target_machine(cpu: str | None = None) -> Any:
+    """LLVM's description of a processor: of this one, or of the named one."""
+    target = ll.Target.from_triple(ll.get_process_triple())
+    features = ll.get_host_cpu_features().flatten() if cpu is None else ""
+    return target.create_target_machine(
+        cpu=cpu or ll.get_host_cpu_name(), features=features, opt=_OPTIMISATION, reloc="pic", codemodel="default"
+    )

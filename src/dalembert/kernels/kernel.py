@@ -1,0 +1,202 @@
+"""Kernels: functions compiled alone, and called by their symbol from other kernels, or from Python."""
+
+import ctypes
+import inspect
+import sys
+from collections.abc import Callable
+from functools import cached_property
+from importlib import import_module
+from typing import Any, Generic, ParamSpec, TypeVar, get_type_hints
+
+import numpy as np
+from numba import njit
+
+from dalembert.kernels.compiler import Inner, caller, entry_point, object_code
+from dalembert.kernels.digest import digest, needs
+from dalembert.kernels.objects import OBJECTS
+from dalembert.kernels.words import count, leaves, packer, unpack
+
+P, R = ParamSpec("P"), TypeVar("R")
+_Function = TypeVar("_Function", bound=Callable)
+
+# No fast-math, not even the fusing of a product with a sum (a thirtieth of a simulation's time): results are those of
+# IEEE arithmetic. Nothing is allocated: what a kernel writes to, NumPy makes and Python keeps alive.
+_OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "_nrt": False, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+
+
+def _decorator(**options: Any) -> Callable[[_Function], _Function]:
+    decorate: Any = njit(**_OPTIONS, **options)
+
+    def decorated(function: _Function) -> _Function:
+        dispatcher = decorate(function)
+        dispatcher.__class__ = Inner
+        return dispatcher
+
+    return decorated
+
+
+#: For functions that kernels call; LLVM decides whether they are written into their callers.
+inner = _decorator()
+#: For small ones that must be.
+inlined = _decorator(forceinline=True)
+
+
+Origin = tuple[str, str, tuple[str, ...]]
+"""Module of a kernel, name there, and role and arithmetic if it is a kind's."""
+Owner = tuple[Any, str, type]
+"""A kind of component, a role and an arithmetic."""
+
+
+class Compiled:
+    """A C function that is loaded, or compiled, when its address is first needed."""
+
+    symbol: str
+    function: Callable
+    @cached_property
+    def origin(self) -> Origin | None:
+        """How another process finds the kernel, None if it cannot."""
+        return _origin(self.function.__module__, self)
+
+    @property
+    def family(self) -> str:
+        """Kernels of a family share inner functions: one process compiles them."""
+        return self.function.__module__
+
+    @cached_property
+    def digest(self) -> str:
+        """Digest of the source."""
+        return digest(self.function)
+
+    @cached_property
+    def needs(self) -> list["Compiled"]:
+        """Kernels that it calls by their symbols."""
+        return needs(self.function)
+
+    @property
+    def abi(self) -> str:
+        """What a caller depends on."""
+        return self.symbol
+
+    def object_code(self, cpu: str | None = None) -> bytes:
+        """Machine code of the function."""
+        raise NotImplementedError
+
+    @cached_property
+    def address(self) -> int:
+        """Address of the C function."""
+        return OBJECTS.address(self)
+
+
+class BlockKernel(Compiled):
+    """A C function of two addresses: those of a call and of a block, or of what else its function takes."""
+
+    def __init__(self, function: Callable[[Any, Any], None], symbol: str, owner: Owner | None = None) -> None:
+        self.function, self.symbol, self._owner = function, symbol, owner
+
+    @cached_property
+    def origin(self) -> Origin | None:
+        if self._owner is None:
+            return super().origin
+        kind, role, dtype = self._owner
+        return _origin(kind.residual.__module__, kind, role, dtype.__name__)
+
+    @property
+    def family(self) -> str:
+        return self.function.__module__ if self._owner is None else self._owner[0].name
+
+    def object_code(self, cpu: str | None = None) -> bytes:
+        return object_code(self.function, self.symbol, 2, cpu)
+
+    @cached_property
+    def _entry(self) -> Any:
+        return ctypes.CFUNCTYPE(None, ctypes.c_int64, ctypes.c_int64)(self.address)
+
+    def __call__(self, first: int, second: int) -> None:
+        self._entry(first, second)
+
+
+class Indirect:
+    """In compiled functions: a call of any kernel with the arguments of this one, by an address before them."""
+
+    def __init__(self, kernel: "Kernel") -> None:
+        self.kernel = kernel
+
+    @property
+    def abi(self) -> str:
+        """What a caller depends on."""
+        return self.kernel.abi
+
+    def __call__(self, address: int, *arguments: Any) -> Any:
+        return self.kernel.called(ctypes.CFUNCTYPE(None, ctypes.c_int64)(address), arguments)
+
+
+class Kernel(Compiled, Generic[P, R]):
+    """A C function of one address: that of the words of its arguments, see :mod:`dalembert.kernels.words`."""
+
+    def __init__(self, function: Callable[P, R]) -> None:
+        hints = get_type_hints(function, include_extras=True)
+        self.function = function
+        self.__name__, self.__doc__ = function.__name__, function.__doc__
+        self.symbol = f"dal_{function.__module__.removeprefix('dalembert.').replace('.', '_')}_{function.__name__}".replace("__", "_")
+        result = hints.pop("return", None)
+        self._result = None if result is type(None) else result
+        names = list(inspect.signature(function).parameters)
+        self._arguments = tuple(hints[name] for name in names)
+        self._packers, at = [], 0
+        for name, annotation in zip(names, self._arguments, strict=True):
+            self._packers.append((packer(f"{function.__name__}: {name}", annotation), at))
+            at += count(annotation)
+        self._behind, self._width = at, at + (0 if self._result is None else count(self._result))
+        self.inner = inner(function)
+        caller(self, self.symbol, self._arguments, self._result)
+        self.at = Indirect(self)
+        caller(self.at, None, self._arguments, self._result)
+
+    def object_code(self, cpu: str | None = None) -> bytes:
+        """Machine code of the kernel."""
+        return object_code(entry_point(self.inner, self._arguments, self._result), self.symbol, 1, cpu)
+
+    @property
+    def abi(self) -> str:
+        return f"{self.symbol}{self._layout}"
+
+    @property
+    def _layout(self) -> str:
+        return repr([list(leaves(entry)) for entry in self._arguments]) + repr(self._result)
+
+    @cached_property
+    def digest(self) -> str:
+        return digest(self.function, self._layout)
+
+    @cached_property
+    def _entry(self) -> Any:
+        return ctypes.CFUNCTYPE(None, ctypes.c_int64)(self.address)
+
+    def called(self, entry: Any, arguments: tuple[Any, ...]) -> Any:
+        """The result of a C function that takes the arguments of this kernel."""
+        words = np.zeros(max(self._width, 1), np.int64)
+        for (pack, at), value in zip(self._packers, arguments, strict=True):
+            pack(value, words, at)
+        entry(words.ctypes.data)
+        return None if self._result is None else unpack(self._result, words[self._behind :])
+
+    def __call__(self, *arguments: P.args, **_: P.kwargs) -> R:
+        return self.called(self._entry, arguments)
+
+
+def kernel(function: Callable[P, R]) -> Kernel[P, R]:
+    """Compile a function alone when it is first needed; its annotations are its arguments' types."""
+    return Kernel(function)
+
+
+def _origin(module: str, owner: Any, *role: str) -> Origin | None:
+    """Module and name there of an object, unless the module is a script or does not hold the object."""
+    names = [name for name, value in vars(sys.modules[module]).items() if value is owner]
+    return (module, names[0], role) if names and module != "__main__" else None
+
+
+def find(origin: Origin) -> Compiled:
+    """The kernel of an origin."""
+    module, name, role = origin
+    found = getattr(import_module(module), name)
+    return found.kernel(role[0], {"float": float, "complex": complex}[role[1]]) if role else found

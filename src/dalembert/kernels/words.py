@@ -1,0 +1,123 @@
+"""Arguments of kernels as 64-bit words: an annotation says how many words an argument takes, and how they are filled."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cache
+from typing import Annotated, Any, get_args, get_origin, get_type_hints
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class ArrayOf:
+    """A contiguous array: its dtype and its number of axes. Its words are its address and its shape."""
+
+    dtype: str
+    axes: int
+
+
+Integers = Annotated[np.ndarray, ArrayOf("i8", 1)]
+Integers2 = Annotated[np.ndarray, ArrayOf("i8", 2)]
+Reals = Annotated[np.ndarray, ArrayOf("f8", 1)]
+Reals2 = Annotated[np.ndarray, ArrayOf("f8", 2)]
+Reals3 = Annotated[np.ndarray, ArrayOf("f8", 3)]
+Reals4 = Annotated[np.ndarray, ArrayOf("f8", 4)]
+Complexes = Annotated[np.ndarray, ArrayOf("c16", 1)]
+Complexes2 = Annotated[np.ndarray, ArrayOf("c16", 2)]
+Complexes3 = Annotated[np.ndarray, ArrayOf("c16", 3)]
+#: Unsigned.
+Bytes = Annotated[np.ndarray, ArrayOf("u1", 1)]
+Bytes2 = Annotated[np.ndarray, ArrayOf("u1", 2)]
+#: Address of a record or of a kernel: one word.
+Address = int
+
+_SCALARS: dict[Any, str] = {int: "i8", float: "f8", bool: "i8"}
+Pack = Callable[[Any, np.ndarray, int], None]
+
+
+def leaves(annotation: Any) -> Iterator[Any]:
+    """Scalars and arrays of an annotation, those of a NamedTuple in the order of its fields."""
+    if annotation in _SCALARS:
+        yield annotation
+    elif get_origin(annotation) is Annotated:
+        yield next(entry for entry in get_args(annotation) if isinstance(entry, ArrayOf))
+    elif get_origin(annotation) is tuple:
+        for entry in get_args(annotation):
+            yield from leaves(entry)
+    elif hasattr(annotation, "_fields"):
+        for entry in fields(annotation).values():
+            yield from leaves(entry)
+    else:
+        raise TypeError(f"{annotation!r} is no argument of a kernel; use int, float, bool, an array or a NamedTuple")
+
+
+@cache
+def fields(record: type) -> dict[str, Any]:
+    """Annotations of a NamedTuple."""
+    hints = get_type_hints(record, include_extras=True)
+    return {name: hints[name] for name in record._fields}  # type: ignore[attr-defined] - of a NamedTuple
+
+
+def width(leaf: Any) -> int:
+    """Words of a scalar or an array."""
+    return 1 + leaf.axes if isinstance(leaf, ArrayOf) else 1
+
+
+def count(annotation: Any) -> int:
+    """Words of an argument."""
+    return sum(map(width, leaves(annotation)))
+
+
+def packer(name: str, annotation: Any) -> Pack:
+    """A function that writes an argument's words from a position on; ``name`` is for its messages."""
+    if annotation is float:
+        return _pack_float
+    if annotation in _SCALARS:
+        return _pack_integer
+    if get_origin(annotation) is Annotated:
+        return _array_packer(name, next(leaves(annotation)))
+    parts, start = [], 0
+    entries = get_args(annotation) if get_origin(annotation) is tuple else fields(annotation).values()
+    names = getattr(annotation, "_fields", range(len(entries)))
+    for own, entry in zip(names, entries, strict=True):
+        parts.append((packer(f"{name}.{own}", entry), start))
+        start += count(entry)
+
+    def pack(value: Any, words: np.ndarray, at: int) -> None:
+        for (own, offset), entry in zip(parts, value, strict=True):
+            own(entry, words, at + offset)
+
+    return pack
+
+
+def _pack_integer(value: Any, words: np.ndarray, at: int) -> None:
+    words[at] = value
+
+
+def _pack_float(value: Any, words: np.ndarray, at: int) -> None:
+    words[at : at + 1].view(np.float64)[0] = value
+
+
+def _array_packer(name: str, leaf: ArrayOf) -> Pack:
+    dtype = np.dtype(leaf.dtype)
+
+    def pack(value: np.ndarray, words: np.ndarray, at: int) -> None:
+        if value.dtype != dtype or value.ndim != leaf.axes or not value.flags.c_contiguous:
+            raise TypeError(
+                f"{name} is an array of {value.dtype} with shape {value.shape}; "
+                f"expected a contiguous one of {dtype} with {leaf.axes} axes"
+            )
+        words[at] = value.ctypes.data
+        words[at + 1 : at + 1 + leaf.axes] = value.shape
+
+    return pack
+
+
+def unpack(annotation: Any, words: np.ndarray) -> Any:
+    """A result from its words: a scalar or a tuple of scalars."""
+    if annotation is float:
+        return float(words.view(np.float64)[0])
+    if annotation in _SCALARS:
+        return annotation(words[0])
+    entries = get_args(annotation)
+    return tuple(unpack(entry, words[i : i + 1]) for i, entry in enumerate(entries))

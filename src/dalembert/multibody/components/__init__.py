@@ -1,0 +1,1 @@
+"""Components: bodies, joints, loads, and what every one of them offers."""

@@ -1,0 +1,1 @@
+"""Components of mechanisms in the plane: one file a kind."""

@@ -1,0 +1,84 @@
+"""What flexible bars of planar ANCF elements share: straight and undeformed at first."""
+
+from abc import abstractmethod
+from dataclasses import dataclass, field
+from typing import cast, Any
+
+import numpy as np
+
+from dalembert.errors import InputError
+from dalembert.multibody.components.fields import Number, number, require
+from dalembert.multibody.components.planar.body import GRADIENT, POSITION, Body, turned
+from dalembert.multibody.components.points import Place, Point
+
+
+MOST_ELEMENTS = 100_000
+"""Of a beam: a hundred times as many as the longest chain of the benchmarks."""
+
+
+@dataclass(frozen=True)
+class Ancf(Body):
+    """What both beams share: a chain of equal elements between equal nodes, cubic along the axis.
+
+    Its first vectors a node are the position and the gradient along the axis.
+    """
+
+    length: Number = number("m")
+    elements: int = cast(Any, field())  # as a field of ours is to a type checker: any
+    youngs_modulus: Number = number("Pa")
+
+    @property
+    @abstractmethod
+    def vectors(self) -> int:
+        """Vectors of two components a node."""
+
+    @property
+    def place(self) -> Place:
+        return self.origin  # type: ignore[attr-defined] - every concrete beam has it
+
+    @property
+    def coordinate_kinds(self) -> tuple[str, ...]:
+        node = (POSITION, POSITION) + (GRADIENT, GRADIENT) * (self.vectors - 1)
+        return node * (self.elements + 1)
+
+    @property
+    def point_names(self) -> tuple[str, ...]:
+        return ("start", "end", *(f"node{k}" for k in range(self.elements + 1)))
+
+    def node(self, number: int) -> Point:
+        """Node 0 (the start) to node ``elements`` (the end)."""
+        return self.point(f"node{number}")
+
+    def _node(self, point: str) -> int:
+        ends = {"start": 0, "end": self.elements}
+        return ends[point] if point in ends else int(point.removeprefix("node"))
+
+    def coordinates(self, x: Number, y: Number, angle: Number) -> np.ndarray:
+        c, s = turned(1.0, 0.0, angle)
+        along = np.linspace(0.0, 1.0, self.elements + 1) * self.length
+        frame = [c, s, -s, c][: 2 * (self.vectors - 1)]
+        nodes = np.empty((self.elements + 1, 2 * self.vectors), dtype=np.result_type(x, y, angle, along))
+        nodes[:, 0], nodes[:, 1], nodes[:, 2:] = x + along * c, y + along * s, frame
+        return nodes.ravel()
+
+    def element_index(self, first: int) -> np.ndarray:
+        """Coordinates of each element, (elements, 4 vectors)."""
+        return first + np.arange(4 * self.vectors) + 2 * self.vectors * np.arange(self.elements)[:, None]
+
+    def outline(self, coordinates: np.ndarray, points: int) -> np.ndarray:
+        nodes = coordinates.reshape(len(coordinates), self.elements + 1, self.vectors, 2)
+        h = np.real(self.length) / self.elements
+        xi = np.linspace(0.0, 1.0, points + 1)[:, None]
+        shape = [1 - 3 * xi**2 + 2 * xi**3, h * (xi - 2 * xi**2 + xi**3), 3 * xi**2 - 2 * xi**3, h * (xi**3 - xi**2)]
+        r, t = nodes[:, :, None, 0], nodes[:, :, None, 1]
+        line = shape[0] * r[:, :-1] + shape[1] * t[:, :-1] + shape[2] * r[:, 1:] + shape[3] * t[:, 1:]
+        inner = line[:, :, :-1].reshape(len(coordinates), -1, 2)
+        return np.concatenate([inner, line[:, -1, -1:]], axis=1)
+
+    def _check(self) -> None:
+        owner = f"beam {self.name!r}"
+        require(owner, length=self.length, youngs_modulus=self.youngs_modulus)
+        if not (isinstance(self.elements, int) and 0 < self.elements <= MOST_ELEMENTS):
+            raise InputError(
+                f"{owner}: elements is {self.elements!r}; expected a whole number, from 1 to {MOST_ELEMENTS}"
+            )

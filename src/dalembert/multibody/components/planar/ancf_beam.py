@@ -1,0 +1,114 @@
+"""The fully parametrised ANCF beam."""
+
+from dataclasses import InitVar, dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from dalembert.errors import InputError, unknown
+from dalembert.multibody.components.fields import Number, number, pair, require, require_not_negative
+from dalembert.multibody.components.planar import markers
+from dalembert.multibody.components.planar.ancf import Ancf
+from dalembert.multibody.components.planar.beam_element import BEAM
+from dalembert.multibody.components.planar.body import Marker, with_points
+from dalembert.multibody.components.points import Place
+
+if TYPE_CHECKING:
+    from dalembert.multibody.lowering import Lowering
+
+LAWS = ("plane-stress", "plane-strain", "uncoupled")
+
+
+@with_points("start", "end")
+@dataclass(frozen=True)
+class AncfBeam(Ancf):
+    """A bar of fully parametrised planar ANCF elements (Omar and Shabana 2001): stretch, bending, shear, thickness.
+
+    Parameters
+    ----------
+    name : str
+    length : float
+        m.
+    elements : int
+    youngs_modulus : float
+        Pa.
+    poisson_ratio : float
+    density : float
+        kg/m^3.
+    height, width : float
+        Of the section, in the plane of motion and across it, m.
+    angle : float
+        At first, rad, from the x axis.
+    start : (float, float) or Point
+        Where the bar starts at first, m. The attributes ``start`` and ``end`` are the bar's points.
+    velocity : (float, float)
+        Of the start at first, m/s.
+    angular_velocity : float
+        At first, rad/s.
+    damping : float
+        Retardation time of the Kelvin-Voigt material, s: stress = D (strain + damping x strain rate).
+    law : {"plane-stress", "plane-strain", "uncoupled"}
+        Saint-Venant-Kirchhoff material; ``"uncoupled"`` leaves the Poisson coupling out of the normal stresses.
+
+    Examples
+    --------
+    >>> bar = AncfBeam("bar", length=1.0, elements=2, youngs_modulus=2e8, poisson_ratio=0.3, density=5540.0,
+    ...                height=0.4, width=0.2)
+    >>> bar.size, str(bar.end)
+    (18, 'bar.end')
+    """
+
+    poisson_ratio: Number = number("")
+    density: Number = number("kg/m**3")
+    height: Number = number("m")
+    width: Number = number("m")
+    angle: Number = number("rad", 0.0)
+    start: InitVar[Place] = pair("m")
+    velocity: tuple[Number, Number] = pair("m/s")
+    angular_velocity: Number = number("rad/s", 0.0)
+    damping: Number = number("s", 0.0)
+    law: str = "plane-stress"
+    origin: Place = field(init=False)
+
+    def __post_init__(self, start: Place) -> None:
+        object.__setattr__(self, "origin", start)
+        self._check()
+        owner = f"beam {self.name!r}"
+        require(owner, density=self.density, height=self.height, width=self.width)
+        require_not_negative(owner, damping=self.damping)
+        if self.law not in LAWS:
+            raise InputError(unknown("law", self.law, LAWS, owner))
+        if not -1 < np.real(self.poisson_ratio) < 0.5:
+            raise InputError(
+                f"{owner}: poisson_ratio is {np.real(self.poisson_ratio):g}; expected a number in (-1, 0.5)"
+            )
+
+    @property
+    def vectors(self) -> int:
+        return 3
+
+    @property
+    def stiffnesses(self) -> tuple[Number, Number, Number]:
+        """C11, C12 and the shear modulus G of the law, Pa."""
+        e, nu = self.youngs_modulus, self.poisson_ratio
+        shear = e / (2 * (1 + nu))
+        if self.law == "plane-stress":
+            return e / (1 - nu**2), nu * e / (1 - nu**2), shear
+        if self.law == "plane-strain":
+            lame = e / ((1 + nu) * (1 - 2 * nu))
+            return (1 - nu) * lame, nu * lame, shear
+        return e, 0.0, shear
+
+    def marker(self, point: str) -> Marker:
+        k = 6 * self._node(point)
+        # The direction of a section is that of r_y, a quarter turn ahead of the axis.
+        return Marker(markers.NODE, (k, k + 1, k + 4, k + 5), (0.0, 0.0, -np.pi / 2))
+
+    def lower(self, lowering: "Lowering", first: int) -> None:
+        h = self.length / self.elements
+        line = self.density * self.height * self.width
+        data = [
+            h, self.height, self.width, line * h, line * h * self.height**2 / 12, *self.stiffnesses, self.damping,
+            *lowering.gravity,
+        ]  # fmt: skip
+        lowering.add_many(BEAM, self.element_index(first), data)

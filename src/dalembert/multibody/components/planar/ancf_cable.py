@@ -1,0 +1,76 @@
+"""The gradient-deficient ANCF cable."""
+
+from dataclasses import InitVar, dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from dalembert.multibody.components.fields import Number, number, pair, require, require_not_negative
+from dalembert.multibody.components.planar import markers
+from dalembert.multibody.components.planar.ancf import Ancf
+from dalembert.multibody.components.planar.cable_element import CABLE
+from dalembert.multibody.components.planar.body import Marker, with_points
+from dalembert.multibody.components.points import Place
+
+if TYPE_CHECKING:
+    from dalembert.multibody.lowering import Lowering
+
+
+@with_points("start", "end")
+@dataclass(frozen=True)
+class AncfCable(Ancf):
+    """A bar of gradient-deficient planar ANCF elements (Gerstmayr and Shabana 2006): stretch and bending.
+
+    Parameters
+    ----------
+    name : str
+    length : float
+        m.
+    elements : int
+    youngs_modulus : float
+        Pa.
+    density : float
+        kg/m^3.
+    height, width : float
+        Of the section, in the plane of motion and across it, m.
+    angle, start, velocity, angular_velocity, damping
+        As those of :class:`AncfBeam`.
+
+    Examples
+    --------
+    >>> AncfCable("rope", length=1.0, elements=4, youngs_modulus=1e7, density=1000.0, height=0.01, width=0.01).size
+    20
+    """
+
+    density: Number = number("kg/m**3")
+    height: Number = number("m")
+    width: Number = number("m")
+    angle: Number = number("rad", 0.0)
+    start: InitVar[Place] = pair("m")
+    velocity: tuple[Number, Number] = pair("m/s")
+    angular_velocity: Number = number("rad/s", 0.0)
+    damping: Number = number("s", 0.0)
+    origin: Place = field(init=False)
+
+    def __post_init__(self, start: Place) -> None:
+        object.__setattr__(self, "origin", start)
+        self._check()
+        require(f"beam {self.name!r}", density=self.density, height=self.height, width=self.width)
+        require_not_negative(f"beam {self.name!r}", damping=self.damping)
+
+    @property
+    def vectors(self) -> int:
+        return 2
+
+    def marker(self, point: str) -> Marker:
+        k = 4 * self._node(point)
+        return Marker(markers.NODE, (k, k + 1, k + 2, k + 3), (0.0, 0.0, 0.0))
+
+    def lower(self, lowering: "Lowering", first: int) -> None:
+        h = self.length / self.elements
+        area = self.height * self.width
+        data = [
+            h, self.youngs_modulus * area, self.youngs_modulus * area * self.height**2 / 12, self.density * area * h,
+            self.damping, *lowering.gravity,
+        ]  # fmt: skip
+        lowering.add_many(CABLE, self.element_index(first), data)

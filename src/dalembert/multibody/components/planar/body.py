@@ -1,0 +1,130 @@
+"""What every planar body offers."""
+
+from abc import abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from dalembert.errors import InputError, unknown
+from dalembert.multibody.components.fields import Number
+from dalembert.multibody.components.points import Place, Point
+
+if TYPE_CHECKING:
+    from dalembert.multibody.lowering import Lowering
+
+POSITION, GRADIENT, ANGLE = "position", "gradient", "angle"
+
+
+class Marker(NamedTuple):
+    """A point as kernels see it: kind, own coordinates (None: absent), and (sx, sy, phi)."""
+
+    kind: int
+    slots: tuple[int | None, ...]
+    data: tuple[Number, Number, Number]
+
+
+@dataclass(frozen=True)
+class Body:
+    """Base of all bodies: a name, a first placement and a first rigid motion."""
+
+    name: str
+
+    # The placed point is the start of beams and bars, the anchor of rigid bodies, the place of point masses.
+    @property
+    @abstractmethod
+    def place(self) -> Place:
+        """Where the placed point stands at first."""
+
+    @property
+    def turn(self) -> Number:
+        """Angle at first, rad."""
+        return getattr(self, "angle", 0.0)
+
+    @property
+    def motion(self) -> tuple[Number, Number, Number]:
+        """Velocity of the placed point and angular velocity at first."""
+        along, across = getattr(self, "velocity", (0.0, 0.0))
+        return along, across, getattr(self, "angular_velocity", 0.0)
+
+    @property
+    @abstractmethod
+    def coordinate_kinds(self) -> tuple[str, ...]:
+        """Kind of each coordinate; positions and gradients come in pairs (x, y)."""
+
+    @abstractmethod
+    def coordinates(self, x: Number, y: Number, angle: Number) -> np.ndarray:
+        """Coordinates of the undeformed body with the placed point at (x, y), turned by ``angle``."""
+
+    @abstractmethod
+    def marker(self, point: str) -> Marker:
+        """The marker of a point."""
+
+    @property
+    @abstractmethod
+    def point_names(self) -> tuple[str, ...]:
+        """Names of the points."""
+
+    @abstractmethod
+    def lower(self, lowering: "Lowering", first: int) -> None:
+        """Write the rows of the kernels; ``first`` is the body's first coordinate."""
+
+    @abstractmethod
+    def outline(self, coordinates: np.ndarray, points: int) -> np.ndarray:
+        """Line to draw, shape (frames, -, 2), from coordinates (frames, size)."""
+
+    @property
+    def turns(self) -> bool:
+        """Whether the body has a direction."""
+        return True
+
+    @property
+    def rigid(self) -> bool:
+        """Whether the distances of its points never change."""
+        return self.size <= 3
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates."""
+        return len(self.coordinate_kinds)
+
+    def point(self, name: str) -> Point:
+        """The point of this name."""
+        if name not in self.point_names:
+            raise InputError(unknown("point", name, self.point_names, f"body {self.name!r}"))
+        return Point(self, name)
+
+    def rigid_modes(self, coordinates: np.ndarray, frame: np.ndarray) -> np.ndarray:
+        """Derivatives of the coordinates by the frame: place (x, y) and angle about that place, (size, 3)."""
+        modes = np.zeros((self.size, 3), dtype=np.result_type(coordinates, frame))
+        i = 0
+        while i < self.size:
+            if self.coordinate_kinds[i] == ANGLE:
+                modes[i, 2] = 1.0
+                i += 1
+                continue
+            x, y = coordinates[i], coordinates[i + 1]
+            if self.coordinate_kinds[i] == POSITION:
+                modes[i, 0] = modes[i + 1, 1] = 1.0
+                x, y = x - frame[0], y - frame[1]
+            modes[i, 2], modes[i + 1, 2] = -y, x
+            i += 2
+        return modes
+
+
+def with_points(*names: str) -> Callable[[type], type]:
+    """Give a class its named points as attributes, also where the constructor has an argument of that name."""
+
+    def give(component: type) -> type:
+        for name in names:
+            setattr(component, name, property(lambda body, name=name: Point(body, name), doc=f"The point {name!r}."))
+        return component
+
+    return give
+
+
+def turned(x: Number, y: Number, angle: Number) -> tuple[Number, Number]:
+    """The vector (x, y) turned by ``angle``; complex-safe."""
+    c, s = np.cos(angle), np.sin(angle)
+    return c * x - s * y, s * x + c * y

@@ -1,0 +1,88 @@
+"""The distance joint."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from dalembert.errors import ModelError
+from dalembert.kernels.kernel import inlined
+from dalembert.multibody.components.fields import Number, number, require
+from dalembert.multibody.components.planar import pairs
+from dalembert.multibody.components.planar.joint import OUTPUTS, Joint, observe_joint
+from dalembert.multibody.components.planar.pairs import push_pair, separation, separation_rate, separation_second
+from dalembert.multibody.kernels.dual import root
+from dalembert.multibody.kernels.kind import Kind
+
+if TYPE_CHECKING:
+    from dalembert.multibody.lowering import Lowering
+
+
+@inlined
+def _residual(x, v, a, p, m, inputs, r):
+    dx, dy = separation(x, p, m)
+    push_pair(x, p, m, x[8] * dx / p.length, x[8] * dy / p.length, r)
+    r[8] = 0.5 * ((dx * dx + dy * dy) / p.length - p.length)
+
+
+@inlined
+def _rates(x, v, a, p, m, inputs, rate, second):
+    dx, dy = separation(x, p, m)
+    ux, uy = separation_rate(x, v, p, m)
+    wx, wy = separation_second(x, v, a, p, m)
+    rate[0] = (dx * ux + dy * uy) / p.length
+    second[0] = (ux * ux + uy * uy + dx * wx + dy * wy) / p.length
+
+
+@inlined
+def _observe(x, v, a, p, m, inputs, out):
+    dx, dy = separation(x, p, m)
+    length = root(dx * dx + dy * dy)
+    observe_joint(x, v, p, m, -x[8] * dx / length, -x[8] * dy / length, 0.0 * x[8], out)
+
+
+DISTANCE = Kind(
+    "distance",
+    coordinates=pairs.COORDINATES,
+    multipliers=1,
+    numbers=(*pairs.NUMBERS, "length"),
+    integers=pairs.INTEGERS,
+    residual=_residual,
+    rates=_rates,
+    outputs=OUTPUTS,
+    observe=_observe,
+    lengths=("a_x", "a_y", "b_x", "b_y"),
+    holds_frame=False,
+)
+
+
+@dataclass(frozen=True)
+class DistanceJoint(Joint):
+    """A massless rod between two points.
+
+    Parameters
+    ----------
+    name : str
+    a, b : Point or ground
+    length : float, optional
+        m; the first distance of the points if not given.
+    """
+
+    length: Number | None = number("m", None)
+
+    kind = DISTANCE
+
+    def __post_init__(self) -> None:
+        if self.length is not None:
+            require(f"distance joint {self.name!r}", length=self.length)
+
+    def lower(self, lowering: "Lowering") -> None:
+        pair = lowering.pair(self.a, self.b, self.name)
+        length = pair.distance if self.length is None else self.length
+        if not np.real(length) > 0:
+            raise ModelError(
+                f"distance joint {self.name!r}: its points {self.a} and {self.b} coincide and no length is given; "
+                "give a length, or use a revolute joint"
+            )
+        index = pair.slots + lowering.multipliers(self.name, 1)
+        lowering.add(DISTANCE, index, [*pair.data, length], pair.integers, self.name)

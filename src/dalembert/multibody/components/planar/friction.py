@@ -1,0 +1,24 @@
+"""Friction in joints: viscous, and smoothed Coulomb friction that may grow with the reaction."""
+
+from typing import Any
+
+from dalembert.kernels.kernel import inlined
+from dalembert.multibody.components.fields import Number
+from dalembert.multibody.kernels.dual import tanh
+
+#: Viscous coefficient, constant Coulomb force or torque, what it grows by with the reaction (friction coefficient
+#: times pin radius, or friction coefficient), and the rate at which tanh(rate / slip) turns its sign.
+NUMBERS = ("viscous", "coulomb", "per_reaction", "slip")
+TINY = 1e-18  # keeps |reaction| differentiable where the reaction vanishes, N^2
+
+
+@inlined
+def resistance(reaction, rate, p):
+    """Friction against a rate."""
+    return p.viscous * rate + (p.coulomb + p.per_reaction * reaction) * tanh(rate / p.slip)
+
+
+def coefficients(joint: Any) -> dict[str, Number]:
+    """Friction coefficients that a joint has; one that is zero stays in the model: it may be a parameter's bound."""
+    values = {name: getattr(joint, name) for name in ("viscous", "coulomb", "friction_coefficient")}
+    return {name: value for name, value in values.items() if value is not None}

@@ -1,0 +1,41 @@
+"""What planar joints share: the base class, and the outputs of a joint."""
+
+from abc import abstractmethod
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
+
+from dalembert.kernels.kernel import inlined
+from dalembert.multibody.components.planar.pairs import relative_angle, relative_spin
+from dalembert.multibody.components.points import Side, require_direction
+from dalembert.multibody.kernels.kind import Kind
+
+if TYPE_CHECKING:
+    from dalembert.multibody.lowering import Lowering
+
+OUTPUTS = (("angle", "rad"), ("rate", "rad/s"), ("force_x", "N"), ("force_y", "N"), ("torque", "N*m"))
+
+
+@dataclass(frozen=True)
+class Joint:
+    """Base of all joints: a name and two sides."""
+
+    name: str
+    a: Side
+    b: Side
+
+    kind: ClassVar[Kind]
+
+    @abstractmethod
+    def lower(self, lowering: "Lowering") -> None:
+        """Write the rows of the kernels."""
+
+    def _oriented(self, advice: str = "a revolute or distance joint, or a rigid body") -> None:
+        """Refuse sides that have no direction."""
+        require_direction(f"{type(self).__name__} {self.name!r}", advice, self.a, self.b)
+
+
+@inlined
+def observe_joint(x, v, p, m, fx, fy, torque, out):
+    """Fill the outputs: relative angle and its rate, and the force and torque that the joint exerts on b."""
+    out[0], out[1] = relative_angle(x, p, m), relative_spin(x, v, m)
+    out[2], out[3], out[4] = fx, fy, torque

@@ -1,0 +1,23 @@
+"""What acts without a constraint."""
+
+from abc import abstractmethod
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
+
+from dalembert.multibody.kernels.kind import Kind
+
+if TYPE_CHECKING:
+    from dalembert.multibody.lowering import Lowering
+
+
+@dataclass(frozen=True)
+class Load:
+    """Base of all that acts without a constraint."""
+
+    name: str
+
+    kind: ClassVar[Kind]
+
+    @abstractmethod
+    def lower(self, lowering: "Lowering") -> None:
+        """Write the rows of the kernels."""

@@ -1,0 +1,77 @@
+"""Two markers: their relative position, velocity, angle, and the forces between them.
+
+Local coordinates: marker a (slots 0-3) and b (4-7). Numbers: ``a_x a_y a_angle b_x b_y b_angle``; integers: ``a_kind``
+and ``b_kind``, see :mod:`markers`, and ``wraps``: 1 where a node's angle must be wrapped.
+"""
+
+from dalembert.kernels.kernel import inlined
+from dalembert.multibody.components.planar.markers import (
+    acceleration,
+    angle,
+    position,
+    push,
+    spin,
+    spin_rate,
+    twist,
+    velocity,
+)
+
+COORDINATES = 8
+NUMBERS = ("a_x", "a_y", "a_angle", "b_x", "b_y", "b_angle")
+INTEGERS = ("a_kind", "b_kind", "wraps")
+
+
+@inlined
+def separation(x, p, m):
+    """Position of b against a."""
+    ax, ay = position(m.a_kind, 0, x, p.a_x, p.a_y)
+    bx, by = position(m.b_kind, 4, x, p.b_x, p.b_y)
+    return bx - ax, by - ay
+
+
+@inlined
+def separation_rate(x, v, p, m):
+    """Velocity of b against a."""
+    ax, ay = velocity(m.a_kind, 0, x, v, p.a_x, p.a_y)
+    bx, by = velocity(m.b_kind, 4, x, v, p.b_x, p.b_y)
+    return bx - ax, by - ay
+
+
+@inlined
+def separation_second(x, v, a, p, m):
+    """Acceleration of b against a."""
+    ax, ay = acceleration(m.a_kind, 0, x, v, a, p.a_x, p.a_y)
+    bx, by = acceleration(m.b_kind, 4, x, v, a, p.b_x, p.b_y)
+    return bx - ax, by - ay
+
+
+@inlined
+def relative_angle(x, p, m):
+    """Angle of b against a."""
+    return angle(m.b_kind, 4, x, p.b_angle) - angle(m.a_kind, 0, x, p.a_angle)
+
+
+@inlined
+def relative_spin(x, v, m):
+    """Angular velocity of b against a."""
+    return spin(m.b_kind, 4, x, v) - spin(m.a_kind, 0, x, v)
+
+
+@inlined
+def relative_spin_rate(x, v, a, m):
+    """Angular acceleration of b against a."""
+    return spin_rate(m.b_kind, 4, x, v, a) - spin_rate(m.a_kind, 0, x, v, a)
+
+
+@inlined
+def push_pair(x, p, m, fx, fy, r):
+    """Force (fx, fy) on b and its opposite on a."""
+    push(m.b_kind, 4, x, p.b_x, p.b_y, fx, fy, r)
+    push(m.a_kind, 0, x, p.a_x, p.a_y, -fx, -fy, r)
+
+
+@inlined
+def twist_pair(x, m, torque, r):
+    """Torque on b and its opposite on a."""
+    twist(m.b_kind, 4, x, torque, r)
+    twist(m.a_kind, 0, x, -torque, r)

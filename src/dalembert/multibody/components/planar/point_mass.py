@@ -1,0 +1,91 @@
+"""The point mass."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from dalembert.kernels.kernel import inlined
+from dalembert.multibody.components.fields import Number, number, pair, require
+from dalembert.multibody.components.planar import markers
+from dalembert.multibody.components.planar.body import POSITION, Body, Marker, with_points
+from dalembert.multibody.components.points import Place
+from dalembert.multibody.kernels.kind import Kind
+
+if TYPE_CHECKING:
+    from dalembert.multibody.lowering import Lowering
+
+
+@inlined
+def _residual(x, v, a, p, m, inputs, r):
+    """m (a - g)."""
+    r[0] = p.mass * (a[0] - p.gravity_x)
+    r[1] = p.mass * (a[1] - p.gravity_y)
+
+
+@inlined
+def _energy(x, v, p, m, inputs):
+    kinetic = 0.5 * p.mass * (v[0] * v[0] + v[1] * v[1])
+    return kinetic, -p.mass * (p.gravity_x * x[0] + p.gravity_y * x[1]), 0.0 * p.mass
+
+
+POINT_MASS = Kind(
+    "point_mass",
+    coordinates=2,
+    numbers=("mass", "gravity_x", "gravity_y"),
+    residual=_residual,
+    energy=_energy,
+    gravity=("gravity_x", "gravity_y"),
+)
+
+
+@with_points("centre")
+@dataclass(frozen=True)
+class PointMass(Body):
+    """A point with a mass; joints may hold its place, not a direction.
+
+    Parameters
+    ----------
+    name : str
+    mass : float
+        kg.
+    position : (float, float) or Point
+        At first, m.
+    velocity : (float, float)
+        At first, m/s.
+    """
+
+    mass: Number = number("kg")
+    position: Place = pair("m")
+    velocity: tuple[Number, Number] = pair("m/s")
+
+    def __post_init__(self) -> None:
+        require(f"point mass {self.name!r}", mass=self.mass)
+
+    @property
+    def place(self) -> Place:
+        return self.position
+
+    @property
+    def coordinate_kinds(self) -> tuple[str, ...]:
+        return (POSITION, POSITION)
+
+    @property
+    def turns(self) -> bool:
+        return False
+
+    @property
+    def point_names(self) -> tuple[str, ...]:
+        return ("centre",)
+
+    def coordinates(self, x: Number, y: Number, angle: Number) -> np.ndarray:
+        return np.array([x, y])
+
+    def marker(self, point: str) -> Marker:
+        return Marker(markers.MASS, (0, 1, None, None), (0.0, 0.0, 0.0))
+
+    def lower(self, lowering: "Lowering", first: int) -> None:
+        lowering.add(POINT_MASS, [first, first + 1], [self.mass, *lowering.gravity])
+
+    def outline(self, coordinates: np.ndarray, points: int) -> np.ndarray:
+        return coordinates[:, None, :]

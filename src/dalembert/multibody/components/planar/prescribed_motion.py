@@ -1,0 +1,121 @@
+"""Prescribed motions: a coordinate of a point that follows a function of time."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from dalembert.errors import InputError, unknown
+from dalembert.kernels.kernel import inlined
+from dalembert.multibody.components.planar import pairs
+from dalembert.multibody.components.planar.joint import OUTPUTS, Joint, observe_joint
+from dalembert.multibody.components.planar.pairs import (
+    push_pair,
+    relative_angle,
+    relative_spin,
+    relative_spin_rate,
+    separation,
+    separation_rate,
+    separation_second,
+    twist_pair,
+)
+from dalembert.multibody.components.signals import Course, Step, Table, as_signal
+from dalembert.multibody.kernels.dual import wrapped
+from dalembert.multibody.kernels.kind import Kind
+
+if TYPE_CHECKING:
+    from dalembert.multibody.lowering import Lowering
+
+_X, _Y, _ANGLE = range(3)
+_COORDINATES = {"x": _X, "y": _Y, "angle": _ANGLE}
+
+
+@inlined
+def _residual(x, v, a, p, m, inputs, r):
+    target = inputs.signals[m.motion, 0]
+    nothing = 0.0 * x[8]
+    if m.coordinate == _ANGLE:
+        twist_pair(x, m, x[8], r)
+        gap = relative_angle(x, p, m) - target
+        r[8] = wrapped(gap) if m.wraps == 1 else gap
+    else:
+        dx, dy = separation(x, p, m)
+        push_pair(x, p, m, x[8] if m.coordinate == _X else nothing, nothing if m.coordinate == _X else x[8], r)
+        r[8] = (dx if m.coordinate == _X else dy) - target
+
+
+@inlined
+def _rates(x, v, a, p, m, inputs, rate, second):
+    if m.coordinate == _ANGLE:
+        first, last = relative_spin(x, v, m), relative_spin_rate(x, v, a, m)
+    else:
+        ux, uy = separation_rate(x, v, p, m)
+        wx, wy = separation_second(x, v, a, p, m)
+        first, last = (ux, wx) if m.coordinate == _X else (uy, wy)
+    rate[0], second[0] = first - inputs.signals[m.motion, 1], last - inputs.signals[m.motion, 2]
+
+
+@inlined
+def _energy(x, v, p, m, inputs):
+    """No energy; the power that the motion feeds in."""
+    nothing = 0.0 * x[8]
+    return nothing, nothing, -x[8] * inputs.signals[m.motion, 1]
+
+
+@inlined
+def _observe(x, v, a, p, m, inputs, out):
+    nothing = 0.0 * x[8]
+    fx = -x[8] if m.coordinate == _X else nothing
+    fy = -x[8] if m.coordinate == _Y else nothing
+    observe_joint(x, v, p, m, fx, fy, -x[8] if m.coordinate == _ANGLE else nothing, out)
+
+
+MOTION = Kind(
+    "prescribed_motion",
+    coordinates=pairs.COORDINATES,
+    multipliers=1,
+    numbers=pairs.NUMBERS,
+    integers=(*pairs.INTEGERS, "coordinate", "motion"),
+    residual=_residual,
+    rates=_rates,
+    energy=_energy,
+    outputs=OUTPUTS,
+    observe=_observe,
+    lengths=("a_x", "a_y", "b_x", "b_y"),
+    driven=True,
+)
+
+
+@dataclass(frozen=True)
+class PrescribedMotion(Joint):
+    """A coordinate of point b against point a that follows a function of time.
+
+    Parameters
+    ----------
+    name : str
+    a, b : Point or ground
+    coordinate : {"x", "y", "angle"}
+        x and y along the fixed axes, in m; the angle in rad.
+    motion : float or Signal
+    """
+
+    coordinate: str = "angle"
+    motion: Course = 0.0
+
+    kind = MOTION
+
+    def __post_init__(self) -> None:
+        if self.coordinate not in _COORDINATES:
+            raise InputError(unknown("coordinate", self.coordinate, _COORDINATES, f"prescribed motion {self.name!r}"))
+        if isinstance(self.motion, Step) or (isinstance(self.motion, Table) and self.motion.kind == "linear"):
+            raise InputError(
+                f"prescribed motion {self.name!r}: the velocity of its {type(self.motion).__name__} jumps, which no "
+                "mechanism can follow; expected a smooth function of time, such as a cubic Table or a Polynomial"
+            )
+
+    def lower(self, lowering: "Lowering") -> None:
+        pair = lowering.pair(self.a, self.b, self.name)
+        if self.coordinate == "angle":
+            self._oriented()
+        index = pair.slots + lowering.multipliers(self.name, 1)
+        lowering.kinks += [(time, self.name) for time in as_signal(self.motion).kinks]
+        integers = [*pair.integers, _COORDINATES[self.coordinate], lowering.signal(self.motion)]
+        lowering.add(MOTION, index, pair.data, integers, self.name)

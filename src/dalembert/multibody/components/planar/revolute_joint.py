@@ -1,0 +1,157 @@
+"""The revolute joint, and its friction."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from dalembert.errors import InputError
+from dalembert.kernels.kernel import inlined, inner
+from dalembert.multibody.components.fields import Number, number, require, require_not_negative
+from dalembert.multibody.components.planar import friction, pairs
+from dalembert.multibody.components.planar.joint import OUTPUTS, Joint, observe_joint
+from dalembert.multibody.components.planar.markers import GROUND, RIGID
+from dalembert.multibody.components.planar.pairs import (
+    push_pair,
+    relative_spin,
+    separation,
+    separation_rate,
+    separation_second,
+    twist_pair,
+)
+from dalembert.multibody.kernels.dual import root
+from dalembert.multibody.kernels.kind import Kind
+
+if TYPE_CHECKING:
+    from dalembert.multibody.lowering import Lowering
+
+
+@inlined
+def _residual(x, v, a, p, m, inputs, r):
+    push_pair(x, p, m, x[8], x[9], r)
+    r[8], r[9] = separation(x, p, m)
+
+
+@inlined
+def _rates(x, v, a, p, m, inputs, rate, second):
+    rate[0], rate[1] = separation_rate(x, v, p, m)
+    second[0], second[1] = separation_second(x, v, a, p, m)
+
+
+@inlined
+def _joins_points(p, m):
+    """Whether neither point turns about a body's centre: the tangent is then constant."""
+    return m.a_kind != RIGID and m.b_kind != RIGID
+
+
+@inner
+def _tangent(x, p, m, by_x, by_a, matrix):
+    """Tangent of a joint between points: ones, and their signs."""
+    for i in range(10):
+        for j in range(10):
+            matrix[i, j] = 0.0
+    for side in range(2):
+        if (m.a_kind if side == 0 else m.b_kind) == GROUND:
+            continue
+        sign = 2.0 * side - 1.0
+        for k in range(2):
+            matrix[4 * side + k, 8 + k] = sign
+            matrix[8 + k, 4 * side + k] = sign * by_x
+
+
+@inlined
+def _observe(x, v, a, p, m, inputs, out):
+    observe_joint(x, v, p, m, -x[8], -x[9], 0.0 * x[8], out)
+
+
+REVOLUTE = Kind(
+    "revolute",
+    coordinates=pairs.COORDINATES,
+    multipliers=2,
+    numbers=pairs.NUMBERS,
+    integers=pairs.INTEGERS,
+    residual=_residual,
+    rates=_rates,
+    tangent=_tangent,
+    known=_joins_points,
+    outputs=OUTPUTS,
+    observe=_observe,
+    lengths=("a_x", "a_y", "b_x", "b_y"),
+    holds_frame=False,
+)
+
+
+@inlined
+def _resistance(x, rate, p):
+    """Friction torque against the rate; it grows with the reaction."""
+    return friction.resistance(root(x[8] * x[8] + x[9] * x[9] + friction.TINY), rate, p)
+
+
+@inlined
+def _friction_residual(x, v, a, p, m, inputs, r):
+    twist_pair(x, m, _resistance(x, relative_spin(x, v, m), p), r)
+
+
+@inlined
+def _friction_energy(x, v, p, m, inputs):
+    rate = relative_spin(x, v, m)
+    return 0.0 * rate, 0.0 * rate, -rate * _resistance(x, rate, p)
+
+
+REVOLUTE_FRICTION = Kind(
+    "revolute_friction",
+    coordinates=pairs.COORDINATES,
+    reactions=2,
+    numbers=(*pairs.NUMBERS, *friction.NUMBERS),
+    integers=pairs.INTEGERS,
+    residual=_friction_residual,
+    energy=_friction_energy,
+    dissipates=True,
+)
+
+
+@dataclass(frozen=True)
+class RevoluteJoint(Joint):
+    """A pin: both points coincide.
+
+    Parameters
+    ----------
+    name : str
+    a, b : Point or ground
+    viscous : float
+        Friction torque per relative angular velocity, N m s.
+    coulomb : float
+        Constant friction torque, N m.
+    friction_coefficient : float
+        With ``pin_radius`` (m): friction torque friction_coefficient x pin_radius x reaction force.
+    slip_rate : float
+        Relative angular velocity, rad/s, over which the Coulomb torque turns its sign, as tanh(rate / slip_rate).
+
+    Without any of the first three there is no friction; one that is zero may be a parameter's value.
+    """
+
+    viscous: Number | None = number("N*m*s", None)
+    coulomb: Number | None = number("N*m", None)
+    friction_coefficient: Number | None = number("", None)
+    pin_radius: Number | None = number("m", None)
+    slip_rate: Number = number("rad/s", 1e-3)
+
+    kind = REVOLUTE
+
+    def __post_init__(self) -> None:
+        owner = f"revolute joint {self.name!r}"
+        require_not_negative(owner, pin_radius=self.pin_radius or 0.0, **friction.coefficients(self))
+        require(owner, slip_rate=self.slip_rate)
+        if self.friction_coefficient is not None and self.pin_radius is None:
+            raise InputError(
+                f"{owner}: a friction_coefficient was given without a pin_radius, so it would have no lever; "
+                "give the pin's radius in m"
+            )
+
+    def lower(self, lowering: "Lowering") -> None:
+        pair = lowering.pair(self.a, self.b, self.name)
+        index = pair.slots + lowering.multipliers(self.name, 2)
+        lowering.add(REVOLUTE, index, pair.data, pair.integers, self.name)
+        if friction.coefficients(self):
+            self._oriented("a rigid body where a joint has friction")
+            lever = (self.friction_coefficient or 0.0) * (self.pin_radius or 0.0)
+            law = [self.viscous or 0.0, self.coulomb or 0.0, lever, self.slip_rate]
+            lowering.add(REVOLUTE_FRICTION, index, [*pair.data, *law], pair.integers)

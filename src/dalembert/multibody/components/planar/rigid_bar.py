@@ -1,0 +1,79 @@
+"""The rigid bar."""
+
+from dataclasses import InitVar, dataclass, field
+
+from dalembert.multibody.components.fields import Number, number, pair, require
+from dalembert.multibody.components.planar.body import with_points
+from dalembert.multibody.components.planar.rigid import Rigid
+from dalembert.multibody.components.points import Place
+
+
+@with_points("start", "end", "centre")
+@dataclass(frozen=True)
+class RigidBar(Rigid):
+    """A rigid bar from its start to its end.
+
+    Parameters
+    ----------
+    name : str
+    length : float
+        m.
+    mass : float
+        kg.
+    inertia : float, optional
+        About the centre of mass, kg m^2; that of a uniform rod, mass x length^2 / 12, if not given.
+    centre : float
+        Place of the centre of mass, as a fraction of the length from the start.
+    angle : float
+        At first, rad, from the x axis.
+    start : (float, float) or Point
+        Where the bar starts at first, m. The attributes ``start``, ``end`` and ``centre`` are the bar's points.
+    velocity : (float, float)
+        Of the start at first, m/s.
+    angular_velocity : float
+        At first, rad/s.
+
+    Examples
+    --------
+    >>> rod = RigidBar("rod", length=2.0, mass=3.0)
+    >>> rod.inertias, str(rod.end)
+    ((3.0, 1.0), 'rod.end')
+    """
+
+    length: Number = number("m")
+    mass: Number = number("kg")
+    inertia: Number | None = number("kg*m**2", None)
+    centre: InitVar[Number] = number("", 0.5)
+    angle: Number = number("rad", 0.0)
+    start: InitVar[Place] = pair("m")
+    velocity: tuple[Number, Number] = pair("m/s")
+    angular_velocity: Number = number("rad/s", 0.0)
+    balance: Number = field(init=False)
+    origin: Place = field(init=False)
+
+    def __post_init__(self, centre: Number, start: Place) -> None:
+        require(f"rigid bar {self.name!r}", length=self.length, mass=self.mass)
+        if self.inertia is not None:
+            require(f"rigid bar {self.name!r}", inertia=self.inertia)
+        object.__setattr__(self, "balance", centre)
+        object.__setattr__(self, "origin", start)
+
+    @property
+    def place(self) -> Place:
+        return self.origin
+
+    @property
+    def point_names(self) -> tuple[str, ...]:
+        return ("start", "end", "centre")
+
+    @property
+    def offset(self) -> tuple[Number, Number]:
+        return self.local("start")
+
+    @property
+    def inertias(self) -> tuple[Number, Number]:
+        return self.mass, self.mass * self.length**2 / 12 if self.inertia is None else self.inertia
+
+    def local(self, point: str) -> tuple[Number, Number]:
+        along = {"start": -self.balance, "centre": 0.0, "end": 1.0 - self.balance}[point]
+        return along * self.length, 0.0

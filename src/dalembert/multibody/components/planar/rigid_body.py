@@ -1,0 +1,78 @@
+"""The rigid body with named points."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from dalembert.errors import InputError, unknown
+from dalembert.multibody.components.fields import Number, number, pair, require
+from dalembert.multibody.components.planar.body import with_points
+from dalembert.multibody.components.planar.rigid import Rigid
+from dalembert.multibody.components.points import Place
+
+
+@with_points("centre")
+@dataclass(frozen=True)
+class RigidBody(Rigid):
+    """A rigid body with named points.
+
+    Parameters
+    ----------
+    name : str
+    mass : float
+        kg.
+    inertia : float
+        Moment of inertia about the centre of mass, kg m^2.
+    position : (float, float) or Point
+        Where the anchor stands at first, m.
+    angle : float
+        At first, rad.
+    anchor : str
+        The point that is placed: ``"centre"`` (of mass) or one of ``points``.
+    points : mapping of str to (float, float)
+        Points in the body's axes, from the centre of mass, m.
+    velocity : (float, float)
+        Of the anchor at first, m/s.
+    angular_velocity : float
+        At first, rad/s.
+
+    Examples
+    --------
+    >>> plate = RigidBody("plate", mass=2.0, inertia=0.1, points={"corner": (0.1, 0.2)}, anchor="corner")
+    >>> plate.point_names
+    ('centre', 'corner')
+    """
+
+    mass: Number = number("kg")
+    inertia: Number = number("kg*m**2")
+    position: Place = pair("m")
+    angle: Number = number("rad", 0.0)
+    anchor: str = "centre"
+    points: Mapping[str, tuple[Number, Number]] = field(default_factory=dict, metadata={"unit": "m"})
+    velocity: tuple[Number, Number] = pair("m/s")
+    angular_velocity: Number = number("rad/s", 0.0)
+
+    def __post_init__(self) -> None:
+        require(f"rigid body {self.name!r}", mass=self.mass, inertia=self.inertia)
+        if "centre" in self.points:
+            raise InputError(f"rigid body {self.name!r}: the point name 'centre' is taken by the centre of mass")
+        if self.anchor not in self.point_names:
+            raise InputError(unknown("anchor", self.anchor, self.point_names, f"rigid body {self.name!r}"))
+
+    @property
+    def place(self) -> Place:
+        return self.position
+
+    @property
+    def point_names(self) -> tuple[str, ...]:
+        return ("centre", *self.points)
+
+    @property
+    def offset(self) -> tuple[Number, Number]:
+        return self.local(self.anchor)
+
+    @property
+    def inertias(self) -> tuple[Number, Number]:
+        return self.mass, self.inertia
+
+    def local(self, point: str) -> tuple[Number, Number]:
+        return (0.0, 0.0) if point == "centre" else self.points[point]

@@ -1,0 +1,103 @@
+"""Springs with dampers along the connection of two points."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from dalembert.kernels.kernel import inlined
+from dalembert.multibody.components.fields import Number, number, require_not_negative
+from dalembert.multibody.components.planar import pairs, spring_law
+from dalembert.multibody.components.planar.load import Load
+from dalembert.multibody.components.planar.pairs import push_pair, separation, separation_rate
+from dalembert.multibody.components.points import Side
+from dalembert.multibody.kernels.dual import root
+from dalembert.multibody.kernels.kind import Kind
+
+if TYPE_CHECKING:
+    from dalembert.multibody.lowering import Lowering
+
+_TINY = 1e-30  # keeps the direction of a spring of no length defined, m^2
+
+
+@inlined
+def _stretch(x, v, p, m):
+    """Elongation and its rate."""
+    dx, dy = separation(x, p, m)
+    ux, uy = separation_rate(x, v, p, m)
+    length = root(dx * dx + dy * dy + _TINY)
+    return length - p.rest, (dx * ux + dy * uy) / length
+
+
+@inlined
+def _residual(x, v, a, p, m, inputs, r):
+    """Tension on both ends."""
+    elongation, rate = _stretch(x, v, p, m)
+    force = spring_law.tension(elongation, rate, p)
+    dx, dy = separation(x, p, m)
+    per_length = force / root(dx * dx + dy * dy + _TINY)
+    push_pair(x, p, m, per_length * dx, per_length * dy, r)
+
+
+@inlined
+def _energy(x, v, p, m, inputs):
+    elongation, rate = _stretch(x, v, p, m)
+    return spring_law.energy(elongation, rate, p)
+
+
+@inlined
+def _observe(x, v, a, p, m, inputs, out):
+    elongation, rate = _stretch(x, v, p, m)
+    out[0], out[1] = elongation, spring_law.tension(elongation, rate, p)
+
+
+SPRING = Kind(
+    "spring",
+    coordinates=pairs.COORDINATES,
+    numbers=(*pairs.NUMBERS, *spring_law.NUMBERS),
+    integers=pairs.INTEGERS,
+    residual=_residual,
+    energy=_energy,
+    outputs=(("elongation", "m"), ("force", "N")),
+    observe=_observe,
+    dissipates=True,
+    holds_frame=False,
+)
+
+
+@dataclass(frozen=True)
+class Spring(Load):
+    """A spring with damper along the connection of two points.
+
+    Tension = stiffness x elongation + cubic x elongation^3 + damping x rate of elongation.
+
+    Parameters
+    ----------
+    name : str
+    a, b : Point or ground
+    stiffness : float
+        N/m.
+    damping : float
+        N s/m.
+    free_length : float, optional
+        m; the first distance of the points if not given.
+    cubic : float
+        N/m^3.
+    """
+
+    a: Side
+    b: Side
+    stiffness: Number = number("N/m")
+    damping: Number = number("N*s/m", 0.0)
+    free_length: Number | None = number("m", None)
+    cubic: Number = number("N/m**3", 0.0)
+
+    kind = SPRING
+
+    def __post_init__(self) -> None:
+        if self.free_length is not None:
+            require_not_negative(f"spring {self.name!r}", free_length=self.free_length)
+
+    def lower(self, lowering: "Lowering") -> None:
+        pair = lowering.pair(self.a, self.b, self.name)
+        free = pair.distance if self.free_length is None else self.free_length
+        numbers = [*pair.data, free, self.stiffness, self.damping, self.cubic]
+        lowering.add(SPRING, pair.slots, numbers, pair.integers, self.name)

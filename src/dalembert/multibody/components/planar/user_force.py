@@ -1,0 +1,100 @@
+"""Forces that a function of the user's returns from the state of one or two markers.
+
+The function gets the time and, for a and for b, position, velocity, angle and angular velocity (13 numbers); it returns
+the force (fx, fy) and the torque on a.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from dalembert.kernels.kernel import inlined
+from dalembert.kernels.views import stack
+from dalembert.multibody.callbacks import ANSWER, GIVEN
+from dalembert.multibody.components.planar import pairs
+from dalembert.multibody.components.planar.load import Load
+from dalembert.multibody.components.planar.markers import angle, position, spin, velocity
+from dalembert.multibody.components.planar.pairs import push_pair, twist_pair
+from dalembert.multibody.components.points import Side
+from dalembert.multibody.kernels.callback import call
+from dalembert.multibody.kernels.kind import Kind
+
+if TYPE_CHECKING:
+    from dalembert.multibody.lowering import Lowering
+
+_TIME = 0  # signal that holds the time
+
+
+@inlined
+def _fill(side, kind, k, x, v, sx, sy, phi, given):
+    """State of a marker."""
+    out = 1 + 6 * side
+    given[out], given[out + 1] = position(kind, k, x, sx, sy)
+    given[out + 2], given[out + 3] = velocity(kind, k, x, v, sx, sy)
+    given[out + 4] = angle(kind, k, x, phi)
+    given[out + 5] = spin(kind, k, x, v)
+
+
+@inlined
+def _ask(x, v, p, m, inputs, given, answer):
+    """Call the function."""
+    given[0] = inputs.signals[_TIME, 0]
+    _fill(0, m.a_kind, 0, x, v, p.a_x, p.a_y, p.a_angle, given)
+    _fill(1, m.b_kind, 4, x, v, p.b_x, p.b_y, p.b_angle, given)
+    call(inputs.callbacks[m.function], given, answer)
+
+
+@inlined
+def _residual(x, v, a, p, m, inputs, r):
+    """The force with its sign turned on a, as it is on b."""
+    given, answer = stack(x, GIVEN), stack(x, ANSWER)
+    _ask(x, v, p, m, inputs, given, answer)
+    push_pair(x, p, m, answer[0], answer[1], r)
+    twist_pair(x, m, answer[2], r)
+
+
+@inlined
+def _energy(x, v, p, m, inputs):
+    """No energy; the power of the force on both markers."""
+    given, answer = stack(x, GIVEN), stack(x, ANSWER)
+    _ask(x, v, p, m, inputs, given, answer)
+    power = answer[0] * (given[3] - given[9]) + answer[1] * (given[4] - given[10]) + answer[2] * (given[6] - given[12])
+    return 0.0 * given[0], 0.0 * given[0], power
+
+
+USER_FORCE = Kind(
+    "user_force",
+    coordinates=pairs.COORDINATES,
+    numbers=pairs.NUMBERS,
+    integers=(*pairs.INTEGERS, "function"),
+    residual=_residual,
+    energy=_energy,
+    dissipates=True,
+)
+
+
+@dataclass(frozen=True)
+class UserForce(Load):
+    """A force and torque at a point, from a function of the user's, and their opposites on ``against``.
+
+    Parameters
+    ----------
+    name : str
+    at : Point
+    function : callable
+        ``function(t, at, against) -> (fx, fy, torque)`` in N and N m; ``at`` and ``against`` are arrays
+        (x, y, vx, vy, angle, angular velocity), in the fixed axes. Under ``numba.njit`` it runs compiled; a plain
+        Python function is called at every iteration, which is some hundred times slower.
+    against : Point, optional
+    """
+
+    at: Side
+    function: Callable[..., Any] = field()
+    against: Side | None = None
+
+    kind = USER_FORCE
+
+    def lower(self, lowering: "Lowering") -> None:
+        pair = lowering.pair(self.at, self.against, self.name)
+        integers = [*pair.integers, lowering.callback(self.function, self.name)]
+        lowering.add(USER_FORCE, pair.slots, pair.data, integers)

@@ -1,0 +1,55 @@
+"""Points: the named frames of bodies and of the ground that joints, loads and channels refer to."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from dalembert.errors import ModelError
+from dalembert.multibody.components.fields import Number
+
+if TYPE_CHECKING:
+    from dalembert.multibody.components.planar.body import Body
+
+
+@dataclass(frozen=True)
+class Point:
+    """A named point of a body."""
+
+    body: "Body"
+    name: str
+
+    def __str__(self) -> str:
+        return f"{self.body.name}.{self.name}"
+
+
+@dataclass(frozen=True)
+class GroundPoint:
+    """A fixed point, in m, with the angle of its axes, in rad."""
+
+    x: Number
+    y: Number
+    angle: Number = 0.0
+
+    def __str__(self) -> str:
+        return f"ground({self.x}, {self.y})"
+
+
+@dataclass(frozen=True)
+class Ground:
+    """What does not move. As a side of a joint: the place where the other side stands at first."""
+
+    def point(self, x: Number, y: Number, angle: Number = 0.0) -> GroundPoint:
+        """A fixed point at (x, y) in m, its axes turned by ``angle`` in rad."""
+        return GroundPoint(x, y, angle)
+
+
+def require_direction(owner: str, advice: str, *sides: Point | GroundPoint | Ground | None) -> None:
+    """Refuse sides that have no direction: those of point masses."""
+    for side in sides:
+        if isinstance(side, Point) and not side.body.turns:
+            raise ModelError(f"{owner}: {side} is a point mass, which has no direction; use {advice}")
+
+
+#: Where a body may start: coordinates in m, or a point of a body that was added before, or of the ground.
+Place = tuple[Number, Number] | Point | GroundPoint
+#: What a joint or a load may hold on to.
+Side = Point | GroundPoint | Ground

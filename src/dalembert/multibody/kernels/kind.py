@@ -1,0 +1,112 @@
+"""Kinds of components: what one kind is to the rest of the package."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from dalembert.multibody.kernels import loops
+from dalembert.multibody.kernels.loops import BlockKernel
+
+
+@dataclass(frozen=True, eq=False)
+class Kind:
+    """A kind of component: its data columns, its properties, and its functions, which kernels loop over components.
+
+    Functions get local vectors ``x v a`` (coordinates, then multipliers), the component's numbers ``p`` and integers
+    ``m`` by the names of their columns, and ``inputs`` (signals and callbacks). They are compiled for real and for
+    complex numbers. What they may call are functions under :func:`dalembert.kernels.kernel.inner`.
+
+    Parameters
+    ----------
+    name : str
+    coordinates, multipliers : int
+        Local ones.
+    numbers, integers : tuple of str
+        Columns.
+    reactions : int
+        Multipliers of a joint that the component depends on; its local unknowns behind the coordinates.
+    residual : function (x, v, a, p, m, inputs, r)
+        Fills ``r``: what the component adds to the left side of the equations of motion, then its constraints.
+    rates : function (x, v, a, p, m, inputs, rate, second), optional
+        First and second time derivatives of the constraints.
+    energy : function (x, v, p, m, inputs) -> (kinetic, potential, power), optional
+        Energies in J, and the power in W of what is not conservative.
+    tangent : function (x, p, m, by_x, by_a, matrix), optional
+        Fills the local matrix by_x dr/dx + by_a dr/da, where ``known`` says that it holds; multipliers by 1.
+    known : function (p, m) -> bool, optional
+        Where the formula of ``tangent`` holds.
+    outputs : tuple of (name, unit)
+    observe : function (x, v, a, p, m, inputs, out), optional
+        Fills the outputs.
+    lengths : tuple of str
+        Columns that count to the extent of a mechanism, m.
+    gravity : tuple of str
+        Columns of the gravity that acts on the component.
+    dissipates : bool or str
+        Whether a force depends on velocities; or the column of which any entry that is not zero says so.
+    driven, loads : bool
+        Whether a prescribed motion, or a load, may do work.
+    holds_frame : bool
+        Whether it holds the direction of a ground point, not only the point.
+    """
+
+    name: str
+    coordinates: int
+    residual: Callable[..., Any]
+    numbers: tuple[str, ...]
+    integers: tuple[str, ...] = ()
+    multipliers: int = 0
+    reactions: int = 0
+    rates: Callable[..., Any] | None = None
+    energy: Callable[..., Any] | None = None
+    tangent: Callable[..., Any] | None = None
+    known: Callable[..., Any] | None = None
+    outputs: tuple[tuple[str, str], ...] = ()
+    observe: Callable[..., Any] | None = None
+    lengths: tuple[str, ...] = ()
+    gravity: tuple[str, ...] = ()
+    dissipates: bool | str = False
+    driven: bool = False
+    loads: bool = False
+    holds_frame: bool = True
+    _kernels: dict[tuple[str, type], BlockKernel] = field(default_factory=dict, init=False, repr=False)
+
+    @property
+    def width(self) -> int:
+        """Local unknowns."""
+        return self.coordinates + self.multipliers + self.reactions
+
+    @property
+    def takes_reactions(self) -> bool:
+        """Whether a force depends on a joint's multipliers, so that the equations of motion are nonlinear in them."""
+        return self.reactions > 0
+
+    @cached_property
+    def integer_record(self) -> np.dtype:
+        return np.dtype([(name, "i8") for name in self.integers or ("unused",)])
+
+    def number_record(self, dtype: type) -> np.dtype:
+        return np.dtype([(name, "c16" if dtype is complex else "f8") for name in self.numbers or ("unused",)])
+
+    def columns(self, names: tuple[str, ...]) -> list[int]:
+        """Positions of columns of numbers."""
+        return [self.numbers.index(name) for name in names]
+
+    def dissipative(self, numbers: np.ndarray) -> bool:
+        """Whether a force of components with these numbers (count, -) depends on velocities."""
+        if isinstance(self.dissipates, str):
+            return bool(np.any(numbers[:, self.numbers.index(self.dissipates)]))
+        return self.dissipates
+
+    def kernel(self, role: str, dtype: type) -> BlockKernel:
+        """The kernel of a role (residual, rates, energy, outputs) in real or in complex numbers."""
+        if (role, dtype) not in self._kernels:
+            self._kernels[role, dtype] = loops.MAKERS[role](self, dtype)
+        return self._kernels[role, dtype]
+
+    def has(self, role: str) -> bool:
+        """Whether the kind has kernels of this role."""
+        return {"residual": True, "rates": self.rates, "energy": self.energy, "outputs": self.observe}[role] is not None

@@ -1,0 +1,40 @@
+"""Records that kernels of components share: the call, a block of components of one kind, and the table of a model."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from dalembert.kernels.views import record
+
+
+class Inputs(NamedTuple):
+    """What a component sees beside its own state: values and two rates of the signals (signals, 3), callbacks."""
+
+    signals: np.ndarray
+    callbacks: np.ndarray
+
+
+def _record(integers: str, reals: str = "") -> np.dtype:
+    return np.dtype([(name, "i8") for name in integers.split()] + [(name, "f8") for name in reals.split()])
+
+
+#: What changes from call to call. Vectors have N + 1 entries, of which the last one stays zero: absent unknowns of a
+#: component point to it. ``x v a``: coordinates with multipliers, velocities, accelerations; ``coordinates``: how many
+#: of the unknowns are no multipliers; ``last``: N. ``r rate second totals matrix``: what kernels add to. ``signals``
+#: (signals, 3) at the time ``t``, ``within`` its smooth stretch. ``mode``: residual or tangent of a complex kernel.
+#: ``slots``: where the entries of the block's local matrices stand in ``matrix``. The tangent is the derivative along
+#: ``by_x dq + by_v dv + by_a da``, its rows multiplied by ``motion`` and ``constraint``.
+CALL = _record(
+    "coordinates last x v a r rate second totals matrix signals signal_count callbacks mode slots",
+    "t within by_x by_v by_a motion constraint",
+)
+#: Components of one kind: how many, their unknowns (count, width), integers and numbers, and the kind's kernels in the
+#: model's arithmetic; 0 where there is none. ``joins``: whether the kind has constraints.
+BLOCK = _record("count index integers numbers residual rates energy outputs joins")
+#: A model: its blocks, and its signals, see :mod:`signals`.
+MODEL = _record("blocks block_count signal_count signal_index knots signal_data callbacks evaluate")
+
+RESIDUAL, TANGENT = 0, 1
+
+call_at, block_at, model_at = record(CALL), record(BLOCK), record(MODEL)
+BLOCK_SIZE = BLOCK.itemsize

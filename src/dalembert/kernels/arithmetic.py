@@ -2,14 +2,12 @@
 
 from collections.abc import Callable
 from types import FunctionType
-from typing import Annotated, Any, ParamSpec, TypeVar, cast, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, cast, get_args, get_origin, get_type_hints
 
 import numpy as np
 
-from dalembert.kernels.kernel import Kernel, kernel
+from dalembert.kernels.kernel import Kernel
 from dalembert.kernels.words import ArrayOf
-
-P, R = ParamSpec("P"), TypeVar("R")
 
 _OPEN = ""
 #: Arrays of the numbers that a kernel is made for.
@@ -18,12 +16,12 @@ Numbers2 = Annotated[np.ndarray, ArrayOf(_OPEN, 2)]
 Numbers3 = Annotated[np.ndarray, ArrayOf(_OPEN, 3)]
 
 
-def kernels(function: Callable[P, R]) -> tuple[Kernel[P, R], Kernel[P, R]]:
+def kernels(function: Callable) -> tuple[Kernel, Kernel]:
     """The kernels of a function whose annotations leave open the numbers of arrays: for real and for complex ones."""
     return _kernel_of(function, "real", "f8"), _kernel_of(function, "complex", "c16")
 
 
-def _kernel_of(function: Callable[P, R], numbers: str, dtype: str) -> Kernel[P, R]:
+def _kernel_of(function: Callable, numbers: str, dtype: str) -> Kernel:
     given = cast(FunctionType, function)
     own = FunctionType(
         given.__code__, given.__globals__, f"{given.__name__}_{numbers}", given.__defaults__, given.__closure__
@@ -31,7 +29,7 @@ def _kernel_of(function: Callable[P, R], numbers: str, dtype: str) -> Kernel[P, 
     own.__module__, own.__doc__ = given.__module__, given.__doc__
     hints = get_type_hints(function, include_extras=True)
     own.__annotations__ = {name: _closed(annotation, dtype) for name, annotation in hints.items()}
-    return kernel(cast(Callable[P, R], own))
+    return Kernel(own)
 
 
 def _closed(annotation: Any, dtype: str) -> Any:

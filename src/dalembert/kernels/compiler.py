@@ -17,14 +17,16 @@ from numba import types
 from numba.core import cgutils, compiler
 from numba.core.codegen import CPUCodeLibrary
 from numba.core.compiler_lock import global_compiler_lock
-from numba.core.registry import CPUDispatcher, cpu_target
+from numba.core.registry import CPUDispatcher
+from numba.core.registry import cpu_target as _cpu_target
 from numba.core.typing.templates import AbstractTemplate, infer_global, make_concrete_template
 from numba.extending import lower_builtin
 
 from dalembert.kernels.views import array_at, intrinsic
-from dalembert.kernels.words import ArrayOf, count, fields, leaves
+from dalembert.kernels.words import count, fields, leaves
 
 _WORD = ir.IntType(64)
+cpu_target: Any = _cpu_target  # whose type stubs do not know its contexts
 _SCALARS = {int: types.int64, float: types.float64, bool: types.boolean}
 _ITEMS = {"u1": types.uint8, "i8": types.int64, "f8": types.float64, "c16": types.complex128}
 _OPTIMISATION = 3
@@ -101,8 +103,9 @@ class Inner(CPUDispatcher):
 
     def get_call_template(self, args: Any, kws: Any) -> Any:
         """One signature, that of these arguments: others would be tried, too, records as if they were alike."""
+        own: Any = self
         positional, named = map(types.unliteral, args), {name: types.unliteral(kind) for name, kind in kws.items()}
-        folded, given = self._compiler.fold_argument_types(tuple(positional), named)
+        folded, given = own._compiler.fold_argument_types(tuple(positional), named)
         self.compile(tuple(given))
         signature = self.overloads[tuple(given)].signature
         template = make_concrete_template(
@@ -111,7 +114,7 @@ class Inner(CPUDispatcher):
         return template, folded, given, {}
 
 
-def numba_type(annotation: Any) -> types.Type:
+def numba_type(annotation: Any) -> Any:
     """Numba's type of an argument."""
     if annotation in _SCALARS:
         return _SCALARS[annotation]
@@ -170,12 +173,16 @@ def _store(context: Any, builder: Any, annotation: Any, value: Any, words: Any, 
             at += count(entry)
 
 
+def _compiled_only(*_: Any) -> Any:
+    raise NotImplementedError
+
+
 def entry_point(function: Callable, arguments: tuple[Any, ...], result: Any) -> Callable:
     """A function of one address: of the words of the arguments, behind which it writes those of the result."""
     kinds = types.Tuple([numba_type(annotation) for annotation in arguments])
     behind = sum(map(count, arguments))
 
-    @intrinsic
+    @intrinsic(_compiled_only)
     def load(typingctx, address):
         def generate(context, builder, signature, values):
             words, at, loaded = builder.inttoptr(values[0], _WORD.as_pointer()), 0, []
@@ -186,7 +193,7 @@ def entry_point(function: Callable, arguments: tuple[Any, ...], result: Any) -> 
 
         return kinds(types.int64), generate
 
-    @intrinsic
+    @intrinsic(_compiled_only)
     def store(typingctx, address, value):
         if result is None:
             return types.void(types.int64, value), lambda context, *_: context.get_dummy_value()
@@ -248,7 +255,7 @@ def caller(handle: Any, symbol: str | None, arguments: tuple[Any, ...], result: 
 
 
 def _flags() -> Any:
-    flags = compiler.Flags()
+    flags: Any = compiler.Flags()
     flags.nrt = False
     flags.release_gil = True
     flags.error_model = "numpy"
@@ -258,8 +265,8 @@ def _flags() -> Any:
 
 
 @global_compiler_lock
-def object_code(function: Callable, symbol: str, addresses: int, cpu: str | None = None) -> bytes:
-    """Machine code of a function of so many addresses that returns nothing, under a symbol."""
+def optimised(function: Callable, symbol: str, addresses: int, cpu: str | None = None) -> Any:
+    """LLVM's module of a function of so many addresses that returns nothing, optimised for a processor."""
     with _apart():
         context = cpu_target.target_context
         context.refresh()
@@ -269,10 +276,18 @@ def object_code(function: Callable, symbol: str, addresses: int, cpu: str | None
             cpu_target.typing_context, context, function, arguments, types.none, _flags(), {}
         )
         module = _linked(compiled.library)
-        return _emitted(module, compiled.fndesc.llvm_func_name, symbol, addresses, cpu)
+        _add_entry(module, compiled.fndesc.llvm_func_name, symbol, addresses)
+        _optimise(module, cpu)
+        return module
 
 
-def _emitted(module: Any, native: str, symbol: str, addresses: int, cpu: str | None) -> bytes:
+def object_code(function: Callable, symbol: str, addresses: int) -> bytes:
+    """Machine code of the same function for this processor."""
+    return target_machine().emit_object(optimised(function, symbol, addresses))
+
+
+def _add_entry(module: Any, native: str, symbol: str, addresses: int) -> None:
+    """Add a plain C function around the native one, the only one to be seen from outside."""
     given = ", ".join(f"i64 %{k}" for k in range(addresses))
     stub = ll.parse_assembly(
         f'declare i32 @"{native}"(ptr, ptr{", i64" * addresses})\n'
@@ -285,18 +300,20 @@ def _emitted(module: Any, native: str, symbol: str, addresses: int, cpu: str | N
     for entry in (*module.functions, *module.global_variables):
         if not entry.is_declaration and entry.name != symbol:
             entry.linkage = "internal"
-    machine = target_machine(cpu)
+
+
+def _optimise(module: Any, cpu: str | None) -> None:
     options = ll.create_pipeline_tuning_options(speed_level=_OPTIMISATION)
     options.loop_vectorization, options.slp_vectorization = True, False
-    builder = ll.create_pass_builder(machine, options)
-    passes = builder.getModulePassManager()
-    passes.run(module, builder)
-    return machine.emit_object(module)
+    builder = ll.create_pass_builder(target_machine(cpu), options)
+    builder.getModulePassManager().run(module, builder)
 
 
 @cache
 def target_machine(cpu: str | None = None) -> Any:
-    """LLVM's description of a processor: of this one, or of the named one."""
+    """LLVM's description of a processor: of this one, or of the named one of the same family."""
+    ll.initialize_native_target()
+    ll.initialize_native_asmprinter()
     target = ll.Target.from_triple(ll.get_process_triple())
     features = ll.get_host_cpu_features().flatten() if cpu is None else ""
     return target.create_target_machine(

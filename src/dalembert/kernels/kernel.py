@@ -2,26 +2,31 @@
 
 import ctypes
 import inspect
+import struct
 import sys
 from collections.abc import Callable
 from functools import cached_property
 from importlib import import_module
-from typing import Any, Generic, ParamSpec, TypeVar, get_type_hints
+from typing import Any, TypeVar, get_type_hints
 
-import numpy as np
 from numba import njit
 
 from dalembert.kernels.compiler import Inner, caller, entry_point, object_code
 from dalembert.kernels.digest import digest, needs
 from dalembert.kernels.objects import OBJECTS
-from dalembert.kernels.words import count, leaves, packer, unpack
+from dalembert.kernels.words import address, form, leaves, packer, unpack
 
-P, R = ParamSpec("P"), TypeVar("R")
 _Function = TypeVar("_Function", bound=Callable)
 
 # No fast-math, not even the fusing of a product with a sum (a thirtieth of a simulation's time): results are those of
 # IEEE arithmetic. Nothing is allocated: what a kernel writes to, NumPy makes and Python keeps alive.
-_OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "_nrt": False, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+_OPTIONS: dict[str, Any] = {
+    "nogil": True,
+    "error_model": "numpy",
+    "_nrt": False,
+    "no_cpython_wrapper": True,
+    "no_cfunc_wrapper": True,
+}
 
 
 def _decorator(**options: Any) -> Callable[[_Function], _Function]:
@@ -52,6 +57,8 @@ class Compiled:
 
     symbol: str
     function: Callable
+    in_python = False  #: whether it is called back as a Python function, and never compiled
+
     @cached_property
     def origin(self) -> Origin | None:
         """How another process finds the kernel, None if it cannot."""
@@ -77,9 +84,14 @@ class Compiled:
         """What a caller depends on."""
         return self.symbol
 
-    def object_code(self, cpu: str | None = None) -> bytes:
-        """Machine code of the function."""
+    @property
+    def entry(self) -> tuple[Callable, str, int]:
+        """The Python function of so many addresses that is compiled, its symbol, and how many they are."""
         raise NotImplementedError
+
+    def object_code(self) -> bytes:
+        """Machine code of the function for this processor."""
+        return object_code(*self.entry)
 
     @cached_property
     def address(self) -> int:
@@ -98,14 +110,15 @@ class BlockKernel(Compiled):
         if self._owner is None:
             return super().origin
         kind, role, dtype = self._owner
-        return _origin(kind.residual.__module__, kind, role, dtype.__name__)
+        return _origin(kind.source.__module__, kind, role, dtype.__name__)
 
     @property
     def family(self) -> str:
         return self.function.__module__ if self._owner is None else self._owner[0].name
 
-    def object_code(self, cpu: str | None = None) -> bytes:
-        return object_code(self.function, self.symbol, 2, cpu)
+    @property
+    def entry(self) -> tuple[Callable, str, int]:
+        return self.function, self.symbol, 2
 
     @cached_property
     def _entry(self) -> Any:
@@ -127,34 +140,37 @@ class Indirect:
         return self.kernel.abi
 
     def __call__(self, address: int, *arguments: Any) -> Any:
-        return self.kernel.called(ctypes.CFUNCTYPE(None, ctypes.c_int64)(address), arguments)
+        return self.kernel.called(ctypes.CFUNCTYPE(None, ctypes.c_int64)(address), self.kernel.packed(arguments))
 
 
-class Kernel(Compiled, Generic[P, R]):
+class Kernel(Compiled):
     """A C function of one address: that of the words of its arguments, see :mod:`dalembert.kernels.words`."""
 
-    def __init__(self, function: Callable[P, R]) -> None:
+    def __init__(self, function: Callable) -> None:
         hints = get_type_hints(function, include_extras=True)
         self.function = function
         self.__name__, self.__doc__ = function.__name__, function.__doc__
-        self.symbol = f"dal_{function.__module__.removeprefix('dalembert.').replace('.', '_')}_{function.__name__}".replace("__", "_")
+        self.symbol = (
+            f"dal_{function.__module__.removeprefix('dalembert.').replace('.', '_')}_{function.__name__}".replace(
+                "__", "_"
+            )
+        )
         result = hints.pop("return", None)
         self._result = None if result is type(None) else result
         names = list(inspect.signature(function).parameters)
         self._arguments = tuple(hints[name] for name in names)
-        self._packers, at = [], 0
-        for name, annotation in zip(names, self._arguments, strict=True):
-            self._packers.append((packer(f"{function.__name__}: {name}", annotation), at))
-            at += count(annotation)
-        self._behind, self._width = at, at + (0 if self._result is None else count(self._result))
+        self._packers = [packer(f"{function.__name__}: {name}", hints[name]) for name in names]
+        given, answer = "".join(map(form, self._arguments)), "" if self._result is None else form(self._result)
+        self._given = struct.Struct(f"{given}{8 * max(len(answer), 1)}x")
+        self._answer = struct.Struct(f"{8 * len(given)}x{answer}")
         self.inner = inner(function)
         caller(self, self.symbol, self._arguments, self._result)
         self.at = Indirect(self)
         caller(self.at, None, self._arguments, self._result)
 
-    def object_code(self, cpu: str | None = None) -> bytes:
-        """Machine code of the kernel."""
-        return object_code(entry_point(self.inner, self._arguments, self._result), self.symbol, 1, cpu)
+    @property
+    def entry(self) -> tuple[Callable, str, int]:
+        return entry_point(self.inner, self._arguments, self._result), self.symbol, 1
 
     @property
     def abi(self) -> str:
@@ -172,19 +188,35 @@ class Kernel(Compiled, Generic[P, R]):
     def _entry(self) -> Any:
         return ctypes.CFUNCTYPE(None, ctypes.c_int64)(self.address)
 
-    def called(self, entry: Any, arguments: tuple[Any, ...]) -> Any:
+    def packed(self, arguments: tuple[Any, ...], first: int = 0) -> list[Any]:
+        """Words of all arguments from the first of them on."""
+        values: list[Any] = []
+        for pack, value in zip(self._packers[first:], arguments, strict=True):
+            pack(value, values)
+        return values
+
+    def called(self, entry: Any, values: list[Any]) -> Any:
         """The result of a C function that takes the arguments of this kernel."""
-        words = np.zeros(max(self._width, 1), np.int64)
-        for (pack, at), value in zip(self._packers, arguments, strict=True):
-            pack(value, words, at)
-        entry(words.ctypes.data)
-        return None if self._result is None else unpack(self._result, words[self._behind :])
+        words = bytearray(self._given.pack(*values))
+        entry(address(words))
+        return None if self._result is None else unpack(self._result, self._answer.unpack_from(words))
 
-    def __call__(self, *arguments: P.args, **_: P.kwargs) -> R:
-        return self.called(self._entry, arguments)
+    def __call__(self, *arguments: Any) -> Any:
+        return self.called(self._entry, self.packed(arguments))
+
+    def given(self, *arguments: Any) -> Callable[..., Any]:
+        """This kernel with its first arguments, whose words are made once: what is called often costs less so."""
+        values: list[Any] = []
+        for pack, value in zip(self._packers, arguments, strict=False):
+            pack(value, values)
+
+        def call(*others: Any) -> Any:
+            return self.called(self._entry, values + self.packed(others, len(arguments)))
+
+        return call
 
 
-def kernel(function: Callable[P, R]) -> Kernel[P, R]:
+def kernel(function: Callable) -> Any:
     """Compile a function alone when it is first needed; its annotations are its arguments' types."""
     return Kernel(function)
 

@@ -17,6 +17,7 @@ import llvmlite
 import llvmlite.binding as ll
 
 from dalembert.kernels.digest import file_digest
+from dalembert.kernels.packaged import packaged
 
 if TYPE_CHECKING:
     from dalembert.kernels.kernel import Compiled
@@ -113,6 +114,16 @@ class Objects:
         self._loaded: set[str] = set()
         self._engine: Any = None
         self._lock = threading.RLock()
+        self._packaged = False
+
+    def _load_package(self) -> None:
+        """Load the object of the wheel, once, if there is one that fits."""
+        if not self._packaged:
+            self._packaged = True
+            own = packaged()
+            if own is not None:
+                self._load(own.code)
+                self._loaded.update(own.symbols)
 
     def missing(self, kernels: Iterable["Compiled"]) -> list["Compiled"]:
         """Kernels that must be compiled, among these and those that they call."""
@@ -135,16 +146,19 @@ class Objects:
         with self._lock:
             for other in reversed(self._reached([kernel])):
                 code = self._code(other)
-                self._load(other, self.make(other) if code is None else code)
+                self._load(self.make(other) if code is None else code)
+                self._loaded.add(other.symbol)
+                self._codes.pop(other.symbol, None)
             return self._engine.get_function_address(kernel.symbol)
 
     def _reached(self, kernels: Iterable["Compiled"]) -> list["Compiled"]:
         """Kernels that are not loaded among these and those that they call; the called ones behind their callers."""
+        self._load_package()
         reached: dict[str, Compiled] = {}
         ahead = list(kernels)
         while ahead:
             kernel = ahead.pop()
-            if kernel.symbol not in self._loaded:
+            if kernel.symbol not in self._loaded and not kernel.in_python:
                 reached.pop(kernel.symbol, None)
                 reached[kernel.symbol] = kernel
                 ahead += kernel.needs
@@ -155,7 +169,7 @@ class Objects:
             self._codes[kernel.symbol] = code
         return self._codes.get(kernel.symbol)
 
-    def _load(self, kernel: "Compiled", code: bytes) -> None:
+    def _load(self, code: bytes) -> None:
         if self._engine is None:
             ll.initialize_native_target()
             ll.initialize_native_asmprinter()
@@ -163,8 +177,6 @@ class Objects:
             self._engine = ll.create_mcjit_compiler(ll.parse_assembly(""), machine)
         self._engine.add_object_file(ll.object_file.ObjectFileRef.from_data(code))
         self._engine.finalize_object()
-        self._loaded.add(kernel.symbol)
-        self._codes.pop(kernel.symbol, None)
 
 
 OBJECTS = Objects()

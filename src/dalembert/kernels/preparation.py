@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from itertools import groupby
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from dalembert.kernels.objects import OBJECTS, cached_path, is_writable
 
@@ -83,7 +83,12 @@ def _serve(tasks: "queue.SimpleQueue[list[Compiled]]", folder: Path | None, done
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
     try:
         worker = subprocess.Popen(
-            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, env=environment
+            command,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            text=True,
+            env=environment,
         )
     except OSError:
         return
@@ -109,8 +114,8 @@ def _serve(tasks: "queue.SimpleQueue[list[Compiled]]", folder: Path | None, done
 
 def work() -> None:
     """Compile kernels that are named on the standard input, one a line, into the files that are named with them."""
-    from dalembert.kernels.objects import write_object
     from dalembert.kernels.kernel import find
+    from dalembert.kernels.objects import write_object
 
     for line in sys.stdin:
         origin, path = json.loads(line)

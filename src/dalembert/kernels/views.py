@@ -1,5 +1,7 @@
-"""Memory by its address, inside kernels: arrays, records, calls of C functions."""
+"""Memory by its address: arrays, records, calls of C functions; inside kernels, and in Python for debugging."""
 
+import ctypes
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -8,7 +10,16 @@ from numba.core import cgutils
 from numba.extending import intrinsic as _typed_intrinsic
 from numba.np.arrayobj import make_array, populate_array
 
-intrinsic: Any = _typed_intrinsic  # whose type stubs count the typing context among the arguments
+
+def intrinsic(plain: Callable[..., Any], **options: Any) -> Callable[[Callable], Any]:
+    """Declare a function whose code is generated; from Python ``plain`` is called instead."""
+
+    def declared(definition: Callable) -> Any:
+        handle: Any = _typed_intrinsic(**options)(definition) if options else _typed_intrinsic(definition)
+        handle.__class__ = type("Intrinsic", (type(handle),), {"__call__": lambda self, *given: plain(*given)})
+        return handle
+
+    return declared
 
 
 def array_at(context: Any, builder: Any, kind: types.Array, address: Any, shape: list) -> Any:
@@ -28,21 +39,38 @@ def array_at(context: Any, builder: Any, kind: types.Array, address: Any, shape:
     return array._getvalue()
 
 
-def _view(dtype: types.Type, axes: int) -> Any:
-    kind = types.Array(dtype, axes, "C")
+def memory(dtype: Any, address: int, *shape: int) -> np.ndarray:
+    """The array at an address, in Python."""
+    dtype = np.dtype(dtype)
+    size = int(np.prod(shape)) * dtype.itemsize
+    return np.frombuffer((ctypes.c_char * size).from_address(int(address)), dtype).reshape(shape)
+
+
+def _view(dtype: Any, axes: int) -> Any:
+    kind: Any = types.Array(from_dtype(np.dtype(dtype)), axes, "C")
+
+    def plain(address: int, *shape: int) -> np.ndarray:
+        array = memory(dtype, address, *shape)
+        return array.view(np.recarray) if array.dtype.names else array
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         return array_at(context, builder, kind, arguments[0], list(arguments[1:]))
 
     if axes == 1:
 
-        @intrinsic
+        @intrinsic(plain)
         def view(typingctx, address, length):
             """The vector at an address."""
             return kind(types.int64, types.int64), generate
+    elif axes == 3:
+
+        @intrinsic(plain)
+        def view(typingctx, address, blocks, rows, columns):
+            """The stack of matrices at an address."""
+            return kind(types.int64, types.int64, types.int64, types.int64), generate
     else:
 
-        @intrinsic
+        @intrinsic(plain)
         def view(typingctx, address, rows, columns):
             """The matrix at an address, by rows."""
             return kind(types.int64, types.int64, types.int64), generate
@@ -50,16 +78,21 @@ def _view(dtype: types.Type, axes: int) -> Any:
     return view
 
 
-integers, integers2 = _view(types.int64, 1), _view(types.int64, 2)
-reals, reals2 = _view(types.float64, 1), _view(types.float64, 2)
-complexes, complexes2 = _view(types.complex128, 1), _view(types.complex128, 2)
+integers, integers2 = _view("i8", 1), _view("i8", 2)
+reals, reals2, reals3 = _view("f8", 1), _view("f8", 2), _view("f8", 3)
+complexes, complexes2 = _view("c16", 1), _view("c16", 2)
+
+
+def records(dtype: np.dtype) -> Any:
+    """An intrinsic: the vector of records of this type at an address."""
+    return _view(dtype, 1)
 
 
 def record(dtype: np.dtype) -> Any:
     """An intrinsic: the record of this type at an address; its fields are read and written by name."""
-    kind = from_dtype(dtype)
+    kind: Any = from_dtype(dtype)
 
-    @intrinsic
+    @intrinsic(lambda address: memory(dtype, address, 1).view(np.recarray)[0])
     def view(typingctx, address):
         """The record at an address."""
 
@@ -71,12 +104,7 @@ def record(dtype: np.dtype) -> Any:
     return view
 
 
-def records(dtype: np.dtype) -> Any:
-    """An intrinsic: the vector of records of this type at an address."""
-    return _view(from_dtype(dtype), 1)
-
-
-@intrinsic
+@intrinsic(lambda array: array.ctypes.data)
 def address_of(typingctx, array):
     """Address of an array's first entry."""
 
@@ -89,7 +117,11 @@ def address_of(typingctx, array):
     return types.int64(array), generate
 
 
-@intrinsic
+def _call(address: int, first: int, second: int) -> None:
+    ctypes.CFUNCTYPE(None, ctypes.c_int64, ctypes.c_int64)(int(address))(int(first), int(second))
+
+
+@intrinsic(_call)
 def call(typingctx, address, first, second):
     """Call the C function at ``address`` with two addresses."""
     signature = types.void(types.int64, types.int64, types.int64)
@@ -105,10 +137,16 @@ def call(typingctx, address, first, second):
     return signature, generate
 
 
-@intrinsic
+def _call_with(address: int, *arrays: np.ndarray) -> None:
+    pointers = [array.ctypes.data for array in arrays]
+    ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * len(pointers))(int(address))(*pointers)
+
+
+@intrinsic(_call_with)
 def call_with(typingctx, address, *arrays):
     """Call the C function at ``address`` with the addresses of contiguous arrays, each as a pointer."""
-    signature = types.void(types.int64, types.StarArgTuple.from_types(arrays))
+    given: Any = types.StarArgTuple.from_types(arrays)
+    signature = types.void(types.int64, given)
 
     def generate(context, builder, signature, arguments):
         import llvmlite.ir as ir
@@ -125,38 +163,34 @@ def call_with(typingctx, address, *arrays):
     return signature, generate
 
 
-def local(dtype: types.Type, *shape: int) -> Any:
-    """An intrinsic: a small array on the stack, the same one at each call from one place."""
-    kind = types.Array(dtype, len(shape), "C")
+def _on_stack(context: Any, builder: Any, kind: types.Array, shape: tuple[int, ...]) -> Any:
+    """Generate an array on the stack of the function, the same one at each call from one place."""
+    import llvmlite.ir as ir
 
-    @intrinsic
+    word = ir.IntType(64)
+    with builder.goto_entry_block():
+        cells = builder.alloca(context.get_data_type(kind.dtype), size=int(np.prod(shape)))
+    return array_at(context, builder, kind, builder.ptrtoint(cells, word), [word(length) for length in shape])
+
+
+def local(dtype: type, *shape: int) -> Any:
+    """An intrinsic: a small array on the stack; its entries are not set."""
+    kind: Any = types.Array(from_dtype(np.dtype(dtype)), len(shape), "C")
+
+    @intrinsic(lambda: np.zeros(shape, dtype))
     def array(typingctx):
         """An array on the stack; its entries are not set."""
-
-        def generate(context, builder, signature, arguments):
-            import llvmlite.ir as ir
-
-            word = ir.IntType(64)
-            with builder.goto_entry_block():
-                memory = builder.alloca(context.get_data_type(dtype), size=int(np.prod(shape)))
-            return array_at(context, builder, kind, builder.ptrtoint(memory, word), [word(n) for n in shape])
-
-        return kind(), generate
+        return kind(), lambda context, builder, signature, arguments: _on_stack(context, builder, kind, shape)
 
     return array
 
 
-@_typed_intrinsic(prefer_literal=True)
+@intrinsic(lambda array, count: np.zeros(count, array.dtype), prefer_literal=True)
 def stack(typingctx, array, count):
-    """A vector on the stack, of the type of an array's entries and of a literal length."""
+    """A vector on the stack, of the type of an array's entries and of a literal length; its entries are not set."""
     kind = types.Array(array.dtype, 1, "C")
 
     def generate(context, builder, signature, arguments):
-        import llvmlite.ir as ir
-
-        with builder.goto_entry_block():
-            memory = builder.alloca(context.get_data_type(array.dtype), size=count.literal_value)
-        word = ir.IntType(64)
-        return array_at(context, builder, kind, builder.ptrtoint(memory, word), [word(count.literal_value)])
+        return _on_stack(context, builder, kind, (count.literal_value,))
 
     return kind(array, count), generate

@@ -1,5 +1,6 @@
-"""Arguments of kernels as 64-bit words: an annotation says how many words an argument takes, and how they are filled."""
+"""Arguments of kernels as 64-bit words: an annotation says how many an argument takes, and how they are filled."""
 
+import ctypes
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cache
@@ -32,7 +33,8 @@ Bytes2 = Annotated[np.ndarray, ArrayOf("u1", 2)]
 Address = int
 
 _SCALARS: dict[Any, str] = {int: "i8", float: "f8", bool: "i8"}
-Pack = Callable[[Any, np.ndarray, int], None]
+Words = list[Any]
+Pack = Callable[[Any, Words], None]
 
 
 def leaves(annotation: Any) -> Iterator[Any]:
@@ -68,56 +70,63 @@ def count(annotation: Any) -> int:
     return sum(map(width, leaves(annotation)))
 
 
+def form(annotation: Any) -> str:
+    """Format of an argument's words, for :mod:`struct`."""
+    return "".join("d" if leaf is float else "q" * width(leaf) for leaf in leaves(annotation))
+
+
 def packer(name: str, annotation: Any) -> Pack:
-    """A function that writes an argument's words from a position on; ``name`` is for its messages."""
+    """A function that appends an argument's words to others; ``name`` is for its messages."""
     if annotation is float:
         return _pack_float
     if annotation in _SCALARS:
         return _pack_integer
     if get_origin(annotation) is Annotated:
         return _array_packer(name, next(leaves(annotation)))
-    parts, start = [], 0
     entries = get_args(annotation) if get_origin(annotation) is tuple else fields(annotation).values()
     names = getattr(annotation, "_fields", range(len(entries)))
-    for own, entry in zip(names, entries, strict=True):
-        parts.append((packer(f"{name}.{own}", entry), start))
-        start += count(entry)
+    parts = [packer(f"{name}.{own}", entry) for own, entry in zip(names, entries, strict=True)]
 
-    def pack(value: Any, words: np.ndarray, at: int) -> None:
-        for (own, offset), entry in zip(parts, value, strict=True):
-            own(entry, words, at + offset)
+    def pack(value: Any, words: Words) -> None:
+        for own, entry in zip(parts, value, strict=True):
+            own(entry, words)
 
     return pack
 
 
-def _pack_integer(value: Any, words: np.ndarray, at: int) -> None:
-    words[at] = value
+def _pack_integer(value: Any, words: Words) -> None:
+    words.append(int(value))
 
 
-def _pack_float(value: Any, words: np.ndarray, at: int) -> None:
-    words[at : at + 1].view(np.float64)[0] = value
+def _pack_float(value: Any, words: Words) -> None:
+    words.append(value)
 
 
 def _array_packer(name: str, leaf: ArrayOf) -> Pack:
-    dtype = np.dtype(leaf.dtype)
+    dtype, axes = np.dtype(leaf.dtype), leaf.axes
 
-    def pack(value: np.ndarray, words: np.ndarray, at: int) -> None:
-        if value.dtype != dtype or value.ndim != leaf.axes or not value.flags.c_contiguous:
+    def pack(value: np.ndarray, words: Words) -> None:
+        if value.dtype != dtype or value.ndim != axes or not value.flags.c_contiguous:
             raise TypeError(
                 f"{name} is an array of {value.dtype} with shape {value.shape}; "
-                f"expected a contiguous one of {dtype} with {leaf.axes} axes"
+                f"expected a contiguous one of {dtype} with {axes} axes"
             )
-        words[at] = value.ctypes.data
-        words[at + 1 : at + 1 + leaf.axes] = value.shape
+        words.append(address(value))
+        words.extend(value.shape)
 
     return pack
 
 
-def unpack(annotation: Any, words: np.ndarray) -> Any:
-    """A result from its words: a scalar or a tuple of scalars."""
-    if annotation is float:
-        return float(words.view(np.float64)[0])
+def address(memory: Any) -> int:
+    """Address of the first entry of a contiguous array, or of another object's memory."""
+    try:
+        return ctypes.addressof(ctypes.c_char.from_buffer(memory))
+    except (TypeError, ValueError):  # it cannot be written to, or is empty
+        return memory.ctypes.data  # of an array; slower, since it makes several objects
+
+
+def unpack(annotation: Any, values: tuple[Any, ...]) -> Any:
+    """A result, a scalar or a tuple of scalars, from what its words say in their format."""
     if annotation in _SCALARS:
-        return annotation(words[0])
-    entries = get_args(annotation)
-    return tuple(unpack(entry, words[i : i + 1]) for i, entry in enumerate(entries))
+        return annotation(values[0])
+    return tuple([own(value) for own, value in zip(get_args(annotation), values, strict=True)])

@@ -21,7 +21,7 @@ def set_signals(model, t, within, work):
     """Evaluate the signals at time ``t``, in the smooth stretch of motion that holds ``within``."""
     own = call_at(work)
     own.t, own.within = t, within
-    own.callbacks = model_at(model).callbacks
+    own.callbacks, own.callback_count = model_at(model).callbacks, model_at(model).callback_count
     call(model_at(model).evaluate, work, model)
 
 

@@ -6,6 +6,7 @@ it is faster than the general complex function, and it has no branch cuts in the
 """
 
 import math
+from typing import Any
 
 from numba import types
 from numba.extending import overload
@@ -20,6 +21,14 @@ def _is_complex(kind: types.Type) -> bool:
     return isinstance(kind, types.Complex)
 
 
+def _is_number(kind: types.Type) -> bool:
+    """Other types have functions of their own, see :mod:`jets`."""
+    return isinstance(kind, types.Number)
+
+
+# In Python they take real numbers, complex ones, and jets (:mod:`jets`), which know their chain rule by ``function``.
+
+
 def real(x):
     """Real part, for decisions: a branch must not see the direction of differentiation."""
     return x.real
@@ -27,36 +36,69 @@ def real(x):
 
 def sin_cos(x):
     """Sine and cosine."""
-    return math.sin(x), math.cos(x)
+    if hasattr(x, "function"):
+        s, c = sin_cos(x.value)
+        return x.function(s, c, -s), x.function(c, -s, -c)
+    s, c = math.sin(x.real), math.cos(x.real)
+    return _first_order(x, s, c), _first_order(x, c, -s)
 
 
 def root(x):
     """Square root of a quantity with a positive real part."""
-    return math.sqrt(x)
+    if hasattr(x, "function"):
+        r = root(x.value)
+        return x.function(r, 0.5 / r, -0.25 / (r * r * r))
+    r = math.sqrt(x.real)
+    return _first_order(x, r, 0.5 / r)
 
 
 def tanh(x):
     """Hyperbolic tangent."""
-    return math.tanh(x)
+    if hasattr(x, "function"):
+        t = tanh(x.value)
+        return x.function(t, 1.0 - t * t, -2.0 * t * (1.0 - t * t))
+    t = math.tanh(x.real)
+    return _first_order(x, t, 1.0 - t * t)
 
 
 def angle_of(x, y):
     """Angle of the vector (x, y) in (-pi, pi]."""
-    return math.atan2(y, x)
+    if hasattr(x, "function"):
+        square = x * x + y * y
+        rate = (x.value * y.first - y.value * x.first) / square.value
+        second = (x.value * y.second - y.value * x.second - rate * square.first) / square.value
+        return type(x)(angle_of(x.value, y.value), rate, second)
+    angle = math.atan2(y.real, x.real)
+    if not isinstance(x, complex):
+        return angle
+    square = x.real * x.real + y.real * y.real
+    return complex(angle, (x.real * y.imag - y.real * x.imag) / square)
 
 
 def reciprocal(x):
     """1/x, without the scaling that a general complex division does."""
-    return 1.0 / x
+    if hasattr(x, "function"):
+        r = reciprocal(x.value)
+        return x.function(r, -r * r, 2.0 * r * r * r)
+    return _first_order(x, 1.0 / x.real, -1.0 / (x.real * x.real))
+
+
+def _first_order(x: Any, value: float, slope: float) -> Any:
+    """A function of x from its value and slope at the real part: exact there, first order in the imaginary one."""
+    return complex(value, slope * x.imag) if isinstance(x, complex) else value
 
 
 @overload(real, inline="always")
 def _real(x):
+    if not _is_number(x):
+        return None
     return (lambda x: x.real) if _is_complex(x) else (lambda x: x)
 
 
 @overload(sin_cos)
 def _sin_cos(x):
+    if not _is_number(x):
+        return None
     if not _is_complex(x):
         return lambda x: (math.sin(x), math.cos(x))
 
@@ -69,6 +111,8 @@ def _sin_cos(x):
 
 @overload(root)
 def _root(x):
+    if not _is_number(x):
+        return None
     if not _is_complex(x):
         return lambda x: math.sqrt(x)
 
@@ -81,6 +125,8 @@ def _root(x):
 
 @overload(tanh)
 def _tanh(x):
+    if not _is_number(x):
+        return None
     if not _is_complex(x):
         return lambda x: math.tanh(x)
 
@@ -93,6 +139,8 @@ def _tanh(x):
 
 @overload(angle_of)
 def _angle_of(x, y):
+    if not _is_number(x):
+        return None
     if not _is_complex(x):
         return lambda x, y: math.atan2(y, x)
 
@@ -105,6 +153,8 @@ def _angle_of(x, y):
 
 @overload(reciprocal)
 def _reciprocal(x):
+    if not _is_number(x):
+        return None
     if not _is_complex(x):
         return lambda x: 1.0 / x
 

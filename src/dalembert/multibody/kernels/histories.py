@@ -1,4 +1,4 @@
-"""Kernels over the samples of a motion: outputs of a block, energies. States are given by address, of any arithmetic."""
+"""Kernels over the samples of a motion: outputs of a block, energies; of states in real or in complex numbers."""
 
 from dalembert.kernels.kernel import kernel
 from dalembert.kernels.views import call
@@ -12,7 +12,7 @@ def outputs_history(
     work: Address, block: Address, x: Address, v: Address, a: Address, stride: int, out: Address, out_stride: int,
     samples: int,
 ) -> None:  # fmt: skip
-    """Outputs of a block at each sample; states and outputs of a sample stand ``stride`` bytes behind the last one's."""
+    """Outputs of a block at each sample; the next outputs stand ``out_stride`` bytes behind, states ``stride``."""
     own = call_at(work)
     for s in range(samples):
         own.x, own.v, own.a, own.r = x + s * stride, v + s * stride, a + s * stride, out + s * out_stride

@@ -7,7 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from dalembert.kernels.kernel import Compiled
 from dalembert.multibody.kernels import loops
+from dalembert.multibody.kernels.constraints import power_of, rates_of, residual_of
+from dalembert.multibody.kernels.debugging import plain
 from dalembert.multibody.kernels.loops import BlockKernel
 
 
@@ -28,12 +31,16 @@ class Kind:
         Columns.
     reactions : int
         Multipliers of a joint that the component depends on; its local unknowns behind the coordinates.
-    residual : function (x, v, a, p, m, inputs, r)
-        Fills ``r``: what the component adds to the left side of the equations of motion, then its constraints.
-    rates : function (x, v, a, p, m, inputs, rate, second), optional
-        First and second time derivatives of the constraints.
+    residual : function (x, v, a, p, m, inputs, r), optional
+        Adds to ``r`` (zero before) what the component adds to the left side of the equations of motion.
+    constraint : function (x, p, m, inputs, g), optional
+        Fills ``g`` (multipliers,), which are zero where the joint is closed. Its time derivatives and the constraint
+        forces follow by automatic differentiation; a signal's value is ``signal(inputs, number)``.
+    forces : function (x, p, m, r), optional
+        Adds the constraint forces J^T lambda by a formula, where that is faster; lambda stand in ``x`` behind the
+        coordinates. A test holds it to the automatic ones.
     energy : function (x, v, p, m, inputs) -> (kinetic, potential, power), optional
-        Energies in J, and the power in W of what is not conservative.
+        Energies in J, and the power in W of what is not conservative. Without it, the power of all its forces.
     tangent : function (x, p, m, by_x, by_a, matrix), optional
         Fills the local matrix by_x dr/dx + by_a dr/da, where ``known`` says that it holds; multipliers by 1.
     known : function (p, m) -> bool, optional
@@ -49,18 +56,22 @@ class Kind:
         Whether a force depends on velocities; or the column of which any entry that is not zero says so.
     driven, loads : bool
         Whether a prescribed motion, or a load, may do work.
+    holds : bool
+        Whether a component on the ground keeps the mechanism from moving freely, as joints and springs do. It then has
+        the columns ``a_kind b_kind`` (integers) and ``a_x a_y b_x b_y`` of two markers.
     holds_frame : bool
-        Whether it holds the direction of a ground point, not only the point.
+        Whether it then holds the direction of a ground point, not only the point.
     """
 
     name: str
     coordinates: int
-    residual: Callable[..., Any]
     numbers: tuple[str, ...]
     integers: tuple[str, ...] = ()
     multipliers: int = 0
     reactions: int = 0
-    rates: Callable[..., Any] | None = None
+    residual: Callable[..., Any] | None = None
+    constraint: Callable[..., Any] | None = None
+    forces: Callable[..., Any] | None = None
     energy: Callable[..., Any] | None = None
     tangent: Callable[..., Any] | None = None
     known: Callable[..., Any] | None = None
@@ -71,6 +82,7 @@ class Kind:
     dissipates: bool | str = False
     driven: bool = False
     loads: bool = False
+    holds: bool = False
     holds_frame: bool = True
     _kernels: dict[tuple[str, type], BlockKernel] = field(default_factory=dict, init=False, repr=False)
 
@@ -101,12 +113,50 @@ class Kind:
             return bool(np.any(numbers[:, self.numbers.index(self.dissipates)]))
         return self.dissipates
 
-    def kernel(self, role: str, dtype: type) -> BlockKernel:
+    def kernel(self, role: str, dtype: type) -> Compiled:
         """The kernel of a role (residual, rates, energy, outputs) in real or in complex numbers."""
         if (role, dtype) not in self._kernels:
             self._kernels[role, dtype] = loops.MAKERS[role](self, dtype)
-        return self._kernels[role, dtype]
+        own = self._kernels[role, dtype]
+        return plain(self, own) or own
+
+    def all_kernels(self) -> list[Compiled]:
+        """The kernels of all roles that the kind has."""
+        roles = [role for role in loops.MAKERS if self.has(role)]
+        return [self.kernel(role, dtype) for role in roles for dtype in (float, complex)]
 
     def has(self, role: str) -> bool:
         """Whether the kind has kernels of this role."""
-        return {"residual": True, "rates": self.rates, "energy": self.energy, "outputs": self.observe}[role] is not None
+        return {
+            "residual": self.residual is not None or self.constraint is not None,
+            "rates": self.constraint is not None,
+            "energy": self.energy is not None or self.residual is not None,
+            "outputs": self.observe is not None,
+        }[role]
+
+    @cached_property
+    def residual_function(self) -> Callable[..., Any]:
+        """What fills the local residual: forces, then constraints."""
+        if self.constraint is not None:
+            return residual_of(self.constraint, self.forces, self.coordinates, self.multipliers)
+        assert self.residual is not None, self.name
+        return self.residual
+
+    @cached_property
+    def rates_function(self) -> Callable[..., Any]:
+        """What fills the time derivatives of the constraints."""
+        assert self.constraint is not None, self.name
+        return rates_of(self.constraint, self.multipliers)
+
+    @cached_property
+    def energy_function(self) -> Callable[..., Any]:
+        """What returns energies and power; without a function of the kind's, all that its forces do is power."""
+        if self.energy is not None:
+            return self.energy
+        assert self.residual is not None, self.name
+        return power_of(self.residual, self.width)
+
+    @property
+    def source(self) -> Callable[..., Any]:
+        """A function of the file that defines the kind."""
+        return self.residual or self.constraint or self.observe  # type: ignore[return-value] - one of them is there

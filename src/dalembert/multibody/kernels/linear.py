@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dalembert.kernels.kernel import inlined, inner, kernel
+from dalembert.kernels.kernel import inlined, kernel
 from dalembert.kernels.words import Address, Integers, Reals
 from dalembert.multibody.kernels.vector import LANES, add_multiple, add_two_multiples
 
@@ -143,7 +143,9 @@ def _pivot(size, reach, lead, a, pivots, tops, k, last):
 
 @kernel
 def factorise_band(size: int, reach: int, lead: int, a: Reals, pivots: Integers, tops: Integers) -> bool:
-    """Triangular factors of a band matrix; whether it is regular. The lower one has ones on its diagonal, of the upper one the diagonal is inverted.
+    """Triangular factors of a band matrix; whether it is regular.
+
+    The lower one has ones on its diagonal, of the upper one the diagonal is inverted.
 
     Two columns at a time where the second one needs no exchange of rows, which halves the passes over the others.
     """

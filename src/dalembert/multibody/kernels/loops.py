@@ -3,8 +3,6 @@
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from numba import types
-
 from dalembert.kernels.kernel import BlockKernel, inlined
 from dalembert.kernels.views import complexes, complexes2, integers, integers2, local, reals, reals2, records
 from dalembert.multibody.kernels.dual import STEP
@@ -14,10 +12,8 @@ if TYPE_CHECKING:
     from dalembert.multibody.kernels.kind import Kind
 
 
-def _arithmetic(dtype: type) -> tuple[Any, Any, Any]:
-    if dtype is complex:
-        return complexes, complexes2, types.complex128
-    return reals, reals2, types.float64
+def _arithmetic(dtype: type) -> tuple[Any, Any]:
+    return (complexes, complexes2) if dtype is complex else (reals, reals2)
 
 
 def _made(loop: Callable[[Any, Any], None], kind: "Kind", role: str, dtype: type) -> BlockKernel:
@@ -30,9 +26,9 @@ def residual(kind: "Kind", dtype: type) -> BlockKernel:
 
 
 def _real(kind: "Kind") -> BlockKernel:
-    function, width = kind.residual, kind.width
+    function, width = kind.residual_function, kind.width
     numbers, whole = records(kind.number_record(float)), records(kind.integer_record)
-    local_x, local_v, local_a, local_r = (local(types.float64, width) for _ in range(4))
+    local_x, local_v, local_a, local_r = (local(float, width) for _ in range(4))
 
     def loop(call_address, block_address):
         call, block = call_at(call_address), block_at(block_address)
@@ -40,7 +36,7 @@ def _real(kind: "Kind") -> BlockKernel:
         index = integers2(block.index, count, width)
         p, m = numbers(block.numbers, count), whole(block.integers, count)
         x, v, a, r = reals(call.x, size), reals(call.v, size), reals(call.a, size), reals(call.r, size)
-        inputs = Inputs(reals2(call.signals, call.signal_count, 3), integers(call.callbacks, 1))
+        inputs = Inputs(reals2(call.signals, call.signal_count, 3), integers(call.callbacks, call.callback_count))
         own_x, own_v, own_a, own_r = local_x(), local_v(), local_a(), local_r()
         for e in range(count):
             for i in range(width):
@@ -65,18 +61,18 @@ def _no_tangent(x, p, m, by_x, by_a, matrix):
 
 
 def _complex(kind: "Kind") -> BlockKernel:
-    function, width = kind.residual, kind.width
+    function, width = kind.residual_function, kind.width
     known, formula = kind.known or _never, kind.tangent or _no_tangent
     numbers, whole = records(kind.number_record(complex)), records(kind.integer_record)
-    local_x, local_v, local_a, local_r = (local(types.complex128, width) for _ in range(4))
-    real_x, real_matrix = local(types.float64, width), local(types.float64, width, width)
+    local_x, local_v, local_a, local_r = (local(complex, width) for _ in range(4))
+    real_x, real_matrix = local(float, width), local(float, width, width)
 
     def loop(call_address, block_address):
         call, block = call_at(call_address), block_at(block_address)
         count, size, n = block.count, call.last + 1, call.coordinates
         index = integers2(block.index, count, width)
         p, m = numbers(block.numbers, count), whole(block.integers, count)
-        inputs = Inputs(complexes2(call.signals, call.signal_count, 3), integers(call.callbacks, 1))
+        inputs = Inputs(complexes2(call.signals, call.signal_count, 3), integers(call.callbacks, call.callback_count))
         own_x, own_v, own_a, own_r = local_x(), local_v(), local_a(), local_r()
         own_real, own_matrix = real_x(), real_matrix()
         x, v, a = complexes(call.x, size), complexes(call.v, size), complexes(call.a, size)
@@ -132,11 +128,11 @@ def _complex(kind: "Kind") -> BlockKernel:
 
 def rates(kind: "Kind", dtype: type) -> BlockKernel:
     """Fill the first and second time derivatives of the constraints."""
-    view, view2, item = _arithmetic(dtype)
-    function, width, coordinates, multipliers = kind.rates, kind.width, kind.coordinates, kind.multipliers
+    view, view2 = _arithmetic(dtype)
+    function, width, coordinates, multipliers = kind.rates_function, kind.width, kind.coordinates, kind.multipliers
     numbers, whole = records(kind.number_record(dtype)), records(kind.integer_record)
-    local_x, local_v, local_a = (local(item, width) for _ in range(3))
-    local_rate, local_second = (local(item, max(multipliers, 1)) for _ in range(2))
+    local_x, local_v, local_a = (local(dtype, width) for _ in range(3))
+    local_rate, local_second = (local(dtype, max(multipliers, 1)) for _ in range(2))
 
     def loop(call_address, block_address):
         call, block = call_at(call_address), block_at(block_address)
@@ -145,7 +141,7 @@ def rates(kind: "Kind", dtype: type) -> BlockKernel:
         p, m = numbers(block.numbers, count), whole(block.integers, count)
         x, v, a = view(call.x, size), view(call.v, size), view(call.a, size)
         rate, second = view(call.rate, size), view(call.second, size)
-        inputs = Inputs(view2(call.signals, call.signal_count, 3), integers(call.callbacks, 1))
+        inputs = Inputs(view2(call.signals, call.signal_count, 3), integers(call.callbacks, call.callback_count))
         own_x, own_v, own_a = local_x(), local_v(), local_a()
         own_rate, own_second = local_rate(), local_second()
         for e in range(count):
@@ -162,10 +158,10 @@ def rates(kind: "Kind", dtype: type) -> BlockKernel:
 
 def energy(kind: "Kind", dtype: type) -> BlockKernel:
     """Add kinetic energy, potential energy and power."""
-    view, view2, item = _arithmetic(dtype)
-    function, width = kind.energy, kind.width
+    view, view2 = _arithmetic(dtype)
+    function, width = kind.energy_function, kind.width
     numbers, whole = records(kind.number_record(dtype)), records(kind.integer_record)
-    local_x, local_v = (local(item, width) for _ in range(2))
+    local_x, local_v = (local(dtype, width) for _ in range(2))
 
     def loop(call_address, block_address):
         call, block = call_at(call_address), block_at(block_address)
@@ -173,7 +169,7 @@ def energy(kind: "Kind", dtype: type) -> BlockKernel:
         index = integers2(block.index, count, width)
         p, m = numbers(block.numbers, count), whole(block.integers, count)
         x, v, totals = view(call.x, size), view(call.v, size), view(call.totals, 3)
-        inputs = Inputs(view2(call.signals, call.signal_count, 3), integers(call.callbacks, 1))
+        inputs = Inputs(view2(call.signals, call.signal_count, 3), integers(call.callbacks, call.callback_count))
         own_x, own_v = local_x(), local_v()
         for e in range(count):
             for i in range(width):
@@ -189,10 +185,11 @@ def energy(kind: "Kind", dtype: type) -> BlockKernel:
 
 def outputs(kind: "Kind", dtype: type) -> BlockKernel:
     """Fill the outputs of the components, (count, outputs), at the call's ``r``."""
-    view, view2, item = _arithmetic(dtype)
-    function, width, wide = kind.observe, kind.width, len(kind.outputs)
+    view, view2 = _arithmetic(dtype)
+    function: Any = kind.observe
+    width, wide = kind.width, len(kind.outputs)
     numbers, whole = records(kind.number_record(dtype)), records(kind.integer_record)
-    local_x, local_v, local_a = (local(item, width) for _ in range(3))
+    local_x, local_v, local_a = (local(dtype, width) for _ in range(3))
 
     def loop(call_address, block_address):
         call, block = call_at(call_address), block_at(block_address)
@@ -200,7 +197,7 @@ def outputs(kind: "Kind", dtype: type) -> BlockKernel:
         index = integers2(block.index, count, width)
         p, m = numbers(block.numbers, count), whole(block.integers, count)
         x, v, a, out = view(call.x, size), view(call.v, size), view(call.a, size), view2(call.r, count, wide)
-        inputs = Inputs(view2(call.signals, call.signal_count, 3), integers(call.callbacks, 1))
+        inputs = Inputs(view2(call.signals, call.signal_count, 3), integers(call.callbacks, call.callback_count))
         own_x, own_v, own_a = local_x(), local_v(), local_a()
         for e in range(count):
             for i in range(width):

@@ -55,6 +55,7 @@ class Model:
     coordinates: int
     dtype: type
     _words: tuple[np.ndarray, np.ndarray] = field(init=False, repr=False)
+    _kernels: list[Any] = field(default_factory=list, init=False, repr=False)  # kept alive
 
     def __post_init__(self) -> None:
         kinds = list(self.blocks.index)
@@ -69,7 +70,8 @@ class Model:
         own["blocks"], own["block_count"] = rows.ctypes.data, len(kinds)
         own["signal_count"], own["signal_index"] = len(self.signals.index), self.signals.index.ctypes.data
         own["knots"], own["signal_data"] = self.signals.knots.ctypes.data, self.signals.data.ctypes.data
-        own["callbacks"] = self.callbacks.ctypes.data
+        own["knot_count"], own["number_count"] = len(self.signals.knots), len(self.signals.data)
+        own["callbacks"], own["callback_count"] = self.callbacks.ctypes.data, len(self.callbacks)
         own["evaluate"] = EVALUATE[self.dtype].address
         object.__setattr__(self, "_words", (head, rows))
         self.need("residual")
@@ -79,7 +81,9 @@ class Model:
         for row, kind in zip(self._words[1], self.blocks.index, strict=False):
             for role in roles:
                 if row[role] == 0 and kind.has(role):
-                    row[role] = kind.kernel(role, self.dtype).address
+                    kernel = kind.kernel(role, self.dtype)
+                    self._kernels.append(kernel)
+                    row[role] = kernel.address
         return self
 
     @property
@@ -98,7 +102,8 @@ class Model:
             if kind.has(role):
                 if slots is not None:
                     call.set(slots=slots[k])
-                kind.kernel(role, self.dtype)(call.address, self._words[1][k : k + 1].ctypes.data)
+                kernel: Any = kind.kernel(role, self.dtype)
+                kernel(call.address, self._words[1][k : k + 1].ctypes.data)
 
     def call(self) -> "Call":
         """A call in the arithmetic of the model."""
@@ -117,7 +122,7 @@ class Call:
         own = self._words[0]
         own["last"], own["coordinates"] = size, coordinates
         own["signals"], own["signal_count"] = self.signals.ctypes.data, signals
-        own["callbacks"] = self._callbacks.ctypes.data
+        own["callbacks"], own["callback_count"] = self._callbacks.ctypes.data, len(self._callbacks)
 
     @property
     def address(self) -> int:

@@ -1,6 +1,6 @@
 """States of motion, their difference formulas and their interpolation between steps."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -50,8 +50,8 @@ class Coefficients(NamedTuple):
     gamma: float
 
 
-def resting(*shape: int) -> Motion:
-    """Arrays of states, all zero; of more than one axis for stacks."""
+def resting(*shape: int) -> Any:
+    """States of zeros: a `Motion`, or with more axes what serves as `Motions` or as `Histories`."""
     return Motion(np.zeros(shape), np.zeros(shape), np.zeros(shape), np.zeros(shape))
 
 

@@ -25,14 +25,17 @@ def _record(integers: str, reals: str = "") -> np.dtype:
 #: ``slots``: where the entries of the block's local matrices stand in ``matrix``. The tangent is the derivative along
 #: ``by_x dq + by_v dv + by_a da``, its rows multiplied by ``motion`` and ``constraint``.
 CALL = _record(
-    "coordinates last x v a r rate second totals matrix signals signal_count callbacks mode slots",
+    "coordinates last x v a r rate second totals matrix signals signal_count callbacks callback_count mode slots",
     "t within by_x by_v by_a motion constraint",
 )
 #: Components of one kind: how many, their unknowns (count, width), integers and numbers, and the kind's kernels in the
 #: model's arithmetic; 0 where there is none. ``joins``: whether the kind has constraints.
 BLOCK = _record("count index integers numbers residual rates energy outputs joins")
 #: A model: its blocks, and its signals, see :mod:`signals`.
-MODEL = _record("blocks block_count signal_count signal_index knots signal_data callbacks evaluate")
+MODEL = _record(
+    "blocks block_count signal_count signal_index knots knot_count signal_data number_count "
+    "callbacks callback_count evaluate"
+)
 
 RESIDUAL, TANGENT = 0, 1
 

@@ -5,8 +5,7 @@ Signal 0 is the time itself.
 """
 
 from dalembert.kernels.kernel import BlockKernel, inner
-from dalembert.kernels.views import complexes, complexes2, integers, integers2, reals, reals2, stack
-from dalembert.multibody.kernels.callback import call
+from dalembert.kernels.views import call_with, complexes, complexes2, integers, integers2, reals, reals2, stack
 from dalembert.multibody.kernels.dual import sin_cos
 from dalembert.multibody.kernels.records import call_at, model_at
 
@@ -68,7 +67,7 @@ def _evaluate(kind, first, count, knot, data, knots, callbacks, t, within, out):
     elif kind == CUSTOM:
         given, answer = stack(data, 1), stack(data, 3)
         given[0] = t
-        call(callbacks[first], given, answer)
+        call_with(callbacks[first], given, answer)
         out[0], out[1], out[2] = answer[0], answer[1], answer[2]
 
 
@@ -83,7 +82,8 @@ def _kernel(dtype: type) -> BlockKernel:
         """
         own, table = call_at(work), model_at(model)
         index, out = integers2(table.signal_index, table.signal_count, 4), view2(own.signals, table.signal_count, 3)
-        data, knots, callbacks = view(table.signal_data, 1), reals(table.knots, 1), integers(table.callbacks, 1)
+        data, knots = view(table.signal_data, table.number_count), reals(table.knots, table.knot_count)
+        callbacks = integers(table.callbacks, table.callback_count)
         for n in range(table.signal_count):
             _evaluate(
                 index[n, 0], index[n, 1], index[n, 2], index[n, 3], data, knots, callbacks, own.t, own.within, out[n]

@@ -4,19 +4,25 @@ from typing import Any
 
 from numba import types
 from numba.core import cgutils
-from numba.extending import intrinsic
+
+from dalembert.kernels.views import intrinsic
 
 LANES = 4  # numbers treated at a time; lengths are multiples of it
-_intrinsic: Any = intrinsic  # whose type counts the typing context among the arguments of a call
 
 
-@_intrinsic
+def _add(target: Any, at: int, source: Any, *rest: Any) -> None:
+    count = rest[-1]
+    for begin, factor in zip(rest[:-1:2], rest[1:-1:2], strict=True):
+        target[at : at + count] += factor * source[begin : begin + count]
+
+
+@intrinsic(_add)
 def add_multiple(typingctx, target, at, source, begin, factor, count):
     """target[at : at + count] += factor * source[begin : begin + count], for contiguous vectors of real numbers."""
     return types.void(target, types.int64, source, types.int64, types.float64, types.int64), _sum_multiples
 
 
-@_intrinsic
+@intrinsic(_add)
 def add_two_multiples(typingctx, target, at, source, begin, factor, other, weight, count):
     """The same for two parts of ``source``, from ``begin`` and from ``other``, by ``factor`` and by ``weight``."""
     signature = types.void(

@@ -2,7 +2,7 @@
 
 from abc import abstractmethod
 from dataclasses import dataclass, field
-from typing import cast, Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -10,7 +10,6 @@ from dalembert.errors import InputError
 from dalembert.multibody.components.fields import Number, number, require
 from dalembert.multibody.components.planar.body import GRADIENT, POSITION, Body, turned
 from dalembert.multibody.components.points import Place, Point
-
 
 MOST_ELEMENTS = 100_000
 """Of a beam: a hundred times as many as the longest chain of the benchmarks."""

@@ -3,13 +3,11 @@
 from dataclasses import InitVar, dataclass, field
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from dalembert.multibody.components.fields import Number, number, pair, require, require_not_negative
 from dalembert.multibody.components.planar import markers
 from dalembert.multibody.components.planar.ancf import Ancf
-from dalembert.multibody.components.planar.cable_element import CABLE
 from dalembert.multibody.components.planar.body import Marker, with_points
+from dalembert.multibody.components.planar.cable_element import CABLE
 from dalembert.multibody.components.points import Place
 
 if TYPE_CHECKING:

@@ -181,7 +181,9 @@ def energy(x, v, p, m, inputs):
     kinetic = hermite.kinetic(mass, h, 0, 2, 6, 8, v) + hermite.kinetic(mass, h, 1, 3, 7, 9, v)
     for i in range(4, 6):
         kinetic += rotatory / 6 * (v[i] * v[i] + v[i] * v[i + 6] + v[i + 6] * v[i + 6])
-    potential = -mass * (p.gravity_x * hermite.centre(h, 0, 2, 6, 8, x) + p.gravity_y * hermite.centre(h, 1, 3, 7, 9, x))
+    potential = -mass * (
+        p.gravity_x * hermite.centre(h, 0, 2, 6, 8, x) + p.gravity_y * hermite.centre(h, 1, 3, 7, 9, x)
+    )
     power = 0.0 * h
     across = 1.0 / h
     for g in range(3):

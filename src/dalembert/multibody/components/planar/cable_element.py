@@ -162,7 +162,9 @@ def energy(x, v, p, m, inputs):
     """Kinetic energy, strain and gravity energy, power of the material damping."""
     h, axial, bending, mass, delay = p.length, p.axial, p.bending, p.mass, p.delay
     kinetic = hermite.kinetic(mass, h, 0, 2, 4, 6, v) + hermite.kinetic(mass, h, 1, 3, 5, 7, v)
-    potential = -mass * (p.gravity_x * hermite.centre(h, 0, 2, 4, 6, x) + p.gravity_y * hermite.centre(h, 1, 3, 5, 7, x))
+    potential = -mass * (
+        p.gravity_x * hermite.centre(h, 0, 2, 4, 6, x) + p.gravity_y * hermite.centre(h, 1, 3, 5, 7, x)
+    )
     power = 0.0 * h
     across = 1.0 / h
     for g in range(5):

@@ -10,7 +10,7 @@ from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number, number, require
 from dalembert.multibody.components.planar import pairs
 from dalembert.multibody.components.planar.joint import OUTPUTS, Joint, observe_joint
-from dalembert.multibody.components.planar.pairs import push_pair, separation, separation_rate, separation_second
+from dalembert.multibody.components.planar.pairs import push_pair, separation
 from dalembert.multibody.kernels.dual import root
 from dalembert.multibody.kernels.kind import Kind
 
@@ -19,19 +19,15 @@ if TYPE_CHECKING:
 
 
 @inlined
-def _residual(x, v, a, p, m, inputs, r):
+def _constraint(x, p, m, inputs, g):
     dx, dy = separation(x, p, m)
-    push_pair(x, p, m, x[8] * dx / p.length, x[8] * dy / p.length, r)
-    r[8] = 0.5 * ((dx * dx + dy * dy) / p.length - p.length)
+    g[0] = 0.5 * ((dx * dx + dy * dy) / p.length - p.length)
 
 
 @inlined
-def _rates(x, v, a, p, m, inputs, rate, second):
+def _forces(x, p, m, r):
     dx, dy = separation(x, p, m)
-    ux, uy = separation_rate(x, v, p, m)
-    wx, wy = separation_second(x, v, a, p, m)
-    rate[0] = (dx * ux + dy * uy) / p.length
-    second[0] = (ux * ux + uy * uy + dx * wx + dy * wy) / p.length
+    push_pair(x, p, m, x[8] * dx / p.length, x[8] * dy / p.length, r)
 
 
 @inlined
@@ -47,11 +43,12 @@ DISTANCE = Kind(
     multipliers=1,
     numbers=(*pairs.NUMBERS, "length"),
     integers=pairs.INTEGERS,
-    residual=_residual,
-    rates=_rates,
+    constraint=_constraint,
+    forces=_forces,
     outputs=OUTPUTS,
     observe=_observe,
     lengths=("a_x", "a_y", "b_x", "b_y"),
+    holds=True,
     holds_frame=False,
 )
 

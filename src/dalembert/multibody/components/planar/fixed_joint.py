@@ -6,16 +6,7 @@ from typing import TYPE_CHECKING
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.planar import pairs
 from dalembert.multibody.components.planar.joint import OUTPUTS, Joint, observe_joint
-from dalembert.multibody.components.planar.pairs import (
-    push_pair,
-    relative_angle,
-    relative_spin,
-    relative_spin_rate,
-    separation,
-    separation_rate,
-    separation_second,
-    twist_pair,
-)
+from dalembert.multibody.components.planar.pairs import push_pair, relative_angle, separation, twist_pair
 from dalembert.multibody.kernels.dual import sin_cos
 from dalembert.multibody.kernels.kind import Kind
 
@@ -24,22 +15,21 @@ if TYPE_CHECKING:
 
 
 @inlined
-def _residual(x, v, a, p, m, inputs, r):
-    push_pair(x, p, m, x[8], x[9], r)
-    r[8], r[9] = separation(x, p, m)
-    sine, cosine = sin_cos(relative_angle(x, p, m) - p.rest_angle)
-    twist_pair(x, m, cosine * x[10], r)
-    r[10] = sine
+def _turned(x, p, m):
+    """Sine and cosine of the angle by which b has turned against a."""
+    return sin_cos(relative_angle(x, p, m) - p.rest_angle)
 
 
 @inlined
-def _rates(x, v, a, p, m, inputs, rate, second):
-    rate[0], rate[1] = separation_rate(x, v, p, m)
-    second[0], second[1] = separation_second(x, v, a, p, m)
-    sine, cosine = sin_cos(relative_angle(x, p, m) - p.rest_angle)
-    turn = relative_spin(x, v, m)
-    rate[2] = cosine * turn
-    second[2] = cosine * relative_spin_rate(x, v, a, m) - sine * turn * turn
+def _constraint(x, p, m, inputs, g):
+    g[0], g[1] = separation(x, p, m)
+    g[2], _ = _turned(x, p, m)
+
+
+@inlined
+def _forces(x, p, m, r):
+    push_pair(x, p, m, x[8], x[9], r)
+    twist_pair(x, m, _turned(x, p, m)[1] * x[10], r)
 
 
 @inlined
@@ -53,11 +43,12 @@ FIXED = Kind(
     multipliers=3,
     numbers=(*pairs.NUMBERS, "rest_angle"),
     integers=pairs.INTEGERS,
-    residual=_residual,
-    rates=_rates,
+    constraint=_constraint,
+    forces=_forces,
     outputs=OUTPUTS,
     observe=_observe,
     lengths=("a_x", "a_y", "b_x", "b_y"),
+    holds=True,
 )
 
 

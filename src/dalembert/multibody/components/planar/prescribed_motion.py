@@ -7,18 +7,10 @@ from dalembert.errors import InputError, unknown
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.planar import pairs
 from dalembert.multibody.components.planar.joint import OUTPUTS, Joint, observe_joint
-from dalembert.multibody.components.planar.pairs import (
-    push_pair,
-    relative_angle,
-    relative_spin,
-    relative_spin_rate,
-    separation,
-    separation_rate,
-    separation_second,
-    twist_pair,
-)
+from dalembert.multibody.components.planar.pairs import push_pair, relative_angle, separation, twist_pair
 from dalembert.multibody.components.signals import Course, Step, Table, as_signal
 from dalembert.multibody.kernels.dual import wrapped
+from dalembert.multibody.kernels.jets import signal
 from dalembert.multibody.kernels.kind import Kind
 
 if TYPE_CHECKING:
@@ -29,28 +21,25 @@ _COORDINATES = {"x": _X, "y": _Y, "angle": _ANGLE}
 
 
 @inlined
-def _residual(x, v, a, p, m, inputs, r):
-    target = inputs.signals[m.motion, 0]
-    nothing = 0.0 * x[8]
+def _constraint(x, p, m, inputs, g):
+    target = signal(inputs, m.motion)
     if m.coordinate == _ANGLE:
-        twist_pair(x, m, x[8], r)
         gap = relative_angle(x, p, m) - target
-        r[8] = wrapped(gap) if m.wraps == 1 else gap
+        g[0] = wrapped(gap) if m.wraps == 1 else gap
     else:
         dx, dy = separation(x, p, m)
-        push_pair(x, p, m, x[8] if m.coordinate == _X else nothing, nothing if m.coordinate == _X else x[8], r)
-        r[8] = (dx if m.coordinate == _X else dy) - target
+        g[0] = (dx if m.coordinate == _X else dy) - target
 
 
 @inlined
-def _rates(x, v, a, p, m, inputs, rate, second):
+def _forces(x, p, m, r):
+    nothing = 0.0 * x[8]
     if m.coordinate == _ANGLE:
-        first, last = relative_spin(x, v, m), relative_spin_rate(x, v, a, m)
+        twist_pair(x, m, x[8], r)
+    elif m.coordinate == _X:
+        push_pair(x, p, m, x[8], nothing, r)
     else:
-        ux, uy = separation_rate(x, v, p, m)
-        wx, wy = separation_second(x, v, a, p, m)
-        first, last = (ux, wx) if m.coordinate == _X else (uy, wy)
-    rate[0], second[0] = first - inputs.signals[m.motion, 1], last - inputs.signals[m.motion, 2]
+        push_pair(x, p, m, nothing, x[8], r)
 
 
 @inlined
@@ -74,13 +63,14 @@ MOTION = Kind(
     multipliers=1,
     numbers=pairs.NUMBERS,
     integers=(*pairs.INTEGERS, "coordinate", "motion"),
-    residual=_residual,
-    rates=_rates,
+    constraint=_constraint,
+    forces=_forces,
     energy=_energy,
     outputs=OUTPUTS,
     observe=_observe,
     lengths=("a_x", "a_y", "b_x", "b_y"),
     driven=True,
+    holds=True,
 )
 
 

@@ -7,15 +7,12 @@ from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number, number, require, require_not_negative
 from dalembert.multibody.components.planar import friction, pairs
 from dalembert.multibody.components.planar.joint import OUTPUTS, Joint, observe_joint
-from dalembert.multibody.components.planar.markers import direction, spin, spin_rate, twist
+from dalembert.multibody.components.planar.markers import direction, twist
 from dalembert.multibody.components.planar.pairs import (
     push_pair,
     relative_angle,
-    relative_spin,
-    relative_spin_rate,
     separation,
     separation_rate,
-    separation_second,
     twist_pair,
 )
 from dalembert.multibody.kernels.dual import root, sin_cos
@@ -32,31 +29,27 @@ def _axis(x, p, m):
 
 
 @inlined
-def _residual(x, v, a, p, m, inputs, r):
+def _turned(x, p, m):
+    """Sine and cosine of the angle by which b has turned against a."""
+    return sin_cos(relative_angle(x, p, m) - p.rest_angle)
+
+
+@inlined
+def _constraint(x, p, m, inputs, g):
+    """Distance of b from the axis, and the relative angle."""
+    dx, dy = separation(x, p, m)
+    c, s = _axis(x, p, m)
+    g[0] = c * dy - s * dx
+    g[1], _ = _turned(x, p, m)
+
+
+@inlined
+def _forces(x, p, m, r):
     dx, dy = separation(x, p, m)
     c, s = _axis(x, p, m)
     push_pair(x, p, m, -s * x[8], c * x[8], r)
     twist(m.a_kind, 0, x, -x[8] * (c * dx + s * dy), r)
-    r[8] = c * dy - s * dx
-    sine, cosine = sin_cos(relative_angle(x, p, m) - p.rest_angle)
-    twist_pair(x, m, cosine * x[9], r)
-    r[9] = sine
-
-
-@inlined
-def _rates(x, v, a, p, m, inputs, rate, second):
-    dx, dy = separation(x, p, m)
-    ux, uy = separation_rate(x, v, p, m)
-    wx, wy = separation_second(x, v, a, p, m)
-    c, s = _axis(x, p, m)
-    along, across, along_rate = c * dx + s * dy, c * dy - s * dx, c * ux + s * uy
-    own, own_rate = spin(m.a_kind, 0, x, v), spin_rate(m.a_kind, 0, x, v, a)
-    rate[0] = c * uy - s * ux - own * along
-    second[0] = c * wy - s * wx - 2 * own * along_rate - own_rate * along - own * own * across
-    sine, cosine = sin_cos(relative_angle(x, p, m) - p.rest_angle)
-    turn = relative_spin(x, v, m)
-    rate[1] = cosine * turn
-    second[1] = cosine * relative_spin_rate(x, v, a, m) - sine * turn * turn
+    twist_pair(x, m, _turned(x, p, m)[1] * x[9], r)
 
 
 @inlined
@@ -71,11 +64,12 @@ PRISMATIC = Kind(
     multipliers=2,
     numbers=(*pairs.NUMBERS, "rest_angle", "axis_angle"),
     integers=pairs.INTEGERS,
-    residual=_residual,
-    rates=_rates,
+    constraint=_constraint,
+    forces=_forces,
     outputs=OUTPUTS,
     observe=_observe,
     lengths=("a_x", "a_y", "b_x", "b_y"),
+    holds=True,
 )
 
 

@@ -9,14 +9,7 @@ from dalembert.multibody.components.fields import Number, number, require, requi
 from dalembert.multibody.components.planar import friction, pairs
 from dalembert.multibody.components.planar.joint import OUTPUTS, Joint, observe_joint
 from dalembert.multibody.components.planar.markers import GROUND, RIGID
-from dalembert.multibody.components.planar.pairs import (
-    push_pair,
-    relative_spin,
-    separation,
-    separation_rate,
-    separation_second,
-    twist_pair,
-)
+from dalembert.multibody.components.planar.pairs import push_pair, relative_spin, separation, twist_pair
 from dalembert.multibody.kernels.dual import root
 from dalembert.multibody.kernels.kind import Kind
 
@@ -25,15 +18,13 @@ if TYPE_CHECKING:
 
 
 @inlined
-def _residual(x, v, a, p, m, inputs, r):
-    push_pair(x, p, m, x[8], x[9], r)
-    r[8], r[9] = separation(x, p, m)
+def _constraint(x, p, m, inputs, g):
+    g[0], g[1] = separation(x, p, m)
 
 
 @inlined
-def _rates(x, v, a, p, m, inputs, rate, second):
-    rate[0], rate[1] = separation_rate(x, v, p, m)
-    second[0], second[1] = separation_second(x, v, a, p, m)
+def _forces(x, p, m, r):
+    push_pair(x, p, m, x[8], x[9], r)
 
 
 @inlined
@@ -68,13 +59,14 @@ REVOLUTE = Kind(
     multipliers=2,
     numbers=pairs.NUMBERS,
     integers=pairs.INTEGERS,
-    residual=_residual,
-    rates=_rates,
+    constraint=_constraint,
+    forces=_forces,
     tangent=_tangent,
     known=_joins_points,
     outputs=OUTPUTS,
     observe=_observe,
     lengths=("a_x", "a_y", "b_x", "b_y"),
+    holds=True,
     holds_frame=False,
 )
 

@@ -14,11 +14,6 @@ from dalembert.multibody.kernels.kind import Kind
 
 
 @inlined
-def _residual(x, v, a, p, m, inputs, r):
-    """A sensor exerts no force."""
-
-
-@inlined
 def _observe(x, v, a, p, m, inputs, out):
     out[0], out[1] = separation(x, p, m)
     out[2] = relative_angle(x, p, m)
@@ -33,7 +28,6 @@ SENSOR = Kind(
     coordinates=pairs.COORDINATES,
     numbers=pairs.NUMBERS,
     integers=pairs.INTEGERS,
-    residual=_residual,
     outputs=(
         ("x", "m"), ("y", "m"), ("angle", "rad"),
         ("vx", "m/s"), ("vy", "m/s"), ("rate", "rad/s"),

@@ -59,6 +59,7 @@ SPRING = Kind(
     outputs=(("elongation", "m"), ("force", "N")),
     observe=_observe,
     dissipates=True,
+    holds=True,
     holds_frame=False,
 )
 

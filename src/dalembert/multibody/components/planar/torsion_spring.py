@@ -52,6 +52,7 @@ TORSION_SPRING = Kind(
     outputs=(("elongation", "m"), ("force", "N")),
     observe=_observe,
     dissipates=True,
+    holds=True,
 )
 
 

@@ -9,14 +9,13 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from dalembert.kernels.kernel import inlined
-from dalembert.kernels.views import stack
+from dalembert.kernels.views import call_with, stack
 from dalembert.multibody.callbacks import ANSWER, GIVEN
 from dalembert.multibody.components.planar import pairs
 from dalembert.multibody.components.planar.load import Load
 from dalembert.multibody.components.planar.markers import angle, position, spin, velocity
 from dalembert.multibody.components.planar.pairs import push_pair, twist_pair
 from dalembert.multibody.components.points import Side
-from dalembert.multibody.kernels.callback import call
 from dalembert.multibody.kernels.kind import Kind
 
 if TYPE_CHECKING:
@@ -41,7 +40,7 @@ def _ask(x, v, p, m, inputs, given, answer):
     given[0] = inputs.signals[_TIME, 0]
     _fill(0, m.a_kind, 0, x, v, p.a_x, p.a_y, p.a_angle, given)
     _fill(1, m.b_kind, 4, x, v, p.b_x, p.b_y, p.b_angle, given)
-    call(inputs.callbacks[m.function], given, answer)
+    call_with(inputs.callbacks[m.function], given, answer)
 
 
 @inlined

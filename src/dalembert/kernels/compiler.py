@@ -22,6 +22,7 @@ from numba.core.registry import cpu_target as _cpu_target
 from numba.core.typing.templates import AbstractTemplate, infer_global, make_concrete_template
 from numba.extending import lower_builtin
 
+from dalembert.kernels.refusals import refusals
 from dalembert.kernels.views import array_at, intrinsic
 from dalembert.kernels.words import count, fields, leaves
 
@@ -267,7 +268,7 @@ def _flags() -> Any:
 @global_compiler_lock
 def optimised(function: Callable, symbol: str, addresses: int, cpu: str | None = None) -> Any:
     """LLVM's module of a function of so many addresses that returns nothing, optimised for a processor."""
-    with _apart():
+    with _apart(), refusals(function):
         context = cpu_target.target_context
         context.refresh()
         cpu_target.typing_context.refresh()

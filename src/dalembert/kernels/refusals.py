@@ -75,7 +75,7 @@ def _sentence(error: NumbaError, function: Callable) -> str:
     lines = [line.strip() for line in text.splitlines() if not _NOISE.match(line)]
     reason = lines[0].rstrip(".") if lines else type(error).__name__
     return (
-        f"{where}: Numba cannot compile this for a kernel: {reason}. Functions that it calls need the decorator 'inner'"
+        f"{where}: Numba cannot compile this: {reason}. Functions that a kernel calls need 'inner'"
     )
 
 

@@ -20,17 +20,17 @@ _LIBRARIES = ("numba", "numpy", "llvmlite", "scipy")
 
 def digest(function: FunctionType, layout: str = "") -> str:
     """Hexadecimal digits for a function and all that it reaches; ``layout``: what else it depends on."""
-    parts = sorted(_own(entry)[0] for entry in closure(function))
+    parts = sorted(_own(entry)[0] for entry in _closure(function))
     return hashlib.sha256("\n".join([layout, *parts]).encode()).hexdigest()[:24]
 
 
 def needs(function: FunctionType) -> list[Any]:
     """Kernels that a function calls by their symbols, directly or through other functions."""
-    found = {kernel.symbol: kernel for entry in closure(function) for kernel in _own(entry)[2]}
+    found = {kernel.symbol: kernel for entry in _closure(function) for kernel in _own(entry)[2]}
     return list(found.values())
 
 
-def closure(function: FunctionType) -> list[FunctionType]:
+def _closure(function: FunctionType) -> list[FunctionType]:
     """A function and all Python functions whose code becomes part of its kernel."""
     reached, ahead = {function: None}, [function]
     while ahead:
@@ -38,6 +38,18 @@ def closure(function: FunctionType) -> list[FunctionType]:
             if other not in reached:
                 reached[other] = None
                 ahead.append(other)
+    return list(reached)
+
+
+def inner_functions(function: FunctionType) -> list[FunctionType]:
+    """A function and all functions under ``inner`` that it calls."""
+    reached, ahead = {function: None}, [function]
+    while ahead:
+        for _, value in _named(ahead.pop()):
+            own = getattr(value, "py_func", None)
+            if own is not None and own not in reached:
+                reached[own] = None
+                ahead.append(own)
     return list(reached)
 
 

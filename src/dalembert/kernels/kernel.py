@@ -159,8 +159,8 @@ class Kernel(Compiled):
         self._result = None if result is type(None) else result
         names = list(inspect.signature(function).parameters)
         self._arguments = tuple(hints[name] for name in names)
-        self._packers = [packer(f"{function.__name__}: {name}", hints[name]) for name in names]
         given, answer = "".join(map(form, self._arguments)), "" if self._result is None else form(self._result)
+        self._packers = [packer(f"{function.__name__}: {name}", hints[name]) for name in names]
         self._given = struct.Struct(f"{given}{8 * max(len(answer), 1)}x")
         self._answer = struct.Struct(f"{8 * len(given)}x{answer}")
         self.inner = inner(function)

@@ -10,7 +10,7 @@ from types import CodeType
 from numba.core.errors import NumbaError
 
 from dalembert.errors import ModelError
-from dalembert.kernels.digest import closure
+from dalembert.kernels.digest import inner_functions
 
 _RAISES = "a kernel cannot raise an exception. Return nan, or check the input before, in the component's __post_init__"
 _ALLOCATES = (
@@ -46,7 +46,7 @@ def refusals(function: Callable) -> Iterator[None]:
 
 def _refuse_statements(function: Callable) -> None:
     """Raise for statements that compiled code could only ignore, in a function or in one that it calls."""
-    for own in closure(function):  # type: ignore[arg-type] - a Python function
+    for own in inner_functions(function):  # type: ignore[arg-type] - a Python function
         for code in _codes(own.__code__):
             for instruction in dis.get_instructions(code):
                 line = instruction.positions.lineno if instruction.positions else code.co_firstlineno

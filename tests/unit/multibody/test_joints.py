@@ -50,7 +50,7 @@ def side(system: mb.System, kind: str, name: str, place: tuple[float, float]) ->
     return system.add(beam).node(1)
 
 
-def joint(kind: str, a: mb.Point | mb.GroundPoint, b: mb.Point | mb.GroundPoint, turn: float) -> mb.joints.Joint:
+def joint(kind: str, a: mb.Point | mb.GroundPoint, b: mb.Point | mb.GroundPoint, turn: float) -> mb.Joint:
     if kind == "revolute":
         return mb.RevoluteJoint("joint", a, b)
     if kind == "fixed":

@@ -4,19 +4,11 @@ import numpy as np
 import pytest
 
 from dalembert.multibody.kernels import linear
-from dalembert.multibody.kernels.linear import BAND, DENSE, Layout
-from support import from_python
-
-factorise, solve = from_python(linear.factorise), from_python(linear.solve)
-
-
-def dense_layout(size: int) -> Layout:
-    return Layout(DENSE, size, 0, linear.padded(size), np.zeros(0, dtype=np.int64))
+from dalembert.multibody.kernels.linear import BAND, DENSE, Layout, dense_layout, factorise, solve
 
 
 def band_layout(size: int, reach: int) -> Layout:
-    reach = linear.padded(reach)
-    return Layout(BAND, size, reach, 3 * reach + 2, np.random.default_rng(1).permutation(size))
+    return linear.band_layout(np.random.default_rng(1).permutation(size), linear.padded(reach))
 
 
 def place(layout: Layout, i: int, j: int) -> int:

@@ -103,7 +103,7 @@ def test_a_pendulum_under_a_step_follows_both_pieces() -> None:
 
 
 @pytest.mark.parametrize("motion", [mb.Polynomial([0.0, 0.5, -2.0]), mb.Custom(lambda t: 0.5 * t - 2.0 * t * t)])
-def test_a_prescribed_motion_is_followed(motion: mb.signals.Signal) -> None:
+def test_a_prescribed_motion_is_followed(motion: mb.Signal) -> None:
     system = mb.System()
     crank = system.add(mb.RigidBar("crank", 1.0, 1.0))
     system.add(mb.RevoluteJoint("pin", system.ground, crank.start))
@@ -144,7 +144,7 @@ def test_a_function_of_time_that_cannot_be_meant_is_refused(make, sentence: str)
 
 
 @pytest.mark.parametrize("motion", [mb.Step(1.0, 0.1), mb.Table([0.0, 1.0], [0.0, 1.0], "linear")])
-def test_a_motion_whose_velocity_jumps_is_refused(motion: mb.signals.Signal) -> None:
+def test_a_motion_whose_velocity_jumps_is_refused(motion: mb.Signal) -> None:
     sentence = (
         f"prescribed motion 'drive': the velocity of its {type(motion).__name__} jumps, which no mechanism can follow; "
         "expected a smooth function of time, such as a cubic Table or a Polynomial"

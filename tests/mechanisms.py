@@ -78,6 +78,14 @@ def _loads(make: Callable) -> Callable:
     return add
 
 
+def _gears(system: mb.System) -> None:
+    """Gears between rigid bodies, and between one and the ground."""
+    number = len(system.bodies)
+    wheels = [system.add(plate(f"{number}{k}", position=(0.3 * k, 0.2), angle=0.3 * k)) for k in range(3)]
+    for k in range(2):
+        system.add(mb.GearJoint(f"{number}-{k}", wheels[k].centre, wheels[k + 1].centre, -0.4 - k))
+
+
 WAVE = mb.Harmonic(2.0, 3.0, phase=0.4, offset=1.0)
 RAMP = mb.Polynomial([0.1, -0.5, 2.0])
 
@@ -96,6 +104,8 @@ CONSERVATIVE = {
     "prescribed angle": _between(lambda *sides: mb.PrescribedMotion(*sides, coordinate="angle", motion=WAVE)),
     "spring": _between(lambda *sides: mb.Spring(*sides, 30.0, free_length=0.7, cubic=50.0)),
     "torsion spring": _between(lambda *sides: mb.TorsionSpring(*sides, 20.0, free_angle=0.1, cubic=9.0)),
+    "bushing": _between(lambda *sides: mb.Bushing(*sides, 30.0, 40.0, 6.0)),
+    "gear": _gears,
     "force": _loads(lambda name, at: mb.Force(name, at, x=WAVE, y=3.0)),
 }
 DISSIPATIVE = {
@@ -113,6 +123,7 @@ DISSIPATIVE = {
             *sides, angle=0.6, viscous=0.4, coulomb=0.3, friction_coefficient=0.2, slip_velocity=0.7
         )
     ),
+    "damped bushing": _between(lambda *sides: mb.Bushing(*sides, 30.0, 40.0, 6.0, 2.0, 3.0, 0.4)),
     "damped spring": _between(lambda *sides: mb.Spring(*sides, 30.0, damping=2.0)),
     "damped torsion spring": _between(lambda *sides: mb.TorsionSpring(*sides, 20.0, damping=1.5)),
     "follower force": _loads(lambda name, at: mb.Force(name, at, x=2.0, y=WAVE, follower=True)),

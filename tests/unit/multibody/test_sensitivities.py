@@ -136,6 +136,17 @@ def grounded(**fields) -> mb.System:
     return system
 
 
+def geared(**fields) -> mb.System:
+    """A pinion under a spring that drives a wheel."""
+    system = mb.System()
+    bodies = arm(system), system.add(mb.RigidBar("wheel", 0.8, 1.5, start=(2.0, 0.0), angle=-0.5))
+    for body in bodies:
+        system.add(mb.RevoluteJoint(f"bearing of {body.name}", system.ground, body.start))
+    system.add(mb.Spring("holder", system.ground.point(0.3, 1.0), bodies[0].end, 60.0, free_length=0.8))
+    system.add(mb.GearJoint("joint", bodies[0].start, bodies[1].start, **fields))
+    return system
+
+
 #: Component: how to build its scene, and values of its numeric fields.
 SCENES: dict[type, tuple[Callable[..., mb.System], dict]] = {
     mb.AncfBeam: (alone(mb.AncfBeam), FLEXIBLE | {"poisson_ratio": 0.3}),
@@ -158,6 +169,12 @@ SCENES: dict[type, tuple[Callable[..., mb.System], dict]] = {
         acted(mb.TorsionSpring, "a"),
         {"stiffness": 9.0, "damping": 0.5, "free_angle": 0.9, "cubic": 4.0},
     ),
+    mb.Bushing: (
+        acted(mb.Bushing, "a"),
+        {f"stiffness_{axis}": value for axis, value in (("x", 90.0), ("y", 60.0), ("angle", 8.0))}
+        | {f"damping_{axis}": value for axis, value in (("x", 3.0), ("y", 2.0), ("angle", 0.5))},
+    ),
+    mb.GearJoint: (geared, {"ratio": -0.6}),
     mb.UserForce: (pinned, {}),
     mb.Constant: (driven(mb.Constant), {"value": 7.0}),
     mb.Step: (lambda value: acted(mb.Force)(x=mb.Step(value, 0.0131, 0.0567)), {"value": 30.0}),

@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from dalembert.vibration.fourier import Fourier
-from dalembert.vibration.friction_law import SEPARATED, SLIPPING, STUCK, forces, tangent
+from dalembert.vibration.friction_law import SEPARATED, SLIPPING, STUCK
+from dalembert.vibration.friction_period import forces
+from dalembert.vibration.friction_tangent import tangent_of
 
 SERIES = Fourier(tuple(range(6)), 64)
 NUMBERS = np.array([[2.0, 3.0, 0.1, 0.5, 0.4]])
@@ -35,7 +37,7 @@ def test_the_tangent_is_that_of_the_complex_step_in_every_state(
     coefficients = motion(columns, size)
     form = (tangents, normal, memory)
     samples = coefficients @ SERIES.synthesis.T
-    force, found, jacobian = tangent(samples, NUMBERS, *form, SERIES.synthesis, SERIES.analysis)
+    force, found, jacobian = tangent_of(NUMBERS, *form, SERIES.synthesis, SERIES.analysis)(samples)
     assert states <= set(found.ravel().tolist())
     np.testing.assert_array_equal(force, forces(samples, NUMBERS, *form)[0])
     for column in range(columns * SERIES.count):
@@ -51,8 +53,8 @@ def test_a_slider_in_one_dimension_is_one_in_two_that_moves_along_a_line(size: f
     for seed in range(20):
         samples = motion(1, size, seed) @ SERIES.synthesis.T
         plane = np.concatenate([samples, np.zeros_like(samples)], axis=1)
-        force, states, jacobian = tangent(samples, NUMBERS, 1, False, True, SERIES.synthesis, SERIES.analysis)
-        other, expected, exact = tangent(plane, NUMBERS, 2, False, True, SERIES.synthesis, SERIES.analysis)
+        force, states, jacobian = tangent_of(NUMBERS, 1, False, True, SERIES.synthesis, SERIES.analysis)(samples)
+        other, expected, exact = tangent_of(NUMBERS, 2, False, True, SERIES.synthesis, SERIES.analysis)(plane)
         np.testing.assert_array_equal(states, expected)
         np.testing.assert_allclose(force, other[:, :1], atol=1e-13)
         own = slice(SERIES.count)
@@ -64,7 +66,7 @@ def test_a_slider_that_slips_only_while_the_motion_begins_keeps_its_place_and_it
     coefficients = np.zeros((1, 1, SERIES.count))
     coefficients[0, 0, :2] = 0.5, 0.05
     samples, numbers = coefficients @ SERIES.synthesis.T, NUMBERS.copy()
-    _, states, jacobian = tangent(samples, numbers, 1, False, True, SERIES.synthesis, SERIES.analysis)
+    _, states, jacobian = tangent_of(numbers, 1, False, True, SERIES.synthesis, SERIES.analysis)(samples)
     assert set(states.ravel().tolist()) == {STUCK}
     moved = samples + 1e-30j
     exact = forces(moved, numbers.astype(complex), 1, False, True)[0].imag / 1e-30

@@ -29,8 +29,8 @@ from dalembert.vibration import (
     steady_state,
 )
 from dalembert.vibration.lowering import lower
+from dalembert.vibration.time_elements import react, reaction
 from dalembert.vibration.time_lowering import InTime
-from dalembert.vibration.time_steps import react
 from support import says
 from vibrating_systems import chain, duffing, one_mass, two_masses
 
@@ -117,9 +117,9 @@ def test_slopes_of_the_elements_are_those_of_their_forces() -> None:
         u, sliders = rng.normal(size=rows), rng.normal(size=(1, 2)) * 0.3
 
         def forces(u: np.ndarray, sliders: np.ndarray = sliders) -> tuple[np.ndarray, np.ndarray, int]:
-            force, slopes, state = np.zeros(rows), np.zeros((rows, rows)), np.zeros(1, dtype=np.uint8)
-            react(problem.elements, users, u, sliders, sliders.copy(), force, slopes, state)
-            return force, slopes, int(state[0])
+            found = reaction(rows, 1, 1)
+            react(problem.elements, users.address, u, sliders, found)
+            return found.force, found.slopes, int(found.states[0])
 
         _, slopes, state = forces(u)
         states.add(state)

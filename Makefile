@@ -4,7 +4,7 @@ SHELL := /bin/sh
 .DEFAULT_GOAL := help
 .SUFFIXES:
 .DELETE_ON_ERROR:
-.PHONY: help demo checks kernels test verify validation docs bench clean
+.PHONY: help demo checks kernels test verify validation docs bench wheel clean
 
 DEMO_STUDY := studies/flexible-pendulum/identify.toml
 DEMO_RUN := runs/demo
@@ -27,6 +27,7 @@ help:
 	@echo "make validation  regenerate docs/validation.md from a full run of the verification tests"
 	@echo "make docs        the documentation, as HTML in docs/_build"
 	@echo "make bench       speed, beside a peer"
+	@echo "make wheel       a wheel for this platform with all kernels compiled, in dist"
 	@echo "make clean       remove the environment and everything built"
 
 demo: .venv/core.stamp
@@ -57,6 +58,11 @@ validation: kernels
 docs: .venv/docs.stamp
 	$(BIN)/sphinx-build --fail-on-warning --keep-going --quiet docs docs/_build
 	@echo "The documentation: $(CURDIR)/docs/_build/index.html"
+
+# All kernels as one object file, so that nobody who installs the wheel waits for the compiler.
+wheel: .venv/core.stamp
+	DALEMBERT_KERNELS=1 $(PIP:install=wheel) --no-build-isolation --no-deps --wheel-dir dist .
+	@ls dist/*.whl
 
 bench: .venv/bench.stamp
 	$(BIN)/python -m benchmarks

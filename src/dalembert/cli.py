@@ -198,10 +198,13 @@ def studio(
 @app.command("compile")
 def compile_() -> None:
     """Compile all kernels now, on all cores: for an image, or the shared disk of a cluster."""
-    from dalembert.study.ahead import compile_ahead
+    from dalembert.kernels.everything import package_kernels
+    from dalembert.kernels.objects import cache_folder
+    from dalembert.kernels.preparation import prepare
 
-    for name, seconds in compile_ahead():
-        typer.echo(f"{name}: {seconds:.0f} s")
+    kernels = package_kernels()
+    prepare(kernels)
+    typer.echo(f"{len(kernels)} kernels are ready in {cache_folder()}")
 
 
 @app.command()

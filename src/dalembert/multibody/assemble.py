@@ -13,7 +13,7 @@ import numpy as np
 from scipy.linalg import qr
 
 from dalembert.errors import InputError, ModelError, unknown
-from dalembert.multibody.bodies import Body
+from dalembert.multibody.components.planar.body import Body
 from dalembert.multibody.evaluate import constraint_jacobian, constraint_rates, residual
 from dalembert.multibody.kernels.dual import STEP
 from dalembert.multibody.kernels.model import Model
@@ -54,9 +54,8 @@ def scales(lowered: Lowered) -> np.ndarray:
     """Typical size of each unknown, (N + 1,): the mechanism's extent for positions, one for angles and gradients."""
     n, kinds = lowered.structure.n, np.array(lowered.structure.kinds)
     places = np.real(lowered.x)[:n][kinds == "position"].reshape(-1, 2)
-    joints, beams, cables = (np.real(lowered.data[kind]) for kind in ("joints", "beams", "cables"))
-    arms = (joints[:, 0:2], joints[:, 3:5], beams[:, :1], cables[:, :1])
-    extent = max(np.ptp(places, axis=0).max(initial=0.0), *(np.abs(arm).max(initial=0.0) for arm in arms))
+    lengths = (np.real(data[:, kind.columns(kind.lengths)]) for kind, data in lowered.data.items())
+    extent = max(np.ptp(places, axis=0).max(initial=0.0), *(np.abs(entry).max(initial=0.0) for entry in lengths))
     scale = np.ones(lowered.structure.size + 1)
     scale[:n][kinds == "position"] = extent if extent > 0 else 1.0
     return scale

@@ -4,7 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dalembert.multibody.kernels import markers
+from dalembert.multibody.components.planar import markers
+from dalembert.multibody.components.planar.pairs import INTEGERS
+from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.lowering import Lowered
 from dalembert.multibody.system import System
 
@@ -37,21 +39,20 @@ def draw(system: System, lowered: Lowered, times: np.ndarray, x: np.ndarray, poi
     joints = {}
     for joint in system.joints:
         kind, row = lowered.structure.rows[joint.name]
-        joints[joint.name] = _place(lowered, kind, row, x)
+        if kind.integers[:2] == INTEGERS[:2]:  # a joint of another form has no position to draw
+            joints[joint.name] = _place(lowered, kind, row, x)
     return Drawing(times, lines, joints)
 
 
-def _place(lowered: Lowered, kind: str, row: int, x: np.ndarray) -> np.ndarray:
+def _place(lowered: Lowered, kind: Kind, row: int, x: np.ndarray) -> np.ndarray:
     """Position of the second side of a joint, or of the first one if the second is the ground, (frames, 2)."""
-    index, meta = lowered.structure.index[kind][row], lowered.structure.meta[kind][row]
-    data = lowered.data[kind][row].real
-    sides = [side for side in (0, 1) if meta[1 + side] == markers.GROUND] or [1]
-    side = sides[0]
-    sx, sy = data[3 * side : 3 * side + 2]
+    index, markers_of = lowered.structure.index[kind][row], lowered.structure.meta[kind][row][:2]
+    side = 0 if markers_of[0] == markers.GROUND else 1
+    sx, sy = lowered.data[kind][row].real[3 * side : 3 * side + 2]
     own = x[:, index[4 * side : 4 * side + 4]]
-    if meta[1 + side] == markers.GROUND:
+    if markers_of[side] == markers.GROUND:
         return np.tile([sx, sy], (len(x), 1))
-    if meta[1 + side] == markers.RIGID:
+    if markers_of[side] == markers.RIGID:
         c, s = np.cos(own[:, 2]), np.sin(own[:, 2])
         return own[:, :2] + np.column_stack([c * sx - s * sy, s * sx + c * sy])
     return own[:, :2]

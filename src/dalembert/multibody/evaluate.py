@@ -3,65 +3,22 @@
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from dalembert.compilation import announce_compilation
-from dalembert.multibody.kernels import assembly, signals
-from dalembert.multibody.kernels.compiled import compiled
-from dalembert.multibody.kernels.model import Model, Slots, workspace
+from dalembert.kernels.kernel import kernel
+from dalembert.kernels.words import Address, Reals, Reals2
+from dalembert.multibody.kernels import assembly
+from dalembert.multibody.kernels.histories import energy_history
+from dalembert.multibody.kernels.model import Model
+from dalembert.multibody.kernels.records import RESIDUAL, TANGENT
 from dalembert.multibody.lowering import Lowered
-
-
-@compiled
-def _prepare(model, t, within):
-    work = workspace(model)
-    signals.evaluate(
-        model.signals.index, model.signals.data, model.signals.knots, model.callbacks, t, within, work.signals
-    )
-    return work
-
-
-@compiled
-def _residual(model, n, x, v, a, t, within, r):
-    assembly.residual(model, n, x, v, a, _prepare(model, t, within), 1.0, r)
-
-
-@compiled
-def _tangent(dual, slots, n, x, v, a, t, within, by, rows, matrix):
-    work = _prepare(dual, t, within)
-    for s in range(len(work.signals)):  # a function of the user's may answer with a direction of its own
-        for k in range(3):
-            work.signals[s, k] = work.signals[s, k].real
-    assembly.tangent(dual, slots, n, x, v, a, by, rows, work, matrix)
-
-
-@compiled
-def _rates(model, n, x, v, a, t, within, rate, second):
-    assembly.constraint_rates(model, n, x, v, a, _prepare(model, t, within), rate, second)
-
-
-@compiled
-def _energies(model, x, v, times, within, totals):
-    for s in range(len(times)):
-        assembly.energies(model, x[s], v[s], _prepare(model, times[s], within[s]), totals[s])
-
-
-@compiled
-def _violations(model, n, x, v, a, times, within, out):
-    width = x.shape[1]
-    r, rate, second = np.zeros(width), np.zeros(width), np.zeros(width)
-    for s in range(len(times)):
-        work = _prepare(model, times[s], within[s])
-        assembly.residual(model, n, x[s], v[s], a[s], work, 1.0, r)
-        assembly.constraint_rates(model, n, x[s], v[s], a[s], work, rate, second)
-        for level in range(3):
-            values = r if level == 0 else (rate if level == 1 else second)
-            out[s, level] = 0.0 if width - 1 == n else np.abs(values[n : width - 1]).max()
 
 
 def residual(lowered: Lowered, model: Model, x: np.ndarray, v: np.ndarray, a: np.ndarray, t: float = 0.0) -> np.ndarray:
     """Equations of motion, then constraints, (N,)."""
-    announce_compilation(_residual, "its kernels", "one to two minutes")
+    x, v, a = map(np.ascontiguousarray, (x, v, a))
     r = np.zeros_like(x)
-    _residual(model, lowered.structure.n, x, v, a, t, t, r)
+    call = model.call().set(x=x, v=v, a=a, r=r, mode=RESIDUAL)
+    model.evaluate(call, t, t)
+    model.each("residual", call)
     return r[:-1]
 
 
@@ -74,10 +31,15 @@ def tangent(
     t: float = 0.0,
 ) -> csr_matrix:
     """Derivative of the residual along ``by[0] dq + by[1] dv + by[2] da`` and the multipliers, sparse (N, N)."""
-    structure = lowered.structure
+    structure, model = lowered.structure, lowered.upright
     slots, i, j = structure.coordinate_layout
-    values = np.zeros(len(i))
-    _tangent(lowered.upright, Slots(*slots), structure.n, x, v, np.zeros_like(x), t, t, by, rows, values)
+    x, v = map(np.ascontiguousarray, (x, v))
+    values, a = np.zeros(len(i)), np.zeros_like(x)
+    call = model.call().set(x=x, v=v, a=a, matrix=values, mode=TANGENT, motion=rows[0], constraint=rows[1])
+    call.set(by_x=by[0], by_v=by[1], by_a=by[2])
+    model.evaluate(call, t, t)
+    call.signals.imag = 0.0  # a function of the user's may answer with a direction of its own
+    model.each("residual", call, slots)
     inside = (i < structure.size) & (j < structure.size)
     return csr_matrix((values[inside], (i[inside], j[inside])), shape=(structure.size, structure.size))
 
@@ -92,16 +54,38 @@ def constraint_rates(
     lowered: Lowered, model: Model, x: np.ndarray, v: np.ndarray, a: np.ndarray, t: float = 0.0
 ) -> tuple[np.ndarray, np.ndarray]:
     """First and second time derivatives of the constraints, (m,) each."""
+    x, v, a = map(np.ascontiguousarray, (x, v, a))
     rate, second = np.zeros_like(x), np.zeros_like(x)
+    call = model.call().set(x=x, v=v, a=a, rate=rate, second=second)
+    model.evaluate(call, t, t)
+    model.each("rates", call)
     n = lowered.structure.n
-    _rates(model, n, x, v, a, t, t, rate, second)
     return rate[n:-1], second[n:-1]
+
+
+@kernel
+def _violations(
+    model: Address, work: Address, n: int, x: Reals2, v: Reals2, a: Reals2, times: Reals, within: Reals,
+    values: Reals2, out: Reals2,
+) -> None:  # fmt: skip
+    for s in range(len(times)):
+        assembly.set_signals(model, times[s], within[s], work)
+        assembly.residual(model, n, x[s], v[s], a[s], work, 1.0, values[0])
+        assembly.constraint_rates(model, n, x[s], v[s], a[s], work, values[1], values[2])
+        for level in range(3):
+            out[s, level] = 0.0
+            for i in range(n, x.shape[1] - 1):
+                out[s, level] = max(out[s, level], abs(values[level, i]))
 
 
 def energies(model: Model, x: np.ndarray, v: np.ndarray, times: np.ndarray, within: np.ndarray) -> np.ndarray:
     """Kinetic energy, potential energy, power of what is not conservative, (samples, 3)."""
-    totals = np.zeros((len(times), 3), dtype=x.dtype)
-    _energies(model, x, v, times, within, totals)
+    totals, call = np.zeros((len(times), 3), dtype=x.dtype), model.need("energy").call()
+    x, v = np.ascontiguousarray(x), np.ascontiguousarray(v)
+    energy_history(
+        model.address, call.address, x.ctypes.data, v.ctypes.data, x.strides[0], times, within, totals.ctypes.data,
+        totals.strides[0],
+    )  # fmt: skip
     return totals
 
 
@@ -109,6 +93,7 @@ def violations(
     lowered: Lowered, x: np.ndarray, v: np.ndarray, a: np.ndarray, times: np.ndarray, within: np.ndarray
 ) -> np.ndarray:
     """Largest constraint violation at position, velocity and acceleration level, (samples, 3)."""
-    out = np.zeros((len(times), 3))
-    _violations(lowered.real, lowered.structure.n, x, v, a, times, within, out)
+    out, values, model = np.zeros((len(times), 3)), np.zeros((3, x.shape[1])), lowered.real.need("rates")
+    call = model.call()
+    _violations(model.address, call.address, lowered.structure.n, x, v, a, times, within, values, out)
     return out

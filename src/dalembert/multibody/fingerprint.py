@@ -13,5 +13,6 @@ def fingerprint(lowered: Lowered, times: np.ndarray, *more: object) -> str:
     for array in (times, lowered.x, lowered.v, lowered.signal_data, lowered.knots, *lowered.data.values()):
         digest.update(np.ascontiguousarray(array).tobytes())
     for kind in lowered.structure.index:
+        digest.update(kind.name.encode())
         digest.update(lowered.structure.index[kind].tobytes() + lowered.structure.meta[kind].tobytes())
     return digest.hexdigest()

@@ -12,33 +12,36 @@ from typing import NamedTuple
 import numpy as np
 
 from dalembert.errors import ModelError
-from dalembert.multibody.bodies import Body, Marker
+from dalembert.kernels.kernel import Compiled
 from dalembert.multibody.callbacks import Callback, Failures, force_callback, signal_callback
-from dalembert.multibody.fields import Number
-from dalembert.multibody.kernels import markers
+from dalembert.multibody.components.fields import Number
+from dalembert.multibody.components.planar import markers
+from dalembert.multibody.components.planar.body import Body, Marker
+from dalembert.multibody.components.points import Ground, GroundPoint, Place, Point, Side
+from dalembert.multibody.components.signals import Course, Custom, Signal, as_signal
 from dalembert.multibody.kernels import signals as signal_kinds
-from dalembert.multibody.kernels.model import KINDS, Block, Model, Signals
-from dalembert.multibody.points import Ground, GroundPoint, Place, Point, Side
-from dalembert.multibody.signals import Course, Custom, Signal, as_signal
+from dalembert.multibody.kernels.kind import Kind
+from dalembert.multibody.kernels.model import Blocks, Model, Signals
+from dalembert.multibody.kernels.signals import EVALUATE
 from dalembert.multibody.structure import Structure
 from dalembert.multibody.system import System
 
-_META = {kind: 5 if kind not in ("beams", "cables", "bodies") else 0 for kind in KINDS}
-_DATA = {
-    "beams": 11, "cables": 7, "bodies": 4, "joints": 8, "frictions": 12, "springs": 11, "loads": 6, "users": 6,
-}  # fmt: skip
 _ABSENT = -1
 
 
 class Pair(NamedTuple):
-    """Two markers as kernels see them, and how they stand at first."""
+    """Two markers as kernels see them, and how they are placed at the start.
 
-    kinds: tuple[int, int]
+    ``angles`` of both; ``relative``: position of b against a, in the axes of a.
+    """
+
     slots: list[int | None]
     data: list[Number]
+    integers: list[int]
     distance: Number
     rest_angle: Number
-    wraps: int
+    angles: tuple[Number, Number]
+    relative: tuple[Number, Number]
 
 
 @dataclass(frozen=True)
@@ -66,7 +69,7 @@ class Lowered:
 
     structure: Structure
     bodies: dict[str, Body]
-    data: dict[str, np.ndarray]
+    data: dict[Kind, np.ndarray]
     signal_data: np.ndarray
     knots: np.ndarray
     callbacks: tuple[Callback, ...]
@@ -82,20 +85,31 @@ class Lowered:
     def is_complex(self) -> bool:
         return any(np.iscomplexobj(array) for array in (self.x, self.v, self.signal_data, *self.data.values()))
 
+    @property
+    def dissipates(self) -> bool:
+        """Whether a force of the model may depend on velocities."""
+        return any(kind.dissipative(data) for kind, data in self.data.items())
+
+    def kernels(self, derivatives: bool) -> list[Compiled]:
+        """Kernels of the components that every simulation needs, and those for derivatives along directions."""
+        roles = [("residual", float), ("residual", complex), ("rates", float)]
+        roles += [("rates", complex)] * derivatives
+        return [kind.kernel(*role) for role in roles for kind in self.data if kind.has(role[0])] + [*EVALUATE.values()]
+
     def model(self, dtype: type) -> Model:
         """The arrays in real or in complex numbers."""
-        blocks = {
-            kind: Block(
-                self.structure.index[kind],
-                self.structure.meta[kind],
-                np.ascontiguousarray(_cast(self.data[kind], dtype)),
-            )
-            for kind in KINDS
-        }
+        numbers = {kind: np.ascontiguousarray(_cast(data, dtype)) for kind, data in self.data.items()}
         address = "complex" if dtype is complex else "real"
         callbacks = np.array([getattr(entry, address) for entry in self.callbacks], dtype=np.int64)
         data = np.ascontiguousarray(_cast(self.signal_data, dtype))
-        return Model(**blocks, signals=Signals(self.structure.signals, self.knots, data), callbacks=callbacks)
+        return Model(
+            Blocks(self.structure.index, self.structure.meta, numbers),
+            Signals(self.structure.signals, self.knots, data),
+            callbacks,
+            self.structure.size,
+            self.structure.n,
+            dtype,
+        )
 
     @cached_property
     def real(self) -> Model:
@@ -127,10 +141,10 @@ class Lowering:
         self.gravity = system.gravity
         self.kinks: list[tuple[float, str]] = []
         self._system = system
-        self._index: dict[str, list] = {kind: [] for kind in KINDS}
-        self._meta: dict[str, list] = {kind: [] for kind in KINDS}
-        self._data: dict[str, list] = {kind: [] for kind in KINDS}
-        self._rows: dict[str, tuple[str, int]] = {}
+        self._index: dict[Kind, list] = {}
+        self._integers: dict[Kind, list] = {}
+        self._data: dict[Kind, list] = {}
+        self._rows: dict[str, tuple[Kind, int]] = {}
         self._signals: list[tuple[int, int, int, int]] = [(signal_kinds.TIME, 0, 0, 0)]
         self._signal_data: list[Number] = [0.0]
         self._knots: list[float] = [0.0]
@@ -146,22 +160,32 @@ class Lowering:
     # -- what components call ------------------------------------------------------------------------------------
 
     def add(
-        self, kind: str, index: Sequence[int | None], meta: Sequence[int], data: Sequence[Number], name: str = ""
+        self,
+        kind: Kind,
+        index: Sequence[int | None],
+        numbers: Sequence[Number],
+        integers: Sequence[int] = (),
+        name: str = "",
     ) -> None:
-        """One row of a kind; the row can be found again by a component's name."""
-        owner = name or (self._owners[-1] if kind == "joints" else "")
-        if owner:
-            self._rows[owner] = (kind, len(self._index[kind]))
-        slots = [_ABSENT if entry is None else entry for entry in index]
-        self._index[kind].append(slots + [_ABSENT] * (KINDS[kind].WIDTH - len(slots)))
-        self._meta[kind].append([*meta, *[0] * (_META[kind] - len(meta))])
-        self._data[kind].append(data)
+        """One component of a kind; a ``name`` gives it channels."""
+        if (len(index), len(numbers), len(integers)) != (kind.width, len(kind.numbers), len(kind.integers)):
+            raise ModelError(
+                f"kind {kind.name!r}: a component has {len(index)} unknowns, {len(numbers)} numbers and "
+                f"{len(integers)} integers; the kind declares {kind.width}, {len(kind.numbers)} and "
+                f"{len(kind.integers)}. Correct its 'lower'"
+            )
+        rows = self._index.setdefault(kind, [])
+        if name:
+            self._rows[name] = (kind, len(rows))
+        rows.append([_ABSENT if entry is None else entry for entry in index])
+        self._integers.setdefault(kind, []).append(list(integers))
+        self._data.setdefault(kind, []).append(numbers)
 
-    def add_many(self, kind: str, index: np.ndarray, data: Sequence[Number]) -> None:
-        """Rows of a kind, index (count, width), that share their numbers."""
-        self._index[kind].extend(index.tolist())
-        self._meta[kind].extend([[]] * len(index))
-        self._data[kind].extend([data] * len(index))
+    def add_many(self, kind: Kind, index: np.ndarray, numbers: Sequence[Number]) -> None:
+        """Components of a kind, index (count, width), that share their numbers."""
+        self._index.setdefault(kind, []).extend(index.tolist())
+        self._integers.setdefault(kind, []).extend([[]] * len(index))
+        self._data.setdefault(kind, []).extend([numbers] * len(index))
 
     def multipliers(self, owner: str, count: int) -> list[int | None]:
         """Unknowns of ``count`` constraints of a joint."""
@@ -206,13 +230,15 @@ class Lowering:
         sides = self._marker(a, owner, first), self._marker(b or Ground(), owner, second)
         dx, dy = second[0] - first[0], second[1] - first[1]
         square = dx * dx + dy * dy
+        c, s = np.cos(first[2]), np.sin(first[2])
         return Pair(
-            kinds=(sides[0].kind, sides[1].kind),
             slots=[*sides[0].slots, *sides[1].slots],
             data=[*sides[0].data, *sides[1].data],
+            integers=[sides[0].kind, sides[1].kind, int(markers.NODE in (sides[0].kind, sides[1].kind))],
             distance=np.sqrt(square) if np.real(square) > 0 else 0.0,
             rest_angle=second[2] - first[2],
-            wraps=int(markers.NODE in (sides[0].kind, sides[1].kind)),
+            angles=(first[2], second[2]),
+            relative=(c * dx + s * dy, c * dy - s * dx),
         )
 
     # -- placing --------------------------------------------------------------------------------------------------
@@ -287,15 +313,15 @@ class Lowering:
             owners=tuple(self._owners),
             first=dict(self._first),
             kinds=tuple(kinds),
-            index={kind: _integers(self._index[kind], KINDS[kind].WIDTH, size) for kind in KINDS},
-            meta={kind: _integers(self._meta[kind], _META[kind], 0) for kind in KINDS},
+            index={kind: _integers(rows, kind.width, size) for kind, rows in self._index.items()},
+            meta={kind: _integers(rows, max(len(kind.integers), 1), 0) for kind, rows in self._integers.items()},
             rows=dict(self._rows),
             signals=np.array(self._signals, dtype=np.int64),
         )
         lowered = Lowered(
             structure=structure,
             bodies=dict(self._bodies),
-            data={kind: np.array(self._data[kind]).reshape(len(self._data[kind]), _DATA[kind]) for kind in KINDS},
+            data={kind: np.array(rows).reshape(len(rows), len(kind.numbers)) for kind, rows in self._data.items()},
             signal_data=np.array(self._signal_data),
             knots=np.array(self._knots),
             callbacks=tuple(self._callbacks),
@@ -327,7 +353,8 @@ def _finite(value: object) -> bool:
 
 
 def _integers(rows: list, width: int, absent: int) -> np.ndarray:
-    array = np.array(rows, dtype=np.int64).reshape(len(rows), width)
+    array = np.zeros((len(rows), width), dtype=np.int64)
+    array[:, : len(rows[0])] = rows
     array[array == _ABSENT] = absent
     return array
 

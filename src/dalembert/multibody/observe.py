@@ -1,91 +1,113 @@
 """Channels by name: what can be read off a motion."""
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
 from dalembert.errors import InputError, unknown
 from dalembert.forward import Channel
-from dalembert.multibody.kernels import joints as kernel
-from dalembert.multibody.kernels import markers
-from dalembert.multibody.kernels import observe as codes
-from dalembert.multibody.kernels.compiled import compiled
-from dalembert.multibody.kernels.model import Model, workspace
+from dalembert.kernels.kernel import Compiled
+from dalembert.multibody.components.planar import markers
+from dalembert.multibody.components.planar.sensor import DIRECTIONAL, SENSOR
+from dalembert.multibody.evaluate import energies
+from dalembert.multibody.kernels.histories import outputs_history
+from dalembert.multibody.kernels.kind import Kind
+from dalembert.multibody.kernels.model import Model
+from dalembert.multibody.kernels.records import BLOCK
 from dalembert.multibody.lowering import Lowered
 from dalembert.multibody.system import System
 
-_OF_POINT = {
-    "x": (codes.X, "m"), "y": (codes.Y, "m"), "angle": (codes.ANGLE, "rad"),
-    "vx": (codes.VX, "m/s"), "vy": (codes.VY, "m/s"), "rate": (codes.RATE, "rad/s"),
-    "ax": (codes.AX, "m/s**2"), "ay": (codes.AY, "m/s**2"), "acceleration": (codes.ACCELERATION, "rad/s**2"),
-}  # fmt: skip
-_OF_JOINT = {
-    "angle": (codes.ANGLE, "rad"), "rate": (codes.RATE, "rad/s"),
-    "force_x": (codes.FORCE_X, "N"), "force_y": (codes.FORCE_Y, "N"), "torque": (codes.TORQUE, "N*m"),
-}  # fmt: skip
-_OF_SPRING = {"elongation": (codes.STRETCH, "m"), "force": (codes.TENSION, "N")}
-_OF_SYSTEM = {
-    "kinetic_energy": (codes.KINETIC, "J"), "potential_energy": (codes.POTENTIAL, "J"),
-    "total_energy": (codes.TOTAL, "J"),
-}  # fmt: skip
-_DATA = 11
-_META = 5
-_Source = tuple[str, int] | tuple[str, str] | None
+_OF_SYSTEM = {"kinetic_energy": (1.0, 0.0), "potential_energy": (0.0, 1.0), "total_energy": (1.0, 1.0)}
+
+
+@dataclass(frozen=True)
+class _Row:
+    """A channel: the ``output`` of a component or point of a ``kind``, or weights of both energies of the system.
+
+    ``source``: the component's row in the structure, or the body and point whose marker is read.
+    """
+
+    unit: str
+    kind: Kind | None = None
+    output: int = 0
+    index: tuple[int, ...] = ()
+    integers: tuple[int, ...] = ()
+    source: int | tuple[str, str] = 0
+    weights: tuple[float, float] = (0.0, 0.0)
+
+    @property
+    def turns(self) -> bool:
+        """Whether it is an angle that is known up to whole turns."""
+        if self.kind is None or "wraps" not in self.kind.integers:
+            return False
+        return self.kind.outputs[self.output][0] == "angle" and self.integers[self.kind.integers.index("wraps")] == 1
+
+    def numbers(self, lowered: Lowered) -> np.ndarray:
+        """The numbers of the component in a sample."""
+        if isinstance(self.source, tuple):
+            body, point = self.source
+            return np.array([0.0, 0.0, 0.0, *lowered.bodies[body].marker(point).data])
+        assert self.kind is not None
+        return lowered.data[self.kind][self.source]
 
 
 @dataclass(frozen=True)
 class Observer:
-    """Compiled channels of a structure; the rows of joints and springs are read from each sample's own arrays.
+    """Channels of a structure; the numbers of components are read from each sample's arrays.
 
     Parameters
     ----------
     channels : tuple of Channel
-    quantities : int array (channels,)
-    index, meta : int array (channels, -)
-    sources : tuple of (kind, row), (body, point) or None
-        Where a channel finds its numbers in a sample.
-    turning : array of bool (channels,)
-        Angles that are known up to whole turns and made continuous.
+    rows : tuple of _Row
     """
 
     channels: tuple[Channel, ...]
-    quantities: np.ndarray
-    index: np.ndarray
-    meta: np.ndarray
-    sources: tuple[_Source, ...]
-    turning: np.ndarray
+    rows: tuple[_Row, ...]
+
+    def kernels(self, derivatives: bool) -> list[Compiled]:
+        """Kernels that read the channels, and those that differentiate them."""
+        kinds = [kind for kind in dict.fromkeys(row.kind for row in self.rows) if kind is not None]
+        types = (float, complex)[: 1 + derivatives]
+        return [outputs_history, *(kind.kernel("outputs", dtype) for dtype in types for kind in kinds)]
 
     def read(self, lowered: Lowered, model: Model, x: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
         """Values (samples, channels) from states (samples, N + 1), real or complex."""
-        data = np.zeros((len(self.channels), _DATA), dtype=x.dtype)
-        for row, source in enumerate(self.sources):
-            if source is not None:
-                kind, place = source
-                if isinstance(place, int):
-                    own, first = lowered.data[kind][place][:_DATA], 0
-                else:
-                    own, first = np.array(lowered.bodies[kind].marker(place).data), 3
-                data[row, first : first + len(own)] = own if np.iscomplexobj(x) else np.real(own)
+        x, v, a = (np.ascontiguousarray(array) for array in (x, v, a))
         out = np.empty((len(x), len(self.channels)), dtype=x.dtype)
-        _observe(model, self.quantities, self.index, self.meta, data, x, v, a, out)
-        for column in np.flatnonzero(self.turning):
-            angles = np.real(out[:, column])
-            out[:, column] += np.unwrap(angles) - angles
+        for kind in dict.fromkeys(row.kind for row in self.rows):
+            columns = [column for column, row in enumerate(self.rows) if row.kind is kind]
+            if kind is None:
+                times = np.zeros(len(x))
+                weights = np.array([self.rows[column].weights for column in columns])
+                out[:, columns] = energies(model, x, v, times, times)[:, :2] @ weights.T
+            else:
+                values = _outputs(kind, [self.rows[column] for column in columns], lowered, model, x, v, a)
+                for place, column in enumerate(columns):
+                    out[:, column] = values[:, place, self.rows[column].output]
+        for column, row in enumerate(self.rows):
+            if row.turns:
+                angles = np.real(out[:, column])
+                out[:, column] += np.unwrap(angles) - angles
         return out
 
 
-@compiled
-def _observe(model, quantities, index, meta, data, x, v, a, out):
-    codes.observe(model, quantities, index, meta, data, x, v, a, workspace(model), out)
-
-
-class _Row(NamedTuple):
-    quantity: int
-    unit: str
-    index: list[int]
-    meta: list[int]
-    source: _Source
+def _outputs(
+    kind: Kind, rows: list[_Row], lowered: Lowered, model: Model, x: np.ndarray, v: np.ndarray, a: np.ndarray
+) -> np.ndarray:
+    """All outputs of components of a kind, (samples, components, outputs)."""
+    numbers = np.array([row.numbers(lowered) for row in rows])
+    numbers = np.ascontiguousarray(numbers if model.dtype is complex else np.real(numbers), dtype=model.dtype)
+    index = np.array([row.index for row in rows], dtype=np.int64)
+    integers = np.array([row.integers or (0,) for row in rows], dtype=np.int64)
+    block, call = np.zeros(1, BLOCK), model.call()
+    block["count"], block["index"], block["integers"] = len(rows), index.ctypes.data, integers.ctypes.data
+    block["numbers"], block["outputs"] = numbers.ctypes.data, kind.kernel("outputs", model.dtype).address
+    out = np.zeros((len(x), len(rows), len(kind.outputs)), dtype=model.dtype)
+    places = (array.ctypes.data for array in (x, v, a))
+    outputs_history(
+        call.address, block.ctypes.data, *places, x.strides[0], out.ctypes.data, out.strides[0], len(x)
+    )  # fmt: skip
+    return out
 
 
 def observer(system: System, lowered: Lowered, names: list[str] | tuple[str, ...]) -> Observer:
@@ -96,57 +118,42 @@ def observer(system: System, lowered: Lowered, names: list[str] | tuple[str, ...
     InputError
         For an unknown name, with the nearest ones.
     """
-    rows = [_row(system, lowered, name) for name in names]
-    return Observer(
-        channels=tuple(Channel(name, row.unit) for name, row in zip(names, rows, strict=True)),
-        quantities=np.array([row.quantity for row in rows], dtype=np.int64),
-        index=np.array([row.index for row in rows], dtype=np.int64).reshape(-1, kernel.WIDTH),
-        meta=np.array([row.meta for row in rows], dtype=np.int64).reshape(-1, _META),
-        sources=tuple(row.source for row in rows),
-        turning=np.array([row.quantity == codes.ANGLE and markers.NODE in row.meta[1:3] for row in rows], dtype=bool),
-    )
+    rows = tuple(_row(system, lowered, name) for name in names)
+    return Observer(tuple(Channel(name, row.unit) for name, row in zip(names, rows, strict=True)), rows)
 
 
 def channel_names(system: System) -> tuple[str, ...]:
     """All channels that a system offers."""
     names = []
     for body in system.bodies:
-        names += [
-            f"{body.name}.{point}.{entry}" for point in body.point_names for entry in _point_quantities(body.turns)
-        ]
-    names += [f"{joint.name}.{entry}" for joint in system.joints for entry in _OF_JOINT]
-    names += [f"{load.name}.{entry}" for load in system.loads if hasattr(load, "stiffness") for entry in _OF_SPRING]
+        names += [f"{body.name}.{point}.{entry}" for point in body.point_names for entry in _point_outputs(body.turns)]
+    for component in (*system.joints, *system.loads):
+        names += [f"{component.name}.{entry}" for entry, _ in component.kind.outputs]
     return (*names, *(f"system.{entry}" for entry in _OF_SYSTEM))
 
 
-def _point_quantities(turns: bool) -> list[str]:
-    return [
-        name
-        for name, (code, _) in _OF_POINT.items()
-        if turns or code not in (codes.ANGLE, codes.RATE, codes.ACCELERATION)
-    ]
+def _point_outputs(turns: bool) -> list[str]:
+    return [name for name, _ in SENSOR.outputs if turns or name not in DIRECTIONAL]
 
 
 def _row(system: System, lowered: Lowered, name: str) -> _Row:
     structure = lowered.structure
     owner, _, entry = name.rpartition(".")
-    nothing = [structure.size] * kernel.WIDTH
     if owner == "system" and entry in _OF_SYSTEM:
-        return _Row(*_OF_SYSTEM[entry], nothing, [0] * _META, None)
+        return _Row("J", weights=_OF_SYSTEM[entry])
     if owner in structure.rows:
         kind, row = structure.rows[owner]
-        known = _OF_JOINT if kind == "joints" else _OF_SPRING
-        if entry in known:
-            index = structure.index[kind][row].tolist()
-            meta = structure.meta[kind][row].tolist()
-            index = index + nothing[len(index) :]
-            return _Row(*known[entry], index, meta, (kind, row))
+        index, integers = structure.index[kind][row], structure.meta[kind][row]
+        for output, (known, unit) in enumerate(kind.outputs):
+            if known == entry:
+                return _Row(unit, kind, output, tuple(index.tolist()), tuple(integers.tolist()), row)
     body_name, _, point = owner.rpartition(".")
     for body in system.bodies:
-        if body.name == body_name and point in body.point_names and entry in _point_quantities(body.turns):
-            marker = body.marker(point)
-            first = structure.first[body.name]
-            slots = [structure.size if k is None else first + k for k in marker.slots]
-            index = [*nothing[:4], *slots, *nothing[8:]]
-            return _Row(*_OF_POINT[entry], index, [0, markers.GROUND, marker.kind, 0, 0], (body.name, point))
+        if body.name == body_name and point in body.point_names and entry in _point_outputs(body.turns):
+            marker, first, absent = body.marker(point), structure.first[body.name], structure.size
+            slots = [absent if k is None else first + k for k in marker.slots]
+            integers = (markers.GROUND, marker.kind, int(marker.kind == markers.NODE))
+            output = [known for known, _ in SENSOR.outputs].index(entry)
+            index = (absent,) * 4 + tuple(slots)
+            return _Row(SENSOR.outputs[output][1], SENSOR, output, index, integers, (body_name, point))
     raise InputError(unknown("channel", name, channel_names(system)))

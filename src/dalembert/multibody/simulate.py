@@ -3,15 +3,14 @@
 import numpy as np
 
 from dalembert.errors import InputError, SolveError, unknown
+from dalembert.kernels.preparation import prepare
 from dalembert.multibody.assemble import assembled, refuse_kinks, refuse_redundancy
 from dalembert.multibody.callbacks import in_complex_numbers
 from dalembert.multibody.integrators.automatic import Automatic
 from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha
 from dalembert.multibody.integrators.integrator import Integrator
-from dalembert.multibody.integrators.matrices import damps
 from dalembert.multibody.integrators.run import make_problem
-from dalembert.multibody.kernels import joints
-from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.lowering import Lowered, lower
 from dalembert.multibody.system import System
 from dalembert.multibody.trajectory import Trajectory
 
@@ -78,6 +77,8 @@ def simulate(
 
 def prepared(system: System, end: float, solver: Integrator) -> tuple[Lowered, Integrator]:
     """The assembled mechanism and the integrator that suits it, once nothing speaks against the two."""
+    raw = lower(system)
+    prepare([*raw.kernels(False), *solver.suiting(raw, end).kernels(raw.structure, False)])
     lowered = assembled(system)
     solver = solver.suiting(lowered, end)
     if not solver.takes_redundancy:
@@ -88,8 +89,7 @@ def prepared(system: System, end: float, solver: Integrator) -> tuple[Lowered, I
 
 def _works(lowered: Lowered) -> bool:
     """Whether loads, losses or prescribed motions may do work."""
-    driven = np.any(lowered.structure.meta["joints"][:, 0] >= joints.MOTION_X)
-    return bool(driven) or damps(lowered) or len(lowered.structure.index["loads"]) > 0
+    return lowered.dissipates or any(kind.driven or kind.loads for kind in lowered.data)
 
 
 def integrator(given: Integrator | str | None, end: float) -> Integrator:

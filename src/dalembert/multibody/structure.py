@@ -7,8 +7,16 @@ import numpy as np
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
-from dalembert.multibody.kernels.linear import BAND, DENSE, Layout, padded
-from dalembert.multibody.kernels.model import KINDS, Slots
+from dalembert.kernels.kernel import Compiled
+from dalembert.multibody.kernels.kind import Kind
+from dalembert.multibody.kernels.linear import (
+    BAND_KERNELS,
+    DENSE_KERNELS,
+    Layout,
+    band_layout,
+    dense_layout,
+    padded,
+)
 
 _SMALL = 90  # unknowns up to which a kept dense inverse is faster than a kept band factorisation
 
@@ -36,9 +44,9 @@ class Structure:
     owners: tuple[str, ...]
     first: dict[str, int]
     kinds: tuple[str, ...]
-    index: dict[str, np.ndarray]
-    meta: dict[str, np.ndarray]
-    rows: dict[str, tuple[str, int]]
+    index: dict[Kind, np.ndarray]
+    meta: dict[Kind, np.ndarray]
+    rows: dict[str, tuple[Kind, int]]
     signals: np.ndarray
 
     def same(self, other: "Structure") -> bool:
@@ -46,10 +54,11 @@ class Structure:
         return (
             (self.n, self.size, self.owners) == (other.n, other.size, other.owners)
             and np.array_equal(self.signals, other.signals)
+            and list(self.index) == list(other.index)
             and all(
                 np.array_equal(self.index[kind], other.index[kind])
                 and np.array_equal(self.meta[kind], other.meta[kind])
-                for kind in KINDS
+                for kind in self.index
             )
         )
 
@@ -60,22 +69,25 @@ class Structure:
         columns = [np.repeat(index[:, None, :], index.shape[1], axis=1).ravel() for index in self.index.values()]
         return np.concatenate(rows), np.concatenate(columns)
 
-    def _slots(self, places: np.ndarray) -> Slots:
-        """Places of all local entries, cut into (count, width, width) a kind."""
-        cuts = np.cumsum([index.shape[0] * index.shape[1] ** 2 for index in self.index.values()])[:-1]
-        parts = np.split(places, cuts)
-        return Slots(
-            *(part.reshape(-1, *2 * index.shape[1:]) for part, index in zip(parts, self.index.values(), strict=True))
-        )
+    def _slots(self, places: np.ndarray) -> np.ndarray:
+        """Addresses of the positions of all local entries, those of each block (count, width, width); kept alive."""
+        places = np.ascontiguousarray(places)
+        self._kept_alive.append(places)
+        counts = [index.shape[0] * index.shape[1] ** 2 for index in self.index.values()]
+        return places.ctypes.data + 8 * np.cumsum([0, *counts], dtype=np.int64)[: len(counts)]
 
     @cached_property
-    def coordinate_layout(self) -> tuple[Slots, np.ndarray, np.ndarray]:
+    def _kept_alive(self) -> list[np.ndarray]:
+        return []
+
+    @cached_property
+    def coordinate_layout(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Slots that give each local entry its own place, with the rows and columns of the places."""
         rows, columns = self._couplings
         return self._slots(np.arange(len(rows))), rows, columns
 
     @cached_property
-    def entries(self) -> tuple[Slots, np.ndarray, np.ndarray]:
+    def entries(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Slots of a list of the matrix's entries, each once, with their rows and columns."""
         rows, columns = self._couplings
         inside = (rows < self.size) & (columns < self.size)
@@ -85,34 +97,48 @@ class Structure:
         return self._slots(places), numbers // self.size, numbers % self.size
 
     @cached_property
-    def dense(self) -> tuple[Slots, Layout]:
+    def dense(self) -> tuple[np.ndarray, Layout]:
         """Slots and layout of a dense matrix by columns."""
         rows, columns = self._couplings
         lead = padded(self.size)
-        return self._slots(columns * lead + rows), Layout(DENSE, self.size, 0, lead, np.zeros(0, dtype=np.int64))
+        return self._slots(columns * lead + rows), dense_layout(self.size)
 
     @cached_property
-    def band(self) -> tuple[Slots, Layout]:
-        """Slots and layout of a band matrix after reordering (reverse Cuthill-McKee)."""
+    def _reordered(self) -> tuple[np.ndarray, int]:
+        """Positions of unknowns and of the absent one in a band (reverse Cuthill-McKee), and the reach of the band."""
         rows, columns = self._couplings
         inside = (rows < self.size) & (columns < self.size)
         pattern = csr_matrix(
             (np.ones(inside.sum(), dtype=np.int8), (rows[inside], columns[inside])), shape=(self.size, self.size)
         )
-        order = np.empty(self.size + 1, dtype=np.int64)
+        order = np.zeros(self.size + 1, dtype=np.int64)
         order[reverse_cuthill_mckee(pattern, symmetric_mode=True)] = np.arange(self.size)
-        order[self.size] = 0
-        i, j = order[rows], order[columns]
-        reach = padded(int(np.max(np.abs(i - j)[inside])))
-        lead = 3 * reach + 2
-        return self._slots(j * lead + 2 * reach + i - j), Layout(BAND, self.size, reach, lead, order[: self.size])
+        return order, padded(int(np.max(np.abs(order[rows] - order[columns])[inside])))
+
+    @cached_property
+    def band(self) -> tuple[np.ndarray, Layout]:
+        """Slots and layout of a band matrix after reordering."""
+        rows, columns = self._couplings
+        order, reach = self._reordered
+        i, j, layout = order[rows], order[columns], band_layout(order[: self.size], reach)
+        return self._slots(j * layout.lead + 2 * reach + i - j), layout
 
     @property
-    def kept(self) -> tuple[Slots, Layout]:
+    def _is_banded(self) -> bool:
+        return 2 * self._reordered[1] < self.size
+
+    @property
+    def linear_kernels(self) -> list[Compiled]:
+        """Kernels of the linear systems of both layouts."""
+        dense = self.size <= _SMALL or not self._is_banded
+        return [*DENSE_KERNELS * dense, *BAND_KERNELS * self._is_banded]
+
+    @property
+    def kept(self) -> tuple[np.ndarray, Layout]:
         """Slots and layout for a factorisation that is kept over many solutions."""
         return self.dense if self.size <= _SMALL else self.fresh
 
     @cached_property
-    def fresh(self) -> tuple[Slots, Layout]:
+    def fresh(self) -> tuple[np.ndarray, Layout]:
         """Slots and layout for a matrix that is factorised at each step."""
-        return self.band if 2 * self.band[1].reach < self.size else self.dense
+        return self.band if self._is_banded else self.dense

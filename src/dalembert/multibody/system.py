@@ -4,11 +4,11 @@ from collections.abc import Sequence
 from typing import Any, TypeVar
 
 from dalembert.errors import InputError, ModelError, unknown
-from dalembert.multibody.bodies import Body
-from dalembert.multibody.fields import Number
-from dalembert.multibody.joints import Joint
-from dalembert.multibody.loads import Load
-from dalembert.multibody.points import Ground
+from dalembert.multibody.components.fields import Number
+from dalembert.multibody.components.planar.body import Body
+from dalembert.multibody.components.planar.joint import Joint
+from dalembert.multibody.components.planar.load import Load
+from dalembert.multibody.components.points import Ground
 
 Component = TypeVar("Component", bound=Body | Joint | Load)
 

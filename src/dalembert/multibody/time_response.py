@@ -9,6 +9,7 @@ import numpy as np
 from dalembert.errors import InputError, SolveError, told
 from dalembert.forward import Channel, Coordinate, Responses, ensemble
 from dalembert.forward.builders import cores, inexact, restructured
+from dalembert.kernels.preparation import prepare
 from dalembert.multibody.assemble import assembled, refuse_kinks, refuse_redundancy
 from dalembert.multibody.callbacks import in_complex_numbers
 from dalembert.multibody.fingerprint import fingerprint
@@ -16,7 +17,7 @@ from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.problem import Problem
 from dalembert.multibody.integrators.run import Run, make_problem
 from dalembert.multibody.kernels.dual import STEP
-from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.lowering import Lowered, lower
 from dalembert.multibody.observe import Observer, observer
 from dalembert.multibody.simulate import checked, integrator
 from dalembert.multibody.system import System
@@ -154,6 +155,7 @@ class TimeResponse:
         """
         vector = self.parameters.vector(vector).astype(float)
         frame = self._frame
+        self._prepare(frame.lowered, frame.observer, derivatives=True)
         with in_complex_numbers(strict=True):
             lowered = self._lower(vector)
             tilted = [self._tilt(vector, column) for column in range(len(vector))]
@@ -185,12 +187,18 @@ class TimeResponse:
     @cached_property
     def _frame(self) -> "_Frame":
         system = self.builder(**self.parameters.mapping(self.parameters.start))
+        self._prepare(lower(system), observer(system, lower(system), self.channel_names), derivatives=False)
         lowered = assembled(system)
         if not self.solver.suiting(lowered, float(self.times[-1])).takes_redundancy:
             refuse_redundancy(lowered)
         refuse_kinks(lowered, float(self.times[-1]))
-        problem = make_problem(lowered, self.times)
-        return _Frame(lowered, problem, observer(system, lowered, self.channel_names))
+        return _Frame(lowered, make_problem(lowered, self.times), observer(system, lowered, self.channel_names))
+
+    def _prepare(self, lowered: Lowered, observer: Observer, derivatives: bool) -> None:
+        """Compile, or load, what the method needs."""
+        solver = self.solver.suiting(lowered, float(self.times[-1]))
+        kernels = lowered.kernels(derivatives), solver.kernels(lowered.structure, derivatives)
+        prepare([*kernels[0], *kernels[1], *observer.kernels(derivatives)])
 
     def _runs(self, samples: Sequence[Lowered]) -> list[Run]:
         if not samples:

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from typing import Literal
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -9,11 +10,13 @@ from numpy.typing import ArrayLike
 from dalembert.errors import InputError, unknown
 from dalembert.surrogate import scan
 from dalembert.surrogate.polynomial import ChebyshevPolynomial
-from dalembert.surrogate.rows import rows_of
+from dalembert.surrogate.rows import Rows, rows_of
 
 METHODS = ("optimise", "scan", "bernstein")
 CHUNK = 2_000_000
 """Values of a scan kept at once: a part of a batch is scanned and refined before the next one."""
+_ROWS: WeakKeyDictionary[ChebyshevPolynomial, Rows] = WeakKeyDictionary()
+"""Of polynomials that were bounded: small ones are, again and again, and their rows take as long as the rest."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,26 +156,13 @@ def _refine(
     starts: int,
 ) -> tuple[np.ndarray, np.ndarray]:
     """As :func:`_pick`, refined."""
-    from dalembert.surrogate.extremes import extremes  # compiled: not before it is needed
+    from dalembert.surrogate.extremes import Terms, extremes, room  # compiled: not before it is needed
 
-    rows = rows_of(polynomial)
-    found = np.empty((2, *values.shape[:2]))
-    at = np.empty((2, *values.shape[:2], low.shape[1]))
-    extremes(
-        np.ascontiguousarray(values),
-        spread.grid,
-        spread.sides,
-        low,
-        high,
-        polynomial.degrees,
-        rows.inner,
-        rows.exponents,
-        rows.active,
-        rows.counts,
-        rows.lengths,
-        rows.coefficients,
-        starts,
-        found,
-        at,
-    )
+    if polynomial not in _ROWS:
+        _ROWS[polynomial] = rows_of(polynomial)
+    rows = _ROWS[polynomial]
+    terms = Terms(polynomial.degrees, rows.inner, rows.exponents, rows.active, rows.counts, rows.lengths)
+    found, at = np.empty((2, *values.shape[:2])), np.empty((2, *values.shape[:2], low.shape[1]))
+    given = (np.ascontiguousarray(entry) for entry in (values, spread.grid, spread.sides, low, high))
+    extremes(*given, terms, rows.coefficients, found, at, room(terms, rows.coefficients, starts))
     return found, at

@@ -1,23 +1,80 @@
 """Compiled: smallest and largest values of each output of a polynomial on boxes, by Newton's method from a scan."""
 
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
-# No fast-math, so that results are the same bits on every run.
-_OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy"}
-_UNCOUNTED: dict[str, Any] = {**_OPTIONS, "_nrt": False}
-compiled = njit(**_OPTIONS)
-#: For functions that make no arrays: without the counting of references.
-kernel = njit(**_UNCOUNTED)
+from dalembert.kernels.kernel import inner, kernel
+from dalembert.kernels.words import Integers, Integers2, Reals, Reals2, Reals3, Reals4
 
 ITERATIONS, DAMPINGS = 60, 40
 CONVERGED = 1e-15
 """A step that promises less than this part of the sum of |coefficients| is not taken."""
 
 
-@kernel
+class Terms(NamedTuple):
+    """Degrees (d,) of a polynomial and its terms, as in :class:`dalembert.surrogate.rows.Rows`."""
+
+    degrees: Integers
+    inner: int
+    exponents: Integers2
+    active: Integers2
+    counts: Integers
+    lengths: Integers
+
+
+class Room(NamedTuple):
+    """Room for a box, in d directions, and for starts in it.
+
+    Parameters
+    ----------
+    eta, gradient, step, trial, trial_gradient : array, shape (d,)
+        A point and the gradient there, a step, where it leads and the gradient there.
+    free : array, shape (d,)
+        Whether a direction is not held by a side of the box, 0 or 1.
+    hessian, factor : array, shape (d, d)
+    tables : array, shape (3, d, largest degree + 1, at least 2)
+        Chebyshev polynomials and their derivatives at a point.
+    signed : array, shape (rows, longest)
+        Coefficients of an output, of its negative for the largest value.
+    best, places : array, shape (starts,)
+        Lowest values of a scan, and where they are.
+    """
+
+    eta: Reals
+    gradient: Reals
+    step: Reals
+    trial: Reals
+    trial_gradient: Reals
+    free: Integers
+    hessian: Reals2
+    factor: Reals2
+    tables: Reals3
+    signed: Reals2
+    best: Reals
+    places: Integers
+
+
+def room(terms: Terms, coefficients: np.ndarray, starts: int) -> Room:
+    """Room for so many starts."""
+    size = len(terms.degrees)
+    return Room(
+        eta=np.empty(size),
+        gradient=np.empty(size),
+        step=np.empty(size),
+        trial=np.empty(size),
+        trial_gradient=np.empty(size),
+        free=np.empty(size, dtype=np.int64),
+        hessian=np.empty((size, size)),
+        factor=np.empty((size, size)),
+        tables=np.zeros((3, size, max(2, int(terms.degrees.max()) + 1))),
+        signed=np.empty(coefficients.shape[1:]),
+        best=np.empty(starts),
+        places=np.empty(starts, dtype=np.int64),
+    )
+
+
+@inner
 def _ladders(eta, degrees, tables):
     """Fills tables[derivative, k, m] with T_m(η_k) and its first two derivatives."""
     for k in range(len(eta)):
@@ -32,7 +89,7 @@ def _ladders(eta, degrees, tables):
             tables[2, k, m + 1] = 4 * tables[1, k, m] + 2 * x * tables[2, k, m] - tables[2, k, m - 1]
 
 
-@kernel
+@inner
 def _along(coefficients, row, length, tables, derivative, inner):
     """Sum of a row's coefficients times the Chebyshev polynomials of the inner direction, or their derivatives."""
     total = 0.0
@@ -41,9 +98,10 @@ def _along(coefficients, row, length, tables, derivative, inner):
     return total
 
 
-@kernel
-def _value_and_gradient(tables, inner, exponents, active, counts, lengths, coefficients, gradient):
+@inner
+def _value_and_gradient(terms, tables, coefficients, gradient):
     """Value, and the gradient with respect to η in place; a row multiplies only the directions that it depends on."""
+    inner, exponents, active, counts, lengths = terms.inner, terms.exponents, terms.active, terms.counts, terms.lengths
     gradient[:] = 0.0
     value = 0.0
     for r in range(len(coefficients)):
@@ -64,9 +122,10 @@ def _value_and_gradient(tables, inner, exponents, active, counts, lengths, coeff
     return value
 
 
-@kernel
-def _hessian(tables, inner, exponents, active, counts, lengths, coefficients, hessian):
+@inner
+def _hessian(terms, tables, coefficients, hessian):
     """Second derivatives with respect to η, in place."""
+    inner, exponents, active, counts, lengths = terms.inner, terms.exponents, terms.active, terms.counts, terms.lengths
     hessian[:] = 0.0
     for r in range(len(coefficients)):
         along = _along(coefficients, r, lengths[r], tables, 0, inner)
@@ -91,7 +150,7 @@ def _hessian(tables, inner, exponents, active, counts, lengths, coefficients, he
                 hessian[i, j] = hessian[other, inner]
 
 
-@kernel
+@inner
 def _step(hessian, gradient, free, damping, factor, step):
     """Solves (H + damping) step = −gradient in the free directions by Cholesky; whether H + damping is definite."""
     size = len(gradient)
@@ -126,16 +185,13 @@ def _step(hessian, gradient, free, damping, factor, step):
     return True
 
 
-@kernel
-def _minimum(
-    eta, low, high, degrees, inner, exponents, active, counts, lengths, coefficients, small, work, free, tables
-):
+@inner
+def _minimum(terms, low, high, small, room):
     """Local minimum in a box by Newton's method projected onto it; η in place, the value returned."""
-    size = len(eta)
-    gradient, step, trial, trial_gradient = work[0], work[1], work[2], work[3]
-    hessian, factor = work[4 : 4 + size], work[4 + size : 4 + 2 * size]
-    _ladders(eta, degrees, tables)
-    value = _value_and_gradient(tables, inner, exponents, active, counts, lengths, coefficients, gradient)
+    eta, gradient, step, trial, trial_gradient = room.eta, room.gradient, room.step, room.trial, room.trial_gradient
+    size, coefficients, hessian, free, tables = len(eta), room.signed, room.hessian, room.free, room.tables
+    _ladders(eta, terms.degrees, tables)
+    value = _value_and_gradient(terms, tables, coefficients, gradient)
     for _ in range(ITERATIONS):
         reach = 0.0
         for k in range(size):
@@ -144,7 +200,7 @@ def _minimum(
             reach += abs(gradient[k]) * inward
         if reach <= small:
             break
-        _hessian(tables, inner, exponents, active, counts, lengths, coefficients, hessian)
+        _hessian(terms, tables, coefficients, hessian)
         size_of_hessian = 0.0
         for k in range(size):
             size_of_hessian = max(size_of_hessian, abs(hessian[k, k]))
@@ -152,16 +208,14 @@ def _minimum(
         for _ in range(DAMPINGS):
             promised = 0.0
             clipped = False
-            if _step(hessian, gradient, free, damping, factor, step):
+            if _step(hessian, gradient, free, damping, room.factor, step):
                 for k in range(size):
                     trial[k] = min(max(eta[k] + step[k], low[k]), high[k])
                     promised -= gradient[k] * (trial[k] - eta[k])
                     clipped |= trial[k] != eta[k] + step[k]
                 if promised > small:
-                    _ladders(trial, degrees, tables)
-                    lower = _value_and_gradient(
-                        tables, inner, exponents, active, counts, lengths, coefficients, trial_gradient
-                    )
+                    _ladders(trial, terms.degrees, tables)
+                    lower = _value_and_gradient(terms, tables, coefficients, trial_gradient)
                 if lower < value - 1e-4 * promised or (promised <= small and not clipped):
                     break
             damping = max(4 * damping, 0.1 * size_of_hessian, reach)
@@ -173,7 +227,7 @@ def _minimum(
     return value
 
 
-@kernel
+@inner
 def _lowest_valleys(values, sides, sign, best, places):
     """Places of the lowest points of a scan that no neighbour along an axis is below; how many."""
     found = 0
@@ -201,11 +255,23 @@ def _lowest_valleys(values, sides, sign, best, places):
     return found
 
 
-@compiled
+@inner
+def _signed(coefficients, sign, signed):
+    """Set the signed coefficients; the sum of their sizes."""
+    total = 0.0
+    for r in range(coefficients.shape[0]):
+        for m in range(coefficients.shape[1]):
+            signed[r, m] = sign * coefficients[r, m]
+            total += abs(signed[r, m])
+    return total
+
+
+@kernel
 def extremes(
-    values, grid, sides, low, high, degrees, inner, exponents, active, counts, lengths, coefficients, starts, bounds, at
-):
-    """Refines the extremes of a scan; all in coordinates η of the polynomial.
+    values: Reals3, grid: Reals2, sides: Integers, low: Reals2, high: Reals2, terms: Terms, coefficients: Reals3,
+    bounds: Reals3, at: Reals4, room: Room,
+) -> None:  # fmt: skip
+    """Refine the extremes of a scan; all in coordinates η of the polynomial.
 
     Parameters
     ----------
@@ -216,50 +282,30 @@ def extremes(
     sides : array of int, shape (d,) or (0,)
         Points of the scan in each direction, the last one fastest; none if they form no grid.
     low, high : array, shape (boxes, d)
-    degrees : array of int, shape (d,)
-    inner, exponents, active, counts, lengths, coefficients
+    terms : Terms
+    coefficients : array, shape (outputs, rows, longest)
         As in :class:`dalembert.surrogate.rows.Rows`.
-    starts : int
-        Most points of the scan to refine from.
     bounds : array, shape (2, boxes, outputs)
         Filled with the smallest and the largest values.
     at : array, shape (2, boxes, outputs, d)
         Filled with where they are.
+    room : Room
+        For as many starts as points of the scan to refine from, at most.
     """
-    size = low.shape[1]
-    work = np.empty((4 + 2 * size, size))
-    tables = np.zeros((3, size, max(2, degrees.max() + 1)))
-    free = np.empty(size, dtype=np.bool_)
-    best, places = np.empty(starts), np.empty(starts, dtype=np.int64)
-    eta, signed = np.empty(size), np.empty(coefficients.shape[1:])
+    eta, size = room.eta, low.shape[1]
     for b in range(len(low)):
         for o in range(len(coefficients)):
             for side in range(2):
                 sign = 1.0 - 2.0 * side
-                signed[:] = sign * coefficients[o]
-                small = CONVERGED * np.sum(np.abs(signed))
+                small = CONVERGED * _signed(coefficients[o], sign, room.signed)
                 lowest = np.inf
-                for start in range(_lowest_valleys(values[b, o], sides, sign, best, places)):
+                for start in range(_lowest_valleys(values[b, o], sides, sign, room.best, room.places)):
                     for k in range(size):
-                        part = grid[places[start], k]
+                        part = grid[room.places[start], k]
                         eta[k] = high[b, k] if part == 1 else low[b, k] + part * (high[b, k] - low[b, k])
-                    value = _minimum(
-                        eta,
-                        low[b],
-                        high[b],
-                        degrees,
-                        inner,
-                        exponents,
-                        active,
-                        counts,
-                        lengths,
-                        signed,
-                        small,
-                        work,
-                        free,
-                        tables,
-                    )
+                    value = _minimum(terms, low[b], high[b], small, room)
                     if value < lowest:
                         lowest = value
-                        at[side, b, o] = eta
+                        for k in range(size):
+                            at[side, b, o, k] = eta[k]
                 bounds[side, b, o] = sign * lowest

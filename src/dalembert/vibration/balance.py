@@ -18,11 +18,12 @@ from functools import cached_property
 
 import numpy as np
 
-from dalembert.compilation import announce_compilation
-from dalembert.vibration import friction_law
 from dalembert.vibration.condensation import Point
 from dalembert.vibration.fourier import Fourier, real_blocks
-from dalembert.vibration.friction_law import NORMAL, TANGENTIAL
+from dalembert.vibration.friction_law import NORMAL, STUCK, TANGENTIAL
+from dalembert.vibration.friction_period import forces
+from dalembert.vibration.friction_tangent import Tangent as FrictionTangent
+from dalembert.vibration.friction_tangent import tangent_of
 from dalembert.vibration.lowering import ELASTIC, FrictionBlock, Lowered
 from dalembert.vibration.springs import UserElement
 from dalembert.vibration.tangents import BlockTangent, DenseTangent, Tangent
@@ -119,8 +120,7 @@ class Balance:
             total = linear + self._combination.T @ acting if blocks and rigid else linear
             before = tangent.copy() if isinstance(tangent, DenseTangent) and blocks and rigid else None
             for number in blocks:
-                block = self.lowered.blocks[number]
-                states[number] = self._add_friction(block, acting, unknowns, total, tangent, before)
+                states[number] = self._add_friction(number, acting, unknowns, total, tangent, before)
         return Evaluation(linear + self._combination.T @ acting, acting, tuple(states))
 
     def _add_springs(self, acting: np.ndarray, unknowns: np.ndarray, tangent: Tangent | None) -> None:
@@ -151,7 +151,7 @@ class Balance:
 
     def _add_friction(
         self,
-        block: FrictionBlock,
+        number: int,
         acting: np.ndarray,
         unknowns: np.ndarray,
         total: np.ndarray,
@@ -159,18 +159,15 @@ class Balance:
         before: DenseTangent | None,
     ) -> np.ndarray:
         """Forces of a block's cells, and its part of the tangent; the states (cells, samples)."""
-        series, shape = self.series, (block.tangents, block.normal, block.memory)
-        predicted, numbers = self._predicted(block, unknowns, total)
-        samples = np.ascontiguousarray(predicted @ series.synthesis.T)
-        law = friction_law.forces if tangent is None else friction_law.tangent
-        announce_compilation(law, "its laws of contacts", "about half a minute")
+        block, series = self.lowered.blocks[number], self.series
+        samples = np.ascontiguousarray(self._predicted(block, unknowns, total) @ series.synthesis.T)
         if tangent is None:
+            numbers = self._numbers[number]
             kind = np.result_type(samples, numbers)
-            force, states = friction_law.forces(
-                samples.astype(kind, copy=False), numbers.astype(kind, copy=False), *shape
-            )
+            given = samples.astype(kind, copy=False), numbers.astype(kind, copy=False)
+            force, states = forces(*given, block.tangents, block.normal, block.memory)
         else:
-            force, states, local = friction_law.tangent(samples, numbers, *shape, series.synthesis, series.analysis)
+            force, states, local = self._tangents[number](samples)
             if isinstance(tangent, BlockTangent):
                 tangent.add(self._retained[block.rows], local, _penalties(block))
             elif before is None:
@@ -190,28 +187,40 @@ class Balance:
             np.add.at(acting, block.rows, result)
         return states
 
-    def _predicted(
-        self, block: FrictionBlock, unknowns: np.ndarray, total: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """What the law is given: displacements (cells, columns, coefficients) and numbers."""
+    def _predicted(self, block: FrictionBlock, unknowns: np.ndarray, total: np.ndarray) -> np.ndarray:
+        """Displacements (cells, columns, coefficients) that the law is given."""
         if block.kind == ELASTIC:
-            return (self._combination @ unknowns)[block.rows], block.numbers
+            return (self._combination @ unknowns)[block.rows]
         places = self._retained[block.rows]
         moved = unknowns[places] - total[places] / _penalties(block)[:, :, None]
         if block.memory:
-            return moved, block.numbers
+            return moved
         tangents = places[:, : block.tangents]
         penalty = block.numbers[:, TANGENTIAL, None, None]
         trial = penalty * (unknowns[tangents] @ self.series.derivative.T) - total[tangents]
-        numbers = block.numbers.copy()
-        numbers[:, TANGENTIAL] = 1.0
-        return np.concatenate([trial, moved[:, block.tangents :]], axis=1), numbers
+        return np.concatenate([trial, moved[:, block.tangents :]], axis=1)
+
+    @cached_property
+    def _numbers(self) -> list[np.ndarray]:
+        """Numbers (cells, 5) that the law of each block is given."""
+        return [block.numbers if block.memory else _with_unit_stiffness(block.numbers) for block in self.lowered.blocks]
+
+    @cached_property
+    def _tangents(self) -> list[FrictionTangent]:
+        """The law of each block with its derivatives."""
+        return [
+            tangent_of(
+                np.ascontiguousarray(numbers, dtype=float), block.tangents, block.normal, block.memory,
+                self.series.synthesis, self.series.analysis,
+            )
+            for block, numbers in zip(self.lowered.blocks, self._numbers, strict=True)
+        ]  # fmt: skip
 
     def _undetermined(self, block: FrictionBlock, states: np.ndarray) -> np.ndarray:
         """Cells of the velocity kind that stick all period: nothing else determines their mean position."""
         if block.memory or not self.series.mean:
             return np.zeros(0, dtype=int)
-        return np.flatnonzero(np.all(states == friction_law.STUCK, axis=1))
+        return np.flatnonzero(np.all(states == STUCK, axis=1))
 
     def _spread_elastic(self, block: FrictionBlock, local: np.ndarray, jacobian: np.ndarray) -> None:
         """J += L^T G L."""
@@ -272,3 +281,10 @@ def _penalties(block: FrictionBlock) -> np.ndarray:
     """Penalty of each row of a block, (cells, columns)."""
     columns = [block.numbers[:, TANGENTIAL]] * block.tangents + [block.numbers[:, NORMAL]] * block.normal
     return np.stack(columns, axis=1)
+
+
+def _with_unit_stiffness(numbers: np.ndarray) -> np.ndarray:
+    """Numbers of a law that is given forces for displacements."""
+    result = numbers.copy()
+    result[:, TANGENTIAL] = 1.0
+    return result

@@ -2,14 +2,49 @@
 
 import numpy as np
 
-from dalembert.vibration.compiled import compiled
-from dalembert.vibration.friction_law import SETTLED, SWEEPS, update
+from dalembert.kernels.kernel import kernel
+from dalembert.kernels.views import stack
+from dalembert.kernels.words import Complexes, Reals2, Reals3
+from dalembert.vibration.friction_law import update
+from dalembert.vibration.friction_period import SWEEPS, largest, settled
 
 STEP = 1e-30
 
 
-@compiled
-def linearised(motion, numbers, tangents, normal):
+@kernel
+def _linearised(motion: Reals2, numbers: Complexes, tangents: int, normal: bool, result: Reals3) -> None:
+    columns, samples = motion.shape
+    size = columns + tangents
+    d, z, moved = stack(numbers, 3), stack(numbers, 2), stack(numbers, 2)
+    force, before = stack(numbers, 3), stack(numbers, 2)
+    scale = largest(motion)
+    z[:] = 0.0
+    for sweep in range(SWEEPS):
+        for i in range(tangents):
+            before[i] = z[i]
+        for t in range(samples):
+            for direction in range(size):
+                for i in range(columns):
+                    d[i] = motion[i, t]
+                for i in range(tangents):
+                    moved[i] = z[i]
+                if direction < columns:
+                    d[direction] += 1j * STEP
+                else:
+                    moved[direction - columns] += 1j * STEP
+                update(d, moved, force, numbers, tangents, normal, True)
+                for row in range(columns):
+                    result[t, row, direction] = force[row].imag / STEP
+                for row in range(tangents):
+                    result[t, columns + row, direction] = moved[row].imag / STEP
+            for i in range(columns):
+                d[i] = motion[i, t]
+            update(d, z, force, numbers, tangents, normal, True)
+        if sweep > 0 and settled(z, before, tangents, scale):
+            break
+
+
+def linearised(motion: np.ndarray, numbers: np.ndarray, tangents: int, normal: bool) -> np.ndarray:
     """Derivatives of the elastic law at each sample, by complex steps through it.
 
     Parameters
@@ -24,30 +59,6 @@ def linearised(motion, numbers, tangents, normal):
         Of forces and sliders (rows) by displacements and sliders before (columns).
     """
     columns, samples = motion.shape
-    size = columns + tangents
-    result = np.zeros((samples, size, size))
-    own = numbers.astype(np.complex128)
-    d, z = np.zeros(columns, dtype=np.complex128), np.zeros(columns, dtype=np.complex128)
-    moved = np.zeros(columns, dtype=np.complex128)
-    force, before = np.zeros(columns, dtype=np.complex128), np.zeros(columns, dtype=np.complex128)
-    scale = np.max(np.abs(motion))
-    for sweep in range(SWEEPS):
-        before[:] = z
-        for t in range(samples):
-            for direction in range(size):
-                d[:] = motion[:, t]
-                moved[:] = z
-                if direction < columns:
-                    d[direction] += 1j * STEP
-                else:
-                    moved[direction - columns] += 1j * STEP
-                update(d, moved, force, own, tangents, normal, True)
-                for row in range(columns):
-                    result[t, row, direction] = force[row].imag / STEP
-                for row in range(tangents):
-                    result[t, columns + row, direction] = moved[row].imag / STEP
-            d[:] = motion[:, t]
-            update(d, z, force, own, tangents, normal, True)
-        if sweep > 0 and np.max(np.abs(z - before)) <= SETTLED * scale:
-            break
+    result = np.empty((samples, columns + tangents, columns + tangents))
+    _linearised(motion, numbers.astype(complex), tangents, normal, result)
     return result

@@ -21,7 +21,8 @@ from dalembert.vibration.friction_law import NORMAL, TANGENTIAL
 from dalembert.vibration.lowering import ELASTIC, Lowered
 from dalembert.vibration.springs import BilinearStop, CubicSpring, Gap, UserElement
 from dalembert.vibration.system import StaticForce
-from dalembert.vibration.time_steps import CUBIC, GAP, STOP, Elements, Modes, Scheme
+from dalembert.vibration.time_elements import CUBIC, GAP, STOP, Elements
+from dalembert.vibration.time_steps import Modes, Scheme
 
 MASSLESS = 1e-12
 """Mass of a mode, as part of its mass and stiffness, below which it has no inertia of its own."""
@@ -90,6 +91,14 @@ def spectral(structure: Any, omega: float) -> Spectral:
 
 
 @dataclass(frozen=True)
+class Users:
+    """Address of a C function that adds laws of the user's, 0 if there are none, and what keeps it alive."""
+
+    address: int
+    alive: Any
+
+
+@dataclass(frozen=True)
 class InTime:
     """A lowered system in its modes, at one frequency.
 
@@ -146,7 +155,7 @@ class InTime:
         compliance = by_place * (seen @ pushed)
         elements, shifts = _matched(self.elements, np.diag(compliance))
         modes = Modes(
-            own.mass, own.damping, own.stiffness, inverse, own.coupled, solver, seen, np.ascontiguousarray(pushed),
+            own.mass, own.damping, own.stiffness, inverse, own.coupled, solver, seen, np.ascontiguousarray(pushed.T),
             np.ascontiguousarray(compliance - np.diag(shifts)), self.forces,
         )  # fmt: skip
         return modes, elements
@@ -154,7 +163,7 @@ class InTime:
     @cached_property
     def elements(self) -> Elements:
         """Arrays of the elements."""
-        blocks, springs = self.lowered.blocks, self.lowered.springs
+        blocks = self.lowered.blocks
         rows, numbers, at = [np.zeros((0, 3), dtype=int)], [np.zeros((0, 5))], 0
         for block in blocks:
             own = at + np.arange(block.rows.size).reshape(block.rows.shape)
@@ -167,19 +176,21 @@ class InTime:
         return Elements(
             rows=np.concatenate(rows),
             tangents=np.array([block.tangents for block in blocks for _ in block.rows], dtype=np.int64),
-            normal=np.array([block.normal for block in blocks for _ in block.rows], dtype=bool),
+            normal=np.array([block.normal for block in blocks for _ in block.rows], dtype=np.int64),
             numbers=np.concatenate(numbers),
             contacts=np.concatenate([np.zeros(0, dtype=int), *(block.contacts for block in blocks)]),
             kinds=np.array([_KINDS[type(element)] for _, element in plain], dtype=np.int64),
             places=np.array([place for place, _ in plain], dtype=np.int64),
             values=np.array([[np.real(e.stiffness), np.real(getattr(e, "gap", 0.0))] for _, e in plain]).reshape(-1, 2),
-            users=len(plain) < len(springs),
         )
 
-    def users(self, failures: list[Exception]) -> Any:
+    def users(self, failures: list[Exception]) -> "Users":
         """The laws of the user's, callable from compiled code; what they raise is kept, and the run ends."""
         laws = [(own, element.law) for own, element in self._springs if isinstance(element, UserElement)]
-        return _C_FUNCTION(_trampoline(laws, len(self.places), failures))
+        if not laws:
+            return Users(0, None)
+        call = _C_FUNCTION(_trampoline(laws, len(self.places), failures))
+        return Users(ctypes.cast(call, ctypes.c_void_p).value or 0, call)
 
     @property
     def _springs(self) -> list[tuple[np.ndarray, Any]]:

@@ -3,13 +3,11 @@
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 import scipy
 
 import dalembert
-from dalembert.compilation import announce_compilation
 from dalembert.errors import InputError, SolveError, unknown
 from dalembert.vibration.curve import FrequencyCurve
 from dalembert.vibration.equations import equations
@@ -22,8 +20,9 @@ from dalembert.vibration.periodic_motion import PeriodicMotion
 from dalembert.vibration.shooting import shoot
 from dalembert.vibration.system import VibrationSystem
 from dalembert.vibration.threads import one_thread
-from dalembert.vibration.time_lowering import InTime
-from dalembert.vibration.time_steps import LOST, Elements, Modes, Record, Scheme, State, advance, react, settle
+from dalembert.vibration.time_elements import Elements, Reaction, react, reaction, settle
+from dalembert.vibration.time_lowering import InTime, Users
+from dalembert.vibration.time_steps import LOST, Modes, Record, Scheme, State, advance
 
 LONG_RUN, SHOOTING = "long run", "shooting"
 WARMING = 5
@@ -90,7 +89,6 @@ def steady_state(
     lowered = lower(system).real
     problem = InTime(lowered, 2 * np.pi * frequency, method.steps_per_period, method.stand_in)
     rows = observed(lowered, observe)
-    announce_compilation(advance, "its steps in time", "about half a minute")
     with one_thread():
         run = _Run(problem, method, [])
         state = run.rest() if start is None else run.on_curve(system, *start)
@@ -136,7 +134,7 @@ class _Run:
     failures: list[Exception]
 
     @cached_property
-    def _users(self) -> Any:
+    def _users(self) -> Users:
         return self.problem.users(self.failures)
 
     @cached_property
@@ -164,7 +162,8 @@ class _Run:
         waves = synthesis(curve.orders, 2 * np.pi * np.arange(1, steps + 1) / steps)
         rates = Fourier(curve.orders, steps).derivative.T @ waves[-1]
         sliders, seen = self._sliders(), np.asarray(self.problem.lowered.matrix @ x)[self.problem.places]
-        settle(self.problem.elements, self._users, np.ascontiguousarray(waves @ seen.T), sliders)
+        places = np.ascontiguousarray(waves @ seen.T)
+        settle(self.problem.elements, self._users.address, places, sliders, self._reaction())
         places = np.stack([x @ waves[-1], self.problem.omega * (x @ rates)], axis=1)
         place, velocity = np.linalg.solve(self.problem.spectral.shapes, places).T
         return self._balanced(place, velocity, sliders)
@@ -179,7 +178,7 @@ class _Run:
         )  # fmt: skip
         state = State(state.modes.copy(), state.sliders.copy())
         status, count, change = advance(
-            modes, elements, self._users, self._scheme, state, self.problem.omega, most, tolerance, record
+            modes, elements, self._users.address, self._scheme, state, self.problem.omega, most, tolerance, record
         )
         if self.failures:
             raise self.failures[0]
@@ -225,12 +224,14 @@ class _Run:
 
     def _balanced(self, place: np.ndarray, velocity: np.ndarray, sliders: np.ndarray) -> State:
         """With the accelerations that the forces at the start of a period ask for."""
-        elements, seen = self.problem.elements, self.problem.seen
-        force, slopes = np.zeros(len(seen)), np.zeros((len(seen), len(seen)))
-        states = np.zeros(len(self.problem.lowered.contacts), dtype=np.uint8)
-        react(elements, self._users, seen @ place, sliders, sliders.copy(), force, slopes, states)
+        seen, found = self.problem.seen, self._reaction()
+        react(self.problem.elements, self._users.address, seen @ place, sliders, found)
         if self.failures:
             raise self.failures[0]
-        push = self.problem.forces[-1] - seen.T @ force
+        push = self.problem.forces[-1] - seen.T @ found.force
         acceleration = self.problem.spectral.accelerations(push, place, velocity)
         return State(np.stack([place, velocity, acceleration, acceleration]), sliders)
+
+    def _reaction(self) -> Reaction:
+        elements, contacts = self.problem.elements, self.problem.lowered.contacts
+        return reaction(len(self.problem.seen), len(elements.tangents), len(contacts))

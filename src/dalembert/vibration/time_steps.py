@@ -16,11 +16,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dalembert.vibration.compiled import compiled
-from dalembert.vibration.friction_law import FRICTION, LOAD, NORMAL, SEPARATED, SLIPPING, STUCK, TANGENTIAL, update
+from dalembert.kernels.kernel import inner, kernel
+from dalembert.kernels.words import Address, Bytes2, Reals, Reals2
+from dalembert.vibration.dense import apply, assign, dot, invert, size_of
+from dalembert.vibration.friction_law import LOAD, NORMAL
+from dalembert.vibration.time_elements import Elements, Reaction, answer, reaction
 
-CUBIC, GAP, STOP = 0, 1, 2
-"""Springs without memory."""
 STEADY, MOVING, LOST = 0, 1, 2
 """How a run ends: periodic, not yet, or at a step that Newton's method cannot take."""
 NEWTON = 80
@@ -49,46 +50,27 @@ class Modes(NamedTuple):
 
     ``mass``, ``damping``, ``stiffness`` and ``inverse`` (S⁻¹) are diagonals (n,); where modes are coupled by damping,
     ``coupled`` and ``solver`` are whole matrices of C and S⁻¹ instead, else empty. ``seen`` (rows, n) is L, ``pushed``
-    (n, rows) S⁻¹ L^T, ``compliance`` (rows, rows) b L S⁻¹ L^T - 1/rho + 1/k; ``force`` (steps, n) acts at the steps'
-    ends.
+    (rows, n) S⁻¹ L^T transposed, ``compliance`` (rows, rows) b L S⁻¹ L^T - 1/rho + 1/k; ``force`` (steps, n) acts at
+    the steps' ends.
     """
 
-    mass: np.ndarray
-    damping: np.ndarray
-    stiffness: np.ndarray
-    inverse: np.ndarray
-    coupled: np.ndarray
-    solver: np.ndarray
-    seen: np.ndarray
-    pushed: np.ndarray
-    compliance: np.ndarray
-    force: np.ndarray
-
-
-class Elements(NamedTuple):
-    """Elements of a system.
-
-    Cells of friction: ``rows`` (cells, 3), ``tangents``, ``normal``, ``numbers`` (cells, 5) as the friction law takes
-    them, ``contacts`` (cells,). Springs: ``kinds``, ``places``, ``values`` (springs, 2) of stiffness and gap.
-    ``users``: whether there are laws of the user's.
-    """
-
-    rows: np.ndarray
-    tangents: np.ndarray
-    normal: np.ndarray
-    numbers: np.ndarray
-    contacts: np.ndarray
-    kinds: np.ndarray
-    places: np.ndarray
-    values: np.ndarray
-    users: bool
+    mass: Reals
+    damping: Reals
+    stiffness: Reals
+    inverse: Reals
+    coupled: Reals2
+    solver: Reals2
+    seen: Reals2
+    pushed: Reals2
+    compliance: Reals2
+    force: Reals2
 
 
 class State(NamedTuple):
     """At an instant: modes (4, n) of displacements, velocities, accelerations, auxiliary ones; sliders (cells, 2)."""
 
-    modes: np.ndarray
-    sliders: np.ndarray
+    modes: Reals2
+    sliders: Reals2
 
 
 class Record(NamedTuple):
@@ -97,98 +79,60 @@ class Record(NamedTuple):
     Modes (steps, n), shifted displacements and forces of elements (steps, rows), states of contacts (steps, contacts).
     """
 
-    modes: np.ndarray
-    displacements: np.ndarray
-    forces: np.ndarray
-    states: np.ndarray
+    modes: Reals2
+    displacements: Reals2
+    forces: Reals2
+    states: Bytes2
 
 
-@compiled
-def _spring(kind, stiffness, gap, u):
-    """Force of a spring without memory and its slope."""
-    if kind == CUBIC:
-        return stiffness * u**3, 3.0 * stiffness * u**2
-    side = -1.0 if kind == STOP and u <= 0.0 else 1.0
-    over = u - side * gap
-    if side * over <= 0.0:
-        return 0.0, 0.0
-    return stiffness * over, stiffness
+class Room(NamedTuple):
+    """Room for a step: vectors of rows, matrices (rows, rows), vectors of modes; sliders (cells, 2)."""
+
+    u: Reals
+    start: Reals
+    residual: Reals
+    change: Reals
+    matrix: Reals2
+    inverse: Reals2
+    history: Reals
+    pull: Reals
+    first_q: Reals
+    first_v: Reals
+    first_z: Reals2
 
 
-@compiled
-def _cell(elements, c, u, sliders, moved, force, slopes, states):
-    """Add the forces of a cell and their slopes; where its slider goes."""
-    rows, t, numbers = elements.rows[c], elements.tangents[c], elements.numbers[c]
-    columns = t + (1 if elements.normal[c] else 0)
-    d, own, direction = np.zeros(3), np.zeros(3), np.zeros(2)
-    for i in range(columns):
-        d[i] = u[rows[i]]
-    for i in range(t):
-        direction[i] = numbers[TANGENTIAL] * (d[i] - sliders[c, i])
-    moved[c] = sliders[c]
-    state, size = update(d, moved[c], own, numbers, t, elements.normal[c], True)
-    states[elements.contacts[c]] = max(states[elements.contacts[c]], state)
-    for i in range(columns):
-        force[rows[i]] += own[i]
-    if state == SEPARATED:
-        return
-    if elements.normal[c]:
-        slopes[rows[t], rows[t]] += numbers[NORMAL]
-    if state == STUCK:
-        for i in range(t):
-            slopes[rows[i], rows[i]] += numbers[TANGENTIAL]
-    elif state == SLIPPING:
-        ratio = np.sqrt(own[0] * own[0] + (own[1] * own[1] if t == 2 else 0.0)) / size
-        for i in range(t):
-            direction[i] /= size
-        for i in range(t):
-            if elements.normal[c]:
-                slopes[rows[i], rows[t]] += numbers[FRICTION] * numbers[NORMAL] * direction[i]
-            if t == 2:
-                slopes[rows[i], rows[i]] += numbers[TANGENTIAL] * ratio
-                for j in range(t):
-                    slopes[rows[i], rows[j]] -= numbers[TANGENTIAL] * ratio * direction[i] * direction[j]
+def _room(modes: Modes, state: State) -> Room:
+    rows, n = modes.seen.shape
+    return Room(
+        u=np.zeros(rows),
+        start=np.zeros(rows),
+        residual=np.zeros(rows),
+        change=np.zeros(rows),
+        matrix=np.zeros((rows, rows)),
+        inverse=np.zeros((rows, rows)),
+        history=np.zeros(n),
+        pull=np.zeros(n),
+        first_q=np.zeros(n),
+        first_v=np.zeros(n),
+        first_z=np.zeros_like(state.sliders),
+    )
 
 
-@compiled
-def react(elements, users, u, sliders, moved, force, slopes, states):
-    """Forces (rows,) of all elements at displacements, their slopes (rows, rows), new sliders, and contacts' states."""
-    force[:] = 0.0
-    slopes[:] = 0.0
-    states[:] = 0
-    for c in range(len(elements.tangents)):
-        _cell(elements, c, u, sliders, moved, force, slopes, states)
-    for s in range(len(elements.kinds)):
-        row = elements.places[s]
-        value, slope = _spring(elements.kinds[s], elements.values[s, 0], elements.values[s, 1], u[row])
-        force[row] += value
-        slopes[row, row] += slope
-    if elements.users:
-        users(u.ctypes, force.ctypes, slopes.ctypes)
+@inner
+def _product(diagonal, whole, x, y):
+    """Set y to the product of a matrix, which may be a diagonal, and x."""
+    if len(whole):
+        apply(whole, x, y)
+    else:
+        for i in range(len(y)):
+            y[i] = diagonal[i] * x[i]
 
 
-@compiled
-def settle(elements, users, displacements, sliders):
-    """Move sliders (cells, 2) to where they end in a period of displacements (steps, rows) gone through repeatedly."""
-    rows = displacements.shape[1]
-    force, slopes, moved = np.zeros(rows), np.zeros((rows, rows)), np.zeros_like(sliders)
-    states = np.zeros(len(elements.tangents), dtype=np.uint8)
-    for _ in range(3):
-        for t in range(len(displacements)):
-            react(elements, users, displacements[t], sliders, moved, force, slopes, states)
-            sliders[:] = moved
-
-
-@compiled
-def _product(diagonal, whole, x):
-    return whole @ x if len(whole) else diagonal * x
-
-
-@compiled
-def _balance(modes, elements, users, u, start, state, moved, force, slopes, kept, states):
-    """Solve u + compliance · force(u) = start, u shifted, from a guess; ``kept`` is an inverse of before. If found."""
-    rows = len(u)
-    scale = max(np.max(np.abs(start)), np.max(np.abs(u)))
+@inner
+def _balance(modes, elements, users, state, reaction, room):
+    """Solve u + compliance · force(u) = start, u shifted, from a guess; the inverse is one of before. If found."""
+    u, start, residual, change = room.u, room.start, room.residual, room.change
+    scale = max(size_of(start), size_of(u))
     for c in range(len(elements.normal)):
         if elements.normal[c]:
             scale = max(scale, elements.numbers[c, LOAD] / elements.numbers[c, NORMAL])
@@ -199,69 +143,139 @@ def _balance(modes, elements, users, u, start, state, moved, force, slopes, kept
             for c in range(len(elements.tangents)):
                 for i in range(elements.tangents[c]):
                     u[elements.rows[c, i]] = state.sliders[c, i]
-        react(elements, users, u, state.sliders, moved, force, slopes, states)
+        answer(elements, users, u, state.sliders, reaction)
         if last:
             return True
-        residual = u - start + modes.compliance @ force
-        size = np.max(np.abs(residual))
+        for i in range(len(u)):
+            residual[i] = u[i] - start[i] + dot(modes.compliance[i], reaction.force)
+        size = size_of(residual)
         if not np.isfinite(size):
             return False
-        if size > 0.1 * before or kept[0, 0] == 0.0:
-            matrix = modes.compliance @ slopes
-            for i in range(rows):
-                matrix[i, i] += 1.0
-            kept[:] = np.linalg.inv(matrix)
+        if size > 0.1 * before or room.inverse[0, 0] == 0.0:
+            _linearise(modes.compliance, reaction.slopes, room.matrix)
+            invert(room.matrix, room.inverse)
         before = size
-        change = kept @ residual
-        if iteration >= BOLD:
-            change *= 0.5
-        u -= change
-        last = np.max(np.abs(change)) <= ACCURACY * scale
+        apply(room.inverse, residual, change)
+        part = 0.5 if iteration >= BOLD else 1.0
+        for i in range(len(u)):
+            change[i] *= part
+            u[i] -= change[i]
+        last = size_of(change) <= ACCURACY * scale
     return False
 
 
-@compiled
-def advance(modes, elements, users, scheme, state, omega, most, tolerance, record):
-    """Go through periods until one changes nothing, in place; how it ended, periods or step, change of the last one."""
-    steps, rows = len(modes.force), len(modes.seen)
+@inner
+def _linearise(compliance, slopes, matrix):
+    """Set the matrix to 1 + compliance · slopes."""
+    for i in range(len(matrix)):
+        for j in range(len(matrix)):
+            matrix[i, j] = 1.0 if i == j else 0.0
+        for k in range(len(matrix)):
+            for j in range(len(matrix)):
+                matrix[i, j] += compliance[i, k] * slopes[k, j]
+
+
+@inner
+def _step(modes, elements, users, scheme, state, t, reaction, room):
+    """A step; whether the contacts are solved."""
     h, ratio = scheme.step, (1.0 - scheme.alpha_f) / (1.0 - scheme.alpha_m)
-    q, v, a, w = state.modes[0], state.modes[1], state.modes[2], state.modes[3]
     b, g = scheme.beta * h * h * ratio, scheme.gamma * h * ratio
-    u, force, slopes = modes.seen @ q, np.zeros(rows), np.zeros((rows, rows))
-    moved, kept = state.sliders.copy(), np.zeros((rows, rows))
-    states = np.zeros(record.states.shape[1], dtype=np.uint8)
-    change = np.inf
+    q, v, a, w = state.modes[0], state.modes[1], state.modes[2], state.modes[3]
+    history, pull = room.history, room.pull
+    for i in range(len(q)):
+        history[i] = (scheme.alpha_f * a[i] - scheme.alpha_m * w[i]) / (1.0 - scheme.alpha_m)
+        q[i] += h * v[i] + h * h * ((0.5 - scheme.beta) * w[i] + scheme.beta * history[i])
+        v[i] += h * ((1.0 - scheme.gamma) * w[i] + scheme.gamma * history[i])
+    _product(modes.damping, modes.coupled, v, a)
+    for i in range(len(q)):
+        pull[i] = modes.force[t, i] - a[i] - modes.stiffness[i] * q[i]
+    _product(modes.inverse, modes.solver, pull, a)
+    if len(modes.seen):
+        for i in range(len(q)):
+            pull[i] = q[i] + b * a[i]
+        apply(modes.seen, pull, room.start)
+        for i in range(len(room.u)):
+            room.u[i] = room.start[i] - dot(modes.compliance[i], reaction.force)
+        if not _balance(modes, elements, users, state, reaction, room):
+            return False
+        for c in range(len(state.sliders)):
+            assign(state.sliders[c], reaction.moved[c])
+        for k in range(len(modes.pushed)):
+            for i in range(len(a)):
+                a[i] -= modes.pushed[k, i] * reaction.force[k]
+    for i in range(len(q)):
+        w[i] = history[i] + ratio * a[i]
+        q[i] += b * a[i]
+        v[i] += g * a[i]
+    return True
+
+
+@inner
+def _distance(x, y):
+    """Sum of squares of differences."""
+    total = 0.0
+    for i in range(len(x)):
+        total += (x[i] - y[i]) * (x[i] - y[i])
+    return total
+
+
+@inner
+def _change(state, record, omega, room):
+    """What a period changed, as part of the motion."""
+    q, v = state.modes[0], state.modes[1]
+    size = np.sqrt(dot(q, q) + dot(v, v) / omega**2)
+    off = np.sqrt(_distance(q, room.first_q) + _distance(v, room.first_v) / omega**2)
+    change = off / size if size > 0.0 else 0.0
+    if len(state.sliders) == 0 or np.isnan(change):
+        return change
+    widest, slid = 0.0, 0.0
+    for t in range(len(record.displacements)):
+        widest = max(widest, size_of(record.displacements[t]))
+    for c in range(len(state.sliders)):
+        for i in range(2):
+            slid = max(slid, abs(state.sliders[c, i] - room.first_z[c, i]))
+    return max(change, slid / widest if widest > 0.0 else 0.0)
+
+
+@kernel
+def _advance(
+    modes: Modes, elements: Elements, users: Address, scheme: Scheme, state: State, omega: float, most: int,
+    tolerance: float, record: Record, reaction: Reaction, room: Room,
+) -> tuple[int, int, float]:  # fmt: skip
+    steps, change = len(modes.force), np.inf
+    apply(modes.seen, state.modes[0], room.u)
     for period in range(most):
-        first_q, first_v, first_z = q.copy(), v.copy(), state.sliders.copy()
+        assign(room.first_q, state.modes[0])
+        assign(room.first_v, state.modes[1])
+        for c in range(len(state.sliders)):
+            assign(room.first_z[c], state.sliders[c])
         for t in range(steps):
-            history = (scheme.alpha_f * a - scheme.alpha_m * w) / (1.0 - scheme.alpha_m)
-            q += h * v + h * h * ((0.5 - scheme.beta) * w + scheme.beta * history)
-            v += h * ((1.0 - scheme.gamma) * w + scheme.gamma * history)
-            pull = modes.force[t] - _product(modes.damping, modes.coupled, v) - modes.stiffness * q
-            a[:] = _product(modes.inverse, modes.solver, pull)
-            if rows:
-                start = modes.seen @ (q + b * a)
-                u[:] = start - modes.compliance @ force
-                if not _balance(modes, elements, users, u, start, state, moved, force, slopes, kept, states):
-                    return LOST, period * steps + t, change
-                state.sliders[:] = moved
-                a -= modes.pushed @ force
-            w[:] = history + ratio * a
-            q += b * a
-            v += g * a
-            record.modes[t] = q
-            record.displacements[t] = u
-            record.forces[t] = force
-            record.states[t] = states
-        size = np.sqrt(np.sum(q * q) + np.sum(v * v) / omega**2)
-        off = np.sqrt(np.sum((q - first_q) ** 2) + np.sum((v - first_v) ** 2) / omega**2)
-        change = off / size if size > 0.0 else 0.0
-        if len(moved):
-            widest = np.max(np.abs(record.displacements))
-            slid = np.max(np.abs(state.sliders - first_z))
-            change = max(change, slid / widest if widest > 0.0 else 0.0)
+            if not _step(modes, elements, users, scheme, state, t, reaction, room):
+                return LOST, period * steps + t, change
+            assign(record.modes[t], state.modes[0])
+            assign(record.displacements[t], room.u)
+            assign(record.forces[t], reaction.force)
+            assign(record.states[t], reaction.states)
+        change = _change(state, record, omega, room)
         if not np.isfinite(change):
             return LOST, period * steps, change
         if change <= tolerance:
             return STEADY, period + 1, change
     return MOVING, most, change
+
+
+def advance(
+    modes: Modes,
+    elements: Elements,
+    users: int,
+    scheme: Scheme,
+    state: State,
+    omega: float,
+    most: int,
+    tolerance: float,
+    record: Record,
+) -> tuple[int, int, float]:
+    """Go through periods until one changes nothing, in place; how it ended, periods or step, change of the last one."""
+    answers = reaction(len(modes.seen), len(state.sliders), record.states.shape[1])
+    room = _room(modes, state)
+    return _advance(modes, elements, users, scheme, state, omega, most, tolerance, record, answers, room)

@@ -15,7 +15,6 @@ from dalembert.multibody.lowering import Lowered
 from dalembert.settings import expect_positive
 
 _FIRST = 1e-3  # of the motion: the first step of an adaptive one
-_DEFORMABLE = ("beams", "cables")
 
 
 @dataclass(frozen=True)
@@ -49,7 +48,7 @@ class Automatic(Integrator):
 
     def suiting(self, lowered: Lowered, end: float) -> Integrator:
         """The integrator for a mechanism's motion until ``end`` (s)."""
-        if any(len(lowered.structure.index[kind]) for kind in _DEFORMABLE):
+        if not all(body.rigid for body in lowered.bodies.values()):
             return GeneralizedAlpha(step=_FIRST * end, adaptive=True, tolerance=self.tolerance)
         known = redundancy(lowered)
         if known.rank < known.count:

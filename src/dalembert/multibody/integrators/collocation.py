@@ -6,15 +6,23 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from dalembert.errors import InputError
-from dalembert.multibody.integrators.collocation_descent import march, respond
+from dalembert.kernels.kernel import Compiled
+from dalembert.multibody.integrators.collocation_descent import Descent, descent, march, respond
+from dalembert.multibody.integrators.collocation_gap import measure
 from dalembert.multibody.integrators.collocation_rule import make_rule
 from dalembert.multibody.integrators.collocation_search import Search
-from dalembert.multibody.integrators.collocation_step import Schedule, begin, finish, prepare
+from dalembert.multibody.integrators.collocation_step import Schedule, begin, finish, prepare, step_of
+from dalembert.multibody.integrators.collocation_swarm import squares
+from dalembert.multibody.integrators.consistent import accelerate_along
 from dalembert.multibody.integrators.integrator import Integrator
+from dalembert.multibody.integrators.partitioning import settle_along
 from dalembert.multibody.integrators.problem import DONE, SINGULAR, Log, Problem
-from dalembert.multibody.integrators.run import Run, cut, explain, resting, stack, starts
-from dalembert.multibody.kernels.motion import Motion
+from dalembert.multibody.integrators.run import Run, cut, explain, starts
+from dalembert.multibody.kernels.linear import DENSE_KERNELS
+from dalembert.multibody.kernels.model import addresses
+from dalembert.multibody.kernels.motion import Histories, Motion, Motions, resting
 from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.structure import Structure
 from dalembert.optimize import Firefly, LeastSquares, Minimiser, ResponseSensitivity, Squares, Swarm
 from dalembert.settings import expect, expect_at_least
 
@@ -94,6 +102,13 @@ class Collocation(Integrator):
                 "another minimiser of dalembert.optimize"
             )
 
+    def kernels(self, structure: Structure, derivatives: bool) -> list[Compiled]:
+        """The loop, or the parts that a search calls, with what differentiates a state by the unknown accelerations."""
+        own = [march] if isinstance(self.minimiser, GaussNewton) else [begin, measure, squares, finish]
+        rates = [kind.kernel("rates", complex) for kind in structure.index if kind.has("rates")]
+        linear = [*structure.linear_kernels, *DENSE_KERNELS]
+        return [*own, settle_along, *rates, *linear, *[respond, accelerate_along] * derivatives]
+
     def integrate(
         self,
         samples: Sequence[Lowered],
@@ -135,7 +150,8 @@ class Collocation(Integrator):
         stretch = np.searchsorted(edges, (begins + ends) / 2) - 1
         reached = np.searchsorted(times, ends + 1e-9 * (ends - begins), side="right")
         opens = np.diff(stretch, prepend=-1) > 0
-        return Schedule(begins, ends, (edges[stretch] + edges[stretch + 1]) / 2, opens, np.append(0, reached))
+        within = (edges[stretch] + edges[stretch + 1]) / 2
+        return Schedule(begins, ends, within, opens.astype(np.int64), np.append(0, reached))
 
     def _run(
         self,
@@ -148,23 +164,29 @@ class Collocation(Integrator):
         logged: bool,
     ) -> Run:
         rule = make_rule(self.degree, self.gauss_points)
-        model, dual, width = lowered.real, lowered.dual, len(start.x)
-        walk = prepare(problem, rule, model, dual, len(tilted))
+        model, dual, width = lowered.real.need("rates"), lowered.dual.need("rates"), len(start.x)
+        calls = model.call(), dual.call()
+        linear = not any(kind.takes_reactions for kind in lowered.data)
+        walk = prepare(problem, rule, *calls, len(tilted), linear)
         for own, given in zip((*walk.old, *walk.dold), (*start, *dstart), strict=True):
             own[:] = given
-        along = stack([entry.dual for entry in tilted], dual)
-        directions = stack([*[dual] * len(walk.c), *(entry.dual for entry in tilted)], dual)
+        along = addresses(entry.dual.need("rates") for entry in tilted)
+        directions = np.append(np.full(len(walk.c), dual.address), along)
         shape = len(problem.times), width
         out, dout = resting(*shape), resting(len(tilted), *shape)
         room = len(schedule.begins) if logged else 0
         log = Log(np.zeros(4, dtype=np.int64), np.zeros(room, dtype=np.int64), np.zeros(room))
+        work = descent(problem, walk)
         if isinstance(self.minimiser, GaussNewton):
             status, time, worst = march(
-                problem, rule, self.minimiser.iterations, model, dual, directions, along, schedule, walk, out, dout, log
-            )
+                problem, rule, self.minimiser.iterations, model.address, dual.address, directions, along, schedule,
+                walk, out, dout, log, work,
+            )  # fmt: skip
         else:
-            search = Search(self.minimiser, self.seed, problem, rule, model, dual, directions, schedule, walk)
-            status, time, worst = _search(search, along, out, dout, log)
+            search = Search(
+                self.minimiser, self.seed, problem, rule, model.address, dual.address, directions, schedule, walk
+            )
+            status, time, worst = _search(search, along, out, dout, log, work)
         reason = None
         if status != DONE:
             reason = explain(lowered, int(status), float(time), int(worst), f"the step is {self.step:g} s")
@@ -172,23 +194,25 @@ class Collocation(Integrator):
         return Run(reason, problem.times, out, dout, log.counts, log.iterations[:taken], log.ends[:taken])
 
 
-def _search(search: Search, along: object, out: Motion, dout: Motion, log: Log) -> tuple[int, float, int]:
+def _search(
+    search: Search, along: np.ndarray, out: Motions, dout: Histories, log: Log, room: Descent
+) -> tuple[int, float, int]:
     """All steps by a minimiser of the package: status, time reached, the coordinate to blame."""
     problem, rule, model, dual = search.problem, search.rule, search.model, search.dual
     schedule, walk = search.schedule, search.walk
-    for number, t in enumerate(schedule.begins):
-        taken, worst = 0, 0
-        status = begin(problem, rule, model, dual, along, schedule, number, walk)
+    for number in range(len(schedule.begins)):
+        step, taken, worst = step_of(schedule, number), 0, 0
+        status = begin(problem, rule, model, dual, along, step, walk)
         if status == DONE:
             status, taken, worst = search(number)
         if status == DONE and len(walk.dc):
-            regular = respond(problem, rule, model, dual, search.directions, schedule, number, walk)
+            regular = respond(problem, rule, model, dual, search.directions, step, walk, room)
             status = DONE if regular else SINGULAR
         if status == DONE:
-            status = finish(problem, rule, model, dual, along, schedule, number, walk, out, dout)
+            status = finish(problem, rule, model, dual, along, step, walk, out, dout)
         if status != DONE:
-            return status, t, worst
+            return status, step.begin, worst
         log.counts[:2] += 1, taken
         if number < len(log.iterations):
-            log.iterations[number], log.ends[number] = taken, schedule.ends[number]
+            log.iterations[number], log.ends[number] = taken, step.end
     return DONE, schedule.ends[-1], 0

@@ -1,30 +1,54 @@
 """Gauss and Newton's minimisation of what remains in a collocation step, and the derivatives of its minimum."""
 
+from typing import NamedTuple
+
 import numpy as np
 
-from dalembert.multibody.integrators.collocation_step import begin, finish, measure
-from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR
-from dalembert.multibody.kernels.compiled import compiled, template
-from dalembert.multibody.kernels.linear import Layout, factorise, solve, storage
-from dalembert.multibody.kernels.vector import LANES
+from dalembert.kernels.kernel import inner, kernel
+from dalembert.kernels.words import Address, Integers, Reals, Reals2
+from dalembert.multibody.integrators.collocation_gap import measure
+from dalembert.multibody.integrators.collocation_rule import Rule
+from dalembert.multibody.integrators.collocation_step import Schedule, Step, Walk, begin, finish, step_of
+from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR, Log, Problem
+from dalembert.multibody.kernels.linear import Factors, factorise, resized, solve, storage
+from dalembert.multibody.kernels.motion import Histories, Motions
 
 _ROUNDING = 1e-15  # change of a coordinate over the step, against its scale, that is none
 _COARSE = 1e-6  # the same, after the last iteration, that is too much
 _DIFFERENCE = 1e-5  # the same, for differences of the derivatives
 
 
-@template
-def _normal(problem, size):
-    """Layout of a dense matrix of that size."""
-    whole = problem.exact_layout
-    return Layout(whole.kind, size, whole.reach, -(-size // LANES) * LANES, whole.order)
+class Descent(NamedTuple):
+    """Normal equations of a step: the matrix, right sides (1 + directions, u count), a solution, and the gaps kept.
+
+    ``respond``: address of the kernel for the derivatives of the minimum, 0 if there are none.
+    """
+
+    normal: Factors
+    right: Reals2
+    change: Reals
+    remaining: Reals2
+    respond: Address
 
 
-@compiled
+def descent(problem: Problem, walk: Walk) -> Descent:
+    """Room for the normal equations of a run."""
+    directions, unknowns = walk.dc.shape
+    along = respond.address if directions else 0
+    return Descent(
+        storage(resized(problem.exact_layout, unknowns)), np.zeros((1 + directions, unknowns)), np.zeros(unknowns),
+        np.zeros(walk.gaps.shape), along,
+    )  # fmt: skip
+
+
+@inner
 def _square(n, rule, gaps, slopes, unknowns, count, matrix, lead, right):
     """Normal matrix, by columns, of the weighted squares, the gaps' and the other slopes' products with them."""
-    matrix[:] = 0.0
-    right[:] = 0.0
+    for i in range(len(matrix)):
+        matrix[i] = 0.0
+    for j in range(len(right)):
+        for k in range(unknowns):
+            right[j, k] = 0.0
     for s in range(len(rule.nodes)):
         for k in range(unknowns):
             for j in range(count):
@@ -41,19 +65,20 @@ def _square(n, rule, gaps, slopes, unknowns, count, matrix, lead, right):
             right[0, k] += rule.weights[s] * product
 
 
-@template
-def descend(problem, rule, iterations, model, dual, directions, schedule, number, walk):
+@kernel
+def descend(
+    problem: Problem, rule: Rule, iterations: int, model: Address, dual: Address, directions: Integers, step: Step,
+    walk: Walk, room: Descent,
+) -> tuple[int, int, int]:  # fmt: skip
     """Gauss and Newton's iterations: status, how many they were, and the coordinate that moved most."""
     n, own, unknowns = problem.n, walk.partition, len(walk.c)
-    layout = _normal(problem, unknowns)
-    normal = storage(layout)
-    right, change = np.zeros((1, unknowns)), np.zeros(unknowns)
-    h = schedule.ends[number] - schedule.begins[number]
+    layout, normal, right, change = resized(problem.exact_layout, unknowns), room.normal, room.right, room.change
+    h = step.end - step.begin
     rank = own.rank[0]
     largest, worst = 0.0, 0
     for iteration in range(1, iterations + 1):
         for s in range(len(rule.nodes)):
-            if not measure(problem, rule, model, dual, directions, schedule, number, walk, walk.dpoint, s):
+            if not measure(problem, rule, model, dual, directions, step, walk, False, s):
                 return NEWTON_FAILED, iteration, worst
         _square(n, rule, walk.gaps, walk.slopes, unknowns, unknowns, normal.matrix, layout.lead, right)
         if not factorise(layout, normal):
@@ -62,7 +87,7 @@ def descend(problem, rule, iterations, model, dual, directions, schedule, number
         largest = 0.0
         for k in range(unknowns):
             walk.c[k] -= change[k]
-            column = own.columns[rank + k % (n - rank)]
+            column = int(own.columns[rank + k % (n - rank)])
             moved = h * h * abs(change[k]) / problem.scale[column]
             if largest == largest and not moved <= largest:
                 largest, worst = moved, column
@@ -71,26 +96,29 @@ def descend(problem, rule, iterations, model, dual, directions, schedule, number
     return (DONE if largest <= _COARSE else NEWTON_FAILED), iteration, worst
 
 
-@template
-def respond(problem, rule, model, dual, directions, schedule, number, walk):
+@kernel
+def respond(
+    problem: Problem, rule: Rule, model: Address, dual: Address, directions: Integers, step: Step,
+    walk: Walk, room: Descent,
+) -> bool:  # fmt: skip
     """Derivatives of the minimum along the directions, by the derivative of its gradient.
 
     The first derivatives of what remains are exact. Its second ones, which stand beside what remains at the minimum,
     are central differences of the exact first ones; where the polynomial can satisfy the equations at all Gauss points
     nothing remains, and none are needed. Whether the minimum is regular.
     """
-    n, own, unknowns = problem.n, walk.partition, len(walk.c)
+    n, own, unknowns, count = problem.n, walk.partition, len(walk.c), walk.slopes.shape[1]
+    layout, normal, right, change = resized(problem.exact_layout, unknowns), room.normal, room.right, room.change
     for s in range(len(rule.nodes)):
-        if not measure(problem, rule, model, dual, directions, schedule, number, walk, walk.dall, s):
+        if not measure(problem, rule, model, dual, directions, step, walk, True, s):
             return False
-    count = walk.slopes.shape[1]
-    layout = _normal(problem, unknowns)
-    normal = storage(layout)
-    right, change = np.zeros((1 + count - unknowns, unknowns)), np.zeros(unknowns)
     _square(n, rule, walk.gaps, walk.slopes, unknowns, count, normal.matrix, layout.lead, right)
     if len(rule.nodes) > len(rule.powers):
-        remaining = walk.gaps.copy()
-        h = schedule.ends[number] - schedule.begins[number]
+        remaining = room.remaining
+        for s in range(len(rule.nodes)):
+            for i in range(n):
+                remaining[s, i] = walk.gaps[s, i]
+        h = step.end - step.begin
         rank = own.rank[0]
         for k in range(unknowns):
             here = walk.c[k]
@@ -98,7 +126,7 @@ def respond(problem, rule, model, dual, directions, schedule, number, walk):
             for side in range(2):
                 walk.c[k] = here + (2 * side - 1) * push
                 for s in range(len(rule.nodes)):
-                    if not measure(problem, rule, model, dual, directions, schedule, number, walk, walk.dall, s):
+                    if not measure(problem, rule, model, dual, directions, step, walk, True, s):
                         return False
                     for j in range(count):
                         product = 0.0
@@ -119,30 +147,34 @@ def respond(problem, rule, model, dual, directions, schedule, number, walk):
     return True
 
 
-@compiled
-def march(problem, rule, most, model, dual, directions, tilted, schedule, walk, out, dout, log):
+_respond_at = respond.at
+
+
+@kernel
+def march(
+    problem: Problem, rule: Rule, most: int, model: Address, dual: Address, directions: Integers, tilted: Integers,
+    schedule: Schedule, walk: Walk, out: Motions, dout: Histories, log: Log, room: Descent,
+) -> tuple[int, float, int]:  # fmt: skip
     """All steps by at most so many iterations: status, time reached, the coordinate that moved most."""
     for number in range(len(schedule.begins)):
-        t, taken, worst = schedule.begins[number], 0, 0
+        step, taken, worst = step_of(schedule, number), 0, 0
         for _ in range(2):  # from extrapolated accelerations; where that fails, from those at the step's beginning
-            status = begin(problem, rule, model, dual, tilted, schedule, number, walk)
+            status = begin(problem, rule, model, dual, tilted, step, walk)
             if status == DONE:
-                status, iterations, worst = descend(
-                    problem, rule, most, model, dual, directions, schedule, number, walk
-                )  # fmt: skip
+                status, iterations, worst = descend(problem, rule, most, model, dual, directions, step, walk, room)
                 taken += iterations
             if status == DONE:
                 break
             walk.chosen[1] = 0.0
         if status == DONE and len(walk.dc) > 0:
-            if not respond(problem, rule, model, dual, directions, schedule, number, walk):
+            if not _respond_at(room.respond, problem, rule, model, dual, directions, step, walk, room):
                 status = SINGULAR
         if status == DONE:
-            status = finish(problem, rule, model, dual, tilted, schedule, number, walk, out, dout)
+            status = finish(problem, rule, model, dual, tilted, step, walk, out, dout)
         if status != DONE:
-            return status, t, worst
+            return status, step.begin, worst
         log.counts[0] += 1
         log.counts[1] += taken
         if number < len(log.iterations):
-            log.iterations[number], log.ends[number] = taken, schedule.ends[number]
+            log.iterations[number], log.ends[number] = taken, step.end
     return DONE, schedule.ends[-1], 0

@@ -6,6 +6,8 @@ import numpy as np
 from numpy.polynomial import polynomial
 from numpy.polynomial.legendre import leggauss
 
+from dalembert.kernels.words import Reals, Reals2, Reals3
+
 
 class Rule(NamedTuple):
     """Of a polynomial u(s) with u, u' given at s = 0, and the accelerations c_k at ``count`` points, 0 <= s <= 1.
@@ -16,11 +18,11 @@ class Rule(NamedTuple):
     this one and the one at its end.
     """
 
-    nodes: np.ndarray
-    weights: np.ndarray
-    powers: np.ndarray
-    shapes: np.ndarray
-    ahead: np.ndarray
+    nodes: Reals
+    weights: Reals
+    powers: Reals2
+    shapes: Reals3
+    ahead: Reals2
 
 
 def make_rule(degree: int, gauss_points: int) -> Rule:

@@ -5,13 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from dalembert.errors import DalembertError
+from dalembert.multibody.integrators.collocation_gap import measure
 from dalembert.multibody.integrators.collocation_rule import Rule
-from dalembert.multibody.integrators.collocation_step import Schedule, Walk, measure
-from dalembert.multibody.integrators.collocation_swarm import Kept, keep, squares
+from dalembert.multibody.integrators.collocation_step import Schedule, Step, Walk, step_of
+from dalembert.multibody.integrators.collocation_swarm import Kept, keep, kept_room, squares
 from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, Problem
-from dalembert.multibody.integrators.run import resting
-from dalembert.multibody.kernels.model import Model
-from dalembert.multibody.kernels.motion import Motion
 from dalembert.optimize import Firefly, Minimiser, Squares, Swarm
 
 _WIDE = 2.0  # half the box, against what remains at its middle: where that falls evenly the minimum lies at one half
@@ -24,25 +22,26 @@ class Search:
     """Minimises what remains in the steps of one run.
 
     The box lies around the prediction: twice what remains there of each independent coordinate's acceleration.
+    ``model`` and ``dual`` are addresses, ``directions`` an array of addresses.
     """
 
     minimiser: Squares | Firefly | Swarm | Minimiser
     seed: int
     problem: Problem
     rule: Rule
-    model: Model
-    dual: Model
-    directions: Model
+    model: int
+    dual: int
+    directions: np.ndarray
     schedule: Schedule
     walk: Walk
 
     def __call__(self, number: int) -> tuple[int, int, int]:
         """Find the accelerations of a step, into ``walk.c``: status, iterations, the coordinate to blame."""
-        walk = self.walk
+        walk, step = self.walk, step_of(self.schedule, number)
         rank = int(walk.partition.rank[0])
         if not len(walk.c):
             return DONE, 0, 0
-        kept = self.kept(number)
+        kept = self.kept(step)
         own = walk.partition.columns[rank : self.problem.n]
         worst = int(own[0])
         if kept is None:
@@ -54,16 +53,14 @@ class Search:
         corner = np.ones(len(middle))
         try:
             if isinstance(self.minimiser, Squares):
-                residual, jacobian = self._squares(number, middle, half)
+                residual, jacobian = self._squares(step, middle, half)
                 found = self.minimiser.minimise(residual, jacobian, -corner, corner, 0.0 * corner)
             else:
 
                 def objective(places: np.ndarray) -> np.ndarray:
                     fitness = np.zeros(len(places))
                     trials = middle + half * places
-                    squares(
-                        self.problem, self.rule, self.model, self.schedule, number, walk, kept, trials, fitness
-                    )  # fmt: skip
+                    squares(self.problem, self.rule, self.model, step, walk, kept, trials, fitness)
                     return fitness
 
                 seed = int(np.random.SeedSequence((self.seed, number)).generate_state(1)[0])
@@ -73,45 +70,28 @@ class Search:
         walk.c[:] = middle + half * found.x
         return (DONE if np.isfinite(found.fitness) else NEWTON_FAILED), found.iterations, worst
 
-    def kept(self, number: int) -> Kept | None:
+    def kept(self, step: Step) -> Kept | None:
         """States of the Gauss points at the prediction."""
-        walk, points = self.walk, len(self.rule.nodes)
-        width = walk.points.x.shape[1]
-        kept = Kept(
-            walk.c.copy(),
-            resting(points, width),
-            resting(points * len(walk.c), width),
-            np.zeros((points, len(walk.partition.dependent.matrix))),
-            np.zeros((points, len(walk.exact.matrix))),
-        )
-        for s in range(points):
-            if not self._measure(number, walk.dpoint, s):
+        walk = self.walk
+        kept = kept_room(walk)
+        for s in range(len(self.rule.nodes)):
+            if not self._measure(step, s):
                 return None
             keep(walk, kept, s)
         return kept
 
-    def _measure(self, number: int, dstates: Motion, s: int) -> bool:
-        return measure(
-            self.problem,
-            self.rule,
-            self.model,
-            self.dual,
-            self.directions,
-            self.schedule,
-            number,
-            self.walk,
-            dstates,
-            s,
-        )
+    def _measure(self, step: Step, s: int) -> bool:
+        """What remains at a Gauss point, with its derivatives by the unknown accelerations."""
+        return measure(self.problem, self.rule, self.model, self.dual, self.directions, step, self.walk, False, s)
 
-    def _squares(self, number: int, middle: np.ndarray, half: np.ndarray) -> tuple:
+    def _squares(self, step: Step, middle: np.ndarray, half: np.ndarray) -> tuple:
         """What remains and its derivatives, in the coordinates of the box."""
         walk, n = self.walk, self.problem.n
         roots = np.sqrt(self.rule.weights)
 
         def residual(place: np.ndarray) -> np.ndarray:
             walk.c[:] = middle + half * place
-            solved = [self._measure(number, walk.dpoint, s) for s in range(len(roots))]
+            solved = [self._measure(step, s) for s in range(len(roots))]
             return (roots[:, None] * walk.gaps[:, :n]).ravel() if all(solved) else np.full(len(roots) * n, np.nan)
 
         def jacobian(place: np.ndarray) -> np.ndarray:

@@ -8,15 +8,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dalembert.multibody.integrators.collocation_step import place
-from dalembert.multibody.integrators.lifting import set_signals
+from dalembert.kernels.kernel import inlined, inner, kernel
+from dalembert.kernels.words import Address, Reals, Reals2
+from dalembert.multibody.integrators.collocation_rule import Rule
+from dalembert.multibody.integrators.collocation_step import Step, Walk, place
 from dalembert.multibody.integrators.partitioning import ACCELERATION, POSITION, VELOCITY
-from dalembert.multibody.kernels import joints
-from dalembert.multibody.kernels.assembly import gather, residual_here
-from dalembert.multibody.kernels.compiled import compiled, inlined, kernel
-from dalembert.multibody.kernels.linear import Factors, Layout, solve
-from dalembert.multibody.kernels.motion import Motion, copy, row, still
-from dalembert.multibody.kernels.vector import LANES
+from dalembert.multibody.integrators.problem import Problem
+from dalembert.multibody.kernels.assembly import constraint_forces, constraint_rates, residual, set_signals
+from dalembert.multibody.kernels.linear import Factors, resized, solve
+from dalembert.multibody.kernels.motion import Motion, Motions, copy, resting, row
 
 _MOST_ITERATIONS = 20
 _CLOSED = 1e-13  # correction to come, against the size of what it corrects, that is none: far below what remains
@@ -27,32 +27,46 @@ class Kept(NamedTuple):
     """Of the prediction: its accelerations, and of each Gauss point there the state, its derivatives by them, inverses.
 
     ``points`` (g, N + 1) and ``slopes`` (g unknowns, N + 1): ``a`` by the polynomial, ``w`` by the equations of motion.
+    ``trial``: the state of a trial; ``vectors``: gaps, changes and what is not needed, (3, N + 1).
     """
 
-    middle: np.ndarray
-    points: Motion
-    slopes: Motion
-    dependent: np.ndarray
-    exact: np.ndarray
+    middle: Reals
+    points: Motions
+    slopes: Motions
+    dependent: Reals2
+    exact: Reals2
+    trial: Motion
+    vectors: Reals2
 
 
-@compiled
-def keep(walk, kept, s):
+def kept_room(walk: Walk) -> Kept:
+    """Room for what is kept of the prediction that ``walk`` holds."""
+    (points, width), unknowns = walk.gaps.shape, len(walk.c)
+    return Kept(
+        walk.c.copy(),
+        resting(points, width),
+        resting(points * unknowns, width),
+        np.zeros((points, len(walk.partition.dependent.matrix))),
+        np.zeros((points, len(walk.consistency.exact.matrix))),
+        resting(width),
+        np.zeros((3, width)),
+    )
+
+
+def keep(walk: Walk, kept: Kept, s: int) -> None:
     """Keep what was measured at a Gauss point."""
-    base, unknowns = row(kept.points, s), len(walk.c)
-    copy(row(walk.points, s), base)
-    for i in range(len(base.x)):
-        base.a[i] += walk.gaps[s, i]
-        for k in range(unknowns):
-            slope = row(kept.slopes, s * unknowns + k)
-            slope.x[i], slope.v[i] = walk.dpoint.x[k, i], walk.dpoint.v[k, i]
-            slope.w[i] = walk.dpoint.a[k, i]
-            slope.a[i] = slope.w[i] + walk.slopes[s, k, i]
+    unknowns = len(walk.c)
+    own = slice(s * unknowns, (s + 1) * unknowns)
+    for target, source in zip(kept.points, walk.points, strict=True):
+        target[s] = source[s]
+    kept.points.a[s] += walk.gaps[s]
+    kept.slopes.x[own], kept.slopes.v[own], kept.slopes.w[own] = walk.dpoint.x, walk.dpoint.v, walk.dpoint.a
+    kept.slopes.a[own] = walk.dpoint.a + walk.slopes[s, :unknowns]
     kept.dependent[s] = walk.partition.dependent.matrix
-    kept.exact[s] = walk.exact.matrix
+    kept.exact[s] = walk.consistency.exact.matrix
 
 
-@kernel
+@inner
 def _start(base, kept, s, trial, state):
     """State of a trial, to first order."""
     copy(base, state)
@@ -65,19 +79,17 @@ def _start(base, kept, s, trial, state):
             state.w[i] += change * kept.slopes.w[own, i]
 
 
-@inlined
-def _fill_gap(block, callbacks, n, level, x, v, a, work, gap):
+@inner
+def _fill_gap(model, n, level, x, v, a, work, gap, spare):
     """The constraints, or their first or second rates, into the entries of ``gap`` from n on."""
-    for e in range(len(block.index)):
-        gather(block.index, e, joints.WIDTH, x, v, a, work)
-        first = joints.MULTIPLIERS
-        if level == POSITION:
-            joints.residual(work.x, work.v, work.a, work.signals, callbacks, block.data, block.meta, e, work.r)
-        else:
-            first = 3 if level == ACCELERATION else 0
-            joints.rates(work.x, work.v, work.a, work.signals, block.data, block.meta, e, work.r)
-        for i in range(3):
-            gap[block.index[e, joints.MULTIPLIERS + i]] = work.r[first + i]
+    if level == POSITION:
+        for i in range(len(gap)):
+            gap[i] = 0.0
+        constraint_forces(model, x, v, a, work, gap)
+    elif level == VELOCITY:
+        constraint_rates(model, n, x, v, a, work, gap, spare)
+    else:
+        constraint_rates(model, n, x, v, a, work, spare, gap)
 
 
 @inlined
@@ -96,12 +108,12 @@ def _judge(iteration, largest, before):
     return 0
 
 
-@kernel
-def _follow(block, callbacks, n, scale, partition, layout, inverse, level, state, values, work, gap, change):
+@inner
+def _follow(model, n, scale, partition, layout, inverse, level, state, values, work, gap, change, spare):
     """Dependent entries of a level, with a kept inverse; whether they were found."""
     before = 1.0
     for iteration in range(_MOST_ITERATIONS):
-        _fill_gap(block, callbacks, n, level, state.x, state.v, state.a, work, gap)
+        _fill_gap(model, n, level, state.x, state.v, state.a, work, gap, spare)
         for i in range(layout.size):
             change[i] = gap[n + partition.rows[i]]
         solve(layout, inverse, change, gap)
@@ -119,13 +131,13 @@ def _follow(block, callbacks, n, scale, partition, layout, inverse, level, state
     return False
 
 
-@inlined
-def _drive(problem, model, inverse, state, work, gap, change):
+@inner
+def _drive(problem, model, inverse, state, work, gap, change, spare):
     """Accelerations ``w`` and multipliers that satisfy the equations, with a kept inverse; whether they were found."""
     n, last, before = problem.n, len(state.x) - 1, 1.0
     for iteration in range(_MOST_ITERATIONS):
-        residual_here(model, n, state.x, state.v, state.w, work, 1.0, gap)
-        _fill_gap(model.joints, model.callbacks, n, ACCELERATION, state.x, state.v, state.w, work, gap)
+        residual(model, n, state.x, state.v, state.w, work, 1.0, gap)
+        constraint_rates(model, n, state.x, state.v, state.w, work, spare, gap)
         solve(problem.exact_layout, inverse, gap, change)
         largest, size = 0.0, 0.0
         for i in range(n):
@@ -143,40 +155,43 @@ def _drive(problem, model, inverse, state, work, gap, change):
     return False
 
 
-@kernel
-def _solve(problem, model, partition, layout, dependent, exact, state, work, gap, change):
+@inner
+def _solve(problem, model, partition, layout, dependent, exact, state, work, gap, change, spare):
     """Dependent entries of all levels, and the accelerations ``w``; whether they were found."""
-    n, scale, block, callbacks = problem.n, problem.scale, model.joints, model.callbacks
+    n, scale = problem.n, problem.scale
     for level in range(POSITION, ACCELERATION + 1):
         values = state.x if level == POSITION else (state.v if level == VELOCITY else state.a)
         if not _follow(
-            block, callbacks, n, scale, partition, layout, dependent, level, state, values, work, gap, change
-        ):
+            model, n, scale, partition, layout, dependent, level, state, values, work, gap, change, spare
+        ):  # fmt: skip
             return False
-    return _drive(problem, model, exact, state, work, gap, change)
+    return _drive(problem, model, exact, state, work, gap, change, spare)
 
 
-@compiled
-def squares(problem, rule, model, schedule, number, walk, kept, trials, fitness):
+@kernel
+def squares(
+    problem: Problem, rule: Rule, model: Address, step: Step, walk: Walk, kept: Kept,
+    trials: Reals2, fitness: Reals,
+) -> None:  # fmt: skip
     """Weighted squares of what remains, (trials,), of accelerations (trials, unknowns); infinite where not found."""
-    n, own, whole = problem.n, walk.partition, problem.exact_layout
-    layout = Layout(whole.kind, own.rank[0], whole.reach, -(-own.rank[0] // LANES) * LANES, whole.order)
-    state, width = still(len(problem.scale)), len(problem.scale)
-    gap, change = np.zeros(width), np.zeros(width)
-    h = schedule.ends[number] - schedule.begins[number]
-    fitness[:] = 0.0
+    n, own, c, state = problem.n, walk.partition, walk.consistency, kept.trial
+    gap, change, spare = kept.vectors[0], kept.vectors[1], kept.vectors[2]
+    layout, columns = resized(problem.exact_layout, own.rank[0]), own.columns[own.rank[0] : n]
+    h = step.end - step.begin
+    for b in range(len(trials)):
+        fitness[b] = 0.0
     for s in range(len(rule.nodes)):
-        t = schedule.begins[number] + rule.nodes[s] * h
-        set_signals(model, t, schedule.within[number], walk.work)
+        t = step.begin + rule.nodes[s] * h
+        set_signals(model, t, step.within, c.work)
         base = row(kept.points, s)
         dependent = Factors(kept.dependent[s], own.dependent.pivots, own.dependent.tops, own.dependent.buffer)
-        exact = Factors(kept.exact[s], walk.exact.pivots, walk.exact.tops, walk.exact.buffer)
+        exact = Factors(kept.exact[s], c.exact.pivots, c.exact.tops, c.exact.buffer)
         for b in range(len(trials)):
             if not fitness[b] < np.inf:
                 continue
             _start(base, kept, s, trials[b], state)
-            place(n, own, h, rule.nodes[s], rule.shapes[s], walk.old, trials[b], state)
-            if _solve(problem, model, own, layout, dependent, exact, state, walk.work, gap, change):
+            place(columns, h, rule.nodes[s], rule.shapes[s], walk.old, trials[b], state)
+            if _solve(problem, model, own, layout, dependent, exact, state, c.work, gap, change, spare):
                 total = 0.0
                 for i in range(n):
                     total += (state.a[i] - state.w[i]) ** 2

@@ -1,92 +1,144 @@
 """States that satisfy the equations of motion and the constraints at the levels of velocity and acceleration."""
 
+from typing import NamedTuple
+
 import numpy as np
 
-from dalembert.multibody.integrators.lifting import lift, set_signals
-from dalembert.multibody.kernels.assembly import constraint_rates, residual, tangent
-from dalembert.multibody.kernels.compiled import compiled, template
+from dalembert.kernels.kernel import inlined, inner, kernel
+from dalembert.kernels.words import Address, Complexes2, Integers, Reals, Reals2
+from dalembert.multibody.integrators.lifting import lift
+from dalembert.multibody.integrators.problem import Problem
+from dalembert.multibody.kernels.assembly import constraint_rates, residual, set_signals, tangent
 from dalembert.multibody.kernels.dual import STEP
-from dalembert.multibody.kernels.linear import factorise, solve
-from dalembert.multibody.kernels.model import select
-from dalembert.multibody.kernels.motion import row, subtract
+from dalembert.multibody.kernels.linear import Factors, factorise, solve, storage
+from dalembert.multibody.kernels.motion import Motion, Motions, row, subtract
 
 
-@template
-def _initial_matrix(problem, dual, state, dual_work, constraints, exact):
+class Consistency(NamedTuple):
+    """Work of consistent accelerations: calls in real and in complex numbers, a matrix, and vectors.
+
+    ``along``: address of the kernel for the derivatives, 0 if there are none.
+    """
+
+    work: Address
+    dual_work: Address
+    exact: Factors
+    constraints: Reals
+    vectors: Reals2
+    lifted: Complexes2
+    along: Address
+
+
+def consistency(problem: Problem, work: int, dual_work: int, directions: int) -> Consistency:
+    """Room for consistent accelerations."""
+    exact, width = storage(problem.exact_layout), problem.exact_layout.size + 1
+    along = accelerate_along.address if directions else 0
+    constraints, vectors = np.zeros(len(exact.matrix)), np.zeros((5, width))
+    return Consistency(work, dual_work, exact, constraints, vectors, np.zeros((7, width), complex), along)
+
+
+@inlined
+def _initial_matrix(problem, dual, state, c):
     """Factorised matrix of motion beside the constraints at acceleration level; whether it is regular."""
-    arguments = (dual, problem.exact_slots, problem.n, state.x, state.v, state.a)
-    tangent(*arguments, (1.0, 0.0, 0.0), (0.0, 1.0), dual_work, constraints)
-    tangent(*arguments, (0.0, 0.0, 1.0), (1.0, 0.0), dual_work, exact.matrix)
-    for i in range(len(constraints)):
-        exact.matrix[i] += constraints[i]
-    return factorise(problem.exact_layout, exact)
+    slots, n = problem.exact_slots, problem.n
+    tangent(dual, slots, n, state.x, state.v, state.a, (1.0, 0.0, 0.0), (0.0, 1.0), c.dual_work, c.constraints)
+    tangent(dual, slots, n, state.x, state.v, state.a, (0.0, 0.0, 1.0), (1.0, 0.0), c.dual_work, c.exact.matrix)
+    for i in range(len(c.constraints)):
+        c.exact.matrix[i] += c.constraints[i]
+    return factorise(problem.exact_layout, c.exact)
 
 
-@compiled
-def accelerate(problem, model, dual, directions, t, within, state, dstates, work, dual_work, lifted, exact):
+@kernel
+def accelerate(
+    problem: Problem, model: Address, dual: Address, directions: Integers, t: float, within: float, state: Motion,
+    dstates: Motions, c: Consistency,
+) -> bool:  # fmt: skip
     """Accelerations and multipliers that satisfy the equations of motion, and their derivatives.
 
-    Where the problem says so, the velocities are first moved onto the constraints, by the smallest kinetic energy.
+    Where the problem says so, the velocities are first moved onto the constraints, by the smallest kinetic energy:
+    v - w with M w + J^T m = 0 and J w = rate of the constraints.
     """
     n, last = problem.n, len(state.x) - 1
-    delta, answer, rate, second = np.zeros(last + 1), np.zeros(last + 1), np.zeros(last + 1), np.zeros(last + 1)
-    constraints = np.zeros(len(exact.matrix))
-    set_signals(model, t, within, work)
-    set_signals(dual, t, within, dual_work)
+    delta, answer, rate, second, w = c.vectors[0], c.vectors[1], c.vectors[2], c.vectors[3], c.vectors[4]
+    set_signals(model, t, within, c.work)
+    set_signals(dual, t, within, c.dual_work)
     for iteration in range(6):  # linear but for friction that depends on the multipliers
         # The last correction is rounding: the derivatives below are taken with the matrix of the state that it leaves.
-        if iteration < 5 and not _initial_matrix(problem, dual, state, dual_work, constraints, exact):
+        if iteration < 5 and not _initial_matrix(problem, dual, state, c):
             return False
         if iteration == 0 and problem.projected:
-            _project(problem, model, directions, t, within, state, dstates, work, dual_work, lifted, exact)
-        residual(model, n, state.x, state.v, state.a, work, 1.0, delta)
-        constraint_rates(model, n, state.x, state.v, state.a, work, rate, second)
+            for i in range(last + 1):
+                rate[i] = 0.0
+            constraint_rates(model, n, state.x, state.v, state.a, c.work, rate, second)
+            for i in range(n):
+                rate[i] = 0.0
+            solve(problem.exact_layout, c.exact, rate, w)
+            for i in range(n):
+                state.v[i] -= w[i]
+            if len(directions) > 0:
+                _along_at(c.along, problem, directions, t, within, state, dstates, c, True)
+        residual(model, n, state.x, state.v, state.a, c.work, 1.0, delta)
+        constraint_rates(model, n, state.x, state.v, state.a, c.work, rate, second)
         for i in range(n, last):
             delta[i] = second[i]
-        solve(problem.exact_layout, exact, delta, answer)
+        solve(problem.exact_layout, c.exact, delta, answer)
         subtract(n, answer, state)
-    r, drate, dsecond = lifted[3], lifted[4], lifted[5]
-    for d in range(len(dstates.x)):
-        tilted, dstate = select(directions, d), row(dstates, d)
-        set_signals(tilted, t, within, dual_work)
-        lift(n, state, dstate, lifted)
-        residual(tilted, n, lifted[0], lifted[1], lifted[2], dual_work, 1.0, r)
-        constraint_rates(tilted, n, lifted[0], lifted[1], lifted[2], dual_work, drate, dsecond)
-        for i in range(last):
-            delta[i] = (r[i].imag if i < n else dsecond[i].imag) / STEP
-        solve(problem.exact_layout, exact, delta, answer)
-        subtract(n, answer, dstate)
+    if len(directions) > 0:
+        _along_at(c.along, problem, directions, t, within, state, dstates, c, False)
     return True
 
 
-@template
-def _project(problem, model, directions, t, within, state, dstates, work, dual_work, lifted, exact):
-    """Velocities on the constraints, v - w with M w + J^T m = 0 and J w = rate of the constraints, and derivatives."""
-    n, last = problem.n, len(state.x) - 1
-    w, answer, rate, second = np.zeros(last + 1), np.zeros(last + 1), np.zeros(last + 1), np.zeros(last + 1)
-    constraint_rates(model, n, state.x, state.v, state.a, work, rate, second)
-    solve(problem.exact_layout, exact, rate, w)
-    for i in range(n):
-        state.v[i] -= w[i]
+@kernel
+def accelerate_along(
+    problem: Problem, directions: Integers, t: float, within: float, state: Motion, dstates: Motions, c: Consistency,
+    projects: bool,
+) -> None:  # fmt: skip
+    """Derivatives of consistent accelerations, or (``projects``) of the projected velocities, along all directions."""
+    for d in range(len(directions)):
+        set_signals(directions[d], t, within, c.dual_work)
+        if projects:
+            _project_along(problem, directions[d], state, row(dstates, d), c)
+        else:
+            _accelerate_along(problem, directions[d], state, row(dstates, d), c)
+
+
+_along_at = accelerate_along.at
+
+
+@inner
+def _accelerate_along(problem, tilted, state, dstate, c):
+    n, last, lifted = problem.n, len(state.x) - 1, c.lifted
+    delta, answer, r, rates, seconds = c.vectors[0], c.vectors[1], lifted[3], lifted[4], lifted[5]
+    lift(n, state, dstate, lifted)
+    residual(tilted, n, lifted[0], lifted[1], lifted[2], c.dual_work, 1.0, r)
+    constraint_rates(tilted, n, lifted[0], lifted[1], lifted[2], c.dual_work, rates, seconds)
+    for i in range(last):
+        delta[i] = (r[i].imag if i < n else seconds[i].imag) / STEP
+    solve(problem.exact_layout, c.exact, delta, answer)
+    subtract(n, answer, dstate)
+
+
+@inner
+def _project_along(problem, tilted, state, dstate, c):
+    """The derivative of v - w, by the equations of the projection in complex numbers."""
+    n, last, lifted, w = problem.n, len(state.x) - 1, c.lifted, c.vectors[4]
+    answer, rate = c.vectors[1], c.vectors[2]
     forces, still, drate, dsecond = lifted[3], lifted[4], lifted[5], lifted[6]
-    for d in range(len(dstates.x)):
-        tilted, dstate = select(directions, d), row(dstates, d)
-        set_signals(tilted, t, within, dual_work)
-        lift(n, state, dstate, lifted)
-        constraint_rates(tilted, n, lifted[0], lifted[1], lifted[2], dual_work, drate, dsecond)
-        for i in range(last + 1):
-            lifted[1, i] = 0.0
-            lifted[2, i] = w[i] if i < n else 0.0
-            if i >= n:
-                lifted[0, i] = w[i]
-        residual(tilted, n, lifted[0], lifted[1], lifted[2], dual_work, 1.0, forces)
-        for i in range(last + 1):
-            lifted[2, i] = 0.0
-            if i >= n:
-                lifted[0, i] = 0.0
-        residual(tilted, n, lifted[0], lifted[1], lifted[2], dual_work, 1.0, still)
-        for i in range(last):
-            answer[i] = (forces[i].imag - still[i].imag if i < n else -drate[i].imag) / STEP
-        solve(problem.exact_layout, exact, answer, rate)
-        for i in range(n):
-            dstate.v[i] += rate[i]
+    lift(n, state, dstate, lifted)
+    constraint_rates(tilted, n, lifted[0], lifted[1], lifted[2], c.dual_work, drate, dsecond)
+    for i in range(last + 1):
+        lifted[1, i] = 0.0
+        lifted[2, i] = w[i] if i < n else 0.0
+        if i >= n:
+            lifted[0, i] = w[i]
+    residual(tilted, n, lifted[0], lifted[1], lifted[2], c.dual_work, 1.0, forces)
+    for i in range(last + 1):
+        lifted[2, i] = 0.0
+        if i >= n:
+            lifted[0, i] = 0.0
+    residual(tilted, n, lifted[0], lifted[1], lifted[2], c.dual_work, 1.0, still)
+    for i in range(last):
+        answer[i] = (forces[i].imag - still[i].imag if i < n else -drate[i].imag) / STEP
+    solve(problem.exact_layout, c.exact, answer, rate)
+    for i in range(n):
+        dstate.v[i] += rate[i]

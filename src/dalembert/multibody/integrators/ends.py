@@ -4,8 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dalembert.multibody.kernels.compiled import compiled, kernel
-from dalembert.multibody.kernels.motion import Motion
+from dalembert.kernels.kernel import inner
+from dalembert.kernels.words import Integers, Reals
+from dalembert.multibody.kernels.motion import Histories, Motion, Motions, resting, row, rows
 
 _SHORT = 0.3  # of the step: a step before it that is shorter gives no support to the polynomial
 
@@ -16,60 +17,47 @@ class Ends(NamedTuple):
     Only the last ``known[0]`` are filled; ``settled`` are those whose accelerations and multipliers are there.
     """
 
-    times: np.ndarray
-    states: Motion
-    derivatives: Motion
-    settled: np.ndarray
-    known: np.ndarray
+    times: Reals
+    states: Motions
+    derivatives: Histories
+    settled: Integers
+    known: Integers
 
 
-@compiled
-def ends(count, like):
+def ends(count: int, like: Motion) -> Ends:
     """Room for ``count`` ends, with derivatives as ``like`` (directions, N + 1)."""
     directions, width = like.x.shape
-    shape, derivatives = (count, width), (directions, count, width)
+    states, derivatives = resting(count, width), resting(directions, count, width)
     return Ends(
-        np.zeros(count),
-        Motion(np.zeros(shape), np.zeros(shape), np.zeros(shape), np.zeros(shape)),
-        Motion(np.zeros(derivatives), np.zeros(derivatives), np.zeros(derivatives), np.zeros(derivatives)),
-        np.zeros(count, np.bool_),
-        np.zeros(1, np.int64),
+        np.zeros(count), Motions(*states), Histories(*derivatives), np.zeros(count, np.int64), np.zeros(1, np.int64)
     )
 
 
-@kernel
-def _shift(array):
-    """Each row takes the place of the one before."""
-    for j in range(len(array) - 1):
-        for k in range(array.shape[1]):
-            array[j, k] = array[j + 1, k]
+@inner
+def _shift(states, state):
+    """Each of the states takes the place of the one before, and a state that of the last."""
+    last = len(states.x) - 1
+    for j in range(last):
+        for k in range(len(state.x)):
+            states.x[j, k], states.v[j, k], states.a[j, k] = states.x[j + 1, k], states.v[j + 1, k], states.a[j + 1, k]
+    for k in range(len(state.x)):
+        states.x[last, k], states.v[last, k], states.a[last, k] = state.x[k], state.v[k], state.a[k]
 
 
-@kernel
+@inner
 def append(t, state, derivatives, settled, e):
     """The end of a step becomes the newest one; where ``e`` is full the oldest one is forgotten."""
-    count = len(e.times)
-    for j in range(count - 1):
+    last = len(e.times) - 1
+    for j in range(last):
         e.times[j], e.settled[j] = e.times[j + 1], e.settled[j + 1]
-    _shift(e.states.x)
-    _shift(e.states.v)
-    _shift(e.states.a)
+    e.times[last], e.settled[last] = t, settled
+    _shift(e.states, state)
     for d in range(len(derivatives.x)):
-        _shift(e.derivatives.x[d])
-        _shift(e.derivatives.v[d])
-        _shift(e.derivatives.a[d])
-    j = count - 1
-    e.times[j], e.settled[j] = t, settled
-    for k in range(len(state.x)):
-        e.states.x[j, k], e.states.v[j, k], e.states.a[j, k] = state.x[k], state.v[k], state.a[k]
-        for d in range(len(derivatives.x)):
-            e.derivatives.x[d, j, k] = derivatives.x[d, k]
-            e.derivatives.v[d, j, k] = derivatives.v[d, k]
-            e.derivatives.a[d, j, k] = derivatives.a[d, k]
-    e.known[0] = min(count, e.known[0] + 1)
+        _shift(rows(e.derivatives, d), row(derivatives, d))
+    e.known[0] = min(last + 1, e.known[0] + 1)
 
 
-@kernel
+@inner
 def support(e):
     """The oldest end that the polynomial of the last step goes through."""
     first, newest = len(e.times) - e.known[0], len(e.times) - 1
@@ -80,7 +68,7 @@ def support(e):
     return oldest
 
 
-@kernel
+@inner
 def weigh_ends(e, oldest, t, weights):
     """Weights of the ends' data in the state at ``t``, (4, ends, 3).
 
@@ -114,7 +102,7 @@ def weigh_ends(e, oldest, t, weights):
             weights[2, j, i] = ell * (second + 2.0 * slope * rate + (slope * slope + bend) * base)
 
 
-@kernel
+@inner
 def interpolate_ends(n, oldest, weights, e, state):
     """State by the states ``e`` (ends, N + 1)."""
     for k in range(len(state.x)):

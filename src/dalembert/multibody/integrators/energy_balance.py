@@ -5,17 +5,24 @@ free: it does no work on them, so the momenta stay. c is such that the energy at
 what loads and losses have worked in the middles of the steps.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
+from dalembert.kernels.kernel import inner, kernel
+from dalembert.kernels.words import Address, Complexes, Complexes2, Complexes3, Integers, Reals, Reals2
+from dalembert.multibody import evaluate
 from dalembert.multibody.integrators import midpoint_step as midpoint
-from dalembert.multibody.integrators.lifting import lift
-from dalembert.multibody.integrators.matrices import add_product
+from dalembert.multibody.integrators.matrices import Matrices, Pattern, add_product
+from dalembert.multibody.integrators.midpoint_step import Along, Step
+from dalembert.multibody.integrators.problem import Problem
 from dalembert.multibody.integrators.settling import weigh_along
 from dalembert.multibody.kernels.assembly import energies
-from dalembert.multibody.kernels.compiled import compiled, kernel, template
 from dalembert.multibody.kernels.dual import STEP, reciprocal
+from dalembert.multibody.kernels.model import Model
+from dalembert.multibody.kernels.motion import Motion
+from dalembert.multibody.lowering import Lowered
 
 _ROUNDING = 1e-15  # of the energies' sizes
 _MOST = 12  # strengths that are tried
@@ -29,44 +36,79 @@ class Rigid(NamedTuple):
     same with the imaginary step along the directions of differentiation.
     """
 
-    partner: np.ndarray
-    sign: np.ndarray
-    spin: np.ndarray
-    shift: np.ndarray
-    shifts: np.ndarray
+    partner: Integers
+    sign: Reals
+    spin: Reals
+    shift: Reals2
+    shifts: Complexes3
 
 
-class Room(NamedTuple):
-    """Rigid motions, their momenta, direction of the force, in real and in complex numbers; sums of energies."""
+class Balance(NamedTuple):
+    """Rigid motions; room for them, their momenta, the direction of the force and sums of energies; kernels.
 
-    motions: np.ndarray
-    weighed: np.ndarray
-    force: np.ndarray
-    totals: np.ndarray
-    lifted_motions: np.ndarray
-    lifted_weighed: np.ndarray
-    lifted_force: np.ndarray
-    lifted_totals: np.ndarray
+    The room is in real and in complex numbers. ``converge`` and ``converge_along`` are the addresses of these kernels:
+    both are 0 if the energy is not balanced, the second one is 0 if there are no directions, too.
+    """
+
+    rigid: Rigid
+    motions: Reals2
+    weighed: Reals2
+    force: Reals
+    totals: Reals
+    lifted_motions: Complexes2
+    lifted_weighed: Complexes2
+    lifted_force: Complexes
+    lifted_totals: Complexes
+    converge: Address
+    converge_along: Address
 
 
-@compiled
-def room(count, width):
-    """Room for the balance of a step."""
-    return Room(
-        np.zeros((count, width)), np.zeros((count, width)), np.zeros(width), np.zeros(3),
-        np.zeros((count, width), np.complex128), np.zeros((count, width), np.complex128),
-        np.zeros(width, np.complex128), np.zeros(3, np.complex128),
+def balance_room(rigid: Rigid, width: int) -> Balance:
+    """Room for the balance of steps of N + 1 = ``width`` unknowns."""
+    count, directions = len(rigid.spin), len(rigid.shifts)
+    return _balance(rigid, count, width, converge.address, converge_along.address if directions else 0)
+
+
+def no_balance(width: int) -> Balance:
+    """What stands in its place where the energy is not balanced."""
+    nothing = np.zeros(0)
+    rigid = Rigid(np.zeros(0, np.int64), nothing, nothing, np.zeros((0, 0)), np.zeros((0, 0, 0), complex))
+    return _balance(rigid, 0, width, 0, 0)
+
+
+def _balance(rigid: Rigid, count: int, width: int, real: int, along: int) -> Balance:
+    motions, lifted = np.zeros((2, count, width)), np.zeros((2, count, width), complex)
+    return Balance(
+        rigid, motions[0], motions[1], np.zeros(width), np.zeros(3), lifted[0], lifted[1], np.zeros(width, complex),
+        np.zeros(3, complex), real, along,
     )  # fmt: skip
 
 
-@kernel
+def first_energies(
+    lowered: Lowered, tilted: Sequence[Lowered], start: Motion, dstarts: Motion, within: float
+) -> tuple[float, np.ndarray]:
+    """Energy in J at the start (N + 1,), and its derivatives (directions,); ``within`` the first smooth stretch."""
+    energy = _energy_at_start(lowered.real, start.x, start.v, within)
+    derivatives = np.zeros(len(tilted))
+    for d, entry in enumerate(tilted):
+        x, v = start.x + 1j * STEP * dstarts.x[d], start.v + 1j * STEP * dstarts.v[d]
+        derivatives[d] = _energy_at_start(entry.dual, x, v, within).imag / STEP
+    return energy, derivatives
+
+
+def _energy_at_start(model: Model, x: np.ndarray, v: np.ndarray, within: float) -> complex:
+    totals = evaluate.energies(model, x[None], v[None], np.zeros(1), np.array([within]))
+    return totals[0, 0] + totals[0, 1]
+
+
+@inner
 def _fill_motions(n, rigid, shift, x, motions):
     for j in range(len(rigid.spin)):
         for i in range(n):
             motions[j, i] = rigid.spin[j] * rigid.sign[i] * x[rigid.partner[i]] + shift[j, i]
 
 
-@kernel
+@inner
 def _product(n, a, b):
     whole = a[0] * b[0]
     for i in range(1, n):
@@ -74,7 +116,7 @@ def _product(n, a, b):
     return whole
 
 
-@kernel
+@inner
 def _remove(n, motions, weighed, force):
     """Take the momenta of rigid motions out of the momentum ``force``; motions become orthogonal."""
     for j in range(len(motions)):
@@ -96,22 +138,23 @@ def _remove(n, motions, weighed, force):
                 force[k] -= share * weighed[j, k]
 
 
-@kernel
-def _direct(n, pattern, matrices, rigid, s, e):
+@inner
+def _direct(n, pattern, matrices, s, e):
     """Fill the direction of the force; its power."""
-    _fill_motions(n, rigid, rigid.shift, s[midpoint.XM], e.motions)
+    rigid, motions, weighed, force, mass = e.rigid, e.motions, e.weighed, e.force, matrices.mass
+    _fill_motions(n, rigid, rigid.shift, s[midpoint.XM], motions)
     for i in range(n):
-        e.force[i] = 0.0
-        for j in range(len(e.weighed)):
-            e.weighed[j, i] = 0.0
-    for j in range(len(e.weighed)):
-        add_product(n, pattern, matrices.mass, e.motions[j], 1.0, e.weighed[j])
-    add_product(n, pattern, matrices.mass, s[midpoint.VM], 1.0, e.force)
-    _remove(n, e.motions, e.weighed, e.force)
-    return _product(n, s[midpoint.VM], e.force)
+        force[i] = 0.0
+        for j in range(len(weighed)):
+            weighed[j, i] = 0.0
+    for j in range(len(weighed)):
+        add_product(n, pattern, mass, motions[j], 1.0, weighed[j])
+    add_product(n, pattern, mass, s[midpoint.VM], 1.0, force)
+    _remove(n, motions, weighed, force)
+    return _product(n, s[midpoint.VM], force)
 
 
-@kernel
+@inner
 def _energy(model, h, at, middle, end, totals):
     """Energy at the end of a step, and the work of loads and losses in it; ``totals`` are those of the end."""
     energies(model, at[midpoint.XM], at[midpoint.VM], middle, totals)
@@ -120,32 +163,33 @@ def _energy(model, h, at, middle, end, totals):
     return totals[0] + totals[1], gain
 
 
-@template
+@kernel
 def converge(
-    problem, pattern, matrices, model, rigid, conserving, middle, end, h, goal, s, push, b, e, tolerance, least
-):  # fmt: skip
-    """A step whose energy is ``goal`` and the work in it, if ``conserving``.
+    problem: Problem, pattern: Pattern, matrices: Matrices, model: Address, h: float, goal: float, step: Step,
+    balance: Balance, tolerance: float, least: float,
+) -> tuple[bool, int, float, int, float, float]:  # fmt: skip
+    """A step whose energy is ``goal`` and the work in it.
 
     Answers whether it converged, iterations, contraction, unknown that moved most, strength of the force, the work.
     """
+    n, s, push, middle, end = problem.n, step.rows, step.push, step.middle, step.end
+    force, totals = balance.force, balance.totals
     strength, gain, before, iterations, rate, worst = 0.0, 0.0, 1e300, 0, 1.0, 0
     converged, free = False, False
     for attempt in range(_MOST):
-        power = 0.0
-        if conserving:
-            power = _direct(problem.n, pattern, matrices, rigid, s, e)
-        for k in range(problem.n):
-            push[k] = strength * e.force[k]
+        power = _direct(n, pattern, matrices, s, balance)
+        for k in range(n):
+            push[k] = strength * force[k]
         converged, more, contraction, worst = midpoint.converge(
-            problem, pattern, matrices, model, middle, end, h, s, push, b, tolerance, least
+            problem, pattern, matrices, model, h, step, tolerance, least
         )
         iterations += more
         rate = contraction if attempt == 0 else rate
-        if not converged or not conserving:
+        if not converged:
             break
-        energy, gain = _energy(model, h, s, middle, end, e.totals)
+        energy, gain = _energy(model, h, s, middle, end, totals)
         excess = energy - (goal + gain)
-        near = abs(excess) <= _ROUNDING * (abs(e.totals[0]) + abs(e.totals[1]))
+        near = abs(excess) <= _ROUNDING * (abs(totals[0]) + abs(totals[1]))
         if free or near or power == 0.0 or (attempt > 3 and abs(excess) > 0.5 * before):
             break
         before = abs(excess)
@@ -155,57 +199,46 @@ def converge(
     return converged, iterations, rate, worst, strength, gain
 
 
-@kernel
-def _direct_along(tilted, n, rigid, shift, at, middle, buffers, e):
+@inner
+def _direct_along(tilted, n, shift, at, middle, buffers, e):
     """The direction of the force in complex numbers."""
-    _fill_motions(n, rigid, shift, at[midpoint.XM], e.lifted_motions)
-    for j in range(len(e.lifted_weighed)):
-        weigh_along(tilted, n, at[midpoint.XM], e.lifted_motions[j], middle, buffers, e.lifted_weighed[j])
-    weigh_along(tilted, n, at[midpoint.XM], at[midpoint.VM], middle, buffers, e.lifted_force)
-    _remove(n, e.lifted_motions, e.lifted_weighed, e.lifted_force)
+    motions, weighed, force = e.lifted_motions, e.lifted_weighed, e.lifted_force
+    _fill_motions(n, e.rigid, shift, at[midpoint.XM], motions)
+    for j in range(len(weighed)):
+        weigh_along(tilted, n, at[midpoint.XM], motions[j], middle, buffers, weighed[j])
+    weigh_along(tilted, n, at[midpoint.XM], at[midpoint.VM], middle, buffers, force)
+    _remove(n, motions, weighed, force)
 
 
-@template
+@kernel
 def converge_along(
-    problem, pattern, matrices, tilted, rigid, shift, strength, middle, end, h, dgoal, s, ds, dpush, b, e, lifted
-):  # fmt: skip
-    """Derivative of the step along a direction; the derivative of the work in it."""
-    n, at = problem.n, lifted[: midpoint.ROWS]
+    problem: Problem, pattern: Pattern, matrices: Matrices, tilted: Address, d: int, strength: float, h: float,
+    dgoal: float, step: Step, along: Along, balance: Balance,
+) -> float:  # fmt: skip
+    """Derivative of the step along direction ``d``; the derivative of the work in it."""
+    n, s, ds, at, push = problem.n, step.rows, along.rows, along.lifted, along.push
+    middle, end, buffers = along.middle, along.end, along.vectors[4:]
+    shift, force, totals = balance.rigid.shifts[d], balance.lifted_force, balance.lifted_totals
     slope, dgain, before = 0.0, 0.0, 1e300
     for attempt in range(2 * _MOST):
         power = 0.0
         if strength != 0.0:
             midpoint.lift_step(s, ds, at)
-            _direct_along(tilted, n, rigid, shift, at, middle, lifted[12:], e)
+            _direct_along(tilted, n, shift, at, middle, buffers, balance)
             for k in range(n):
-                dpush[k] = (complex(strength, STEP * slope) * e.lifted_force[k]).imag / STEP
-                power += s[midpoint.VM, k] * e.lifted_force[k].real
+                push[k] = (complex(strength, STEP * slope) * force[k]).imag / STEP
+                power += s[midpoint.VM, k] * force[k].real
         else:
             for k in range(n):
-                dpush[k] = 0.0
-        midpoint.converge_along(problem, pattern, matrices, tilted, middle, end, h, s, ds, dpush, b, lifted)
+                push[k] = 0.0
+        midpoint.converge_along(problem, pattern, matrices, tilted, h, step, along)
         midpoint.lift_step(s, ds, at)
-        energy, gain = _energy(tilted, h, at, middle, end, e.lifted_totals)
+        energy, gain = _energy(tilted, h, at, middle, end, totals)
         dgain = gain.imag / STEP
         excess = energy.imag / STEP - (dgoal + dgain)
-        size = (abs(e.lifted_totals[0].imag) + abs(e.lifted_totals[1].imag)) / STEP + abs(dgoal)
+        size = (abs(totals[0].imag) + abs(totals[1].imag)) / STEP + abs(dgoal)
         if strength == 0.0 or abs(excess) <= 1e-14 * size or (attempt > 3 and abs(excess) > 0.5 * before):
             break
         before = abs(excess)
         slope += excess / (h * power)
     return dgain
-
-
-@compiled
-def first_energy(model, n, state, work, totals):
-    """Energy of a state; the signals in ``work`` hold the time."""
-    energies(model, state.x, state.v, work, totals)
-    return totals[0] + totals[1]
-
-
-@compiled
-def first_energy_along(tilted, n, state, dstate, work, lifted, totals):
-    """Its derivative along a direction."""
-    lift(n, state, dstate, lifted)
-    energies(tilted, lifted[0], lifted[1], work, totals)
-    return (totals[0] + totals[1]).imag / STEP

@@ -1,9 +1,24 @@
 """The midpoint rule with the energy balanced to rounding, with the derivatives of its discrete solution."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar
 
+import numpy as np
+
+from dalembert.kernels.kernel import Compiled
+from dalembert.multibody.integrators.energy_balance import (
+    Balance,
+    balance_room,
+    converge,
+    converge_along,
+    first_energies,
+)
+from dalembert.multibody.integrators.symmetries import rigid_motions
 from dalembert.multibody.integrators.variational import Variational
+from dalembert.multibody.kernels.histories import energy_history
+from dalembert.multibody.kernels.motion import Motion
+from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.structure import Structure
 
 
 @dataclass(frozen=True)
@@ -37,4 +52,18 @@ class EnergyMomentum(Variational):
     0.001
     """
 
-    _conserving: ClassVar[bool] = True
+    def kernels(self, structure: Structure, derivatives: bool) -> list[Compiled]:
+        """Those of `Variational`, of the balance, and of the components' energies."""
+        own = [*super().kernels(structure, derivatives), converge, energy_history, *[converge_along] * derivatives]
+        arithmetics = (float, complex) if derivatives else (float,)
+        kinds = [kind for kind in structure.index if kind.has("energy")]
+        return [*own, *(kind.kernel("energy", dtype) for dtype in arithmetics for kind in kinds)]
+
+    def _balance(
+        self, lowered: Lowered, tilted: Sequence[Lowered], start: Motion, dstarts: Motion, within: float
+    ) -> tuple[float, np.ndarray, Balance]:
+        """Energy at the start with its derivatives, and the force that keeps it."""
+        for model in (lowered.real, *(entry.dual for entry in tilted)):
+            model.need("energy")
+        energies = first_energies(lowered, tilted, start, dstarts, within)
+        return *energies, balance_room(rigid_motions(lowered, tilted), len(start.x))

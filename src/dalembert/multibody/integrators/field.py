@@ -2,14 +2,10 @@
 
 import numpy as np
 
-from dalembert.multibody.integrators.index1 import PARTITIONED, PROJECTED, Terms, demand, make_tools
-from dalembert.multibody.integrators.partitioning import VELOCITY, settle
-from dalembert.multibody.integrators.problem import DIVERGED, DONE, NEWTON_FAILED, SINGULAR, Problem
-from dalembert.multibody.integrators.projection import project
-from dalembert.multibody.integrators.run import resting, stack
-from dalembert.multibody.integrators.runge_kutta import partition
-from dalembert.multibody.kernels.model import Model
-from dalembert.multibody.kernels.motion import Motion
+from dalembert.multibody.integrators.completion import complete, completion, kernels, partition
+from dalembert.multibody.integrators.index1 import PARTITIONED, PROJECTED, Terms
+from dalembert.multibody.integrators.problem import DONE, Problem
+from dalembert.multibody.kernels.motion import Motion, resting
 from dalembert.multibody.lowering import Lowered
 
 
@@ -23,14 +19,23 @@ class Field:
     ----------
     problem, terms : Problem, Terms
     lowered : Lowered
-    directions : Model
-        Stack of complex models.
+    directions : array of addresses
+        Complex models.
     state, dstates : Motion
         At the start; overwritten.
+    implicit : bool
+        Whether the `jacobian` is needed.
     """
 
     def __init__(
-        self, problem: Problem, terms: Terms, lowered: Lowered, directions: Model, state: Motion, dstates: Motion
+        self,
+        problem: Problem,
+        terms: Terms,
+        lowered: Lowered,
+        directions: np.ndarray,
+        state: Motion,
+        dstates: Motion,
+        implicit: bool,
     ) -> None:
         self.problem, self.terms, self.lowered = problem, terms, lowered
         self.n, self.width, self.count = problem.n, len(state.x), len(dstates.x)
@@ -38,8 +43,10 @@ class Field:
         self.within = 0.0
         self.evaluations = 0
         self._directions, self._state, self._dstates = directions, state, dstates
-        self._tools = make_tools(problem, lowered.real, lowered.dual)
-        self._units = stack([lowered.upright] * (2 * self.n), lowered.upright)
+        self._calls = lowered.real.need("rates").call(), lowered.dual.call()
+        works = self._calls[0].address, self._calls[1].address
+        self._completion = completion(problem, terms, *works, self.count + implicit)
+        self._units = np.full(2 * self.n, lowered.upright.need("rates").address if implicit else 0)
 
     def __call__(self, t: float, y: np.ndarray) -> np.ndarray:
         """Rates, not numbers where there are none: a solver then takes a shorter step."""
@@ -78,9 +85,8 @@ class Field:
         """Choose independent coordinates if they are parted and that is needed; whether it was done."""
         if self.terms.way != PARTITIONED:
             return False
-        return partition(
-            self.problem, self.terms, self.lowered.dual, t, self.within, self._state, self._tools
-        )  # fmt: skip
+        dual, tools = self.lowered.dual.address, self._completion.tools
+        return partition(self.problem, self.terms, dual, float(t), self.within, self._state, tools)
 
     def record(self, out: Motion, dout: Motion, due: int) -> None:
         """Write the present state as that of an output time."""
@@ -94,16 +100,10 @@ class Field:
         slopes = np.concatenate([dfirst[:, :n], dsecond[:, :n]], axis=1)
         return np.concatenate([first[:n], second[:n], slopes.ravel()])
 
-    def _complete(self, t: float, projected: bool, directions: Model, dstates: Motion) -> int:
-        problem, tools, lowered = self.problem, self._tools, self.lowered
-        own = lowered.real, lowered.dual, directions, float(t), self.within, self._state, dstates
+    def _complete(self, t: float, projected: bool, directions: np.ndarray, dstates: Motion) -> int:
         self.evaluations += 1
-        if not np.all(np.abs(self._state.x[: self.n]) + np.abs(self._state.v[: self.n]) < 1e100):
-            return DIVERGED
-        if self.terms.way == PARTITIONED:
-            works = tools.work, tools.dual_work, tools.lifted, tools.partition
-            if not settle(problem, *own[:5], VELOCITY, *own[5:], *works):
-                return NEWTON_FAILED
-        if projected and not project(problem, self.terms, *own, tools):
-            return NEWTON_FAILED
-        return DONE if demand(problem, self.terms, *own, tools) else SINGULAR
+        models = self.lowered.real.address, self.lowered.dual.address
+        return complete(
+            self.problem, self.terms, *models, directions, float(t), self.within, self._state, dstates, projected,
+            self._completion,
+        )  # fmt: skip

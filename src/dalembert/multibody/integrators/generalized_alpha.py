@@ -7,18 +7,31 @@ from typing import NamedTuple
 import numpy as np
 
 from dalembert.errors import InputError, unknown
-from dalembert.multibody.integrators.consistent import accelerate
+from dalembert.kernels.kernel import Compiled, inlined, inner, kernel
+from dalembert.kernels.words import Address, Integers, Reals2
+from dalembert.multibody.integrators.consistent import Consistency, accelerate, accelerate_along, consistency
 from dalembert.multibody.integrators.derivatives import differentiate
 from dalembert.multibody.integrators.integrator import Integrator
-from dalembert.multibody.integrators.lifting import set_signals
 from dalembert.multibody.integrators.newton import Newton, converge, learn
 from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR, TOO_MANY_STEPS, Log, Problem
-from dalembert.multibody.integrators.run import Run, cut, explain, resting, stacks, starts
-from dalembert.multibody.kernels.compiled import compiled, inlined, template
+from dalembert.multibody.integrators.run import Run, cut, explain, starts
+from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.linear import storage
-from dalembert.multibody.kernels.model import select, workspace
-from dalembert.multibody.kernels.motion import Motion, clear, coefficients, copy, glance, interpolate, row, still
+from dalembert.multibody.kernels.model import Call, addresses
+from dalembert.multibody.kernels.motion import (
+    Histories,
+    Motion,
+    Motions,
+    clear,
+    coefficients,
+    copy,
+    interpolate,
+    resting,
+    row,
+    rows,
+)
 from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.structure import Structure
 
 STARTS = ("consistent", "zero")
 _HALVINGS = 8  # of a fixed step that Newton does not converge on
@@ -82,6 +95,10 @@ class GeneralizedAlpha(Integrator):
         """The step in s, None if adaptive."""
         return None if self.adaptive else self.step
 
+    def kernels(self, structure: Structure, derivatives: bool) -> list[Compiled]:
+        """The loop with its linear systems, and what differentiates a step."""
+        return [integrate, *structure.linear_kernels, *[differentiate, accelerate_along] * derivatives]
+
     def integrate(
         self,
         samples: Sequence[Lowered],
@@ -100,7 +117,13 @@ class GeneralizedAlpha(Integrator):
         room = self._most_logged(samples[0], end) if logged else 0
         log = Log(np.zeros(4, dtype=np.int64), np.zeros(room, dtype=np.int64), np.zeros(room))
         ends = np.zeros((len(samples), 3))
-        integrate(problem, self._settings(), *stacks(samples, tilted), states, dstates, out, dout, log, ends)
+        models = [entry.real.need("rates") for entry in samples], [entry.dual for entry in samples]
+        directions = addresses(entry.dual.need("rates") for entry in tilted)
+        calls = models[0][0].call(), models[1][0].call()
+        integrate(
+            problem, self._settings(), addresses(models[0]), addresses(models[1]), directions, states, dstates, out,
+            dout, log, ends, _workspace(problem, *calls, len(tilted)),
+        )  # fmt: skip
         taken = min(int(log.counts[0]), room)
         runs = []
         for number, (lowered, (status, time, moved)) in enumerate(zip(samples, ends, strict=True)):
@@ -142,53 +165,72 @@ class Settings(NamedTuple):
     most_steps: int
 
 
-@compiled
-def integrate(problem, settings, models, duals, directions, states, dstates, out, dout, log, ends):
+class Workspace(NamedTuple):
+    """States of a step, Newton's iteration, consistent accelerations.
+
+    ``differentiate``: address of the kernel for the derivatives of a step, 0 if there are none.
+    """
+
+    old: Motion
+    new: Motion
+    dolds: Motions
+    newton: Newton
+    consistency: Consistency
+    differentiate: Address
+
+
+def _workspace(problem: Problem, call: Call, dual_call: Call, directions: int) -> Workspace:
+    width = problem.layout.size + 1
+    work, dual_work, vector = call.address, dual_call.address, np.zeros((3, width))
+    newton = Newton(storage(problem.layout), work, dual_work, vector[0], vector[1], np.zeros(2), vector[2])
+    along = differentiate.address if directions else 0
+    consistent = consistency(problem, work, dual_work, directions)
+    return Workspace(resting(width), resting(width), resting(directions, width), newton, consistent, along)
+
+
+@kernel
+def integrate(
+    problem: Problem, settings: Settings, models: Integers, duals: Integers, directions: Integers, states: Motions,
+    dstates: Motions, out: Histories, dout: Histories, log: Log, ends: Reals2, room: Workspace,
+) -> None:  # fmt: skip
     """Run a stack of samples from ``problem.edges[sample, 0]`` to the last edge; fill the states at the output times.
 
     Parameters
     ----------
     problem, settings : Problem, Settings
-    models, duals : Model
-        Stacks in real and in complex numbers, one a sample.
-    directions : Model
-        Stack of complex models, one a direction of differentiation; empty if there is more than one sample.
-    states : Motion
+    models, duals : array of addresses, shape (samples,)
+        Models in real and in complex numbers.
+    directions : array of addresses
+        Complex models, one a direction of differentiation; empty if there is more than one sample.
+    states : Motions
         At the start, (samples, N + 1); overwritten.
-    dstates : Motion
+    dstates : Motions
         Derivatives at the start, (directions, N + 1); overwritten.
-    out, dout : Motion
+    out, dout : Histories
         Arrays (samples, times, N + 1) and (directions, times, N + 1); ``w`` is not used.
     log : Log
         Of the last sample.
     ends : array, shape (samples, 3)
         Status (`DONE`, or the reason), time reached, unknown that moved most.
     """
-    for sample in range(len(states.x)):
-        clear(log.counts)
+    for sample in range(len(models)):
+        for i in range(4):
+            log.counts[i] = 0
+        edges = problem.edges[sample, : problem.stretches[sample] + 1]
         ends[sample, 0], ends[sample, 1], ends[sample, 2] = _integrate(
-            problem, problem.edges[sample, : problem.stretches[sample] + 1], settings, select(models, sample),
-            select(duals, sample), directions, row(states, sample), dstates, row(out, sample), dout, log,
+            problem, edges, settings, models[sample], duals[sample], directions, row(states, sample), dstates,
+            rows(out, sample), dout, log, room,
         )  # fmt: skip
 
 
-@template
-def _integrate(problem, edges, settings, model, dual, directions, state, dstates, out, dout, log):
+@inner
+def _integrate(problem, edges, settings, model, dual, directions, state, dstates, out, dout, log, room):
     """Run one sample: status, time reached, and the unknown that moved most."""
     n, width = problem.n, len(state.x)
-    old, new = still(width), still(width)
+    old, new, dolds, newton = room.old, room.new, room.dolds, room.newton
     copy(state, new)
-    dolds = Motion(
-        np.zeros_like(dstates.x), np.zeros_like(dstates.x), np.zeros_like(dstates.x), np.zeros_like(dstates.x)
-    )
-    work, dual_work = workspace(model), workspace(dual)
-    newton = Newton(
-        storage(problem.layout), work, dual_work, np.zeros(width), np.zeros(width), np.zeros(2), np.zeros(width)
-    )
-    exact = storage(problem.exact_layout)
-    lifted = np.zeros((7, width), np.complex128)
-    buffers = lifted[3], np.zeros(width), np.zeros(width)
-    differentiated = len(dstates.x) > 0
+    newton.memory[0], newton.memory[1] = 0.0, 0.0
+    differentiated = len(directions) > 0
     due = 0
     length = settings.step
     for stretch in range(len(edges) - 1):
@@ -196,9 +238,7 @@ def _integrate(problem, edges, settings, model, dual, directions, state, dstates
         within = 0.5 * (begin + end)
         clear(newton.slope)
         if stretch > 0 or settings.consistent:
-            if not accelerate(
-                problem, model, dual, directions, begin, within, new, dstates, work, dual_work, lifted, exact
-            ):
+            if not accelerate(problem, model, dual, directions, begin, within, new, dstates, room.consistency):
                 return SINGULAR, begin, 0
         if stretch == 0:
             while due < len(problem.times) and problem.times[due] <= begin:
@@ -221,7 +261,7 @@ def _integrate(problem, edges, settings, model, dual, directions, state, dstates
                 target = end if unit + stride == steps * _UNITS else begin + nominal * ((unit + stride) / _UNITS)
             copy(new, old)
             c = coefficients(length, settings.spectral_radius)
-            set_signals(model, target, within, work)
+            set_signals(model, target, within, newton.work)
             status, detail = converge(
                 problem, model, dual, c, target, within, settings.newton_tolerance, old, new, newton, log
             )
@@ -248,27 +288,12 @@ def _integrate(problem, edges, settings, model, dual, directions, state, dstates
                 log.ends[log.counts[0]] = target
             log.counts[0] += 1
             learn(n, c, old, new, newton.slope)
-            if differentiated and not differentiate(
-                problem,
-                dual,
-                directions,
-                c,
-                target,
-                within,
-                old,
-                new,
-                dolds,
-                dstates,
-                exact,
-                dual_work,
-                lifted,
-                buffers,
+            if differentiated and not _differentiate_at(
+                room.differentiate, problem, dual, directions, c, target, within, new, dolds, dstates, room.consistency
             ):
                 return SINGULAR, target, 0
             if problem.projected and width - 1 > n:
-                if not accelerate(
-                    problem, model, dual, directions, target, within, new, dstates, work, dual_work, lifted, exact
-                ):
+                if not accelerate(problem, model, dual, directions, target, within, new, dstates, room.consistency):
                     return SINGULAR, target, 0
             while due < len(problem.times) and problem.times[due] <= target + 1e-9 * length:
                 share = min(1.0, (problem.times[due] - t) / length)
@@ -289,11 +314,12 @@ def _integrate(problem, edges, settings, model, dual, directions, state, dstates
     return DONE, edges[-1], 0
 
 
+_differentiate_at = differentiate.at
+
+
 @inlined
 def _record(n, length, share, old, new, dolds, dnews, out, dout, due):
     """Write the states at an output time."""
     interpolate(n, length, share, old, new, out.x[due], out.v[due], out.a[due])
     for d in range(len(dnews.x)):
-        interpolate(
-            n, length, share, glance(dolds, d), glance(dnews, d), dout.x[d, due], dout.v[d, due], dout.a[d, due]
-        )
+        interpolate(n, length, share, row(dolds, d), row(dnews, d), dout.x[d, due], dout.v[d, due], dout.a[d, due])

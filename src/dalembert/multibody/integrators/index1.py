@@ -4,16 +4,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dalembert.multibody.integrators.least_squares import invert_on_range, range_of, turn_range
-from dalembert.multibody.integrators.lifting import lift, set_signals
+from dalembert.kernels.kernel import inner, kernel
+from dalembert.kernels.words import Address, Complexes2, Integers, Reals
+from dalembert.multibody.integrators.least_squares import Surplus, invert_on_range, surplus_room, turn_range
+from dalembert.multibody.integrators.lifting import lift
 from dalembert.multibody.integrators.partitioning import Partition, room
-from dalembert.multibody.kernels.assembly import constraint_rates, residual, tangent
-from dalembert.multibody.kernels.compiled import compiled, kernel, template
+from dalembert.multibody.integrators.problem import Problem
+from dalembert.multibody.kernels.assembly import constraint_rates, residual, set_signals, tangent
 from dalembert.multibody.kernels.dual import STEP
 from dalembert.multibody.kernels.linear import Factors, factorise, storage
 from dalembert.multibody.kernels.linear import solve as solve_linear
-from dalembert.multibody.kernels.model import Work, select, workspace
-from dalembert.multibody.kernels.motion import Motion, row, still, subtract
+from dalembert.multibody.kernels.motion import Motion, Motions, resting, row, subtract
 
 AS_THEY_COME, PROJECTED, PARTITIONED = range(3)  # what is done about positions and velocities off the constraints
 _MOST_ITERATIONS = 12
@@ -21,68 +22,71 @@ _QUADRATIC = 1e-9  # relative correction after which a quadratic iteration is at
 
 
 class Terms(NamedTuple):
-    """Feedback of the constraints (1/s), whether they are redundant, what is done about drift, and a limit for it."""
+    """Feedback of the constraints (1/s), whether they are redundant, what is done about drift, and a limit for it.
+
+    ``nonlinear``: whether a friction depends on the multipliers.
+    """
 
     alpha: float
     beta: float
     redundant: bool
     way: int
     limit: float
+    nonlinear: bool
 
 
 class Tools(NamedTuple):
     """Work of the index-1 methods, made once a run.
 
-    ``partition`` is that of the coordinates; ``surplus`` that of redundant constraints, whose Jacobian's range has the
-    ``basis`` (m, m) in its first columns. ``base`` and ``change`` serve projections.
+    ``work``, ``dual_work``: calls in real and in complex numbers. ``partition`` is that of the coordinates; ``surplus``
+    serves redundant constraints, ``base`` and ``change`` projections. ``along``: address of the kernel for derivatives,
+    0 if there are none.
     """
 
-    work: Work
-    dual_work: Work
+    work: Address
+    dual_work: Address
     exact: Factors
-    lifted: np.ndarray
-    gap: np.ndarray
-    answer: np.ndarray
-    second: np.ndarray
+    lifted: Complexes2
+    gap: Reals
+    answer: Reals
+    second: Reals
     partition: Partition
-    surplus: Partition
-    basis: np.ndarray
+    surplus: Surplus
     base: Motion
     change: Motion
+    along: Address
 
 
-@template
-def make_tools(problem, model, dual):
-    """Work for a model."""
+def make_tools(problem: Problem, terms: Terms, work: int, dual_work: int, directions: int) -> Tools:
+    """Work for a model, with derivatives if there are any directions."""
     width = problem.exact_layout.size + 1
-    m = width - 1 - problem.n
+    vector = np.zeros((3, width))
     return Tools(
-        workspace(model), workspace(dual), storage(problem.exact_layout), np.zeros((7, width), np.complex128),
-        np.zeros(width), np.zeros(width), np.zeros(width), room(problem), room(problem), np.zeros((m, m)),
-        still(width), still(width),
+        work, dual_work, storage(problem.exact_layout), np.zeros((7, width), np.complex128), vector[0], vector[1],
+        vector[2], room(problem, directions if terms.way == PARTITIONED else 0),
+        surplus_room(problem, terms.redundant, directions), resting(width), resting(width),
+        demand_along.address if directions else 0,
     )  # fmt: skip
 
 
-@compiled
+@inner
 def factorise_motion(problem, terms, dual, state, tools):
     """Factorise the matrix of motion beside that of the constraints; whether it is regular.
 
     It is taken in the time that the signals in ``tools.dual_work`` hold.
     """
-    arguments = (dual, problem.exact_slots, problem.n, state.x, state.v, state.a)
-    constraints = tools.surplus.matrix
-    tangent(*arguments, (1.0, 0.0, 0.0), (0.0, 1.0), tools.dual_work, constraints)
-    tangent(*arguments, (0.0, 0.0, 1.0), (1.0, 0.0), tools.dual_work, tools.exact.matrix)
+    slots, n, matrix = problem.exact_slots, problem.n, tools.exact.matrix
+    constraints = tools.surplus.partition.matrix
+    tangent(dual, slots, n, state.x, state.v, state.a, (1.0, 0.0, 0.0), (0.0, 1.0), tools.dual_work, constraints)
+    tangent(dual, slots, n, state.x, state.v, state.a, (0.0, 0.0, 1.0), (1.0, 0.0), tools.dual_work, matrix)
     for i in range(len(constraints)):
-        tools.exact.matrix[i] += constraints[i]
+        matrix[i] += constraints[i]
     if terms.redundant:
-        basis = range_of(problem, tools.surplus)
-        tools.basis[:, : basis.shape[1]] = basis
-        return invert_on_range(problem, basis, tools.exact.matrix)
+        return _invert_at(tools.surplus.invert, problem, tools.surplus, matrix)
     return factorise(problem.exact_layout, tools.exact)
 
 
-@kernel
+@inner
 def _fill_gap(model, n, terms, x, v, a, work, gap, rate, second):
     """What the equations of motion and the constraints at the level of acceleration leave."""
     residual(model, n, x, v, a, work, 1.0, gap)
@@ -91,7 +95,7 @@ def _fill_gap(model, n, terms, x, v, a, work, gap, rate, second):
         gap[i] = second[i] + 2.0 * terms.alpha * rate[i] + terms.beta * terms.beta * gap[i]
 
 
-@kernel
+@inner
 def _size(values, begin, end):
     """Largest size of some entries; not a number if one is none."""
     largest = 0.0
@@ -101,15 +105,17 @@ def _size(values, begin, end):
     return largest
 
 
-@compiled
-def demand(problem, terms, model, dual, directions, t, within, state, dstates, tools):
+@kernel
+def demand(
+    problem: Problem, terms: Terms, model: Address, dual: Address, directions: Integers, t: float, within: float,
+    state: Motion, dstates: Motions, tools: Tools,
+) -> bool:  # fmt: skip
     """Fill accelerations and multipliers of a state by the equations of index 1, and their derivatives; whether it can.
 
     [M J^T; J 0] [a; l] = [f; -(second rate without a) - 2 alpha (first rate) - beta^2 (constraint)]. The equations are
     linear in both but for friction that depends on the multipliers; the state's own ones are the first guess.
     """
-    n, last = problem.n, len(state.x) - 1
-    nonlinear = len(model.frictions.index) > 0
+    n, last, nonlinear = problem.n, len(state.x) - 1, terms.nonlinear
     set_signals(model, t, within, tools.work)
     set_signals(dual, t, within, tools.dual_work)
     moved = 1.0
@@ -127,18 +133,30 @@ def demand(problem, terms, model, dual, directions, t, within, state, dstates, t
             break
     if not _size(state.a, 0, n) + _size(state.x, n, last) < 1e100 or (nonlinear and not moved <= 1e-6):
         return False
-    r, drate, dsecond = tools.lifted[3], tools.lifted[4], tools.lifted[5]
+    if len(dstates.x) > 0:
+        _demand_along_at(tools.along, problem, terms, directions, t, within, state, dstates, tools)
+    return True
+
+
+@kernel
+def demand_along(
+    problem: Problem, terms: Terms, directions: Integers, t: float, within: float, state: Motion, dstates: Motions,
+    tools: Tools,
+) -> None:  # fmt: skip
+    """Derivatives of the accelerations and multipliers that a state demands, along all directions."""
+    n, last, lifted = problem.n, len(state.x) - 1, tools.lifted
+    r, drate, dsecond = lifted[3], lifted[4], lifted[5]
     for d in range(len(dstates.x)):
-        tilted, dstate = select(directions, d), row(dstates, d)
+        tilted, dstate = directions[d], row(dstates, d)
         set_signals(tilted, t, within, tools.dual_work)
         if terms.redundant:
-            turn_range(problem, tilted, state, dstate, tools.dual_work, tools.lifted, tools.surplus, tools.basis)
-        lift(n, state, dstate, tools.lifted)
-        _fill_gap(
-            tilted, n, terms, tools.lifted[0], tools.lifted[1], tools.lifted[2], tools.dual_work, r, drate, dsecond
-        )
+            _turn_at(tools.surplus.turn, problem, tilted, state, dstate, tools.dual_work, lifted, tools.surplus)
+        lift(n, state, dstate, lifted)
+        _fill_gap(tilted, n, terms, lifted[0], lifted[1], lifted[2], tools.dual_work, r, drate, dsecond)
         for i in range(last):
             tools.gap[i] = r[i].imag / STEP
         solve_linear(problem.exact_layout, tools.exact, tools.gap, tools.answer)
         subtract(n, tools.answer, dstate)
-    return True
+
+
+_invert_at, _turn_at, _demand_along_at = invert_on_range.at, turn_range.at, demand_along.at

@@ -8,9 +8,11 @@ from typing import Any, cast
 
 import numpy as np
 
+from dalembert.kernels.kernel import Compiled
 from dalembert.multibody.integrators.problem import Problem
 from dalembert.multibody.integrators.run import Run
 from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.structure import Structure
 
 
 class Integrator(ABC):
@@ -52,6 +54,10 @@ class Integrator(ABC):
         given = ((item, getattr(self, item.name)) for item in fields(cast(Any, self)))
         told = (f"{item.name}={value!r}" for item, value in given if value != item.default)
         return f"{type(self).__name__}({', '.join(told)})"
+
+    def kernels(self, structure: Structure, derivatives: bool) -> list[Compiled]:
+        """Kernels of the method, without those of components; and those for derivatives along directions."""
+        return []
 
     def suiting(self, lowered: Lowered, end: float) -> "Integrator":
         """The integrator for a mechanism's motion until ``end`` (s): itself, but for one that chooses."""

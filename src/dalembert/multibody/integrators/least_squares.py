@@ -1,90 +1,190 @@
 """Redundant constraints: accelerations as without the surplus, and of all possible multipliers the smallest ones."""
 
+from typing import NamedTuple
+
 import numpy as np
 
+from dalembert.kernels.kernel import inlined, inner, kernel
+from dalembert.kernels.words import Address, Complexes2, Reals, Reals2
 from dalembert.multibody.integrators.lifting import lift
-from dalembert.multibody.integrators.partitioning import choose, invert
+from dalembert.multibody.integrators.partitioning import Partition, choose, invert, room
+from dalembert.multibody.integrators.problem import Problem
 from dalembert.multibody.kernels.assembly import constraint_rates
-from dalembert.multibody.kernels.compiled import template
 from dalembert.multibody.kernels.dual import STEP
-from dalembert.multibody.kernels.linear import Layout, factorise, solve, storage
-from dalembert.multibody.kernels.vector import LANES
+from dalembert.multibody.kernels.linear import Factors, factorise, resized, solve, storage
+from dalembert.multibody.kernels.motion import Motion, clear
 
 
-@template
-def range_of(problem, partition):
-    """Orthonormal basis (m, rank) of what the Jacobian in ``partition.matrix`` reaches, with the rank decided anew."""
+class Surplus(NamedTuple):
+    """Work for redundant constraints.
+
+    ``partition``: that of the constraints, whose Jacobian's range has the ``basis`` (m, m) in its first columns.
+    ``product`` (N, N), by columns, and ``small``: work for the matrix on the range. ``invert``, ``turn``: addresses of the kernels, 0 if no
+    constraint is redundant, and 0 if there are no derivatives.
+    """
+
+    partition: Partition
+    basis: Reals2
+    product: Reals2
+    small: Factors
+    across: Reals2
+    invert: Address
+    turn: Address
+
+
+def surplus_room(problem: Problem, redundant: bool, directions: int) -> Surplus:
+    """Room for redundant constraints; without them for the Jacobian only."""
+    layout = problem.exact_layout
+    m = layout.size - problem.n if redundant else 0
+    size = layout.size if redundant else 0
+    return Surplus(
+        room(problem, 0), np.zeros((m, m)), np.zeros((size, size)), storage(resized(layout, size)), np.zeros((3, m)),
+        invert_on_range.address if redundant else 0, turn_range.address if redundant and directions else 0,
+    )  # fmt: skip
+
+
+@inlined
+def _copy(source, target):
+    for i in range(len(source)):
+        target[i] = source[i]
+
+
+@inlined
+def _add(factor, source, target):
+    """Add a multiple of a vector to another."""
+    for i in range(len(source)):
+        target[i] += factor * source[i]
+
+
+@inlined
+def _product(basis, j, k):
+    """Scalar product of two columns."""
+    total = 0.0
+    for i in range(len(basis)):
+        total += basis[i, j] * basis[i, k]
+    return total
+
+
+@inlined
+def _share(basis, k, vector):
+    """Scalar product of a column with a vector."""
+    total = 0.0
+    for i in range(len(basis)):
+        total += basis[i, k] * vector[i]
+    return total
+
+
+@inner
+def _find_range(problem, surplus):
+    """Orthonormal basis of what the Jacobian in ``surplus.partition.matrix`` reaches, with the rank decided anew."""
+    partition, basis = surplus.partition, surplus.basis
     choose(problem, partition)
-    n, lead, rank = problem.n, problem.exact_layout.lead, partition.rank[0]
-    basis = np.zeros((len(partition.rows), rank))
-    for k in range(rank):
-        own = partition.columns[k] * lead + n
-        basis[:, k] = partition.matrix[own : own + len(basis)]
+    for k in range(partition.rank[0]):
+        own = partition.columns[k] * problem.exact_layout.lead + problem.n
+        for i in range(len(basis)):
+            basis[i, k] = partition.matrix[own + i]
         for _ in range(2):  # twice is enough to be orthogonal to rounding
             for j in range(k):
-                basis[:, k] -= np.sum(basis[:, j] * basis[:, k]) * basis[:, j]
-        basis[:, k] /= np.sqrt(np.sum(basis[:, k] ** 2))
-    return basis
+                share = _product(basis, j, k)
+                for i in range(len(basis)):
+                    basis[i, k] -= share * basis[i, j]
+        length = np.sqrt(_product(basis, k, k))
+        for i in range(len(basis)):
+            basis[i, k] /= length
 
 
-@template
-def invert_on_range(problem, basis, matrix):
+@inner
+def _restrict(n, size, lead, rank, surplus, matrix, small_lead):
+    """Fill ``surplus.small`` with W^T A W, where W = [I 0; 0 B] with the range's basis B, by way of A W."""
+    basis = surplus.basis
+    for c in range(n + rank):
+        product = surplus.product[c]
+        if c < n:
+            _copy(matrix[c * lead : c * lead + size], product)
+        else:
+            clear(product)
+            for j in range(size - n):
+                _add(basis[j, c - n], matrix[(n + j) * lead : (n + j) * lead + size], product)
+        small = surplus.small.matrix[c * small_lead : (c + 1) * small_lead]
+        clear(small)
+        _copy(product[:n], small)
+        for j in range(size - n):
+            _add(product[n + j], basis[j, :rank], small[n : n + rank])
+
+
+@inner
+def _extend(n, size, lead, rank, surplus, matrix, small_lead):
+    """Fill the matrix with W S W^T, where S is ``surplus.small``, by way of W S."""
+    basis = surplus.basis
+    for c in range(n + rank):
+        product, small = surplus.product[c], surplus.small.matrix[c * small_lead : (c + 1) * small_lead]
+        clear(product)
+        _copy(small[:n], product)
+        for j in range(size - n):
+            for k in range(rank):
+                product[n + j] += basis[j, k] * small[n + k]
+        if c < n:
+            _copy(product, matrix[c * lead : c * lead + size])
+    for j in range(size - n):
+        column = matrix[(n + j) * lead : (n + j) * lead + size]
+        clear(column)
+        for k in range(rank):
+            _add(basis[j, k], surplus.product[n + k], column)
+
+
+@kernel
+def invert_on_range(problem: Problem, surplus: Surplus, matrix: Reals) -> bool:
     """Replace a dense flat matrix, of motion beside constraints, by the inverse on the multipliers in the range.
 
-    For redundant but consistent constraints this is the solution of least norm; others are met in least squares.
+    For redundant but consistent constraints this is the solution of least norm; others are met in least squares. The
+    Jacobian stands in ``surplus.partition.matrix``. Whether the matrix on the range is regular.
     """
-    size, lead, n = problem.exact_layout.size, problem.exact_layout.lead, problem.n
-    whole = problem.exact_layout
-    count = n + basis.shape[1]
-    wide = np.zeros((size, count))
-    for i in range(n):
-        wide[i, i] = 1.0
-    wide[n:, n:] = basis
-    tall = np.ascontiguousarray(wide.T)
-    transposed = np.ascontiguousarray(matrix.reshape((size, lead))[:, :size])
-    layout = Layout(whole.kind, count, whole.reach, -(-count // LANES) * LANES, whole.order)
-    factors = storage(layout)
-    small = factors.matrix.reshape((count, layout.lead))
-    small[:, :count] = np.dot(tall, np.dot(transposed, wide))
-    regular = factorise(layout, factors)
-    inverse = np.ascontiguousarray(small[:, :count])
-    matrix.reshape((size, lead))[:, :size] = np.dot(wide, np.dot(inverse, tall))
+    _find_range(problem, surplus)
+    n, size, lead, rank = problem.n, problem.exact_layout.size, problem.exact_layout.lead, surplus.partition.rank[0]
+    layout = resized(problem.exact_layout, n + rank)
+    _restrict(n, size, lead, rank, surplus, matrix, layout.lead)
+    regular = factorise(layout, surplus.small)
+    _extend(n, size, lead, rank, surplus, matrix, layout.lead)
     return regular
 
 
-@template
-def turn_range(problem, tilted, state, dstate, dual_work, lifted, partition, basis):
+@kernel
+def turn_range(
+    problem: Problem, tilted: Address, state: Motion, dstate: Motion, dual_work: Address, lifted: Complexes2,
+    surplus: Surplus,
+) -> None:  # fmt: skip
     """Give the multipliers' derivative the part across the range that keeps the multipliers in it.
 
     With the multipliers J w, w fixed, this is the part of the derivative of J, times w, across the range of J. The rest
     of the derivative follows from the equations of motion.
     """
-    n, last, rank = problem.n, len(state.x) - 1, partition.rank[0]
-    layout = Layout(
-        problem.exact_layout.kind, rank, problem.exact_layout.reach, -(-rank // LANES) * LANES,
-        problem.exact_layout.order,
-    )  # fmt: skip
+    partition, basis, across = surplus.partition, surplus.basis, surplus.across
+    n, m, rank = problem.n, len(basis), partition.rank[0]
     if not invert(problem, partition):
         return
     for i in range(rank):
         partition.gap[i] = state.x[n + partition.rows[i]]
-    solve(layout, partition.dependent, partition.gap, partition.change)
-    across = np.zeros((2, last - n))
+    solve(resized(problem.exact_layout, rank), partition.dependent, partition.gap, partition.change)
     for part in range(2):  # the rates are linear in the velocities, but for the motion that is prescribed
         lift(n, state, dstate, lifted)
-        lifted[1, :] = 0.0
+        for i in range(lifted.shape[1]):
+            lifted[1, i] = 0.0
         if part == 0:
             for i in range(rank):
                 lifted[1, partition.columns[i]] = partition.change[i]
         constraint_rates(tilted, n, lifted[0], lifted[1], lifted[2], dual_work, lifted[3], lifted[4])
-        for i in range(last - n):
+        for i in range(m):
             across[part, i] = lifted[3, n + i].imag / STEP
-    turned = across[0] - across[1]
-    own = dstate.x[n:last]
+    turned, kept = across[0], across[2]
+    clear(kept)
+    _add(-1.0, across[1], turned)
     for k in range(rank):
-        share = np.sum(basis[:, k] * turned)
-        turned -= share * basis[:, k]
-    kept = np.zeros(last - n)
+        share = _share(basis, k, turned)
+        for i in range(m):
+            turned[i] -= share * basis[i, k]
     for k in range(rank):
-        kept += np.sum(basis[:, k] * own) * basis[:, k]
-    dstate.x[n:last] = kept + turned
+        share = _share(basis, k, dstate.x[n : n + m])
+        for i in range(m):
+            kept[i] += share * basis[i, k]
+    for i in range(m):
+        dstate.x[n + i] = kept[i] + turned[i]

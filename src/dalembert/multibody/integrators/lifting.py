@@ -1,18 +1,10 @@
-"""States and loads along a direction of differentiation."""
+"""States along a direction of differentiation."""
 
-from dalembert.multibody.kernels import signals
-from dalembert.multibody.kernels.compiled import compiled, kernel
+from dalembert.kernels.kernel import inner
 from dalembert.multibody.kernels.dual import STEP
 
 
-@compiled
-def set_signals(model, t, within, work):
-    signals.evaluate(
-        model.signals.index, model.signals.data, model.signals.knots, model.callbacks, t, within, work.signals
-    )
-
-
-@kernel
+@inner
 def lift(n, state, direction, target):
     """Complex state: the real one plus the imaginary step along a direction."""
     for i in range(len(state.x)):

@@ -4,14 +4,22 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dalembert.multibody.integrators.lifting import set_signals
-from dalembert.multibody.kernels import beam, cable
-from dalembert.multibody.kernels.assembly import tangent
-from dalembert.multibody.kernels.compiled import compiled, inlined, kernel
-from dalembert.multibody.kernels.linear import BAND, DENSE, Factors, Layout, factorise, padded, solve, storage
-from dalembert.multibody.kernels.model import Slots
-from dalembert.multibody.kernels.motion import clear
-from dalembert.multibody.lowering import Lowered
+from dalembert.kernels.kernel import inlined, inner, kernel
+from dalembert.kernels.words import Address, Integers, Integers2, Reals, Reals2
+from dalembert.multibody.integrators.problem import Problem
+from dalembert.multibody.kernels.assembly import set_signals, tangent
+from dalembert.multibody.kernels.linear import (
+    DENSE,
+    Factors,
+    Layout,
+    band_layout,
+    dense_layout,
+    factorise,
+    padded,
+    solve,
+    storage,
+)
+from dalembert.multibody.kernels.motion import Motion, clear
 from dalembert.multibody.structure import Structure
 
 
@@ -21,13 +29,22 @@ class Pattern(NamedTuple):
     The complex system A + iB stands as the real one [A, -B; B, A], whose blocks' places are ``double`` (4, entries).
     """
 
-    slots: Slots
-    rows: np.ndarray
-    columns: np.ndarray
-    single: np.ndarray
+    slots: Integers
+    rows: Integers
+    columns: Integers
+    single: Integers
     layout: Layout
-    double: np.ndarray
+    double: Integers2
     double_layout: Layout
+
+
+class Doubles(NamedTuple):
+    """Factorised complex systems: the arrays of `Factors` with one more leading axis."""
+
+    matrix: Reals2
+    pivots: Integers2
+    tops: Integers2
+    buffer: Reals2
 
 
 class Matrices(NamedTuple):
@@ -35,18 +52,17 @@ class Matrices(NamedTuple):
 
     ``mass``, ``damping`` and ``stiffness`` are the derivatives of the equations of motion by accelerations, velocities
     and coordinates; with the stiffness stand those of the constraints and by the multipliers. ``rigid`` is factorised
-    [M, J^T; J, 0], ``real`` and ``doubles`` are [M + C/s + K/s^2, J^T; J, 0] for a real s and for complex ones (their
-    arrays have one more leading axis).
+    [M, J^T; J, 0], ``real`` and ``doubles`` are [M + C/s + K/s^2, J^T; J, 0] for a real s and for complex ones.
     ``heavy`` are the numbers of the entries that have a mass, as many as its last entry says.
     """
 
-    heavy: np.ndarray
-    mass: np.ndarray
-    damping: np.ndarray
-    stiffness: np.ndarray
+    heavy: Integers
+    mass: Reals
+    damping: Reals
+    stiffness: Reals
     rigid: Factors
     real: Factors
-    doubles: Factors
+    doubles: Doubles
 
 
 def pattern_of(structure: Structure) -> Pattern:
@@ -55,33 +71,24 @@ def pattern_of(structure: Structure) -> Pattern:
     _, layout = structure.fresh
     size = structure.size
     if layout.kind == DENSE:
-        lead = padded(2 * size)
+        wide = dense_layout(2 * size)
         single = columns * layout.lead + rows
-        double = np.array([(columns + j) * lead + rows + i for i, j in ((0, 0), (0, size), (size, 0), (size, size))])
-        return Pattern(
-            slots, rows, columns, single, layout, double, Layout(DENSE, 2 * size, 0, lead, np.zeros(0, dtype=np.int64))
-        )
+        corners = ((0, 0), (0, size), (size, 0), (size, size))
+        double = np.array([(columns + j) * wide.lead + rows + i for i, j in corners])
+        return Pattern(slots, rows, columns, single, layout, double, wide)
     i, j = layout.order[rows], layout.order[columns]
     single = j * layout.lead + 2 * layout.reach + i - j
     reach = padded(2 * int(np.max(np.abs(i - j))) + 1)
-    lead = 3 * reach + 2
-    double = np.array([(2 * j + b) * lead + 2 * reach + 2 * i + a - 2 * j - b for a in (0, 1) for b in (0, 1)])
-    order = np.concatenate([2 * layout.order, 2 * layout.order + 1])
-    return Pattern(slots, rows, columns, single, layout, double, Layout(BAND, 2 * size, reach, lead, order))
+    wide = band_layout(np.concatenate([2 * layout.order, 2 * layout.order + 1]), reach)
+    parts = ((a, b) for a in (0, 1) for b in (0, 1))
+    double = np.array([(2 * j + b) * wide.lead + 2 * reach + 2 * i + a - 2 * j - b for a, b in parts])
+    return Pattern(slots, rows, columns, single, layout, double, wide)
 
 
-def damps(lowered: Lowered) -> bool:
-    """Whether a force of the model may depend on velocities."""
-    index, data = lowered.structure.index, lowered.data
-    touched = any(len(index[kind]) for kind in ("frictions", "springs", "users"))
-    return touched or bool(np.any(data["beams"][:, beam.DAMPING]) or np.any(data["cables"][:, cable.DAMPING]))
-
-
-@compiled
-def room(pattern, pairs):
+def room(pattern: Pattern, pairs: int) -> Matrices:
     """Room for the matrices of a motion, with as many complex systems as ``pairs``."""
     entries, layout = len(pattern.rows), pattern.double_layout
-    doubles = Factors(
+    doubles = Doubles(
         np.zeros((pairs, layout.lead * layout.size)), np.zeros((pairs, layout.size), np.int64),
         np.zeros((pairs, layout.size), np.int64), np.zeros((pairs, layout.size + 3 * layout.reach)),
     )  # fmt: skip
@@ -92,7 +99,9 @@ def room(pattern, pairs):
 
 
 @kernel
-def weigh_masses(pattern, matrices, dual, n, state, dual_work):
+def weigh_masses(
+    pattern: Pattern, matrices: Matrices, dual: Address, n: int, state: Motion, dual_work: Address
+) -> None:
     """Evaluate the masses, which do not change in a motion; the signals in ``dual_work`` hold the time."""
     tangent(dual, pattern.slots, n, state.x, state.v, state.a, (0.0, 0.0, 1.0), (1.0, 0.0), dual_work, matrices.mass)
     count = 0
@@ -104,7 +113,10 @@ def weigh_masses(pattern, matrices, dual, n, state, dual_work):
 
 
 @kernel
-def renew(problem, pattern, matrices, dual, damped, t, within, state, dual_work):
+def renew(
+    problem: Problem, pattern: Pattern, matrices: Matrices, dual: Address, damped: bool, t: float, within: float,
+    state: Motion, dual_work: Address,
+) -> bool:  # fmt: skip
     """Evaluate stiffness (and damping, if ``damped``), and factorise [M, J^T; J, 0]; whether it is regular."""
     n = problem.n
     set_signals(dual, t, within, dual_work)
@@ -112,26 +124,40 @@ def renew(problem, pattern, matrices, dual, damped, t, within, state, dual_work)
     tangent(dual, pattern.slots, n, x, v, a, (1.0, 0.0, 0.0), (1.0, 1.0), dual_work, matrices.stiffness)
     if damped:
         tangent(dual, pattern.slots, n, x, v, a, (0.0, 1.0, 0.0), (1.0, 0.0), dual_work, matrices.damping)
-    matrix = matrices.rigid.matrix
+    matrix, rows, columns, places = matrices.rigid.matrix, pattern.rows, pattern.columns, pattern.single
+    mass, stiffness = matrices.mass, matrices.stiffness
     clear(matrix)
-    for e in range(len(pattern.rows)):
-        inner = pattern.rows[e] < n and pattern.columns[e] < n
-        matrix[pattern.single[e]] = matrices.mass[e] if inner else matrices.stiffness[e]
+    for e in range(len(rows)):
+        matrix[places[e]] = mass[e] if rows[e] < n and columns[e] < n else stiffness[e]
     return factorise(pattern.layout, matrices.rigid)
 
 
-@kernel
+@inner
 def factorise_real(n, pattern, matrices, s):
     """Factorise [M + C/s + K/s^2, J^T; J, 0] for a real s; whether it is regular."""
     first, second = 1.0 / s, 1.0 / (s * s)
-    matrix = matrices.real.matrix
+    matrix, rows, columns, places = matrices.real.matrix, pattern.rows, pattern.columns, pattern.single
+    mass, damping, stiffness = matrices.mass, matrices.damping, matrices.stiffness
     clear(matrix)
-    for e in range(len(pattern.rows)):
-        value = matrices.stiffness[e]
-        if pattern.rows[e] < n and pattern.columns[e] < n:
-            value = matrices.mass[e] + first * matrices.damping[e] + second * value
-        matrix[pattern.single[e]] = value
+    for e in range(len(rows)):
+        value = stiffness[e]
+        if rows[e] < n and columns[e] < n:
+            value = mass[e] + first * damping[e] + second * value
+        matrix[places[e]] = value
     return factorise(pattern.layout, matrices.real)
+
+
+@inlined
+def product(a, b):
+    """Product of complex numbers; Numba's own looks at infinities, which takes long to compile, and to run."""
+    return complex(a.real * b.real - a.imag * b.imag, a.real * b.imag + a.imag * b.real)
+
+
+@inlined
+def inverse(s):
+    """Reciprocal of a complex number, likewise."""
+    square = s.real * s.real + s.imag * s.imag
+    return complex(s.real / square, -s.imag / square)
 
 
 @inlined
@@ -141,44 +167,46 @@ def _double(matrices, p):
     return Factors(stack.matrix[p], stack.pivots[p], stack.tops[p], stack.buffer[p])
 
 
-@kernel
+@inner
 def factorise_complex(n, pattern, matrices, p, s):
     """Factorise [M + C/s + K/s^2, J^T; J, 0] for a complex s as system ``p``; whether it is regular."""
-    first, second = 1.0 / s, 1.0 / (s * s)
-    factors, double = _double(matrices, p), pattern.double
-    matrix = factors.matrix
+    first = inverse(s)
+    second = product(first, first)
+    factors, rows, columns, places = _double(matrices, p), pattern.rows, pattern.columns, pattern.double
+    matrix, mass, damping, stiffness = factors.matrix, matrices.mass, matrices.damping, matrices.stiffness
     clear(matrix)
-    for e in range(len(pattern.rows)):
-        value, turned = matrices.stiffness[e], 0.0
-        if pattern.rows[e] < n and pattern.columns[e] < n:
-            turned = first.imag * matrices.damping[e] + second.imag * value
-            value = matrices.mass[e] + first.real * matrices.damping[e] + second.real * value
-        matrix[double[0, e]] = value
-        matrix[double[1, e]] = -turned
-        matrix[double[2, e]] = turned
-        matrix[double[3, e]] = value
+    for e in range(len(rows)):
+        value, turned = stiffness[e], 0.0
+        if rows[e] < n and columns[e] < n:
+            turned = first.imag * damping[e] + second.imag * value
+            value = mass[e] + first.real * damping[e] + second.real * value
+        matrix[places[0, e]] = value
+        matrix[places[1, e]] = -turned
+        matrix[places[2, e]] = turned
+        matrix[places[3, e]] = value
     return factorise(pattern.double_layout, factors)
 
 
-@kernel
+@inner
 def solve_complex(pattern, matrices, p, given, answer):
     """Solve with the complex system ``p``: real parts, then imaginary ones."""
     solve(pattern.double_layout, _double(matrices, p), given, answer)
 
 
-@kernel
+@inner
 def add_inertia(pattern, matrices, vector, target):
     """target += M vector."""
-    heavy = matrices.heavy
+    heavy, mass, rows, columns = matrices.heavy, matrices.mass, pattern.rows, pattern.columns
     for number in range(heavy[len(heavy) - 1]):
         e = heavy[number]
-        target[pattern.rows[e]] += matrices.mass[e] * vector[pattern.columns[e]]
+        target[rows[e]] += mass[e] * vector[columns[e]]
 
 
-@kernel
+@inner
 def add_product(n, pattern, values, vector, factor, target):
     """target += factor A vector, for the entries ``values`` of A between coordinates."""
-    for e in range(len(pattern.rows)):
-        i, j = pattern.rows[e], pattern.columns[e]
+    rows, columns = pattern.rows, pattern.columns
+    for e in range(len(rows)):
+        i, j = rows[e], columns[e]
         if i < n and j < n:
             target[i] += factor * values[e] * vector[j]

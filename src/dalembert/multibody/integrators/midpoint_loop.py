@@ -1,37 +1,98 @@
 """The compiled loop of the constrained midpoint rule over the steps of a motion."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
-from dalembert.multibody.integrators import energy_balance as balance
+from dalembert.kernels.kernel import inner, kernel
+from dalembert.kernels.words import Address, Complexes2, Integers, Reals, Reals2, Reals3
+from dalembert.multibody.integrators import energy_balance as balancing
 from dalembert.multibody.integrators import midpoint_step as midpoint
-from dalembert.multibody.integrators.consistent import accelerate
-from dalembert.multibody.integrators.ends import append, ends
-from dalembert.multibody.integrators.lifting import set_signals
-from dalembert.multibody.integrators.matrices import factorise_real, renew, room, weigh_masses
-from dalembert.multibody.integrators.outputs import record
-from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR
+from dalembert.multibody.integrators.consistent import Consistency, accelerate, consistency
+from dalembert.multibody.integrators.ends import Ends, append, ends
+from dalembert.multibody.integrators.energy_balance import Balance
+from dalembert.multibody.integrators.matrices import Matrices, Pattern, factorise_real, renew, room, weigh_masses
+from dalembert.multibody.integrators.midpoint_step import Along, Step
+from dalembert.multibody.integrators.outputs import record, record_along
+from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR, Log, Problem
 from dalembert.multibody.integrators.settling import VELOCITIES, settle, settle_along
-from dalembert.multibody.kernels.compiled import compiled, kernel, template
-from dalembert.multibody.kernels.linear import storage
-from dalembert.multibody.kernels.model import select, workspace
-from dalembert.multibody.kernels.motion import copy, row, still
+from dalembert.multibody.kernels.assembly import set_signals
+from dalembert.multibody.kernels.model import Call
+from dalembert.multibody.kernels.motion import Histories, Motion, Motions, copy, resting, row
 
 _AGED = 0.05  # contraction at which the next step begins with new matrices
+_ENDS = 2  # of steps, between which outputs are interpolated
 _HALVINGS = 8  # of a step that Newton's iteration does not converge on
 
 
 class Settings(NamedTuple):
-    """What the compiled loop needs of an integrator; whether forces may be ``damped``; ``conserving`` the energy."""
+    """What the compiled loop needs of an integrator; whether forces may be ``damped``; the ``energy`` at the start."""
 
     step: float
     newton_tolerance: float
     damped: bool
-    conserving: bool
+    energy: float
 
 
-@kernel
+class Derivatives(NamedTuple):
+    """Work of the derivatives along directions.
+
+    ``slopes`` (directions, 2, N + 1); ``energies`` (directions,) are derivatives of the energy, at the start and then
+    of the balanced one. ``differentiate`` and ``record`` are addresses of kernels, 0 if there are no directions.
+    """
+
+    along: Along
+    slopes: Reals3
+    energies: Reals
+    old: Motion
+    lifted: Complexes2
+    differentiate: Address
+    record: Address
+
+
+class Spare(NamedTuple):
+    """Work of the loop: states, what a step missed (2, N + 1), moves onto the constraints, weights of the ends."""
+
+    between: Motion
+    dbetween: Motion
+    slope: Reals2
+    moved: Reals2
+    weights: Reals3
+
+
+class Workspace(NamedTuple):
+    """Work of one sample. The loop takes each part by itself: a record of them all triples its compilation."""
+
+    matrices: Matrices
+    consistency: Consistency
+    step: Step
+    balance: Balance
+    spare: Spare
+    ends: Ends
+    derivatives: Derivatives
+
+
+def workspace(
+    problem: Problem, pattern: Pattern, calls: Sequence[Call], dual_calls: Sequence[Call], balance: Balance,
+    denergies: np.ndarray, dstates: Motion,
+) -> Workspace:  # fmt: skip
+    """Room for one sample; two calls in real numbers, and two in complex ones, for the middle and the end of a step."""
+    directions, width = dstates.x.shape
+    works, dual_works = [call.address for call in calls], [call.address for call in dual_calls]
+    kernels = (differentiate.address, record_along.address) if directions else (0, 0)
+    derivatives = Derivatives(
+        midpoint.along_room(width, *dual_works), np.zeros((directions, 2, width)), denergies, resting(width),
+        np.zeros((10, width), complex), *kernels,
+    )  # fmt: skip
+    spare = Spare(resting(width), resting(width), np.zeros((2, width)), np.zeros((6, width)), np.zeros((4, _ENDS, 3)))
+    return Workspace(
+        room(pattern, 0), consistency(problem, works[0], dual_works[0], directions), midpoint.step_room(width, *works),
+        balance, spare, ends(_ENDS, dstates), derivatives,
+    )  # fmt: skip
+
+
+@inner
 def _read(n, s, new):
     """State at the end of a step; accelerations and multipliers to start from."""
     for k in range(s.shape[1]):
@@ -40,112 +101,127 @@ def _read(n, s, new):
             new.v[k], new.a[k] = s[midpoint.V1, k], s[midpoint.B, k]
 
 
-@template
-def _differentiate(
-    problem, pattern, matrices, directions, rigid, strength, h, t, target, within, s, new, moved, slopes, denergies,
-    dold, dnews, ds, push, b, e, ahead, dual_works, lifted,
-):  # fmt: skip
+@kernel
+def differentiate(
+    problem: Problem, pattern: Pattern, matrices: Matrices, directions: Integers, step: Step, balance: Balance,
+    strength: float, h: float, t: float, target: float, within: float, new: Motion, dnews: Motions, moved: Reals2,
+    room: Derivatives,
+) -> None:  # fmt: skip
     """Derivatives of a step along all directions."""
-    n = problem.n
-    for d in range(len(dnews.x)):
-        tilted, dnew = select(directions, d), row(dnews, d)
+    n, along, dold, slopes, energies, lifted = problem.n, room.along, room.old, room.slopes, room.energies, room.lifted
+    middle, end, ds = along.middle, along.end, along.rows
+    for d in range(len(directions)):
+        tilted, dnew = directions[d], row(dnews, d)
         copy(dnew, dold)
-        set_signals(tilted, t + 0.5 * h, within, dual_works[0])
-        set_signals(tilted, target, within, dual_works[1])
+        set_signals(tilted, t + 0.5 * h, within, middle)
+        set_signals(tilted, target, within, end)
         midpoint.begin(n, h, dold, slopes[d], ds)
-        denergies[d] += balance.converge_along(
-            problem, pattern, matrices, tilted, rigid, rigid.shifts[d], strength, dual_works[0], dual_works[1], h,
-            denergies[d], s, ds, push, b, e, ahead,
-        )  # fmt: skip
+        if balance.converge_along == 0:
+            midpoint.converge_along(problem, pattern, matrices, tilted, h, step, along)
+        else:
+            energies[d] += _balance_along_at(
+                balance.converge_along, problem, pattern, matrices, tilted, d, strength, h, energies[d], step,
+                along, balance,
+            )  # fmt: skip
         midpoint.learn(n, dold, ds, slopes[d])
         _read(n, ds, dnew)
-        settle_along(problem, pattern, matrices, tilted, new, dnew, moved, dual_works[1], lifted, VELOCITIES)
+        settle_along(problem, pattern, matrices, tilted, new, dnew, moved, end, lifted, VELOCITIES)
 
 
-@compiled
-def integrate(problem, pattern, edges, settings, rigid, model, dual, directions, start, dstates, out, dout, log):
+_balance_at, _balance_along_at = balancing.converge.at, balancing.converge_along.at
+_differentiate_at = differentiate.at
+
+
+@inner
+def _clear(array):
+    """Fill a matrix with zeros."""
+    for i in range(len(array)):
+        for k in range(array.shape[1]):
+            array[i, k] = 0.0
+
+
+@kernel
+def integrate(
+    problem: Problem, pattern: Pattern, edges: Reals, settings: Settings, model: Address, dual: Address,
+    directions: Integers, new: Motion, dnews: Motions, out: Motions, dout: Histories, log: Log,
+    matrices: Matrices, consistent: Consistency, step: Step, balance: Balance, spare: Spare, last: Ends,
+    derivatives: Derivatives,
+) -> tuple[int, float, int]:  # fmt: skip
     """Run one sample between ``edges`` (s): status, time reached, and the unknown that moved most.
 
-    ``rigid`` are the rigid motions whose momenta a force that conserves energy leaves.
-    ``directions`` is a stack of complex models, one a direction of differentiation. ``start`` (N + 1) and its
-    derivatives ``dstates`` (directions, N + 1) are overwritten; ``out`` (times, N + 1) and ``dout`` (directions, times,
-    N + 1) are filled at ``problem.times``.
+    ``directions`` are complex models, one a direction of differentiation. ``new`` (N + 1), the state at the start,
+    and its derivatives ``dnews`` (directions, N + 1) are overwritten; ``out`` (times, N + 1) and ``dout`` (directions,
+    times, N + 1) are filled at ``problem.times``.
     """
-    n, width = problem.n, len(start.x)
-    new, between, dold, dbetween = still(width), still(width), still(width), still(width)
-    last, weights = ends(np.int64(2), dstates), np.zeros((4, 2, 3))
-    copy(start, new)
-    works, dual_works = (workspace(model), workspace(model)), (workspace(dual), workspace(dual))
-    matrices, exact = room(pattern, np.int64(0)), storage(problem.exact_layout)
-    s, ds = np.zeros((midpoint.ROWS, width)), np.zeros((midpoint.ROWS, width))
-    slope, slopes = np.zeros((2, width)), np.zeros((len(dstates.x), 2, width))
-    b, ahead = midpoint.buffers(width)
-    push, moved, lifted = np.zeros(width), np.zeros((6, width)), np.zeros((10, width), np.complex128)
-    e = balance.room(len(rigid.spin), width)
-    energy, denergies = 0.0, np.zeros(len(dstates.x))
-    due = np.int64(0)  # no literal, for which there would be another compilation
+    n, times, scale, counts, s = problem.n, problem.times, problem.scale, log.counts, step.rows
+    between, slope, moved, slopes, dual_work = (
+        spare.between, spare.slope, spare.moved, derivatives.slopes, derivatives.along.middle,
+    )  # fmt: skip
+    energy, due = settings.energy, 0
+    strength, gain = 0.0, 0.0
     speed, h = 1.0 / (edges[-1] - edges[0]), 0.0
     for stretch in range(len(edges) - 1):
         t, end = edges[stretch], edges[stretch + 1]
         within = 0.5 * (t + end)
-        if not accelerate(
-            problem, model, dual, directions, t, within, new, dstates, works[0], dual_works[0], lifted, exact
-        ):
+        if not accelerate(problem, model, dual, directions, t, within, new, dnews, consistent):
             return SINGULAR, t, 0
         if stretch == 0:
-            weigh_masses(pattern, matrices, dual, n, new, dual_works[0])
-            energy = balance.first_energy(model, n, new, works[0], e.totals)
-            for d in range(len(denergies)):
-                tilted = select(directions, d)
-                set_signals(tilted, t, within, dual_works[0])
-                denergies[d] = balance.first_energy_along(
-                    tilted, n, new, row(dstates, d), dual_works[0], lifted, e.lifted_totals
-                )
+            set_signals(dual, t, within, dual_work)  # those of a direction would count as masses
+            weigh_masses(pattern, matrices, dual, n, new, dual_work)
         steps = max(1, int(np.ceil((end - t) / settings.step - 1e-6)))
         begin, nominal, number, level = t, (end - t) / steps, 0, 0
         stale, fresh, made = True, True, 0.0
-        slope[:] = 0.0
-        slopes[:] = 0.0
+        _clear(slope)
+        for d in range(len(directions)):
+            _clear(slopes[d])
         last.known[0] = 0
-        append(t, new, dstates, True, last)
+        arrived = True
         while True:
-            while due < len(problem.times) and problem.times[due] <= t + 1e-9 * h:
+            if arrived:  # in one place: what is inlined twice is compiled twice
+                append(t, new, dnews, True, last)
+            while due < len(times) and times[due] <= t + 1e-9 * h:
                 written = record(
                     problem, pattern, matrices, False, model, dual, directions, last, within, out, dout, due, between,
-                    dbetween, weights, moved, works[0], dual_works[0], lifted,
+                    spare.dbetween, spare.weights, moved, step.middle, dual_work, derivatives.lifted,
+                    derivatives.record,
                 )  # fmt: skip
                 if not written:
-                    return NEWTON_FAILED, problem.times[due], 0
+                    return NEWTON_FAILED, times[due], 0
                 due += 1
             if number == steps:
                 break
             if stale:
-                if not renew(problem, pattern, matrices, dual, settings.damped, t, within, new, dual_works[0]):
+                if not renew(problem, pattern, matrices, dual, settings.damped, t, within, new, dual_work):
                     return SINGULAR, t, 0
                 stale, fresh, made = False, True, 0.0
             goal = end if number == steps - 1 else begin + nominal * (number + 1)
             target = goal if level == 0 else t + (goal - t) / (1 << level)
             h = target - t
             if not abs(h - made) <= 1e-10 * h:
-                log.counts[2] += 1
+                counts[2] += 1
                 made = h
                 if not factorise_real(n, pattern, matrices, 2.0 / h):
                     return SINGULAR, t, 0
-            set_signals(model, t + 0.5 * h, within, works[0])
-            set_signals(model, target, within, works[1])
+            set_signals(model, t + 0.5 * h, within, step.middle)
+            set_signals(model, target, within, step.end)
             midpoint.begin(n, h, new, slope, s)
-            converged, iterations, rate, worst, strength, gain = balance.converge(
-                problem, pattern, matrices, model, rigid, settings.conserving, works[0], works[1], h, energy, s, push,
-                b, e, settings.newton_tolerance, h * speed,
-            )  # fmt: skip
-            log.counts[1] += iterations
+            if balance.converge == 0:
+                converged, iterations, rate, worst = midpoint.converge(
+                    problem, pattern, matrices, model, h, step, settings.newton_tolerance, h * speed
+                )
+            else:
+                converged, iterations, rate, worst, strength, gain = _balance_at(
+                    balance.converge, problem, pattern, matrices, model, h, energy, step, balance,
+                    settings.newton_tolerance, h * speed,
+                )  # fmt: skip
+            counts[1] += iterations
             if converged:
                 _read(n, s, between)
-                converged = settle(problem, pattern, matrices, model, between, moved, works[1], VELOCITIES)
+                converged = settle(problem, pattern, matrices, model, between, moved, step.end, VELOCITIES)
             if not converged:
-                log.counts[3] += 1
-                h = 0.0
-                slope[:] = 0.0
+                counts[3] += 1
+                h, arrived = 0.0, False
+                _clear(slope)
                 if not fresh:  # once more with matrices of this place
                     stale = True
                 elif level == _HALVINGS:
@@ -157,18 +233,17 @@ def integrate(problem, pattern, edges, settings, rigid, model, dual, directions,
             copy(between, new)
             energy += gain
             for k in range(n):
-                speed = max(speed, abs(s[midpoint.VM, k]) / problem.scale[k])
-            _differentiate(
-                problem, pattern, matrices, directions, rigid, strength, h, t, target, within, s, new, moved, slopes,
-                denergies, dold, dstates, ds, push, b, e, ahead, dual_works, lifted,
-            )  # fmt: skip
-            append(target, new, dstates, True, last)
-            if log.counts[0] < len(log.iterations):
-                log.iterations[log.counts[0]] = iterations
-                log.ends[log.counts[0]] = target
-            log.counts[0] += 1
+                speed = max(speed, abs(s[midpoint.VM, k]) / scale[k])
+            if len(directions) > 0:
+                _differentiate_at(
+                    derivatives.differentiate, problem, pattern, matrices, directions, step, balance, strength, h, t,
+                    target, within, new, dnews, moved, derivatives,
+                )  # fmt: skip
+            if counts[0] < len(log.iterations):
+                log.iterations[counts[0]] = iterations
+                log.ends[counts[0]] = target
+            counts[0] += 1
             number += 1 if level == 0 else 0
             level -= 1 if level > 0 else 0
-            t, fresh, stale = target, False, rate > _AGED
-    copy(new, start)
+            t, fresh, stale, arrived = target, False, rate > _AGED, True
     return DONE, edges[-1], 0

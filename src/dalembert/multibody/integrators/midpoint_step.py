@@ -10,14 +10,19 @@ with q_m and l_m the means of both ends. Newton's iteration takes the difference
 cancel: so one matrix of the implicit midpoint rule and one projection do.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
-from dalembert.multibody.integrators.matrices import add_product
-from dalembert.multibody.integrators.settling import constrain, weigh_along
-from dalembert.multibody.kernels.assembly import constraint_rates, residual
-from dalembert.multibody.kernels.compiled import compiled, kernel
+from dalembert.kernels.kernel import inner, kernel
+from dalembert.kernels.words import Address, Complexes2, Reals, Reals2
+from dalembert.multibody.integrators.matrices import Matrices, Pattern, add_product
+from dalembert.multibody.integrators.problem import Problem
+from dalembert.multibody.integrators.settling import weigh_along
+from dalembert.multibody.kernels.assembly import constraint_forces, constraint_rates, residual
 from dalembert.multibody.kernels.dual import STEP
 from dalembert.multibody.kernels.linear import solve
+from dalembert.multibody.kernels.motion import clear
 
 # Rows of a step (8, N + 1): unknowns at its start, in its middle and at its end, velocities there, both accelerations.
 X0, XM, X1, V0, VM, V1, A, B = range(8)
@@ -30,7 +35,39 @@ _ROUNDING, _MAGNIFIED = 1e-12, 1e-9
 _MOST_ITERATIONS = 20
 
 
-@kernel
+class Step(NamedTuple):
+    """Work of a step: calls for its middle and its end, its rows, a force ``push`` (N + 1,) against it, vectors."""
+
+    middle: Address
+    end: Address
+    rows: Reals2
+    push: Reals
+    vectors: Reals2
+
+
+class Along(NamedTuple):
+    """Work of the derivative of a step: the same, and in complex numbers rows and vectors."""
+
+    middle: Address
+    end: Address
+    rows: Reals2
+    push: Reals
+    lifted: Complexes2
+    vectors: Complexes2
+
+
+def step_room(width: int, middle: int, end: int) -> Step:
+    """Room for a step of N + 1 = ``width`` unknowns; the calls are those of real numbers."""
+    return Step(middle, end, np.zeros((ROWS, width)), np.zeros(width), np.zeros((7, width)))
+
+
+def along_room(width: int, middle: int, end: int) -> Along:
+    """Room for the derivative of a step; the calls are those of complex numbers."""
+    lifted, vectors = np.zeros((ROWS, width), complex), np.zeros((7, width), complex)
+    return Along(middle, end, np.zeros((ROWS, width)), np.zeros(width), lifted, vectors)
+
+
+@inner
 def place(n, h, s):
     """Coordinates and velocities of a step by its accelerations, multipliers of its middle."""
     for k in range(n):
@@ -43,7 +80,7 @@ def place(n, h, s):
         s[XM, k] = 0.5 * (s[X0, k] + s[X1, k])
 
 
-@kernel
+@inner
 def begin(n, h, start, slope, s):
     """A step ahead of a state, by its accelerations and multipliers and what they missed in the step before."""
     for k in range(len(start.x)):
@@ -56,7 +93,7 @@ def begin(n, h, start, slope, s):
     place(n, h, s)
 
 
-@kernel
+@inner
 def learn(n, start, s, slope):
     """What accelerations and multipliers of a start missed in its step."""
     for k in range(len(start.x)):
@@ -66,27 +103,31 @@ def learn(n, start, s, slope):
             slope[0, k], slope[1, k] = s[X0, k] - start.x[k], s[X1, k] - start.x[k]
 
 
-@kernel
+@inner
 def _balance(model, n, at, middle, end, f, gap, rate, second):
-    """Fill the residuals of a step, in real or in complex numbers; the signals of both works hold the time.
+    """Fill the residuals of a step, in real or in complex numbers; the signals of both calls hold the time.
 
     ``f``: M a + F + J^T l at the start. ``gap``: J^T l at the end less that at the start, constraints at the end.
     ``rate``: their rates.
     """
-    for k in range(len(gap)):
-        gap[k] = 0.0
     residual(model, n, at[XM], at[VM], at[A], middle, 1.0, f)
-    constrain(model, at[XM], at[XM], -1.0, middle, f)
-    constrain(model, at[X0], at[X0], -1.0, middle, gap)
-    for k in range(n, len(gap)):
-        gap[k] = 0.0
+    clear(gap)
+    constraint_forces(model, at[XM], at[VM], at[A], middle, gap)
     for k in range(n):
         f[k] -= gap[k]
-    constrain(model, at[X1], at[X1], 1.0, end, gap)
+    clear(gap)
+    constraint_forces(model, at[X0], at[V0], at[A], middle, gap)
+    for k in range(len(gap)):
+        if k < n:
+            f[k] += gap[k]
+            gap[k] = -gap[k]
+        else:
+            gap[k] = 0.0
+    constraint_forces(model, at[X1], at[V1], at[B], end, gap)
     constraint_rates(model, n, at[X1], at[V1], at[A], end, rate, second)
 
 
-@kernel
+@inner
 def _correct(n, size, pattern, matrices, h, f, gap, rate, first, other, s):
     """Take Newton's correction off a step, by the residuals; ``f`` and ``gap`` become what accelerations moved."""
     square = 2.0 / (h * h)
@@ -106,7 +147,7 @@ def _correct(n, size, pattern, matrices, h, f, gap, rate, first, other, s):
     place(n, h, s)
 
 
-@kernel
+@inner
 def _sizes(n, h, scale, f, gap, s):
     """Largest correction of a coordinate and largest way of one in the step, against its scale; which moved most."""
     norm, way, worst = 0.0, 0.0, 0
@@ -119,18 +160,22 @@ def _sizes(n, h, scale, f, gap, s):
 
 
 @kernel
-def converge(problem, pattern, matrices, model, middle, end, h, s, push, b, tolerance, least):
-    """Newton's iteration on a step that a force ``push`` (N + 1,) resists.
+def converge(
+    problem: Problem, pattern: Pattern, matrices: Matrices, model: Address, h: float, step: Step, tolerance: float,
+    least: float,
+) -> tuple[bool, int, float, int]:  # fmt: skip
+    """Newton's iteration on a step that a force resists.
 
     Answers whether it converged, iterations, last contraction, unknown that moved most. Corrections end at
     ``tolerance`` times the way that the coordinates go in the step, and at least ``least``, in parts of their scales.
     """
-    n, size = problem.n, s.shape[1] - 1
+    s, b, push, middle, end = step.rows, step.vectors, step.push, step.middle, step.end
+    n, size, scale, mass = problem.n, s.shape[1] - 1, problem.scale, matrices.mass
     f, gap, rate, second, first, other = b[0], b[1], b[2], b[3], b[4], b[5]
     before, norm, contraction, worst = 0.0, 1.0, 1.0, 0
     closed = 0.0
     for k in range(n):
-        closed = max(closed, _CLOSED * problem.scale[k])
+        closed = max(closed, _CLOSED * scale[k])
     for iteration in range(1, _MOST_ITERATIONS + 1):
         _balance(model, n, s, middle, end, f, gap, rate, second)
         for k in range(n):
@@ -139,9 +184,9 @@ def converge(problem, pattern, matrices, model, middle, end, h, s, push, b, tole
         for k in range(n, size):  # rounding would come back as velocities, 1/h times as large
             if abs(gap[k]) <= closed:
                 gap[k] = 0.0
-        add_product(n, pattern, matrices.mass, first, 1.0, gap)
+        add_product(n, pattern, mass, first, 1.0, gap)
         _correct(n, size, pattern, matrices, h, f, gap, rate, first, other, s)
-        norm, way, worst = _sizes(n, h, problem.scale, f, gap, s)
+        norm, way, worst = _sizes(n, h, scale, f, gap, s)
         way = max(least, way)
         if iteration > 1 and norm > _NOISE * way:
             contraction = norm / before
@@ -156,7 +201,7 @@ def converge(problem, pattern, matrices, model, middle, end, h, s, push, b, tole
     return norm <= _MAGNIFIED, iteration, contraction, worst
 
 
-@kernel
+@inner
 def lift_step(s, ds, at):
     """The step plus the imaginary step along a direction."""
     for i in range(ROWS):
@@ -164,17 +209,20 @@ def lift_step(s, ds, at):
             at[i, k] = complex(s[i, k], STEP * ds[i, k])
 
 
-@compiled
-def converge_along(problem, pattern, matrices, tilted, middle, end, h, s, ds, dpush, b, lifted):
-    """Derivative ``ds`` of a converged step along a direction, by the same iteration on imaginary parts."""
-    n, size = problem.n, s.shape[1] - 1
+@kernel
+def converge_along(
+    problem: Problem, pattern: Pattern, matrices: Matrices, tilted: Address, h: float, step: Step, along: Along
+) -> None:
+    """Derivative of a converged step along a direction, by the same iteration on imaginary parts."""
+    s, b, ds, at, vectors, push = step.rows, step.vectors, along.rows, along.lifted, along.vectors, along.push
+    n, size, scale, mass, middle, end = problem.n, s.shape[1] - 1, problem.scale, matrices.mass, along.middle, along.end
     f, gap, rate, first, other, heavier = b[0], b[1], b[2], b[4], b[5], b[6]
-    at, r, c, u, w = lifted[:ROWS], lifted[8], lifted[9], lifted[10], lifted[11]
+    r, c, u, w = vectors[0], vectors[1], vectors[2], vectors[3]
     # What changes of the masses do to the difference of both accelerations, once.
     for k in range(size + 1):
         at[0, k] = s[XM, k]
         u[k] = s[B, k] - s[A, k] if k < n else 0.0
-    weigh_along(tilted, n, at[0], u, middle, lifted[12:], w)
+    weigh_along(tilted, n, at[0], u, middle, vectors[4:], w)
     for k in range(n):
         heavier[k] = w[k].imag / STEP
     before = 0.0
@@ -184,21 +232,15 @@ def converge_along(problem, pattern, matrices, tilted, middle, end, h, s, ds, dp
         for k in range(size + 1):
             f[k], gap[k], rate[k] = r[k].imag / STEP, c[k].imag / STEP, u[k].imag / STEP
             if k < n:
-                f[k] += dpush[k]
+                f[k] += push[k]
                 gap[k] += heavier[k]
                 first[k] = ds[B, k] - ds[A, k]
-        add_product(n, pattern, matrices.mass, first, 1.0, gap)
+        add_product(n, pattern, mass, first, 1.0, gap)
         _correct(n, size, pattern, matrices, h, f, gap, rate, first, other, ds)
-        norm = _sizes(n, h, problem.scale, f, gap, ds)[0]
+        norm = _sizes(n, h, scale, f, gap, ds)[0]
         length = 0.0
         for k in range(n):
-            length = max(length, (abs(ds[X1, k]) + h * abs(ds[V1, k])) / problem.scale[k])
+            length = max(length, (abs(ds[X1, k]) + h * abs(ds[V1, k])) / scale[k])
         if norm <= 1e-15 * length or not norm < 1e100 or (norm <= 1e-10 * length and norm > 0.5 * before):
             break
         before = norm
-
-
-@compiled
-def buffers(width):
-    """Room for the iterations of a step: vectors in real and in complex numbers; number 12 of these stays zero."""
-    return np.zeros((7, width)), np.zeros((15, width), np.complex128)

@@ -2,13 +2,11 @@
 
 from typing import NamedTuple
 
-import numpy as np
-
-from dalembert.multibody.integrators.lifting import set_signals
+from dalembert.kernels.kernel import inlined, inner
+from dalembert.kernels.words import Address, Reals
 from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR
-from dalembert.multibody.kernels.assembly import residual_here, tangent
-from dalembert.multibody.kernels.compiled import inlined, kernel
-from dalembert.multibody.kernels.linear import factorise, solve
+from dalembert.multibody.kernels.assembly import residual, set_signals, tangent
+from dalembert.multibody.kernels.linear import Factors, factorise, solve
 from dalembert.multibody.kernels.motion import advance
 
 _MOST_ITERATIONS = 12
@@ -27,16 +25,16 @@ class Newton(NamedTuple):
     change of accelerations and multipliers over the last step, for the prediction of the next one.
     """
 
-    factors: tuple
-    work: tuple
-    dual_work: tuple
-    r: np.ndarray
-    delta: np.ndarray
-    memory: np.ndarray
-    slope: np.ndarray
+    factors: Factors
+    work: Address
+    dual_work: Address
+    r: Reals
+    delta: Reals
+    memory: Reals
+    slope: Reals
 
 
-@kernel
+@inner
 def _renew(problem, dual, c, t, within, new, newton):
     set_signals(dual, t, within, newton.dual_work)
     tangent(
@@ -94,7 +92,7 @@ def converge(problem, model, dual, c, t, within, tolerance, old, new, newton, lo
         memory[1] = _AGED
     before, norm, worst = 0.0, 1.0, 0
     for iteration in range(1, _MOST_ITERATIONS + 1):
-        residual_here(model, n, new.x, new.v, new.a, newton.work, 1.0 / c.dq, newton.r)
+        residual(model, n, new.x, new.v, new.a, newton.work, 1.0 / c.dq, newton.r)
         solve(problem.layout, newton.factors, newton.r, newton.delta)
         log.counts[1] += 1
         norm, worst = _correct(n, c, problem.scale, newton.delta, old, new)

@@ -9,14 +9,17 @@ from scipy import integrate as scipy_integrate
 from scipy.sparse import block_diag
 
 from dalembert.errors import InputError, unknown
-from dalembert.multibody.integrators.field import Field
+from dalembert.kernels.kernel import Compiled
+from dalembert.multibody.integrators.field import Field, kernels
 from dalembert.multibody.integrators.index1 import PROJECTED
 from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.problem import DONE, TOO_MANY_STEPS, Problem
-from dalembert.multibody.integrators.run import Run, cut, explain, resting, stacks, starts
+from dalembert.multibody.integrators.run import Run, cut, explain, starts
 from dalembert.multibody.integrators.stabilisation import Projection, Stabilisation, posed
-from dalembert.multibody.kernels.motion import Motion, row
+from dalembert.multibody.kernels.model import addresses
+from dalembert.multibody.kernels.motion import Motion, resting, row
 from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.structure import Structure
 from dalembert.settings import expect, expect_positive
 
 EXPLICIT, IMPLICIT = ("RK45", "DOP853"), ("Radau", "BDF", "LSODA")
@@ -79,6 +82,11 @@ class OdeSolver(Integrator):
             )
         self.stabilisation.gains(None)
 
+    def kernels(self, structure: Structure, derivatives: bool) -> list[Compiled]:
+        """What completes states, with its linear systems; an implicit method needs derivatives in any case."""
+        derivatives = derivatives or self.method in IMPLICIT
+        return [*structure.linear_kernels, *kernels(self.stabilisation.way, derivatives)]
+
     def integrate(
         self,
         samples: Sequence[Lowered],
@@ -91,10 +99,10 @@ class OdeSolver(Integrator):
         """Runs of samples, one after another; see `Integrator`."""
         problem, terms = posed(self.stabilisation, samples, cut(samples, problem, end), None)
         states, dstates = starts(samples, tilted)
-        directions = stacks(samples, tilted)[2]
+        directions = addresses(entry.dual.need("rates") for entry in tilted)
         runs = []
         for number, lowered in enumerate(samples):
-            own = Field(problem, terms, lowered, directions, row(states, number), dstates)
+            own = Field(problem, terms, lowered, directions, row(states, number), dstates, self.method in IMPLICIT)
             edges = problem.edges[number, : problem.stretches[number] + 1]
             runs.append(self._run(own, edges))
         return runs

@@ -1,22 +1,26 @@
 """Outputs at asked times: states between the ends of a step, moved onto the constraints, with their derivatives."""
 
-from dalembert.multibody.integrators.ends import interpolate_ends, support, weigh_ends
-from dalembert.multibody.integrators.lifting import set_signals
-from dalembert.multibody.integrators.matrices import renew
+from dalembert.kernels.kernel import inner, kernel
+from dalembert.kernels.words import Address, Complexes2, Integers, Reals2, Reals3
+from dalembert.multibody.integrators.ends import Ends, interpolate_ends, support, weigh_ends
+from dalembert.multibody.integrators.matrices import Matrices, Pattern, renew
+from dalembert.multibody.integrators.problem import Problem
 from dalembert.multibody.integrators.settling import COORDINATES, settle, settle_along
-from dalembert.multibody.kernels.compiled import template
-from dalembert.multibody.kernels.model import select
-from dalembert.multibody.kernels.motion import copy, row
+from dalembert.multibody.kernels.assembly import set_signals
+from dalembert.multibody.kernels.motion import Histories, Motion, Motions, copy, row, rows
 
 
-@template
+@kernel
 def record(
-    problem, pattern, matrices, far, model, dual, directions, ends, within, out, dout, due, state, dstate, weights,
-    moved, work, dual_work, lifted,
-):  # fmt: skip
+    problem: Problem, pattern: Pattern, matrices: Matrices, far: bool, model: Address, dual: Address,
+    directions: Integers, ends: Ends, within: float, out: Motions, dout: Histories, due: int, state: Motion,
+    dstate: Motion, weights: Reals3, moved: Reals2, work: Address, dual_work: Address, lifted: Complexes2,
+    along: Address,
+) -> bool:  # fmt: skip
     """Write the state at an output time in the last step or at its end: on the constraints, with its accelerations.
 
-    Matrices that are from ``far`` are renewed between the ends; ``weights`` (4, ends, 3) is room.
+    Matrices that are from ``far`` are renewed between the ends. ``weights`` (4, ends, 3) is room, and so are ``moved``
+    and ``lifted``, see `settle_along`. ``along`` is the address of `record_along`, 0 if there are no directions.
     """
     n, newest, oldest = problem.n, len(ends.times) - 1, len(ends.times) - 1
     share, t = 1.0, problem.times[due]
@@ -34,15 +38,44 @@ def record(
         set_signals(model, t, within, work)
         if not settle(problem, pattern, matrices, model, state, moved, work, COORDINATES):
             return False
-    out.x[due], out.v[due], out.a[due] = state.x, state.v, state.a
-    for d in range(len(directions.callbacks)):
-        derivatives = row(ends.derivatives, d)
-        if whole:
-            copy(row(derivatives, newest), dstate)
-        else:
-            tilted = select(directions, d)
-            interpolate_ends(n, oldest, weights, derivatives, dstate)
-            set_signals(tilted, t, within, dual_work)
-            settle_along(problem, pattern, matrices, tilted, state, dstate, moved, dual_work, lifted, COORDINATES)
-        dout.x[d, due], dout.v[d, due], dout.a[d, due] = dstate.x, dstate.v, dstate.a
+    _write(state, row(out, due))
+    if len(directions) > 0:
+        _record_along_at(
+            along, problem, pattern, matrices, directions, ends, whole, oldest, within, dout, due, state, dstate,
+            weights, moved, dual_work, lifted,
+        )  # fmt: skip
     return True
+
+
+@kernel
+def record_along(
+    problem: Problem, pattern: Pattern, matrices: Matrices, directions: Integers, ends: Ends, whole: bool, oldest: int,
+    within: float, dout: Histories, due: int, state: Motion, dstate: Motion, weights: Reals3, moved: Reals2,
+    dual_work: Address, lifted: Complexes2,
+) -> None:  # fmt: skip
+    """Write the derivatives of the state at an output time along all directions.
+
+    ``whole``: at the end of the step; else between the ends from ``oldest`` on, with the weights and moves of the state.
+    """
+    t = problem.times[due]
+    for d in range(len(directions)):
+        derivatives = rows(ends.derivatives, d)
+        if whole:
+            copy(row(derivatives, len(ends.times) - 1), dstate)
+        else:
+            interpolate_ends(problem.n, oldest, weights, derivatives, dstate)
+            set_signals(directions[d], t, within, dual_work)
+            settle_along(
+                problem, pattern, matrices, directions[d], state, dstate, moved, dual_work, lifted, COORDINATES
+            )
+        _write(dstate, row(rows(dout, d), due))
+
+
+_record_along_at = record_along.at
+
+
+@inner
+def _write(state, target):
+    """Copy what is an output."""
+    for k in range(len(state.x)):
+        target.x[k], target.v[k], target.a[k] = state.x[k], state.v[k], state.a[k]

@@ -4,14 +4,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dalembert.multibody.integrators.lifting import lift, set_signals
-from dalembert.multibody.kernels.assembly import constraint_rates, residual, tangent
-from dalembert.multibody.kernels.compiled import compiled, kernel, template
+from dalembert.kernels.kernel import inner, kernel
+from dalembert.kernels.words import Address, Complexes2, Integers, Reals, Reals2
+from dalembert.multibody.integrators.lifting import lift
+from dalembert.multibody.integrators.problem import Problem
+from dalembert.multibody.kernels.assembly import constraint_rates, residual, set_signals, tangent
 from dalembert.multibody.kernels.dual import STEP
-from dalembert.multibody.kernels.linear import DENSE, Factors, Layout, factorise, solve, storage
-from dalembert.multibody.kernels.model import select
-from dalembert.multibody.kernels.motion import row
-from dalembert.multibody.kernels.vector import LANES
+from dalembert.multibody.kernels.linear import DENSE, Factors, factorise, resized, solve, storage
+from dalembert.multibody.kernels.motion import Motion, Motions, row
 
 POSITION, VELOCITY, ACCELERATION = 1, 2, 3  # how many levels are made to satisfy the constraints
 _DEPENDENT = 1e-9  # pivot, against the first one, of a constraint that follows from the others
@@ -25,39 +25,33 @@ class Partition(NamedTuple):
     ``columns`` (n,) and ``rows`` (m,): coordinates and constraints in the order of their pivots; the first ``rank[0]``
     of them are the dependent coordinates and the independent constraints. ``matrix``: the constraint Jacobian in the
     dense layout of the problem. ``pivots`` (m, n): what elimination leaves. ``dependent``: inverse of the dependent
-    part.
+    part. ``along``: address of the kernel for derivatives of a settled state, 0 if there are none.
     """
 
-    columns: np.ndarray
-    rows: np.ndarray
-    rank: np.ndarray
-    matrix: np.ndarray
-    pivots: np.ndarray
+    columns: Integers
+    rows: Integers
+    rank: Integers
+    matrix: Reals
+    pivots: Reals2
     dependent: Factors
-    gap: np.ndarray
-    second: np.ndarray
-    change: np.ndarray
+    gap: Reals
+    second: Reals
+    change: Reals
+    along: Address
 
 
-@template
-def _layout(problem, rank):
-    """Layout of a dense matrix of the dependent part."""
-    whole = problem.exact_layout
-    return Layout(whole.kind, rank, whole.reach, -(-rank // LANES) * LANES, whole.order)
-
-
-@compiled
-def room(problem):
+def room(problem: Problem, directions: int) -> Partition:
     """Room for a partition, for a dense matrix of the problem (`Structure.dense`); else for its Jacobian only."""
-    size, n = problem.exact_layout.size, problem.n
-    m = size - n if problem.exact_layout.kind == DENSE else 0
+    layout, n = problem.exact_layout, problem.n
+    m = layout.size - n if layout.kind == DENSE else 0
+    along, vector = settle_along.address if directions else 0, np.zeros((3, layout.size + 1))
     return Partition(
-        np.arange(n), np.arange(m), np.zeros(1, np.int64), np.zeros(problem.exact_layout.lead * size),
-        np.zeros((m, n)), storage(_layout(problem, m)), np.zeros(size + 1), np.zeros(size + 1), np.zeros(size + 1),
+        np.arange(n), np.arange(m), np.zeros(1, np.int64), np.zeros(layout.lead * layout.size), np.zeros((m, n)),
+        storage(resized(layout, m)), vector[0], vector[1], vector[2], along,
     )  # fmt: skip
 
 
-@compiled
+@inner
 def linearise(problem, dual, state, dual_work, partition):
     """The constraint Jacobian of a state; the signals in ``dual_work`` hold the time."""
     tangent(
@@ -66,8 +60,8 @@ def linearise(problem, dual, state, dual_work, partition):
     )  # fmt: skip
 
 
-@compiled
-def choose(problem, partition):
+@kernel
+def choose(problem: Problem, partition: Partition) -> None:
     """Order coordinates and constraints by complete pivoting of the constraint Jacobian, in units of their scales."""
     n, lead, a = problem.n, problem.exact_layout.lead, partition.pivots
     rows, columns = partition.rows, partition.columns
@@ -107,11 +101,11 @@ def choose(problem, partition):
         partition.rank[0] = k + 1
 
 
-@compiled
+@inner
 def invert(problem, partition):
     """Invert the dependent part of the Jacobian; whether it is regular."""
     rank, lead = partition.rank[0], problem.exact_layout.lead
-    layout = _layout(problem, rank)
+    layout = resized(problem.exact_layout, rank)
     for j in range(rank):
         for i in range(rank):
             entry = partition.matrix[partition.columns[j] * lead + problem.n + partition.rows[i]]
@@ -121,7 +115,7 @@ def invert(problem, partition):
     return factorise(layout, partition.dependent)
 
 
-@compiled
+@inner
 def dependence(problem, partition):
     """Largest change of a dependent coordinate by an independent one, in units of their scales.
 
@@ -133,13 +127,13 @@ def dependence(problem, partition):
         own = partition.columns[k]
         for i in range(rank):
             partition.gap[i] = partition.matrix[own * lead + problem.n + partition.rows[i]]
-        solve(_layout(problem, rank), partition.dependent, partition.gap, partition.change)
+        solve(resized(problem.exact_layout, rank), partition.dependent, partition.gap, partition.change)
         for i in range(rank):
             largest = max(largest, abs(partition.change[i]) * scale[own] / scale[partition.columns[i]])
     return largest
 
 
-@kernel
+@inner
 def fill_gap(model, n, level, x, v, a, work, gap, second):
     """The constraints, or their first or second rates, into the entries of ``gap`` from n on."""
     if level == POSITION:
@@ -151,13 +145,13 @@ def fill_gap(model, n, level, x, v, a, work, gap, second):
             gap[i] = second[i]
 
 
-@kernel
+@inner
 def _shift(problem, partition, level, state):
     """Correct the dependent entries of a level by the gaps in ``partition.second``; the largest correction."""
     n, rank, columns = problem.n, partition.rank[0], partition.columns
     for i in range(rank):
         partition.gap[i] = partition.second[n + partition.rows[i]]
-    solve(_layout(problem, rank), partition.dependent, partition.gap, partition.change)
+    solve(resized(problem.exact_layout, rank), partition.dependent, partition.gap, partition.change)
     largest = 0.0
     for i in range(rank):
         moved, c = partition.change[i], columns[i]
@@ -173,7 +167,7 @@ def _shift(problem, partition, level, state):
     return largest
 
 
-@template
+@inner
 def _close(problem, model, dual, state, work, dual_work, partition):
     """Newton's iteration on the dependent coordinates; whether it arrived."""
     for _ in range(_MOST_ITERATIONS):
@@ -189,8 +183,11 @@ def _close(problem, model, dual, state, work, dual_work, partition):
     return False
 
 
-@compiled
-def settle(problem, model, dual, directions, t, within, levels, state, dstates, work, dual_work, lifted, partition):
+@kernel
+def settle(
+    problem: Problem, model: Address, dual: Address, directions: Integers, t: float, within: float, levels: int,
+    state: Motion, dstates: Motions, work: Address, dual_work: Address, lifted: Complexes2, partition: Partition,
+) -> bool:  # fmt: skip
     """Make the dependent entries of a state satisfy the constraints, and those of its derivatives along directions.
 
     The independent entries stay as they are. ``levels``: `POSITION`, `VELOCITY` or `ACCELERATION`, each with those
@@ -205,8 +202,22 @@ def settle(problem, model, dual, directions, t, within, levels, state, dstates, 
         for _ in range(1 if level == POSITION else 2):  # linear from the velocities on; once more for rounding
             fill_gap(model, n, level, state.x, state.v, state.a, work, partition.second, partition.gap)
             _shift(problem, partition, level, state)
+    if len(dstates.x) > 0:
+        _settle_along_at(
+            partition.along, problem, directions, t, within, levels, state, dstates, dual_work, lifted, partition
+        )
+    return True
+
+
+@kernel
+def settle_along(
+    problem: Problem, directions: Integers, t: float, within: float, levels: int, state: Motion, dstates: Motions,
+    dual_work: Address, lifted: Complexes2, partition: Partition,
+) -> None:  # fmt: skip
+    """Derivatives of the dependent entries of a settled state, one direction for each of ``dstates``."""
+    n = problem.n
     for d in range(len(dstates.x)):
-        tilted, dstate = select(directions, d), row(dstates, d)
+        tilted, dstate = directions[d], row(dstates, d)
         set_signals(tilted, t, within, dual_work)
         for level in range(POSITION, levels + 1):
             for _ in range(2):
@@ -215,4 +226,6 @@ def settle(problem, model, dual, directions, t, within, levels, state, dstates, 
                 for i in range(n, len(state.x) - 1):
                     partition.second[i] = lifted[3, i].imag / STEP
                 _shift(problem, partition, level, dstate)
-    return True
+
+
+_settle_along_at = settle_along.at

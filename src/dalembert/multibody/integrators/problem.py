@@ -2,13 +2,14 @@
 
 from typing import NamedTuple
 
-import numpy as np
+from dalembert.kernels.words import Integers, Reals, Reals2
+from dalembert.multibody.kernels.linear import Layout
 
 DONE, NEWTON_FAILED, SINGULAR, TOO_MANY_STEPS, DIVERGED = range(5)
 
 
 class Problem(NamedTuple):
-    """What does not change from sample to sample: sizes, scales, where matrix entries go, LAPACK, times.
+    """What does not change from sample to sample: sizes, scales, where matrix entries go, times.
 
     ``n`` coordinates; ``scale`` (N + 1,); ``slots`` and ``layout`` of the Newton matrix; those of the sensitivities,
     whose matrix is renewed at each step; ``times`` of the output. ``edges`` (samples, -) of the smooth stretches of
@@ -17,20 +18,20 @@ class Problem(NamedTuple):
     """
 
     n: int
-    scale: np.ndarray
-    slots: tuple
-    layout: tuple
-    exact_slots: tuple
-    exact_layout: tuple
-    times: np.ndarray
-    edges: np.ndarray
-    stretches: np.ndarray
+    scale: Reals
+    slots: Integers
+    layout: Layout
+    exact_slots: Integers
+    exact_layout: Layout
+    times: Reals
+    edges: Reals2
+    stretches: Integers
     projected: bool = False
 
 
 class Log(NamedTuple):
     """Of one run: steps, Newton iterations, factorisations, rejected steps; iterations a step while room lasts."""
 
-    counts: np.ndarray
-    iterations: np.ndarray
-    ends: np.ndarray
+    counts: Integers
+    iterations: Integers
+    ends: Reals

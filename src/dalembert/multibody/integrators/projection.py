@@ -1,14 +1,14 @@
 """Coordinates and velocities moved onto the constraints by the smallest kinetic energy."""
 
-from dalembert.multibody.integrators.index1 import factorise_motion
-from dalembert.multibody.integrators.lifting import set_signals
+from dalembert.kernels.kernel import inlined, inner, kernel
+from dalembert.kernels.words import Address, Integers
+from dalembert.multibody.integrators.index1 import Terms, Tools, factorise_motion
 from dalembert.multibody.integrators.partitioning import POSITION, VELOCITY, fill_gap
-from dalembert.multibody.kernels.assembly import residual
-from dalembert.multibody.kernels.compiled import compiled, kernel, template
+from dalembert.multibody.integrators.problem import Problem
+from dalembert.multibody.kernels.assembly import residual, set_signals
 from dalembert.multibody.kernels.dual import STEP
 from dalembert.multibody.kernels.linear import solve
-from dalembert.multibody.kernels.model import select
-from dalembert.multibody.kernels.motion import row
+from dalembert.multibody.kernels.motion import Motion, Motions, row
 
 _MOST_ITERATIONS = 15
 # Corrections that stop to shrink are rounding, which a nearly singular position magnifies up to this size.
@@ -16,7 +16,7 @@ _MAGNIFIED = 1e-9
 _NOTHING = 1e-16
 
 
-@kernel
+@inner
 def _move(problem, level, tools, state, change):
     """Add the correction in ``tools.answer`` to the whole change, and take it off the state; its size."""
     n, answer, largest = problem.n, tools.answer, 0.0
@@ -34,8 +34,8 @@ def _move(problem, level, tools, state, change):
     return largest
 
 
-@kernel
-def _clear_forces(n, answer, lifted):
+@inlined
+def _clear_forces(n, lifted):
     """A complex state at rest without multipliers: x from row 0, v and a nothing."""
     for i in range(lifted.shape[1]):
         lifted[1, i] = 0.0
@@ -44,7 +44,17 @@ def _clear_forces(n, answer, lifted):
             lifted[0, i] = 0.0
 
 
-@template
+@kernel
+def project_along(
+    problem: Problem, level: int, directions: Integers, t: float, within: float, state: Motion, dstates: Motions,
+    tools: Tools,
+) -> None:  # fmt: skip
+    """Derivatives of the projection of coordinates or of velocities (``level``), along all directions."""
+    for d in range(len(dstates.x)):
+        _follow(problem, level, directions[d], t, within, state, row(dstates, d), tools, tools.change)
+
+
+@inner
 def _follow(problem, level, model, t, within, state, dstate, tools, change):
     """The derivative of a projection along one direction.
 
@@ -65,7 +75,7 @@ def _follow(problem, level, model, t, within, state, dstate, tools, change):
             lifted[1, i] = 0.0
             lifted[2, i] = complex(change.a[i], lifted[5, i].imag) if i < n else 0.0
         residual(model, n, lifted[0], lifted[1], lifted[2], tools.dual_work, 1.0, lifted[3])
-        _clear_forces(n, answer, lifted)
+        _clear_forces(n, lifted)
         residual(model, n, lifted[0], lifted[1], lifted[2], tools.dual_work, 1.0, lifted[4])
         for i in range(n):
             gap[i] = (lifted[3, i].imag - lifted[4, i].imag) / STEP
@@ -86,12 +96,16 @@ def _follow(problem, level, model, t, within, state, dstate, tools, change):
             dstate.v[i] -= lifted[5, i].imag / STEP
 
 
-@compiled
-def project(problem, terms, model, dual, directions, t, within, state, dstates, tools):
+@kernel
+def project(
+    problem: Problem, terms: Terms, model: Address, dual: Address, directions: Integers, t: float, within: float,
+    state: Motion, dstates: Motions, tools: Tools, along: Address,
+) -> bool:  # fmt: skip
     """Move coordinates, then velocities, onto the constraints, with their derivatives; whether that was possible.
 
     With the state's mass matrix M and Jacobian J: M w + J^T m = 0 such that the constraints of q - w vanish, by
-    Newton's iteration with J kept; then v alike, which is linear.
+    Newton's iteration with J kept; then v alike, which is linear. ``along``: address of `project_along`, 0 if there are
+    no derivatives.
     """
     n, last, base, change = problem.n, len(state.x) - 1, tools.base, tools.change
     set_signals(model, t, within, tools.work)
@@ -114,12 +128,15 @@ def project(problem, terms, model, dual, directions, t, within, state, dstates, 
             before = moved
         if not moved <= _MAGNIFIED * (1.0 if level == POSITION else 1.0 + _largest(n, state.v)):
             return False
-        for d in range(len(dstates.x)):
-            _follow(problem, level, select(directions, d), t, within, state, row(dstates, d), tools, change)
+        if len(dstates.x) > 0:
+            _project_along_at(along, problem, level, directions, t, within, state, dstates, tools)
     return True
 
 
-@kernel
+_project_along_at = project_along.at
+
+
+@inlined
 def _largest(n, values):
     largest = 0.0
     for i in range(n):

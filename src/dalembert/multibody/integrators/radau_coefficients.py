@@ -7,6 +7,8 @@ import numpy as np
 from numpy.polynomial import legendre
 from scipy.special import roots_jacobi
 
+from dalembert.kernels.words import Complexes, Reals, Reals2
+
 
 class Coefficients(NamedTuple):
     """Of the method with s stages, of order 2 s - 1.
@@ -17,14 +19,14 @@ class Coefficients(NamedTuple):
     the stages are predicted by those of the step before and by the last ``more`` of the step earlier (measured).
     """
 
-    c: np.ndarray
-    a: np.ndarray
-    inverse: np.ndarray
-    t: np.ndarray
-    back: np.ndarray
+    c: Reals
+    a: Reals2
+    inverse: Reals2
+    t: Reals2
+    back: Reals2
     real: float
-    pairs: np.ndarray
-    start: np.ndarray
+    pairs: Complexes
+    start: Reals
     more: int
 
 

@@ -5,14 +5,21 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from dalembert.kernels.kernel import Compiled
+from dalembert.multibody.integrators.consistent import accelerate_along
 from dalembert.multibody.integrators.integrator import Integrator
-from dalembert.multibody.integrators.matrices import damps, pattern_of
+from dalembert.multibody.integrators.matrices import pattern_of
+from dalembert.multibody.integrators.outputs import record_along
 from dalembert.multibody.integrators.problem import DONE, Log, Problem
 from dalembert.multibody.integrators.radau_coefficients import coefficients
-from dalembert.multibody.integrators.radau_loop import Settings, integrate
-from dalembert.multibody.integrators.run import Run, cut, explain, resting, stack, starts
-from dalembert.multibody.kernels.motion import Motion
+from dalembert.multibody.integrators.radau_derivatives import differentiate, settle_end_along
+from dalembert.multibody.integrators.radau_loop import integrate
+from dalembert.multibody.integrators.radau_workspace import Settings, workspace
+from dalembert.multibody.integrators.run import Run, cut, explain, starts
+from dalembert.multibody.kernels.model import addresses
+from dalembert.multibody.kernels.motion import Motion, resting
 from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.structure import Structure
 from dalembert.settings import expect, expect_positive
 
 _ROOM = 100_000  # steps whose Newton counts are kept, where their number is not known before
@@ -76,6 +83,11 @@ class RadauIIA(Integrator):
         """Order of coordinates and velocities in the step."""
         return 2 * self.stages - 1
 
+    def kernels(self, structure: Structure, derivatives: bool) -> list[Compiled]:
+        """The loop with its linear systems, and what differentiates a step and an output."""
+        along = [differentiate, settle_end_along, record_along, accelerate_along]
+        return [integrate, *structure.linear_kernels, *along * derivatives]
+
     def integrate(
         self,
         samples: Sequence[Lowered],
@@ -87,44 +99,48 @@ class RadauIIA(Integrator):
     ) -> list[Run]:
         """Runs of samples in one compiled loop that leaves the interpreter's lock free; see `Integrator`."""
         problem = cut(samples, problem, end)
-        pattern = pattern_of(samples[0].structure)
+        pattern, method = pattern_of(samples[0].structure), coefficients(self.stages)
         states, dstates = starts(samples, tilted)
-        directions = stack([entry.dual for entry in tilted], samples[0].dual)
+        directions = addresses(entry.dual.need("rates") for entry in tilted)
         shape = len(problem.times), states.x.shape[1]
         dout = resting(len(tilted), *shape)
         fixed = self.step_ends(end, samples[0].jumps)
         room = (_ROOM if fixed is None else max(_ROOM, len(fixed))) if logged else 0
+        calls = [[model.call() for _ in range(1 + self.stages)] for model in (samples[0].real, samples[0].dual)]
         runs = []
         for number, lowered in enumerate(samples):
             log = Log(np.zeros(4, dtype=np.int64), np.zeros(room, dtype=np.int64), np.zeros(room))
-            settings = Settings(
-                float(self.step or 0.0),
-                float(self.tolerance),
-                float(self.newton_tolerance),
-                int(self.most_steps),
-                damps(lowered),
-            )
             edges = problem.edges[number, : problem.stretches[number] + 1]
             own, start = resting(*shape), Motion(*(array[number] for array in states))
             status, time, unknown = integrate(
                 problem,
-                coefficients(self.stages),
+                method,
                 pattern,
                 edges,
-                settings,
-                lowered.real,
-                lowered.dual,
+                self._settings(lowered),
+                lowered.real.need("rates").address,
+                lowered.dual.address,
                 directions,
                 start,
                 dstates,
                 own,
                 dout,
                 log,
+                *workspace(problem, method, pattern, dstates, *calls),
             )
             reason = None if status == DONE else self._explain(lowered, status, time, unknown)
             taken = min(int(log.counts[0]), room)
             runs.append(Run(reason, problem.times, own, dout, log.counts, log.iterations[:taken], log.ends[:taken]))
         return runs
+
+    def _settings(self, lowered: Lowered) -> Settings:
+        return Settings(
+            float(self.step or 0.0),
+            float(self.tolerance),
+            float(self.newton_tolerance),
+            int(self.most_steps),
+            lowered.dissipates,
+        )
 
     def _explain(self, lowered: Lowered, status: int, time: float, unknown: int) -> str:
         cut_down = "the step was cut down for it"

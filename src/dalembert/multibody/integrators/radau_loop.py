@@ -1,41 +1,31 @@
 """The compiled loop of Radau IIA over the steps of a motion: choice of the step, outputs, derivatives."""
 
-from typing import NamedTuple
-
 import numpy as np
 
+from dalembert.kernels.kernel import inner, kernel
+from dalembert.kernels.words import Address, Integers, Reals
 from dalembert.multibody.integrators import radau_stages as stages
-from dalembert.multibody.integrators.consistent import accelerate
-from dalembert.multibody.integrators.ends import append, ends, support
-from dalembert.multibody.integrators.lifting import set_signals
-from dalembert.multibody.integrators.matrices import renew, room, weigh_masses
+from dalembert.multibody.integrators.consistent import Consistency, accelerate
+from dalembert.multibody.integrators.ends import append, support
+from dalembert.multibody.integrators.matrices import Matrices, Pattern, renew, weigh_masses
 from dalembert.multibody.integrators.outputs import record
-from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR, TOO_MANY_STEPS
-from dalembert.multibody.integrators.settling import VELOCITIES, accelerate_roughly, settle, settle_along
-from dalembert.multibody.kernels.compiled import compiled, kernel, template
-from dalembert.multibody.kernels.linear import storage
-from dalembert.multibody.kernels.model import select, workspace
-from dalembert.multibody.kernels.motion import Motion, copy, row, still
+from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR, TOO_MANY_STEPS, Log, Problem
+from dalembert.multibody.integrators.radau_coefficients import Coefficients
+from dalembert.multibody.integrators.radau_derivatives import differentiate, settle_end_along
+from dalembert.multibody.integrators.radau_newton import converge, estimate, factorise
+from dalembert.multibody.integrators.radau_workspace import Along, Outputs, Settings, Step
+from dalembert.multibody.integrators.settling import VELOCITIES, accelerate_roughly, settle
+from dalembert.multibody.kernels.assembly import set_signals
+from dalembert.multibody.kernels.motion import Histories, Motion, Motions, copy, row
 
 _AGED = 0.003  # contraction at which the next step begins with new matrices, and outputs have their own
 _SHORTEST = 0.2  # of a step: the one after it (Hairer and Wanner 1996, IV.8); what is foreseen may vanish in the time
 _NEAR = 1.25  # ratio of a step to the one that the kept systems were factorised for
 _FAR = 1.5  # ratio of a step to the one before, from which the latter alone predicts
 _HALVINGS = 8  # of a fixed step that Newton's iteration does not converge on
-_ENDS = np.int64(4)  # of steps, through which outputs are interpolated
 
 
-class Settings(NamedTuple):
-    """What the compiled loop needs of `RadauIIA`; ``step`` 0: chosen by the error; whether forces may be ``damped``."""
-
-    step: float
-    tolerance: float
-    newton_tolerance: float
-    most_steps: int
-    damped: bool
-
-
-@kernel
+@inner
 def _speed(n, scale, v):
     """Largest velocity against the scales, 1/s."""
     speed = 0.0
@@ -44,88 +34,58 @@ def _speed(n, scale, v):
     return speed
 
 
-@compiled
+@inner
 def _first_step(n, scale, span, tolerance, order, state):
     """A step in which coordinates move by a small part of their scales."""
     rate = max(_speed(n, scale, state.v), np.sqrt(_speed(n, scale, state.a)))
     return min(0.1 * span, 0.3 * tolerance ** (1.0 / order) / (rate + 1e-300))
 
 
-@kernel
-def _read(n, s, new):
-    """State at the end of a step: its last stage."""
-    last = len(s.x) - 1
-    for k in range(len(new.x)):
-        new.x[k] = s.x[last, k]
-        if k < n:
-            new.v[k], new.a[k] = s.v[last, k], s.a[last, k]
-
-
-@template
-def _differentiate(
-    problem, method, pattern, matrices, directions, h, t, target, within, s, dold, dnews, ds, b, dual_work, dsignals,
-):  # fmt: skip
-    """Derivatives of a step along all directions."""
-    for d in range(len(dnews.x)):
-        tilted, dnew = select(directions, d), row(dnews, d)
-        copy(dnew, dold)
-        stages.listen(method, tilted, t, h, target, within, dual_work, dsignals)
-        stages.converge_along(problem, method, pattern, matrices, tilted, dual_work, dsignals, h, s, dold, ds, b)
-        _read(problem.n, ds, dnew)
-
-
-@template
-def _settle_end(
-    j, problem, pattern, matrices, model, directions, within, last, moved, work, dual_work, lifted,
-):  # fmt: skip
-    """Settle an end and its derivatives; whether that went well."""
-    t, state = last.times[j], row(last.states, j)
-    set_signals(model, t, within, work)
-    if not settle(problem, pattern, matrices, model, state, moved, work, VELOCITIES):
-        return False
-    for d in range(len(directions.callbacks)):
-        tilted = select(directions, d)
-        set_signals(tilted, t, within, dual_work)
-        dstate = row(row(last.derivatives, d), j)
-        settle_along(problem, pattern, matrices, tilted, state, dstate, moved, dual_work, lifted, VELOCITIES)
-    last.settled[j] = True
-    return True
-
-
-@template
+@inner
 def _settle_ends(
     problem, pattern, matrices, apart, far, model, dual, directions, damped, within, last, moved, work, dual_work,
-    lifted,
+    lifted, along,
 ):  # fmt: skip
     """Settle the ends that outputs of the last step need; whether that went well.
 
-    Former ones with matrices ``apart`` of their own places, the newest one, too, where the kept ones are from ``far``.
+    Former ones with matrices apart of their own places, the newest one, too, where the kept ones are from ``far``.
     """
     newest = len(last.times) - 1
     for j in range(support(last), newest + 1):
         if last.settled[j]:
             continue
-        own = matrices
+        t, state, own = last.times[j], row(last.states, j), matrices
         if far or j < newest:
             own = apart
-            if not renew(problem, pattern, own, dual, damped, last.times[j], within, row(last.states, j), dual_work):
+            if not renew(problem, pattern, own, dual, damped, t, within, state, dual_work):
                 return False
-        if not _settle_end(j, problem, pattern, own, model, directions, within, last, moved, work, dual_work, lifted):
+        set_signals(model, t, within, work)
+        if not settle(problem, pattern, own, model, state, moved, work, VELOCITIES):
             return False
+        if len(directions) > 0:
+            _settle_end_along_at(
+                along, problem, pattern, own, directions, within, last, j, moved, dual_work, lifted
+            )  # fmt: skip
+        last.settled[j] = True
     return True
 
 
+_settle_end_along_at, _differentiate_at = settle_end_along.at, differentiate.at
+
+
 @kernel
-def _attempt(
-    problem, method, pattern, matrices, model, dual, settings, t, target, within, before, earlier, stale, made, speed,
-    new, s, past, weights, b, work, signals, dual_work, moved,
-):  # fmt: skip
-    """A step from ``new``, which moves if the step is good; in one kernel, as each call counts references.
+def attempt(
+    problem: Problem, method: Coefficients, pattern: Pattern, model: Address, dual: Address, settings: Settings,
+    t: float, target: float, within: float, before: float, earlier: float, stale: bool, made: float, speed: float,
+    new: Motion, matrices: Matrices, room: Step,
+) -> tuple[int, float, float, float, int, float, int]:  # fmt: skip
+    """A step from ``new``, which moves if the step is good.
 
     Status, step that the kept systems are for, error against the tolerance, largest velocity, iterations, contraction,
     unknown that moved most.
     """
-    n, h = problem.n, target - t
+    n, scale, h = problem.n, problem.scale, target - t
+    s, past, b, weights, moved, works, dual_work = room
     if before > 0.0:
         stages.go_on(n, h, method, before, earlier if h <= _FAR * before else 0.0, past, s, b, weights)
     else:
@@ -138,78 +98,72 @@ def _attempt(
             return SINGULAR, made, 0.0, speed, 0, 1.0, 0
     if stale or not (made <= _NEAR * h and h <= _NEAR * made):
         made = h
-        if not stages.factorise(n, method, pattern, matrices, h):
+        if not factorise(n, method, pattern, matrices, h):
             return SINGULAR, made, 0.0, speed, 0, 1.0, 0
-    stages.listen(method, model, t, h, target, within, work, signals)
-    converged, iterations, rate, worst = stages.converge(
-        problem, method, pattern, matrices, model, settings.damped, work, signals, h, new, s, b,
+    stages.listen(method, model, t, h, target, within, works)
+    converged, iterations, rate, worst = converge(
+        n, scale, method, pattern, matrices, model, settings.damped, works, h, new, s, b,
         settings.newton_tolerance, speed, settings.tolerance if settings.step == 0.0 else 0.0,
     )  # fmt: skip
-    if not converged:
-        return NEWTON_FAILED, made, 0.0, speed, iterations, rate, worst
     error, end = 0.0, len(method.c) - 1
-    if settings.step == 0.0:
-        speed = max(speed, _speed(n, problem.scale, s.v[end]))
-        error = stages.estimate(problem, method, pattern, matrices, settings.damped, h, new, s, b, speed)
-        error /= settings.tolerance
-    if error <= 1.0:
-        _read(n, s, new)
-        last = stages.at_stage(work, signals, end)
-        accelerate_roughly(problem, pattern, matrices, model, new, last, moved[2:])
-    return DONE, made, error, speed, iterations, rate, worst
+    if converged and settings.step == 0.0:
+        speed = max(speed, _speed(n, scale, s.v[end]))
+        error = estimate(n, scale, method, pattern, matrices, settings.damped, h, new, s, b, speed) / settings.tolerance
+    if converged and error <= 1.0:
+        stages.read(n, s, new)
+        accelerate_roughly(problem, pattern, matrices, model, new, works[end], moved[2:])
+    else:
+        stages.go_back(past, s)
+    return DONE if converged else NEWTON_FAILED, made, error, speed, iterations, rate, worst
 
 
-@compiled
-def integrate(problem, method, pattern, edges, settings, model, dual, directions, start, dstates, out, dout, log):
+@kernel
+def integrate(
+    problem: Problem, method: Coefficients, pattern: Pattern, edges: Reals, settings: Settings, model: Address,
+    dual: Address, directions: Integers, start: Motion, dstates: Motions, out: Motions, dout: Histories, log: Log,
+    new: Motion, matrices: Matrices, step: Step, outputs: Outputs, along: Along, consistency: Consistency,
+) -> tuple[int, float, int]:  # fmt: skip
     """Run one sample between ``edges`` (s): status, time reached, and the unknown that moved most.
 
-    ``method`` are the coefficients; ``directions`` is a stack of complex models, one a direction of differentiation.
+    ``method`` are the coefficients; ``directions`` are addresses of complex models, one a direction of differentiation.
     ``start`` (N + 1) and its derivatives ``dstates`` (directions, N + 1) are overwritten; ``out`` (times, N + 1) and
     ``dout`` (directions, times, N + 1) are filled at ``problem.times``.
     """
-    n, width, adaptive, count = problem.n, len(start.x), settings.step == 0.0, len(method.c)
-    order = count + 1.0  # of the estimated error of a step
-    new, between, dbetween, dold = still(width), still(width), still(width), still(width)
+    n, adaptive, order = problem.n, settings.step == 0.0, len(method.c) + 1.0  # of the estimated error of a step
+    moved, dual_work = step.moved, step.dual_work
+    last, apart, between, dbetween, shares, lifted, work = outputs
+    dold, ds, dual_works, differentiate_step, settle_end, record_along = along
     copy(start, new)
-    last = ends(_ENDS, dstates)
-    work, dual_work = workspace(model), workspace(dual)
-    signals = np.zeros((count, *work.signals.shape))
-    dsignals = np.zeros((count, *work.signals.shape), np.complex128)
-    matrices, apart, exact = room(pattern, len(method.pairs)), room(pattern, np.int64(0)), storage(problem.exact_layout)
-    s, past, ds = stages.stages(count, width), stages.stages(count, width), stages.stages(count, width)
-    b, weights = stages.buffers(count, width), np.zeros((count + 1, 2 * count))
-    lifted, moved, shares = (
-        np.zeros((10, width), np.complex128),
-        np.zeros((6, width)),
-        np.zeros((4, len(last.times), 3)),
-    )
-    due = np.int64(0)  # no literal, for which there would be another compilation
+    due = 0
     speed, h, length, taken = 1.0 / (edges[-1] - edges[0]), 0.0, 0.0, 0.0
     for stretch in range(len(edges) - 1):
         t, end = edges[stretch], edges[stretch + 1]
         within = 0.5 * (t + end)
-        if not accelerate(problem, model, dual, directions, t, within, new, dstates, work, dual_work, lifted, exact):
+        if not accelerate(problem, model, dual, directions, t, within, new, dstates, consistency):
             return SINGULAR, t, 0
         if stretch == 0:
+            set_signals(dual, t, within, dual_work)  # those of a direction would count as masses
             weigh_masses(pattern, matrices, dual, n, new, dual_work)
-            weigh_masses(pattern, apart, dual, n, new, dual_work)
             length = _first_step(n, problem.scale, end - t, settings.tolerance, order, new)
         steps = 1 if adaptive else max(1, int(np.ceil((end - t) / settings.step - 1e-6)))
         begin, nominal, number, level = t, (end - t) / steps, 0, 0
         far = False
         stale, fresh, made, before, earlier, former = True, True, 0.0, 0.0, 0.0, 0.0
         last.known[0] = 0
-        append(t, new, dstates, stretch == 0, last)
+        arrived, settled = True, stretch == 0
         while True:
-            ready = False
+            if arrived:  # in one place: what is inlined twice is compiled twice
+                append(t, new, dstates, settled, last)
+            arrived, settled, ready = False, False, False
             while due < len(problem.times) and problem.times[due] <= t + 1e-9 * taken:
                 ready = ready or _settle_ends(
                     problem, pattern, matrices, apart, far, model, dual, directions, settings.damped, within, last,
-                    moved, work, dual_work, lifted,
+                    moved, work, dual_work, lifted, settle_end,
                 )  # fmt: skip
                 if not ready or not record(
-                    problem, pattern, apart if far else matrices, far, model, dual, directions, last, within, out,
-                    dout, due, between, dbetween, shares, moved, work, dual_work, lifted,
+                    problem, pattern, apart if far else matrices, far, model, dual, directions, last, within,
+                    out, dout, due, between, dbetween, shares, moved, work,
+                    dual_work, lifted, record_along,
                 ):  # fmt: skip
                     return NEWTON_FAILED, problem.times[due], 0
                 due += 1
@@ -221,9 +175,9 @@ def integrate(problem, method, pattern, edges, settings, model, dual, directions
             reached = (level == 0 and not adaptive) or t + length * 1.0001 >= goal
             target = goal if reached else t + length
             h = target - t
-            status, made, error, own, iterations, rate, worst = _attempt(
-                problem, method, pattern, matrices, model, dual, settings, t, target, within, before, earlier, stale,
-                made, speed, new, s, past, weights, b, work, signals, dual_work, moved,
+            status, made, error, own, iterations, rate, worst = attempt(
+                problem, method, pattern, model, dual, settings, t, target, within, before, earlier, stale, made,
+                speed, new, matrices, step,
             )  # fmt: skip
             log.counts[1] += iterations
             if status == SINGULAR:
@@ -234,7 +188,6 @@ def integrate(problem, method, pattern, edges, settings, model, dual, directions
             if not converged or not error <= 1.0:
                 log.counts[3] += 1
                 earlier = 0.0
-                stages.go_back(past, s)
                 stale = not converged  # so that matrices are not those of a place that the step does not reach
                 if stale and not fresh:  # once more, as long
                     continue
@@ -248,12 +201,12 @@ def integrate(problem, method, pattern, edges, settings, model, dual, directions
                 else:
                     level += 1
                 continue
-            _differentiate(
-                problem, method, pattern, matrices, directions, h, t, target, within, s, dold, dstates, ds, b,
-                dual_work, dsignals,
-            )  # fmt: skip
-            append(target, new, dstates, False, last)
-            speed, before, earlier, taken = own, h, before, h
+            if len(directions) > 0:
+                _differentiate_at(
+                    differentiate_step, problem, method, pattern, matrices, directions, t, target, within,
+                    step.s, dold, dstates, ds, step.b, dual_works,
+                )  # fmt: skip
+            arrived, speed, before, earlier, taken = True, own, h, before, h
             if log.counts[0] < len(log.iterations):
                 log.iterations[log.counts[0]] = iterations
                 log.ends[log.counts[0]] = target

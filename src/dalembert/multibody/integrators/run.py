@@ -8,8 +8,7 @@ import numpy as np
 from dalembert.multibody.assemble import scales
 from dalembert.multibody.integrators.problem import DIVERGED, SINGULAR, TOO_MANY_STEPS, Problem
 from dalembert.multibody.kernels.dual import STEP
-from dalembert.multibody.kernels.model import KINDS, Block, Model, Signals
-from dalembert.multibody.kernels.motion import Motion
+from dalembert.multibody.kernels.motion import Motion, resting
 from dalembert.multibody.lowering import Lowered
 
 
@@ -59,16 +58,6 @@ def starts(samples: Sequence[Lowered], tilted: Sequence[Lowered]) -> tuple[Motio
     return states, dstates
 
 
-def stacks(samples: Sequence[Lowered], tilted: Sequence[Lowered]) -> tuple[Model, Model, Model]:
-    """The samples' models in real numbers, in complex ones, and the models along the directions."""
-    first = samples[0]
-    return (
-        stack([entry.real for entry in samples], first.real),
-        stack([entry.dual for entry in samples], first.dual),
-        stack([entry.dual for entry in tilted], first.dual),
-    )
-
-
 def make_problem(lowered: Lowered, times: np.ndarray) -> Problem:
     """What all samples of a structure share."""
     structure = lowered.structure
@@ -78,24 +67,6 @@ def make_problem(lowered: Lowered, times: np.ndarray) -> Problem:
         structure.n, scales(lowered), slots, layout, exact_slots, exact_layout, np.asarray(times, dtype=float),
         np.zeros((0, 0)), np.zeros(0, dtype=np.int64),
     )  # fmt: skip
-
-
-def stack(models: Sequence[Model], like: Model) -> Model:
-    """Models with one more leading axis on their numbers and callbacks; ``like`` gives the shapes of an empty stack."""
-
-    def joined(arrays: list[np.ndarray], pattern: np.ndarray) -> np.ndarray:
-        return np.stack(arrays) if arrays else np.zeros((0, *pattern.shape), dtype=pattern.dtype)
-
-    blocks = {}
-    for kind in KINDS:
-        first: Block = getattr(like, kind)
-        blocks[kind] = Block(
-            first.index, first.meta, joined([getattr(model, kind).data for model in models], first.data)
-        )
-    signals = Signals(
-        like.signals.index, like.signals.knots, joined([m.signals.data for m in models], like.signals.data)
-    )
-    return Model(**blocks, signals=signals, callbacks=joined([m.callbacks for m in models], like.callbacks))
 
 
 def explain(lowered: Lowered, status: int, time: float, unknown: int, step: str, most_steps: int = 0) -> str:
@@ -120,8 +91,3 @@ def explain(lowered: Lowered, status: int, time: float, unknown: int, step: str,
         f"Newton's iteration did not converge at t = {time:.6g} s, worst at component {owner!r}, though {step}; "
         "take a smaller step, or check the component's stiffness, loads and dimensions"
     )
-
-
-def resting(*shape: int) -> Motion:
-    """Arrays of states, all zero."""
-    return Motion(np.zeros(shape), np.zeros(shape), np.zeros(shape), np.zeros(shape))

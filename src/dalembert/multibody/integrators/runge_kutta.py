@@ -2,21 +2,23 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
 from dalembert.errors import InputError
-from dalembert.multibody.integrators.index1 import PARTITIONED, PROJECTED, demand, make_tools
+from dalembert.kernels.kernel import Compiled, inner, kernel
+from dalembert.kernels.words import Address, Integers, Reals
+from dalembert.multibody.integrators.completion import Completion, complete, completion, kernels, partition
+from dalembert.multibody.integrators.index1 import PARTITIONED, PROJECTED, Terms
 from dalembert.multibody.integrators.integrator import Integrator
-from dalembert.multibody.integrators.lifting import set_signals
-from dalembert.multibody.integrators.partitioning import VELOCITY, choose, dependence, invert, linearise, settle
-from dalembert.multibody.integrators.problem import DIVERGED, DONE, NEWTON_FAILED, SINGULAR, Problem
-from dalembert.multibody.integrators.projection import project
-from dalembert.multibody.integrators.run import Run, cut, explain, resting, stacks, starts
+from dalembert.multibody.integrators.problem import DIVERGED, DONE, SINGULAR, Problem
+from dalembert.multibody.integrators.run import Run, cut, explain, starts
 from dalembert.multibody.integrators.stabilisation import Projection, Stabilisation, posed
-from dalembert.multibody.kernels.compiled import compiled, kernel, template
-from dalembert.multibody.kernels.motion import Motion, copy, interpolate, row, still
+from dalembert.multibody.kernels.model import addresses
+from dalembert.multibody.kernels.motion import Histories, Motion, Motions, copy, interpolate, resting, row
 from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.structure import Structure
 
 _UNBOUNDED = 1e8  # m or rad: no mechanism, but a step that is too long
 
@@ -55,6 +57,10 @@ class RungeKutta4(Integrator):
         if not (np.isfinite(self.step) and self.step > 0):
             raise InputError(f"RungeKutta4: step is {self.step}; expected a positive number of seconds")
 
+    def kernels(self, structure: Structure, derivatives: bool) -> list[Compiled]:
+        """The loop with its linear systems, and what completes states."""
+        return [integrate, *structure.linear_kernels, *kernels(self.stabilisation.way, derivatives)]
+
     def integrate(
         self,
         samples: Sequence[Lowered],
@@ -67,7 +73,10 @@ class RungeKutta4(Integrator):
         """Runs of samples in one compiled loop that leaves the interpreter's lock free; see `Integrator`."""
         problem, terms = posed(self.stabilisation, samples, cut(samples, problem, end), self.step)
         states, dstates = starts(samples, tilted)
-        directions = stacks(samples, tilted)[2]
+        directions = addresses(entry.dual.need("rates") for entry in tilted)
+        calls = samples[0].real.call(), samples[0].dual.call()
+        works = calls[0].address, calls[1].address
+        room = _workspace(states.x.shape[1], len(tilted), completion(problem, terms, *works, len(tilted)))
         steps = self.step_ends(end, samples[0].jumps)
         ends = np.zeros(0) if steps is None or not logged else steps[1:]
         runs = []
@@ -77,8 +86,8 @@ class RungeKutta4(Integrator):
             edges = problem.edges[number, : problem.stretches[number] + 1]
             counts = np.zeros(4, dtype=np.int64)
             status, time = integrate(
-                problem, edges, float(self.step), terms, lowered.real, lowered.dual, directions, row(states, number),
-                dstates, out, dout, counts,
+                problem, edges, float(self.step), terms, lowered.real.need("rates").address, lowered.dual.address,
+                directions, row(states, number), dstates, out, dout, counts, room,
             )  # fmt: skip
             if status == SINGULAR and not np.max(np.abs(states.x[number])) < _UNBOUNDED:
                 status = DIVERGED
@@ -89,12 +98,25 @@ class RungeKutta4(Integrator):
         return runs
 
 
-@compiled
-def _resting(like):
-    return Motion(np.zeros_like(like.x), np.zeros_like(like.x), np.zeros_like(like.x), np.zeros_like(like.x))
+class Workspace(NamedTuple):
+    """States of a step and their derivatives, and the work of completing states."""
+
+    old: Motion
+    total: Motion
+    between: Motion
+    dolds: Motions
+    dtotals: Motions
+    dbetween: Motions
+    completion: Completion
 
 
-@kernel
+def _workspace(width: int, directions: int, own: Completion) -> Workspace:
+    states = resting(width), resting(width), resting(width)
+    shape = directions, width
+    return Workspace(*states, resting(*shape), resting(*shape), resting(*shape), own)
+
+
+@inner
 def _push(n, share, weight, old, stage, total):
     """Add a stage's rates times ``weight`` to the total; from the old state go along them by ``share`` for the next."""
     for i in range(n):
@@ -105,62 +127,31 @@ def _push(n, share, weight, old, stage, total):
         stage.v[i] = old.v[i] + share * a
 
 
-@kernel
+@inner
 def _take(n, total, state):
     """Coordinates and velocities of another state."""
     for i in range(n):
         state.x[i], state.v[i] = total.x[i], total.v[i]
 
 
-@compiled
+@inner
 def _record(state, dstates, out, dout, due):
     """Write the states at an output time."""
     copy(state, row(out, due))
     for d in range(len(dstates.x)):
-        dout.x[d, due, :], dout.v[d, due, :], dout.a[d, due, :] = dstates.x[d], dstates.v[d], dstates.a[d]
+        for i in range(len(state.x)):
+            dout.x[d, due, i], dout.v[d, due, i] = dstates.x[d, i], dstates.v[d, i]
+            dout.a[d, due, i] = dstates.a[d, i]
 
 
-@compiled
-def partition(problem, terms, dual, t, within, state, tools):
-    """Choose the independent coordinates if that is needed: at first, or where the present ones have become bad."""
-    set_signals(dual, t, within, tools.dual_work)
-    linearise(problem, dual, state, tools.dual_work, tools.partition)
-    if tools.partition.rank[0] > 0 and invert(problem, tools.partition):
-        if dependence(problem, tools.partition) <= terms.limit:
-            return False
-    choose(problem, tools.partition)
-    return True
+_partition_at = partition.at
 
 
 @kernel
-def _finite(n, state):
-    for i in range(n):
-        if not abs(state.x[i]) + abs(state.v[i]) < 1e100:
-            return False
-    return True
-
-
-@template
-def _evaluate(problem, terms, model, dual, directions, t, within, state, dstates, tools, projected):
-    """Bring a state to the constraints as its stabilisation has it, then find what it demands: status."""
-    status = DONE if _finite(problem.n, state) else DIVERGED
-    if status == DONE and terms.way == PARTITIONED:
-        if not settle(
-            problem, model, dual, directions, t, within, VELOCITY, state, dstates, tools.work, tools.dual_work,
-            tools.lifted, tools.partition,
-        ):  # fmt: skip
-            status = NEWTON_FAILED
-    if status == DONE and projected:
-        if not project(problem, terms, model, dual, directions, t, within, state, dstates, tools):
-            status = NEWTON_FAILED
-    if status == DONE:
-        if not demand(problem, terms, model, dual, directions, t, within, state, dstates, tools):
-            status = SINGULAR
-    return status
-
-
-@compiled
-def integrate(problem, edges, step, terms, model, dual, directions, state, dstates, out, dout, counts):
+def integrate(
+    problem: Problem, edges: Reals, step: float, terms: Terms, model: Address, dual: Address, directions: Integers,
+    state: Motion, dstates: Motions, out: Motions, dout: Histories, counts: Integers, room: Workspace,
+) -> tuple[int, float]:  # fmt: skip
     """Run one sample: status and time reached.
 
     Parameters
@@ -170,29 +161,31 @@ def integrate(problem, edges, step, terms, model, dual, directions, state, dstat
         Of the smooth stretches, s.
     step : float
     terms : Terms
-    model, dual : Model
-        In real and in complex numbers.
-    directions : Model
-        Stack of complex models, one a direction of differentiation.
-    state, dstates : Motion
+    model, dual : address
+        Models in real and in complex numbers.
+    directions : array of addresses
+        Complex models, one a direction of differentiation.
+    state, dstates : Motion, Motions
         At the start, (N + 1,), and its derivatives, (directions, N + 1); overwritten.
-    out, dout : Motion
+    out, dout : Motions, Histories
         At the output times, (times, N + 1) and (directions, times, N + 1).
     counts : array (2,)
         Steps, and how often independent coordinates were chosen anew.
+    room : Workspace
     """
     n, width = problem.n, len(state.x)
     projects = terms.way == PROJECTED and width - 1 > n
-    tools = make_tools(problem, model, dual)
-    old, total, between = still(width), still(width), still(width)
-    dolds, dtotals, dbetween = _resting(dstates), _resting(dstates), _resting(dstates)
+    own, tools = room.completion, room.completion.tools
+    old, total, between = room.old, room.total, room.between
+    dolds, dtotals, dbetween = room.dolds, room.dtotals, room.dbetween
+    tools.partition.rank[0] = 0
     due = 0
     for stretch in range(len(edges) - 1):
         begin, end = edges[stretch], edges[stretch + 1]
         within = 0.5 * (begin + end)
         if terms.way == PARTITIONED:
-            partition(problem, terms, dual, begin, within, state, tools)
-        status = _evaluate(problem, terms, model, dual, directions, begin, within, state, dstates, tools, False)
+            _partition_at(own.partition, problem, terms, dual, begin, within, state, tools)
+        status = complete(problem, terms, model, dual, directions, begin, within, state, dstates, False, own)
         if status != DONE:
             return status, begin
         while stretch == 0 and due < len(problem.times) and problem.times[due] <= begin:
@@ -217,11 +210,13 @@ def integrate(problem, edges, step, terms, model, dual, directions, state, dstat
                         _take(n, row(dtotals, d), row(dstates, d))
                 if last:
                     _take(n, total, state)
-                    if terms.way == PARTITIONED and partition(problem, terms, dual, target, within, state, tools):
+                    if terms.way == PARTITIONED and _partition_at(
+                        own.partition, problem, terms, dual, target, within, state, tools
+                    ):
                         counts[1] += 1
                 now = target if last else t + share * h
-                status = _evaluate(
-                    problem, terms, model, dual, directions, now, within, state, dstates, tools, last and projects
+                status = complete(
+                    problem, terms, model, dual, directions, now, within, state, dstates, last and projects, own
                 )
                 if status != DONE:
                     return status, t
@@ -230,12 +225,12 @@ def integrate(problem, edges, step, terms, model, dual, directions, state, dstat
                 share = min(1.0, (problem.times[due] - t) / h)
                 interpolate(n, h, share, old, state, between.x, between.v, between.a)
                 for d in range(len(dstates.x)):
-                    own = row(dbetween, d)
-                    interpolate(n, h, share, row(dolds, d), row(dstates, d), own.x, own.v, own.a)
+                    along = row(dbetween, d)
+                    interpolate(n, h, share, row(dolds, d), row(dstates, d), along.x, along.v, along.a)
                 if share < 1.0 - 1e-9:
                     now = problem.times[due]
-                    status = _evaluate(
-                        problem, terms, model, dual, directions, now, within, between, dbetween, tools, projects
+                    status = complete(
+                        problem, terms, model, dual, directions, now, within, between, dbetween, projects, own
                     )
                     if status != DONE:
                         return status, t

@@ -5,47 +5,36 @@ and multipliers follow from the equations of motion. Newton's iteration corrects
 for derivatives, too: they are iterated after the state, with the same factorisation.
 """
 
-import numpy as np
-
+from dalembert.kernels.kernel import inner, kernel
+from dalembert.kernels.words import Address, Complexes2, Reals2
 from dalembert.multibody.integrators.lifting import lift
-from dalembert.multibody.integrators.matrices import add_inertia
-from dalembert.multibody.kernels import joints
-from dalembert.multibody.kernels.assembly import constraint_rates, residual
-from dalembert.multibody.kernels.compiled import compiled, inlined, kernel
+from dalembert.multibody.integrators.matrices import Matrices, Pattern, add_inertia
+from dalembert.multibody.integrators.problem import Problem
+from dalembert.multibody.kernels.assembly import constraint_forces, constraint_rates, residual
 from dalembert.multibody.kernels.dual import STEP
 from dalembert.multibody.kernels.linear import solve
+from dalembert.multibody.kernels.motion import Motion
 
-# Levels from which a state is settled; not literals, for each of which there would be a compilation.
-COORDINATES, VELOCITIES, ACCELERATIONS = np.int64(0), np.int64(1), np.int64(2)
+COORDINATES, VELOCITIES, ACCELERATIONS = range(3)  # levels from which a state is settled
 _MOST_ITERATIONS = 25
 _ROUNDING = 2e-16  # of the largest entry, below which an error is left
 _ROUGH = 1e-5  # the same of a correction, after which the error is smaller by the contraction
 
 
-@inlined
-def constrain(model, x, w, factor, work, f):
-    """Add ``factor`` times the constraint forces J^T m at x, with the multipliers of w, and the constraints behind."""
-    block = model.joints
-    for e in range(len(block.index)):
-        for i in range(joints.WIDTH):
-            g = block.index[e, i]
-            work.x[i] = x[g] if i < joints.MULTIPLIERS else w[g]
-        joints.residual(work.x, work.v, work.a, work.signals, model.callbacks, block.data, block.meta, e, work.r)
-        for i in range(joints.WIDTH):
-            f[block.index[e, i]] += factor * work.r[i]
-    f[len(f) - 1] = 0.0
+@inner
+def weigh(model, n, pattern, matrices, x, w, work, f, at):
+    """Fill ``f`` (N + 1,): M w + J^T m in its first n entries, for w = (w, m), and the constraints behind them.
 
-
-@inlined
-def weigh(model, n, pattern, matrices, x, w, work, f):
-    """Fill ``f`` (N + 1,): M w + J^T m in its first n entries, for w = (w, m), and the constraints behind them."""
+    ``at`` (N + 1,) is room.
+    """
     for i in range(len(f)):
         f[i] = 0.0
+        at[i] = x[i] if i < n else w[i]
     add_inertia(pattern, matrices, w, f)
-    constrain(model, x, w, 1.0, work, f)
+    constraint_forces(model, at, at, at, work, f)  # which depend on coordinates and multipliers alone
 
 
-@kernel
+@inner
 def weigh_along(model, n, x, w, work, buffers, f):
     """The same in complex numbers: what inertia and constraint forces change in the residual of the system at rest."""
     still, at = buffers[0], buffers[1]
@@ -60,7 +49,7 @@ def weigh_along(model, n, x, w, work, buffers, f):
         f[i] -= buffers[2, i]
 
 
-@kernel
+@inner
 def _move(n, level, answer, state, moved):
     """Take a correction off a state, and off the move of its level so far."""
     for i in range(len(state.x) - 1):
@@ -77,7 +66,7 @@ def _move(n, level, answer, state, moved):
             state.x[i] -= answer[i]
 
 
-@kernel
+@inner
 def _sizes(n, level, answer, state):
     """Largest correction, and largest entry of what it corrects."""
     norm, size = 0.0, 1e-300
@@ -90,7 +79,7 @@ def _sizes(n, level, answer, state):
     return norm, size
 
 
-@kernel
+@inner
 def _finished(iteration, norm, before, size):
     """Whether what remains is rounding, by the contraction seen."""
     if norm <= _ROUNDING * size:
@@ -103,7 +92,10 @@ def _finished(iteration, norm, before, size):
 
 
 @kernel
-def settle(problem, pattern, matrices, model, state, moved, work, first):
+def settle(
+    problem: Problem, pattern: Pattern, matrices: Matrices, model: Address, state: Motion, moved: Reals2, work: Address,
+    first: int,
+) -> bool:  # fmt: skip
     """Accelerations and multipliers of a state; if ``first`` says so, coordinates and velocities are moved before.
 
     The signals in ``work`` hold the time. ``moved`` (6, N + 1) are the moves of coordinates and velocities with their
@@ -117,7 +109,7 @@ def settle(problem, pattern, matrices, model, state, moved, work, first):
         before, done = 0.0, False
         for iteration in range(_MOST_ITERATIONS):
             if level < 2:
-                weigh(model, n, pattern, matrices, state.x, moved[level], work, f)
+                weigh(model, n, pattern, matrices, state.x, moved[level], work, f, second)
             else:
                 residual(model, n, state.x, state.v, state.a, work, 1.0, f)
             if level > 0:
@@ -136,7 +128,7 @@ def settle(problem, pattern, matrices, model, state, moved, work, first):
     return True
 
 
-@kernel
+@inner
 def accelerate_roughly(problem, pattern, matrices, model, state, work, room):
     """Accelerations and multipliers of a state, as exactly as an estimate of errors needs; ``room`` (4, N + 1)."""
     n, last = problem.n, len(state.x) - 1
@@ -153,12 +145,20 @@ def accelerate_roughly(problem, pattern, matrices, model, state, work, room):
             break
 
 
-@compiled
-def settle_along(problem, pattern, matrices, tilted, state, dstate, moved, work, lifted, first):
-    """Derivative of a settled state along a direction, from that of the state before; signals in ``work``."""
+@kernel
+def settle_along(
+    problem: Problem, pattern: Pattern, matrices: Matrices, tilted: Address, state: Motion, dstate: Motion,
+    moved: Reals2, work: Address, lifted: Complexes2, first: int,
+) -> None:  # fmt: skip
+    """Derivative of a settled state along a direction, from that of the state before; signals in ``work``.
+
+    ``moved`` (6, N + 1) are the moves as `settle` left them, and room; so is ``lifted`` (10, N + 1).
+    """
     n, last = problem.n, len(state.x) - 1
-    dmoved, answer, imaginary = np.zeros((2, last + 1)), np.zeros(last + 1), np.zeros(last + 1)
+    dmoved, answer, imaginary = moved[2:4], moved[4], moved[5]
     shift, f, rate, second = lifted[3], lifted[4], lifted[5], lifted[6]
+    for i in range(last + 1):
+        dmoved[0, i] = dmoved[1, i] = 0.0
     for level in range(first if last > n else ACCELERATIONS, 3):
         before = 0.0
         for iteration in range(_MOST_ITERATIONS):

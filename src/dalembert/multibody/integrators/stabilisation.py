@@ -141,4 +141,6 @@ def posed(
         slots, layout = samples[0].structure.dense
         problem = problem._replace(exact_slots=slots, exact_layout=layout)
     alpha, beta = stabilisation.gains(step)
-    return problem, Terms(alpha, beta, redundant, stabilisation.way, float(getattr(stabilisation, "limit", 0.0)))
+    limit = float(getattr(stabilisation, "limit", 0.0))
+    nonlinear = any(kind.reactions > 0 for kind in samples[0].structure.index)
+    return problem, Terms(float(alpha), float(beta), redundant, stabilisation.way, limit, nonlinear)

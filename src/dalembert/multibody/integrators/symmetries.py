@@ -4,13 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from dalembert.multibody.components.planar.markers import GROUND
 from dalembert.multibody.integrators.energy_balance import Rigid
-from dalembert.multibody.kernels import joints, spring
-from dalembert.multibody.kernels.markers import GROUND
 from dalembert.multibody.lowering import Lowered
-
-_WEIGHTS = {"bodies": (2, 4), "beams": (9, 11), "cables": (5, 7)}  # columns of gravity
-_POINTS = {"joints": (joints.REVOLUTE, joints.DISTANCE), "springs": (spring.TRANSLATION,)}  # hold a point, not a frame
 
 
 def rigid_motions(lowered: Lowered, tilted: Sequence[Lowered]) -> Rigid:
@@ -26,7 +22,7 @@ def rigid_motions(lowered: Lowered, tilted: Sequence[Lowered]) -> Rigid:
     partner[vectors[::2]], partner[vectors[1::2]] = vectors[1::2], vectors[::2]
     sign[vectors[::2]], sign[vectors[1::2]] = -1.0, 1.0
     held, points = _held(lowered)
-    gravity = np.vstack([np.real(lowered.data[kind][:, slice(*columns)]) for kind, columns in _WEIGHTS.items()])
+    gravity = _gravity(lowered)
     free = [not held and len(points) == 0 and not np.any(gravity[:, axis]) for axis in range(2)]
     turns = not held and not np.any(gravity) and not np.any(np.ptp(np.real(points), axis=0) if len(points) else 0.0)
     shifts = []
@@ -46,13 +42,21 @@ def rigid_motions(lowered: Lowered, tilted: Sequence[Lowered]) -> Rigid:
     return Rigid(partner, sign, spin, np.ascontiguousarray(shifts[0].real), along)
 
 
+def _gravity(lowered: Lowered) -> np.ndarray:
+    """The gravity that acts on each component, (components, 2)."""
+    weights = [np.real(data[:, kind.columns(kind.gravity)]) for kind, data in lowered.data.items() if kind.gravity]
+    return np.vstack([np.zeros((0, 2)), *weights])
+
+
 def _held(lowered: Lowered) -> tuple[bool, np.ndarray]:
     """Whether a frame of the ground holds the mechanism, and the points of the ground that do, (points, 2)."""
-    found, held = [], False
-    for kind, of_points in _POINTS.items():
-        meta, data = lowered.structure.meta[kind], lowered.data[kind]
-        for side in range(2):
-            grounded = meta[:, 1 + side] == GROUND
-            held = held or bool(np.any(grounded & ~np.isin(meta[:, 0], of_points)))
-            found.append(data[grounded, 3 * side : 3 * side + 2])
+    found, held = [np.zeros((0, 2))], False
+    for kind, data in lowered.data.items():
+        if not kind.holds:
+            continue
+        integers = lowered.structure.meta[kind]
+        for side in ("a", "b"):
+            grounded = integers[:, kind.integers.index(f"{side}_kind")] == GROUND
+            held = held or (kind.holds_frame and bool(np.any(grounded)))
+            found.append(data[grounded][:, kind.columns((f"{side}_x", f"{side}_y"))])
     return held, np.vstack(found)

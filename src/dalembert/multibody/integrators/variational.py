@@ -2,18 +2,22 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import ClassVar
 
 import numpy as np
 
+from dalembert.kernels.kernel import Compiled
+from dalembert.multibody.integrators.consistent import accelerate_along
+from dalembert.multibody.integrators.energy_balance import Balance, no_balance
 from dalembert.multibody.integrators.integrator import Integrator
-from dalembert.multibody.integrators.matrices import damps, pattern_of
-from dalembert.multibody.integrators.midpoint_loop import Settings, integrate
+from dalembert.multibody.integrators.matrices import pattern_of
+from dalembert.multibody.integrators.midpoint_loop import Settings, differentiate, integrate, workspace
+from dalembert.multibody.integrators.outputs import record_along
 from dalembert.multibody.integrators.problem import DONE, Log, Problem
-from dalembert.multibody.integrators.run import Run, cut, explain, resting, stack, starts
-from dalembert.multibody.integrators.symmetries import rigid_motions
-from dalembert.multibody.kernels.motion import Motion
+from dalembert.multibody.integrators.run import Run, cut, explain, starts
+from dalembert.multibody.kernels.model import addresses
+from dalembert.multibody.kernels.motion import Motion, resting
 from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.structure import Structure
 from dalembert.settings import expect, expect_positive
 
 
@@ -52,11 +56,14 @@ class Variational(Integrator):
     step: float = field(metadata={"unit": "s"})
     newton_tolerance: float = field(default=1e-14, metadata={"unit": ""})
 
-    _conserving: ClassVar[bool] = False  # the energy
-
     def __post_init__(self) -> None:
         expect(self, "a positive number of seconds", lambda given: 0 < given < np.inf, "step")
         expect_positive(self, "newton_tolerance")
+
+    def kernels(self, structure: Structure, derivatives: bool) -> list[Compiled]:
+        """The loop with its linear systems, and what differentiates a step."""
+        along = [differentiate, accelerate_along, record_along] * derivatives
+        return [integrate, *structure.linear_kernels, *along]
 
     def integrate(
         self,
@@ -71,7 +78,7 @@ class Variational(Integrator):
         problem = cut(samples, problem, end)
         pattern = pattern_of(samples[0].structure)
         states, dstates = starts(samples, tilted)
-        directions = stack([entry.dual for entry in tilted], samples[0].dual)
+        directions = addresses(entry.dual.need("rates") for entry in tilted)
         shape = len(problem.times), states.x.shape[1]
         dout = resting(len(tilted), *shape)
         runs = []
@@ -79,18 +86,26 @@ class Variational(Integrator):
             ends = self.step_ends(end, lowered.jumps)
             room = 2 * len(ends) if logged and ends is not None else 0  # steps that are cut down need more
             log = Log(np.zeros(4, dtype=np.int64), np.zeros(room, dtype=np.int64), np.zeros(room))
-            settings = Settings(float(self.step), float(self.newton_tolerance), damps(lowered), self._conserving)
-            rigid = rigid_motions(lowered, tilted)
             edges = problem.edges[number, : problem.stretches[number] + 1]
             own, start = resting(*shape), Motion(*(array[number] for array in states))
+            energy, denergies, balance = self._balance(lowered, tilted, start, dstates, 0.5 * (edges[0] + edges[1]))
+            settings = Settings(float(self.step), float(self.newton_tolerance), lowered.dissipates, energy)
+            real, dual = lowered.real.need("rates"), lowered.dual
+            calls, dual_calls = [real.call(), real.call()], [dual.call(), dual.call()]
             status, time, unknown = integrate(
-                problem, pattern, edges, settings, rigid, lowered.real, lowered.dual, directions, start, dstates, own,
-                dout, log,
+                problem, pattern, edges, settings, real.address, dual.address, directions, start, dstates, own, dout,
+                log, *workspace(problem, pattern, calls, dual_calls, balance, denergies, dstates),
             )  # fmt: skip
             reason = None if status == DONE else self._explain(lowered, status, time, unknown)
             taken = min(int(log.counts[0]), room)
             runs.append(Run(reason, problem.times, own, dout, log.counts, log.iterations[:taken], log.ends[:taken]))
         return runs
+
+    def _balance(
+        self, lowered: Lowered, tilted: Sequence[Lowered], start: Motion, dstarts: Motion, within: float
+    ) -> tuple[float, np.ndarray, Balance]:
+        """Energy at the start with its derivatives, and what keeps it: here nothing does."""
+        return 0.0, np.zeros(len(tilted)), no_balance(len(start.x))
 
     def _explain(self, lowered: Lowered, status: int, time: float, unknown: int) -> str:
         return explain(lowered, status, time, unknown, f"the step of {self.step:g} s was cut down to 1/256 for it")

@@ -1,0 +1,111 @@
+"""What remains of the equations of motion at a Gauss point of a collocation step.
+
+There the polynomial gives independent coordinates, velocities and accelerations, and the constraints the dependent
+ones. What remains is the gap between these accelerations and those that satisfy the equations of motion; the
+multipliers are taken from the equations, so that their gap is zero.
+"""
+
+from dalembert.kernels.kernel import inner, kernel
+from dalembert.kernels.words import Address, Integers
+from dalembert.multibody.integrators.collocation_rule import Rule
+from dalembert.multibody.integrators.collocation_step import Step, Walk, place
+from dalembert.multibody.integrators.lifting import lift
+from dalembert.multibody.integrators.partitioning import ACCELERATION, settle
+from dalembert.multibody.integrators.problem import Problem
+from dalembert.multibody.kernels.assembly import constraint_rates, residual, set_signals, tangent
+from dalembert.multibody.kernels.dual import STEP
+from dalembert.multibody.kernels.linear import factorise, solve
+from dalembert.multibody.kernels.motion import row, subtract
+
+
+@inner
+def _drive(problem, model, dual, t, within, state, linear, constraints, c):
+    """Accelerations and multipliers by the equations of motion; whether the matrix is regular.
+
+    As `accelerate` does, for a state that `settle` has left, whose constraint Jacobian it takes: one tangent is enough
+    where no force depends on the multipliers.
+    """
+    n, given, answer, rate = problem.n, c.vectors[0], c.vectors[1], c.vectors[2]
+    set_signals(dual, t, within, c.dual_work)
+    for iteration in range(2 if linear else 6):
+        if iteration == 0 or not linear:
+            tangent(
+                dual, problem.exact_slots, n, state.x, state.v, state.a, (0.0, 0.0, 1.0), (1.0, 0.0), c.dual_work,
+                c.exact.matrix,
+            )  # fmt: skip
+            for i in range(len(constraints)):
+                c.exact.matrix[i] += constraints[i]
+            if not factorise(problem.exact_layout, c.exact):
+                return False
+        residual(model, n, state.x, state.v, state.a, c.work, 1.0, given)
+        constraint_rates(model, n, state.x, state.v, state.a, c.work, rate, given)
+        solve(problem.exact_layout, c.exact, given, answer)
+        subtract(n, answer, state)
+    return True
+
+
+@inner
+def _drive_along(problem, directions, t, within, state, dstates, c):
+    """Derivatives of what `_drive` has found, by the matrix that it left."""
+    n, last, lifted, given, answer = problem.n, len(state.x) - 1, c.lifted, c.vectors[0], c.vectors[1]
+    for d in range(len(dstates.x)):
+        along, dstate = directions[d], row(dstates, d)
+        set_signals(along, t, within, c.dual_work)
+        for _ in range(2):
+            lift(n, state, dstate, lifted)
+            residual(along, n, lifted[0], lifted[1], lifted[2], c.dual_work, 1.0, lifted[3])
+            constraint_rates(along, n, lifted[0], lifted[1], lifted[2], c.dual_work, lifted[4], lifted[3])
+            for i in range(last):
+                given[i] = lifted[3, i].imag / STEP
+            solve(problem.exact_layout, c.exact, given, answer)
+            subtract(n, answer, dstate)
+
+
+@inner
+def _tilt(columns, h, s, shape, unknowns, dolds, dstates):
+    """Derivatives of a Gauss point's independent entries, by the unknown accelerations, then along the directions."""
+    for d in range(len(dstates.x)):
+        dstate = row(dstates, d)
+        for i in range(len(dstate.x)):
+            dstate.x[i], dstate.v[i], dstate.a[i], dstate.w[i] = 0.0, 0.0, 0.0, 0.0
+        if d < unknowns:
+            k, own = d // len(columns), columns[d % len(columns)]
+            dstate.x[own], dstate.v[own], dstate.a[own] = h * h * shape[0, k], h * shape[1, k], shape[2, k]
+        else:
+            dold = row(dolds, d - unknowns)
+            for own in columns:
+                dstate.x[own] = dold.x[own] + s * h * dold.v[own]
+                dstate.v[own] = dold.v[own]
+
+
+@kernel
+def measure(
+    problem: Problem, rule: Rule, model: Address, dual: Address, directions: Integers, step: Step, walk: Walk,
+    tilts: bool, s: int,
+) -> bool:  # fmt: skip
+    """What remains at a Gauss point, and its derivatives by c and, where it ``tilts``, along the directions.
+
+    ``directions`` are the untilted model for each unknown, then the tilted ones.
+    """
+    n, own, c, within, h = problem.n, walk.partition, walk.consistency, step.within, step.end - step.begin
+    t, shape, state = step.begin + rule.nodes[s] * h, rule.shapes[s], row(walk.points, s)
+    dstates = walk.dall if tilts else walk.dpoint
+    columns = own.columns[own.rank[0] : problem.n]
+    place(columns, h, rule.nodes[s], shape, walk.old, walk.c, state)
+    _tilt(columns, h, rule.nodes[s], shape, len(walk.c), walk.dold, dstates)
+    if not settle(
+        problem, model, dual, directions, t, within, ACCELERATION, state, dstates, c.work, c.dual_work, c.lifted, own
+    ):
+        return False
+    for i in range(n):
+        walk.gaps[s, i] = state.a[i]
+        for d in range(len(dstates.x)):
+            walk.slopes[s, d, i] = dstates.a[d, i]
+    if not _drive(problem, model, dual, t, within, state, walk.linear, own.matrix, c):
+        return False
+    _drive_along(problem, directions, t, within, state, dstates, c)
+    for i in range(n):
+        walk.gaps[s, i] -= state.a[i]
+        for d in range(len(dstates.x)):
+            walk.slopes[s, d, i] -= dstates.a[d, i]
+    return True

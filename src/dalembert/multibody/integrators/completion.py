@@ -1,0 +1,108 @@
+"""From coordinates and velocities to a whole state: onto the constraints, then to what the equations of index 1 demand."""
+
+from typing import NamedTuple
+
+from dalembert.kernels.kernel import Compiled, inner, kernel
+from dalembert.kernels.words import Address, Integers
+from dalembert.multibody.integrators.index1 import (
+    PARTITIONED,
+    PROJECTED,
+    Terms,
+    Tools,
+    demand,
+    demand_along,
+    make_tools,
+)
+from dalembert.multibody.integrators.partitioning import (
+    VELOCITY,
+    choose,
+    dependence,
+    invert,
+    linearise,
+    settle,
+    settle_along,
+)
+from dalembert.multibody.integrators.problem import DIVERGED, DONE, NEWTON_FAILED, SINGULAR, Problem
+from dalembert.multibody.integrators.projection import project, project_along
+from dalembert.multibody.kernels.assembly import set_signals
+from dalembert.multibody.kernels.motion import Motion, Motions
+
+
+class Completion(NamedTuple):
+    """Work of completing states; addresses of the kernels that only some stabilisations need, else 0."""
+
+    tools: Tools
+    partition: Address
+    settle: Address
+    project: Address
+    project_along: Address
+
+
+def completion(problem: Problem, terms: Terms, work: int, dual_work: int, directions: int) -> Completion:
+    """Work for a model, with derivatives if there are any directions."""
+    parted, projected = terms.way == PARTITIONED, terms.way == PROJECTED
+    return Completion(
+        make_tools(problem, terms, work, dual_work, directions),
+        partition.address if parted else 0,
+        settle.address if parted else 0,
+        project.address if projected else 0,
+        project_along.address if projected and directions else 0,
+    )
+
+
+def kernels(way: int, derivatives: bool) -> list[Compiled]:
+    """Kernels that complete states under a stabilisation, and those for derivatives; but for redundant constraints."""
+    own = {PARTITIONED: [partition, settle], PROJECTED: [project]}.get(way, [])
+    along = {PARTITIONED: [settle_along], PROJECTED: [project_along]}.get(way, [])
+    return [complete, *own, *[demand_along, *along] * derivatives]
+
+
+@kernel
+def partition(
+    problem: Problem, terms: Terms, dual: Address, t: float, within: float, state: Motion, tools: Tools
+) -> bool:
+    """Choose the independent coordinates if that is needed: at first, or where the present ones have become bad."""
+    set_signals(dual, t, within, tools.dual_work)
+    linearise(problem, dual, state, tools.dual_work, tools.partition)
+    if tools.partition.rank[0] > 0 and invert(problem, tools.partition):
+        if dependence(problem, tools.partition) <= terms.limit:
+            return False
+    choose(problem, tools.partition)
+    return True
+
+
+@inner
+def _finite(n, state):
+    for i in range(n):
+        if not abs(state.x[i]) + abs(state.v[i]) < 1e100:
+            return False
+    return True
+
+
+@kernel
+def complete(
+    problem: Problem, terms: Terms, model: Address, dual: Address, directions: Integers, t: float, within: float,
+    state: Motion, dstates: Motions, projected: bool, c: Completion,
+) -> int:  # fmt: skip
+    """Bring a state to the constraints as its stabilisation has it, then find what it demands: status.
+
+    ``projected``: whether a projection is due.
+    """
+    tools = c.tools
+    if not _finite(problem.n, state):
+        return DIVERGED
+    if terms.way == PARTITIONED:
+        if not _settle_at(
+            c.settle, problem, model, dual, directions, t, within, VELOCITY, state, dstates, tools.work,
+            tools.dual_work, tools.lifted, tools.partition,
+        ):  # fmt: skip
+            return NEWTON_FAILED
+    if projected:
+        if not _project_at(
+            c.project, problem, terms, model, dual, directions, t, within, state, dstates, tools, c.project_along
+        ):
+            return NEWTON_FAILED
+    return DONE if demand(problem, terms, model, dual, directions, t, within, state, dstates, tools) else SINGULAR
+
+
+_settle_at, _project_at = settle.at, project.at

@@ -1,0 +1,221 @@
+"""One step of Radau IIA for the stabilised equations of Gear, Gupta and Leimkuhler.
+
+With u = D (q - q0) and a = D (v - v0), D = A^-1 / h the differentiation of the collocation polynomial, each stage
+fulfils M (u - v) + J^T m = 0, the equations of motion, the constraints and their rates. Newton's iteration is split. As
+the multipliers m only weigh velocities against inertia, their part in the equations of motion joins that of lambda; so
+the coordinates need one real system of the size of the mechanism and a complex one for each two other stages (Hairer
+and Wanner 1996, IV.8), and the velocities then follow by a projection at each stage.
+"""
+
+from dalembert.kernels.kernel import inlined, inner
+from dalembert.multibody.integrators.matrices import (
+    add_inertia,
+    add_product,
+    factorise_complex,
+    factorise_real,
+    inverse,
+    product,
+    solve_complex,
+)
+from dalembert.multibody.integrators.radau_stages import combine, integrate_stages, integrate_velocities
+from dalembert.multibody.integrators.settling import weigh
+from dalembert.multibody.kernels.assembly import constraint_rates, residual
+from dalembert.multibody.kernels.linear import solve
+
+_CLOSED = 1e-15  # violation against the largest scale that is rounding
+_NOISE = 1e-13  # part of a step's way below which the ratio of two corrections says nothing
+# Relative corrections that stop to shrink are rounding below the first size, and below the second one if a nearly
+# singular position magnifies it.
+_ROUNDING, _MAGNIFIED = 1e-12, 1e-9
+MOST_ITERATIONS = 14
+_VISIBLE = 0.03  # part of the tolerance from which corrections hardly change the estimated error
+
+
+@inner
+def factorise(n, method, pattern, matrices, h):
+    """Factorise the systems of a step; whether they are regular."""
+    if not factorise_real(n, pattern, matrices, method.real / h):
+        return False
+    for p in range(len(method.pairs)):
+        if not factorise_complex(n, pattern, matrices, p, _scaled(method.pairs[p], h)):
+            return False
+    return True
+
+
+@inlined
+def _scaled(pair, h):
+    """A complex number over a real one."""
+    return complex(pair.real / h, pair.imag / h)
+
+
+@inner
+def correct_coordinates(n, size, method, pattern, matrices, h, b):
+    """Corrections of the stages' coordinates, multipliers and rates by the residuals ``motion`` and ``weighed``."""
+    given, answer, place, pace, pull, pairs = b.given, b.answer, b.place, b.pace, b.pull, method.pairs
+    combine(method.back, 1.0, b.motion, size, place)
+    combine(method.back, 1.0, b.weighed, n, pace)
+    real = method.real / h
+    square = real * real
+    for k in range(size):  # what the velocities lack in weight acts as an inertial force
+        given[k] = place[0, k] + real * pace[0, k] if k < n else square * place[0, k]
+    solve(pattern.layout, matrices.real, given, answer)
+    for k in range(size):
+        if k < n:
+            place[0, k], pace[0, k], pull[0, k] = answer[k] / square, answer[k] / real, answer[k]
+        else:
+            place[0, k] = answer[k]
+    for p in range(len(pairs)):
+        pair, i, j = _scaled(pairs[p], h), 2 * p + 1, 2 * p + 2
+        double, back = product(pair, pair), inverse(pair)
+        for k in range(size):
+            z = complex(place[i, k], place[j, k])
+            z = z + product(pair, complex(pace[i, k], pace[j, k])) if k < n else product(double, z)
+            given[k], given[size + k] = z.real, z.imag
+        solve_complex(pattern, matrices, p, given, answer)
+        for k in range(size):
+            z = complex(answer[k], answer[size + k])
+            if k < n:
+                pull[i, k], pull[j, k] = z.real, z.imag
+                z = product(back, z)
+                pace[i, k], pace[j, k] = z.real, z.imag
+                z = product(back, z)
+            place[i, k], place[j, k] = z.real, z.imag
+
+
+@inner
+def take_coordinates(n, size, h, method, start, b, s):
+    """Take the corrections off the stages; ``moved`` becomes that of the coordinates."""
+    place, pace, moved, x, u, a = b.place, b.pace, b.moved, s.x, s.u, s.a
+    combine(method.t, 1.0, place, size, moved)
+    combine(method.t, 1.0, pace, n, place)
+    combine(method.t, 1.0, b.pull, n, pace)
+    for i in range(len(x)):
+        for k in range(n):
+            u[i, k] -= place[i, k]
+            a[i, k] -= pace[i, k]
+        for k in range(n, size):
+            x[i, k] -= moved[i, k]
+    integrate_stages(n, h, method, start, s)
+
+
+@inner
+def take_velocities(n, size, method, pattern, matrices, h, start, b, s):
+    """Move the stages' velocities onto the constraints; ``moved`` becomes the size of the whole correction."""
+    given, answer, place, pace, moved = b.given, b.answer, b.place, b.pace, b.moved
+    weighed, rate, x, a, m = b.weighed, b.rate, s.x, s.a, s.m
+    for i in range(len(x)):
+        for k in range(size):
+            given[k] = -weighed[i, k] if k < n else rate[i, k]
+        solve(pattern.layout, matrices.rigid, given, answer)
+        for k in range(size):
+            place[i, k] = answer[k]
+            if k < n:
+                moved[i, k] = abs(moved[i, k]) + h * abs(answer[k])
+            else:
+                m[i, k] += answer[k]
+    combine(method.inverse, 1.0 / h, place, size, pace)
+    for i in range(len(x)):
+        for k in range(n):
+            a[i, k] -= pace[i, k]
+        for k in range(n, size):
+            x[i, k] -= pace[i, k]
+    integrate_velocities(n, h, method, start, s)
+
+
+@inner
+def largest(n, scale, moves):
+    """Largest correction of a coordinate against its scale, and which one."""
+    norm, worst = 0.0, 0
+    for i in range(len(moves)):
+        for k in range(n):
+            moved = abs(moves[i, k]) / scale[k]
+            if norm == norm and not moved <= norm:  # the first that is not a number stays
+                norm, worst = moved, k
+    return norm, worst
+
+
+@inner
+def converge(
+    n, scale, method, pattern, matrices, model, damped, works, h, start, s, b, tolerance, speed, limit,
+):  # fmt: skip
+    """Newton's iteration on the stages: whether it converged, iterations, last contraction, unknown that moved most.
+
+    Corrections end at ``tolerance`` times the way that the coordinates go in the step, by ``speed`` (1/s) at least, in
+    parts of their scales. The stages are given as predicted, with their integrals. It also
+    ends where the estimated error of the step is certain to be larger than ``limit``.
+    """
+    size, count = len(start.x) - 1, len(method.c)
+    before, norm, rate, worst = 0.0, 1.0, 1.0, 0
+    closed, seen = 0.0, False
+    for k in range(n):
+        closed = max(closed, _CLOSED * scale[k])
+    given, motion, x, v, a, u, m = b.given, b.motion, s.x, s.v, s.a, s.u, s.m
+    for iteration in range(1, MOST_ITERATIONS + 1):
+        for i in range(count):
+            residual(model, n, x[i], v[i], a[i], works[i], 1.0, motion[i])
+            for k in range(n, size):  # rounding would come back as velocities, 1/h times as large
+                if abs(motion[i, k]) <= closed:
+                    motion[i, k] = 0.0
+            for k in range(n):
+                given[k] = u[i, k] - v[i, k]
+            for k in range(n, size + 1):
+                given[k] = m[i, k]
+            weigh(model, n, pattern, matrices, x[i], given, works[i], b.weighed[i], b.answer)
+        correct_coordinates(n, size, method, pattern, matrices, h, b)
+        take_coordinates(n, size, h, method, start, b, s)
+        for i in range(count):
+            constraint_rates(model, n, x[i], v[i], a[i], works[i], b.rate[i], given)
+        take_velocities(n, size, method, pattern, matrices, h, start, b, s)
+        norm, worst = largest(n, scale, b.moved)
+        way = max(h * speed, largest(n, scale, s.dx)[0])
+        if iteration > 1 and norm > _NOISE * way:
+            rate = norm / before
+        if not norm < 1e100 or (iteration > 2 and rate > 2.0 and norm > 1e-9):
+            break
+        if norm <= tolerance * way or (rate < 1.0 and norm * rate / (1.0 - rate) <= tolerance * way):
+            return True, iteration, rate, worst
+        if iteration > 2 and norm <= _ROUNDING and norm > 0.5 * before:
+            return True, iteration, rate, worst
+        before = norm
+        if not seen and norm <= _VISIBLE * limit * min(1.0, h * speed):
+            seen = True
+            if estimate(n, scale, method, pattern, matrices, damped, h, start, s, b, speed) > 1.1 * limit:
+                return True, iteration, rate, worst
+    return norm <= _MAGNIFIED, iteration, rate, worst
+
+
+@inner
+def estimate(n, scale, method, pattern, matrices, damped, h, start, s, b, speed):
+    """Estimated error of a step, as a part of the scales: of coordinates, and of velocities against ``speed``, 1/s.
+
+    It is the difference to the method of the order of the stages that also weighs the rates at the start, by the
+    reciprocal of the real eigenvalue (Hairer and Wanner 1996, IV.8.18).
+    """
+    size = len(start.x) - 1
+    real = method.real / h
+    q, v, given, answer = b.weighed[0], b.weighed[1], b.given, b.answer
+    for k in range(n):
+        q[k], v[k] = start.v[k], start.a[k]
+        for i in range(len(method.c)):
+            q[k] -= method.start[i] * s.u[i, k]
+            v[k] -= method.start[i] * s.a[i, k]
+        q[k] /= real
+        v[k] /= real
+    for k in range(size):
+        given[k] = 0.0
+        if k < n:
+            v[k] = v[k] / real + q[k]
+    add_inertia(pattern, matrices, v, given)
+    if damped:
+        add_product(n, pattern, matrices.damping, q, 1.0 / real, given)
+    solve(pattern.layout, matrices.real, given, answer)
+    error = 0.0
+    for k in range(n):
+        error = max(error, abs(answer[k]) / scale[k])
+        v[k] = real * (answer[k] - q[k])
+        given[k] = 0.0
+    add_inertia(pattern, matrices, v, given)
+    solve(pattern.layout, matrices.rigid, given, answer)
+    for k in range(n):
+        error = max(error, abs(answer[k]) / (scale[k] * speed))
+    return error

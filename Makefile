@@ -20,6 +20,8 @@ PYTHON ?= $(firstword $(foreach candidate,$(CANDIDATES),\
 BIN := .venv/bin
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
 
+BENCH_PIP := .venv-bench/bin/python -m pip install --quiet --disable-pip-version-check --constraint .venv-bench/constraints.txt
+
 help:
 	@echo "make demo        identify a flexible double pendulum from measured motion, and write its report"
 	@echo "make test        format, lint, types, floors, tests (what a change must pass)"
@@ -64,11 +66,11 @@ wheel: .venv/core.stamp
 	DALEMBERT_KERNELS=1 $(PIP:install=wheel) --no-build-isolation --no-deps --wheel-dir dist .
 	@ls dist/*.whl
 
-bench: .venv/bench.stamp
-	$(BIN)/python -m benchmarks
+bench: .venv-bench/stamp
+	.venv-bench/bin/python -m benchmarks
 
 clean:
-	rm -rf .venv build dist docs/_build .pytest_cache .ruff_cache .import_linter_cache .hypothesis
+	rm -rf .venv .venv-bench build dist docs/_build .pytest_cache .ruff_cache .import_linter_cache .hypothesis
 	find src tests studies benchmarks docs -name __pycache__ -type d -prune -exec rm -rf {} + 2>/dev/null || true
 
 .venv/bin/python:
@@ -83,6 +85,15 @@ clean:
 .venv/core.stamp: .venv/bin/python pyproject.toml constraints.txt
 	$(PIP) hatchling editables
 	$(PIP) --no-build-isolation --editable .
+	@touch $@
+
+# The peers of the benchmarks ask for other versions of some packages, so that they have an environment of their own.
+.venv-bench/stamp: .venv/bin/python pyproject.toml constraints.txt benchmarks/constraints.txt
+	$(PYTHON) -m venv .venv-bench
+	grep -v $$(sed -n 's/^\([a-z-]*\)==.*/-e ^\1==/p' benchmarks/constraints.txt) constraints.txt > .venv-bench/constraints.txt
+	cat benchmarks/constraints.txt >> .venv-bench/constraints.txt
+	$(BENCH_PIP) hatchling editables
+	$(BENCH_PIP) --no-build-isolation --editable ".[bench]"
 	@touch $@
 
 .venv/%.stamp: .venv/bin/python pyproject.toml constraints.txt

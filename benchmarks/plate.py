@@ -19,10 +19,10 @@ PRELOAD, POINTS, ENDS = 75.0, 700, (394.0, 407.0)
 METHOD = HarmonicBalance(harmonics=5, sampling=1e-3)
 PARTS = {
     "condensation": ("condensation.py", ("at",)),
-    "law of friction": ("friction_law.py", ("tangent", "forces")),
+    "law of friction": (("friction_period.py", "friction_tangent.py"), ("tangent", "forces")),
     "linear systems": ("block_tangent.py", ("solve",)),
 }
-"""File and functions whose time is a part of the curve's."""
+"""Files and functions whose time is a part of the curve's."""
 
 
 def main() -> list[dict[str, object]]:

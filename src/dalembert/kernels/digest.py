@@ -115,7 +115,7 @@ def _functions(value: Any) -> list[FunctionType]:
     own = getattr(value, "py_func", getattr(value, "_defn", value))  # a function for kernels, an intrinsic
     if isinstance(own, tuple | list):
         return [function for entry in own for function in _functions(entry)]
-    return [own] if isinstance(own, FunctionType) and not _foreign(own.__module__) else []
+    return [own] if isinstance(own, FunctionType) and not _foreign(own.__module__ or "") else []
 
 
 def _text(value: Any) -> str:

@@ -140,7 +140,7 @@ class Indirect:
         return self.kernel.abi
 
     def __call__(self, address: int, *arguments: Any) -> Any:
-        return self.kernel.called(ctypes.CFUNCTYPE(None, ctypes.c_int64)(address), self.kernel.packed(arguments))
+        return self.kernel.called(ctypes.CFUNCTYPE(None, ctypes.c_void_p)(address), self.kernel.packed(arguments))
 
 
 class Kernel(Compiled):
@@ -186,32 +186,38 @@ class Kernel(Compiled):
 
     @cached_property
     def _entry(self) -> Any:
-        return ctypes.CFUNCTYPE(None, ctypes.c_int64)(self.address)
+        return ctypes.CFUNCTYPE(None, ctypes.c_void_p)(self.address)  # an address, or the bytes there
 
-    def packed(self, arguments: tuple[Any, ...], first: int = 0) -> list[Any]:
-        """Words of all arguments from the first of them on."""
+    def packed(self, arguments: tuple[Any, ...]) -> list[Any]:
+        """Words of all arguments."""
         values: list[Any] = []
-        for pack, value in zip(self._packers[first:], arguments, strict=True):
+        for pack, value in zip(self._packers, arguments, strict=True):
             pack(value, values)
         return values
 
     def called(self, entry: Any, values: list[Any]) -> Any:
         """The result of a C function that takes the arguments of this kernel."""
-        words = bytearray(self._given.pack(*values))
+        given = self._given.pack(*values)
+        if self._result is None:
+            return entry(given)
+        words = bytearray(given)
         entry(address(words))
-        return None if self._result is None else unpack(self._result, self._answer.unpack_from(words))
+        return unpack(self._result, self._answer.unpack_from(words))
 
     def __call__(self, *arguments: Any) -> Any:
         return self.called(self._entry, self.packed(arguments))
 
     def given(self, *arguments: Any) -> Callable[..., Any]:
         """This kernel with its first arguments, whose words are made once: what is called often costs less so."""
-        values: list[Any] = []
+        first, packers = [], self._packers[len(arguments) :]
         for pack, value in zip(self._packers, arguments, strict=False):
-            pack(value, values)
+            pack(value, first)
 
-        def call(*others: Any) -> Any:
-            return self.called(self._entry, values + self.packed(others, len(arguments)))
+        def call(*others: Any, alive: Any = arguments) -> Any:
+            values = first.copy()
+            for pack, value in zip(packers, others, strict=True):
+                pack(value, values)
+            return self.called(self._entry, values)
 
         return call
 
@@ -221,9 +227,10 @@ def kernel(function: Callable) -> Any:
     return Kernel(function)
 
 
-def _origin(module: str, owner: Any, *role: str) -> Origin | None:
+def _origin(module: str | None, owner: Any, *role: str) -> Origin | None:
     """Module and name there of an object, unless the module is a script or does not hold the object."""
-    names = [name for name, value in vars(sys.modules[module]).items() if value is owner]
+    space = vars(sys.modules[module]) if module in sys.modules else {}
+    names = [name for name, value in space.items() if value is owner]
     return (module, names[0], role) if names and module != "__main__" else None
 
 

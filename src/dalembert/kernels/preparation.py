@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from dalembert.kernels.kernel import Compiled
 
 _FEW = 3  # kernels that are not worth another process, which takes about as long to begin as two of them to compile
+_WORKER = "DALEMBERT_WORKER"  # says that a process compiles for another one, so that it begins none itself
 Progress = Callable[[int, int, str], None]
 
 
@@ -80,7 +81,7 @@ def _next(tasks: "queue.SimpleQueue[list[Compiled]]") -> "list[Compiled] | None"
 def _serve(tasks: "queue.SimpleQueue[list[Compiled]]", folder: Path | None, done: _Counter) -> None:
     """Hand kernels to a process of their own, one after the other; what it cannot compile is left to this process."""
     command = [sys.executable, "-c", "from dalembert.kernels.preparation import work; work()"]
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
+    environment = {**os.environ, _WORKER: "1", "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
     try:
         worker = subprocess.Popen(
             command,
@@ -99,7 +100,7 @@ def _serve(tasks: "queue.SimpleQueue[list[Compiled]]", folder: Path | None, done
             for kernel in group:
                 path = cached_path(kernel) if folder is None else folder / f"{kernel.symbol}.o"
                 try:
-                    worker.stdin.write(json.dumps([kernel.origin, str(path)]) + "\n")
+                    worker.stdin.write(json.dumps([kernel.origin, kernel.digest, str(path)]) + "\n")
                     worker.stdin.flush()
                     answer = worker.stdout.readline()
                 except OSError:
@@ -118,9 +119,11 @@ def work() -> None:
     from dalembert.kernels.objects import write_object
 
     for line in sys.stdin:
-        origin, path = json.loads(line)
+        origin, digest, path = json.loads(line)
         try:
-            write_object(Path(path), find(origin).object_code())
+            kernel = find(origin)
+            assert kernel.digest == digest, "the source has changed since the other process read it"
+            write_object(Path(path), kernel.object_code())
             answer = "done"
         except Exception:  # whatever it is: the process that asked compiles it itself, and reports the reason
             answer = "failed"
@@ -129,6 +132,8 @@ def work() -> None:
 
 
 def _cores() -> int:
+    if _WORKER in os.environ:
+        return 1
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 

@@ -74,9 +74,7 @@ def _sentence(error: NumbaError, function: Callable) -> str:
         return f"{where}: {_ALLOCATES}"
     lines = [line.strip() for line in text.splitlines() if not _NOISE.match(line)]
     reason = lines[0].rstrip(".") if lines else type(error).__name__
-    return (
-        f"{where}: Numba cannot compile this: {reason}. Functions that a kernel calls need 'inner'"
-    )
+    return f"{where}: Numba cannot compile this: {reason}. Functions that a kernel calls need 'inner'"
 
 
 def _innermost(places: list[tuple[str, str]]) -> tuple[str, str]:

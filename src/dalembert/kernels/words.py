@@ -112,7 +112,7 @@ def _array_packer(name: str, leaf: ArrayOf) -> Pack:
                 f"expected a contiguous one of {dtype} with {axes} axes"
             )
         words.append(address(value))
-        words.extend(value.shape)
+        words += value.shape
 
     return pack
 

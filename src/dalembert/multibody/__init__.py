@@ -96,8 +96,8 @@ __all__ = [
     "Variational",
     "WorkPrecision",
     "equilibrium",
-    "modes",
     "in_python",
+    "modes",
     "simulate",
     "work_precision",
 ]

@@ -14,7 +14,6 @@ from numba.core.errors import NumbaError
 from numba.core.registry import CPUDispatcher
 from numba.np.numpy_support import carray
 
-
 _C_FUNCTION = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p)
 GIVEN, ANSWER = 13, 3  # numbers that the function of a user force is given, and that it returns
 _RATE_STEP = 1e-5  # s, of the differences that stand in for a rate that is not given

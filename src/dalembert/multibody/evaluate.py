@@ -35,7 +35,9 @@ def tangent(
     slots, i, j = structure.coordinate_layout
     x, v = map(np.ascontiguousarray, (x, v))
     values, a = np.zeros(len(i)), np.zeros_like(x)
-    call = model.call().set(x=x, v=v, a=a, matrix=values, mode=TANGENT, motion=rows[0], constraint=rows[1])
+    call = model.call().set(
+        x=x, v=v, a=a, matrix=values, entries=len(values), mode=TANGENT, motion=rows[0], constraint=rows[1]
+    )
     call.set(by_x=by[0], by_v=by[1], by_a=by[2])
     model.evaluate(call, t, t)
     call.signals.imag = 0.0  # a function of the user's may answer with a direction of its own

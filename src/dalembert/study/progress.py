@@ -64,6 +64,8 @@ class Told:
             case {"event": "followed", "frequency": frequency, "amplitude": amplitude, "dof": dof, "done": part}:
                 size = "not found" if amplitude is None else f"{dof} {amplitude:.4g} m"
                 return f"{frequency:.6g} Hz · {size} · {part:.0%} of the way", round(100 * part), 100
+            case {"event": "run-compiling", "done": done, "total": total}:
+                return f"compiling kernels, once on this machine · {done} of {total}", done, total
             case {"event": "simulating", "end": end}:
                 return f"simulating to {end:g} s", 0, None
         return "", 0, None

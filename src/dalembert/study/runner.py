@@ -12,6 +12,7 @@ from dalembert import __version__
 from dalembert.errors import DalembertError, InputError, SolveError, StorageError, not_begun, users_place
 from dalembert.files import write_text
 from dalembert.forward import Checkpoint, Executor, connected
+from dalembert.kernels.preparation import observed
 from dalembert.study.duration import duration
 from dalembert.study.events import Event, EventLog
 from dalembert.study.folder import DAMAGED, FAILED, FINISHED, INPUT, INTERRUPTED, RUNNING, RunFolder, new_folder
@@ -114,7 +115,12 @@ def _executed(study: Study, folder: RunFolder, beginning: str, listener: Listene
         began = perf_counter()
         try:
             log.emit(beginning, **about)
-            with connected(study.executor) as client, Checkpoint(folder.checkpoint) as checkpoint, users_code():
+            with (
+                connected(study.executor) as client,
+                Checkpoint(folder.checkpoint) as checkpoint,
+                users_code(),
+                observed(lambda done, total, _: log.emit("run-compiling", done=done, total=total)),
+            ):
                 placed = replace(study, checkpoint=checkpoint, executor=client)
                 outcome = TASKS[study.task].run(placed, log.emit)
             outcome.save(folder.result)

@@ -147,7 +147,7 @@ class Balance:
         """Add the derivative of the force of one row by the displacement of another."""
         for a, factor in zip(*self._terms[row], strict=True):
             for b, other in zip(*self._terms[column], strict=True):
-                jacobian[a, :, b, :] += factor * other * block
+                jacobian[a, :, b, :] += block if factor == other == 1.0 else factor * other * block
 
     def _add_friction(
         self,
@@ -162,10 +162,7 @@ class Balance:
         block, series = self.lowered.blocks[number], self.series
         samples = np.ascontiguousarray(self._predicted(block, unknowns, total) @ series.synthesis.T)
         if tangent is None:
-            numbers = self._numbers[number]
-            kind = np.result_type(samples, numbers)
-            given = samples.astype(kind, copy=False), numbers.astype(kind, copy=False)
-            force, states = forces(*given, block.tangents, block.normal, block.memory)
+            force, states = forces(samples, self._numbers[number], block.tangents, block.normal, block.memory)
         else:
             force, states, local = self._tangents[number](samples)
             if isinstance(tangent, BlockTangent):
@@ -203,18 +200,15 @@ class Balance:
     @cached_property
     def _numbers(self) -> list[np.ndarray]:
         """Numbers (cells, 5) that the law of each block is given."""
-        return [block.numbers if block.memory else _with_unit_stiffness(block.numbers) for block in self.lowered.blocks]
+        return [_given(block) for block in self.lowered.blocks]
 
     @cached_property
     def _tangents(self) -> list[FrictionTangent]:
         """The law of each block with its derivatives."""
         return [
-            tangent_of(
-                np.ascontiguousarray(numbers, dtype=float), block.tangents, block.normal, block.memory,
-                self.series.synthesis, self.series.analysis,
-            )
+            tangent_of(numbers, block.tangents, block.normal, block.memory, self.series.synthesis, self.series.analysis)
             for block, numbers in zip(self.lowered.blocks, self._numbers, strict=True)
-        ]  # fmt: skip
+        ]
 
     def _undetermined(self, block: FrictionBlock, states: np.ndarray) -> np.ndarray:
         """Cells of the velocity kind that stick all period: nothing else determines their mean position."""
@@ -283,8 +277,10 @@ def _penalties(block: FrictionBlock) -> np.ndarray:
     return np.stack(columns, axis=1)
 
 
-def _with_unit_stiffness(numbers: np.ndarray) -> np.ndarray:
-    """Numbers of a law that is given forces for displacements."""
-    result = numbers.copy()
-    result[:, TANGENTIAL] = 1.0
-    return result
+def _given(block: FrictionBlock) -> np.ndarray:
+    """Numbers of a block's law; one that is given forces for displacements has a unit stiffness."""
+    numbers = np.ascontiguousarray(block.numbers, dtype=np.result_type(float, block.numbers))
+    if not block.memory:
+        numbers = numbers.copy()
+        numbers[:, TANGENTIAL] = 1.0
+    return numbers

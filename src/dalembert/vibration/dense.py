@@ -2,7 +2,11 @@
 
 import numpy as np
 
+from dalembert.kernels.blas import applied
 from dalembert.kernels.kernel import inner
+
+LARGE = 1000
+"""Entries of a matrix above which the BLAS is faster than loops."""
 
 
 @inner
@@ -22,8 +26,11 @@ def dot(x, y):
 
 
 @inner
-def apply(matrix, x, y):
-    """Set y to matrix x."""
+def apply(gemv, matrix, x, y):
+    """Set y to matrix x; large matrices by the BLAS, at the address ``gemv``."""
+    if matrix.size > LARGE:
+        applied(gemv, matrix, x, y)
+        return
     for i in range(len(y)):
         y[i] = dot(matrix[i], x)
 
@@ -45,12 +52,6 @@ def size_of(x):
             return entry
         size = max(size, entry)
     return size
-
-
-@inner
-def square(x):
-    """Sum of squares."""
-    return dot(x, x)
 
 
 @inner

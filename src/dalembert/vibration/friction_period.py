@@ -182,7 +182,7 @@ _forces_real, _forces_complex = kernels(_forces)
 def forces(
     displacements: np.ndarray, numbers: np.ndarray, tangents: int, normal: bool, memory: bool
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Forces over a period, real or complex.
+    """Forces over a period; complex where displacements or numbers are.
 
     Parameters
     ----------
@@ -195,8 +195,9 @@ def forces(
     forces : array like ``displacements``; the normal one is N - N0
     states : array of uint8, shape (contacts, samples)
     """
-    contacts, _, samples = displacements.shape
-    result, states = np.empty_like(displacements), np.empty((contacts, samples), dtype=np.uint8)
-    law = _forces_complex if np.iscomplexobj(displacements) else _forces_real
+    law = _forces_real
+    if not displacements.dtype == numbers.dtype == float:
+        law, displacements, numbers = _forces_complex, displacements.astype(complex), numbers.astype(complex)
+    result, states = np.empty_like(displacements), np.empty(displacements.shape[::2], dtype=np.uint8)
     law(displacements, numbers, tangents, normal, memory, result, states)
     return result, states

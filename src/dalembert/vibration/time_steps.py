@@ -16,6 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dalembert.kernels.blas import gemv
 from dalembert.kernels.kernel import inner, kernel
 from dalembert.kernels.words import Address, Bytes2, Reals, Reals2
 from dalembert.vibration.dense import apply, assign, dot, invert, size_of
@@ -86,8 +87,12 @@ class Record(NamedTuple):
 
 
 class Room(NamedTuple):
-    """Room for a step: vectors of rows, matrices (rows, rows), vectors of modes; sliders (cells, 2)."""
+    """Room for a step: vectors of rows, matrices (rows, rows), vectors of modes; sliders (cells, 2).
 
+    ``gemv``: the BLAS's address.
+    """
+
+    gemv: Address
     u: Reals
     start: Reals
     residual: Reals
@@ -104,6 +109,7 @@ class Room(NamedTuple):
 def _room(modes: Modes, state: State) -> Room:
     rows, n = modes.seen.shape
     return Room(
+        gemv=gemv(),
         u=np.zeros(rows),
         start=np.zeros(rows),
         residual=np.zeros(rows),
@@ -119,10 +125,10 @@ def _room(modes: Modes, state: State) -> Room:
 
 
 @inner
-def _product(diagonal, whole, x, y):
+def _product(gemv, diagonal, whole, x, y):
     """Set y to the product of a matrix, which may be a diagonal, and x."""
     if len(whole):
-        apply(whole, x, y)
+        apply(gemv, whole, x, y)
     else:
         for i in range(len(y)):
             y[i] = diagonal[i] * x[i]
@@ -146,8 +152,9 @@ def _balance(modes, elements, users, state, reaction, room):
         answer(elements, users, u, state.sliders, reaction)
         if last:
             return True
+        apply(room.gemv, modes.compliance, reaction.force, residual)
         for i in range(len(u)):
-            residual[i] = u[i] - start[i] + dot(modes.compliance[i], reaction.force)
+            residual[i] += u[i] - start[i]
         size = size_of(residual)
         if not np.isfinite(size):
             return False
@@ -155,7 +162,7 @@ def _balance(modes, elements, users, state, reaction, room):
             _linearise(modes.compliance, reaction.slopes, room.matrix)
             invert(room.matrix, room.inverse)
         before = size
-        apply(room.inverse, residual, change)
+        apply(room.gemv, room.inverse, residual, change)
         part = 0.5 if iteration >= BOLD else 1.0
         for i in range(len(u)):
             change[i] *= part
@@ -186,16 +193,17 @@ def _step(modes, elements, users, scheme, state, t, reaction, room):
         history[i] = (scheme.alpha_f * a[i] - scheme.alpha_m * w[i]) / (1.0 - scheme.alpha_m)
         q[i] += h * v[i] + h * h * ((0.5 - scheme.beta) * w[i] + scheme.beta * history[i])
         v[i] += h * ((1.0 - scheme.gamma) * w[i] + scheme.gamma * history[i])
-    _product(modes.damping, modes.coupled, v, a)
+    _product(room.gemv, modes.damping, modes.coupled, v, a)
     for i in range(len(q)):
         pull[i] = modes.force[t, i] - a[i] - modes.stiffness[i] * q[i]
-    _product(modes.inverse, modes.solver, pull, a)
+    _product(room.gemv, modes.inverse, modes.solver, pull, a)
     if len(modes.seen):
         for i in range(len(q)):
             pull[i] = q[i] + b * a[i]
-        apply(modes.seen, pull, room.start)
+        apply(room.gemv, modes.seen, pull, room.start)
+        apply(room.gemv, modes.compliance, reaction.force, room.u)
         for i in range(len(room.u)):
-            room.u[i] = room.start[i] - dot(modes.compliance[i], reaction.force)
+            room.u[i] = room.start[i] - room.u[i]
         if not _balance(modes, elements, users, state, reaction, room):
             return False
         for c in range(len(state.sliders)):
@@ -243,7 +251,7 @@ def _advance(
     tolerance: float, record: Record, reaction: Reaction, room: Room,
 ) -> tuple[int, int, float]:  # fmt: skip
     steps, change = len(modes.force), np.inf
-    apply(modes.seen, state.modes[0], room.u)
+    apply(room.gemv, modes.seen, state.modes[0], room.u)
     for period in range(most):
         assign(room.first_q, state.modes[0])
         assign(room.first_v, state.modes[1])

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from small_kernels import both, pair, weighted
 
 from dalembert.kernels.kernel import kernel
 from dalembert.kernels.words import Reals, Reals2
+from small_kernels import both, pair, weighted
 
 
 def test_arguments_arrive_and_results_come_back() -> None:

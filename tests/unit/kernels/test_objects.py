@@ -7,9 +7,9 @@ import time
 from pathlib import Path
 
 import pytest
-from small_kernels import both, weighted
 
 from dalembert.kernels import objects
+from small_kernels import both, weighted
 
 HERE = str(Path(__file__).parents[2])
 CODE = (

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from small_kernels import both, weighted
 
 from dalembert.kernels import everything, packaged
+from small_kernels import both, weighted
 
 
 @pytest.fixture(scope="module")

@@ -7,10 +7,10 @@ import dalembert.multibody as mb
 from dalembert.multibody import evaluate
 from dalembert.multibody.assemble import assembled
 from dalembert.multibody.integrators import partitioning
-from dalembert.multibody.integrators.run import make_problem, resting, stacks
+from dalembert.multibody.integrators.run import make_problem
 from dalembert.multibody.kernels.dual import STEP
-from dalembert.multibody.kernels.model import workspace
-from dalembert.multibody.kernels.motion import Motion
+from dalembert.multibody.kernels.model import Call, addresses
+from dalembert.multibody.kernels.motion import Motion, resting
 from dalembert.multibody.lowering import Lowered
 
 
@@ -37,13 +37,18 @@ def dense(lowered: Lowered):
     return make_problem(lowered, np.array([0.0]))._replace(exact_slots=slots, exact_layout=layout)
 
 
-def work_of(lowered: Lowered) -> tuple:
-    return workspace(lowered.real), workspace(lowered.dual), np.zeros((7, lowered.structure.size + 1), complex)
+def calls_of(lowered: Lowered) -> tuple[Call, Call, np.ndarray]:
+    """Calls in real and in complex numbers, and complex work."""
+    lifted = np.zeros((7, lowered.structure.size + 1), complex)
+    return lowered.real.need("rates").call(), lowered.dual.need("rates").call(), lifted
 
 
-def chosen(lowered: Lowered, problem, state: Motion, dual_work):
-    partition = partitioning.room(problem)
-    partitioning.linearise(problem, lowered.dual, state, dual_work, partition)
+def chosen(lowered: Lowered, problem, state: Motion, directions: int = 0):
+    """Independent coordinates at a state; the functions run in plain Python."""
+    call = lowered.dual.call()
+    partition = partitioning.room(problem, directions)
+    lowered.dual.evaluate(call, 0.0, 0.0)
+    partitioning.linearise(problem, lowered.dual.address, state, call.address, partition)
     partitioning.choose(problem, partition)
     assert partitioning.invert(problem, partition)
     return partition
@@ -60,7 +65,7 @@ def test_as_many_coordinates_depend_as_constraints_are_independent(bars: int, ra
     """A third parallel bar makes one constraint of two redundant."""
     lowered = assembled(four_bar(bars=bars))
     problem = dense(lowered)
-    partition = chosen(lowered, problem, start(lowered), work_of(lowered)[1])
+    partition = chosen(lowered, problem, start(lowered))
     assert partition.rank[0] == rank == lowered.structure.n - 1
     assert sorted(partition.columns) == list(range(lowered.structure.n))
     assert sorted(partition.rows) == list(range(lowered.structure.size - lowered.structure.n))
@@ -70,18 +75,17 @@ def test_as_many_coordinates_depend_as_constraints_are_independent(bars: int, ra
 @pytest.mark.parametrize("bars", [2, 3])
 def test_dependent_entries_satisfy_the_constraints_at_all_levels(bars: int) -> None:
     lowered = assembled(four_bar(bars=bars))
-    problem, (work, dual_work, lifted) = dense(lowered), work_of(lowered)
+    problem, (call, dual_call, lifted) = dense(lowered), calls_of(lowered)
     state = start(lowered)
-    partition = chosen(lowered, problem, state, dual_work)
+    partition = chosen(lowered, problem, state)
     own = partition.columns[partition.rank[0] :]
     state.x[own] += 0.3
     state.v[own] = -2.0
     state.a[own] = 5.0
     given = [values[own].copy() for values in state[:3]]
-    none = stacks([lowered], [])[2]
     assert partitioning.settle(
-        problem, lowered.real, lowered.dual, none, 0.0, 0.0, partitioning.ACCELERATION, state,
-        resting(0, len(state.x)), work, dual_work, lifted, partition,
+        problem, lowered.real.address, lowered.dual.address, addresses([]), 0.0, 0.0, partitioning.ACCELERATION, state,
+        resting(0, len(state.x)), call.address, dual_call.address, lifted, partition,
     )  # fmt: skip
     zero = np.zeros(1)
     assert np.max(evaluate.violations(lowered, state.x[None], state.v[None], state.a[None], zero, zero)) < 1e-13
@@ -94,9 +98,9 @@ def test_derivatives_of_the_dependent_entries() -> None:
 
     def settled(length: complex, shift: float, tilted: bool = False) -> tuple[Motion, Motion]:
         lowered = assembled(four_bar(length.real))
-        problem, (work, dual_work, lifted) = dense(lowered), work_of(lowered)
+        problem, (call, dual_call, lifted) = dense(lowered), calls_of(lowered)
         state = start(lowered)
-        partition = chosen(lowered, problem, start(assembled(four_bar(2.0))), dual_work)
+        partition = chosen(lowered, problem, start(assembled(four_bar(2.0))), int(tilted))
         own = partition.columns[partition.rank[0] :]
         along = [assembled(four_bar(length), tilted=True)] if tilted else []
         dstates = resting(len(along), len(state.x))
@@ -105,8 +109,9 @@ def test_derivatives_of_the_dependent_entries() -> None:
         for values in dstates[:3]:
             values[:, own] = 1.0
         assert partitioning.settle(
-            problem, lowered.real, lowered.dual, stacks([lowered], along)[2], 0.0, 0.0, partitioning.ACCELERATION,
-            state, dstates, work, dual_work, lifted, partition,
+            problem, lowered.real.address, lowered.dual.address,
+            addresses(own.dual.need("rates") for own in along), 0.0, 0.0, partitioning.ACCELERATION,
+            state, dstates, call.address, dual_call.address, lifted, partition,
         )  # fmt: skip
         return state, dstates
 

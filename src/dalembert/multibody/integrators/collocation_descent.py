@@ -98,8 +98,8 @@ def descend(
 
 @kernel
 def respond(
-    problem: Problem, rule: Rule, model: Address, dual: Address, directions: Integers, step: Step,
-    walk: Walk, room: Descent,
+    problem: Problem, rule: Rule, model: Address, dual: Address, directions: Integers, step: Step, walk: Walk,
+    room: Descent,
 ) -> bool:  # fmt: skip
     """Derivatives of the minimum along the directions, by the derivative of its gradient.
 

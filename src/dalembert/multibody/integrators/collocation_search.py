@@ -1,5 +1,6 @@
 """A collocation step by any minimiser of the package."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -56,11 +57,11 @@ class Search:
                 residual, jacobian = self._squares(step, middle, half)
                 found = self.minimiser.minimise(residual, jacobian, -corner, corner, 0.0 * corner)
             else:
+                fill = squares.given(self.problem, self.rule, self.model, step, walk, kept)
 
                 def objective(places: np.ndarray) -> np.ndarray:
                     fitness = np.zeros(len(places))
-                    trials = middle + half * places
-                    squares(self.problem, self.rule, self.model, step, walk, kept, trials, fitness)
+                    fill(middle + half * places, fitness)
                     return fitness
 
                 seed = int(np.random.SeedSequence((self.seed, number)).generate_state(1)[0])
@@ -72,26 +73,26 @@ class Search:
 
     def kept(self, step: Step) -> Kept | None:
         """States of the Gauss points at the prediction."""
-        walk = self.walk
+        walk, measured = self.walk, self._measured(step)
         kept = kept_room(walk)
         for s in range(len(self.rule.nodes)):
-            if not self._measure(step, s):
+            if not measured(s):
                 return None
             keep(walk, kept, s)
         return kept
 
-    def _measure(self, step: Step, s: int) -> bool:
-        """What remains at a Gauss point, with its derivatives by the unknown accelerations."""
-        return measure(self.problem, self.rule, self.model, self.dual, self.directions, step, self.walk, False, s)
+    def _measured(self, step: Step) -> Callable[[int], bool]:
+        """A function that measures what remains at a Gauss point, and its derivatives by the unknown accelerations."""
+        return measure.given(self.problem, self.rule, self.model, self.dual, self.directions, step, self.walk, False)
 
     def _squares(self, step: Step, middle: np.ndarray, half: np.ndarray) -> tuple:
         """What remains and its derivatives, in the coordinates of the box."""
-        walk, n = self.walk, self.problem.n
+        walk, n, measured = self.walk, self.problem.n, self._measured(step)
         roots = np.sqrt(self.rule.weights)
 
         def residual(place: np.ndarray) -> np.ndarray:
             walk.c[:] = middle + half * place
-            solved = [self._measure(step, s) for s in range(len(roots))]
+            solved = [measured(s) for s in range(len(roots))]
             return (roots[:, None] * walk.gaps[:, :n]).ravel() if all(solved) else np.full(len(roots) * n, np.nan)
 
         def jacobian(place: np.ndarray) -> np.ndarray:

@@ -161,18 +161,15 @@ def _solve(problem, model, partition, layout, dependent, exact, state, work, gap
     n, scale = problem.n, problem.scale
     for level in range(POSITION, ACCELERATION + 1):
         values = state.x if level == POSITION else (state.v if level == VELOCITY else state.a)
-        if not _follow(
-            model, n, scale, partition, layout, dependent, level, state, values, work, gap, change, spare
-        ):  # fmt: skip
+        if not _follow(model, n, scale, partition, layout, dependent, level, state, values, work, gap, change, spare):
             return False
     return _drive(problem, model, exact, state, work, gap, change, spare)
 
 
 @kernel
 def squares(
-    problem: Problem, rule: Rule, model: Address, step: Step, walk: Walk, kept: Kept,
-    trials: Reals2, fitness: Reals,
-) -> None:  # fmt: skip
+    problem: Problem, rule: Rule, model: Address, step: Step, walk: Walk, kept: Kept, trials: Reals2, fitness: Reals
+) -> None:
     """Weighted squares of what remains, (trials,), of accelerations (trials, unknowns); infinite where not found."""
     n, own, c, state = problem.n, walk.partition, walk.consistency, kept.trial
     gap, change, spare = kept.vectors[0], kept.vectors[1], kept.vectors[2]

@@ -15,6 +15,7 @@ from dalembert.multibody.integrators.index1 import (
 )
 from dalembert.multibody.integrators.partitioning import (
     VELOCITY,
+    Partition,
     choose,
     dependence,
     invert,
@@ -59,15 +60,17 @@ def kernels(way: int, derivatives: bool) -> list[Compiled]:
 
 @kernel
 def partition(
-    problem: Problem, terms: Terms, dual: Address, t: float, within: float, state: Motion, tools: Tools
+    problem: Problem, terms: Terms, dual: Address, t: float, within: float, state: Motion, work: Address, own: Partition
 ) -> bool:
-    """Choose the independent coordinates if that is needed: at first, or where the present ones have become bad."""
-    set_signals(dual, t, within, tools.dual_work)
-    linearise(problem, dual, state, tools.dual_work, tools.partition)
-    if tools.partition.rank[0] > 0 and invert(problem, tools.partition):
-        if dependence(problem, tools.partition) <= terms.limit:
-            return False
-    choose(problem, tools.partition)
+    """Choose the independent coordinates if that is needed: at first, or where the present ones have become bad.
+
+    Whether it was done. ``work``: address of a call in complex numbers.
+    """
+    set_signals(dual, t, within, work)
+    linearise(problem, dual, state, work, own)
+    if own.rank[0] > 0 and invert(problem, own) and dependence(problem, own) <= terms.limit:
+        return False
+    choose(problem, own)
     return True
 
 
@@ -81,12 +84,12 @@ def _finite(n, state):
 
 @kernel
 def complete(
-    problem: Problem, terms: Terms, model: Address, dual: Address, directions: Integers, t: float, within: float,
-    state: Motion, dstates: Motions, projected: bool, c: Completion,
+    problem: Problem, terms: Terms, model: Address, dual: Address, directions: Integers, state: Motion,
+    dstates: Motions, c: Completion, t: float, within: float, projected: bool,
 ) -> int:  # fmt: skip
     """Bring a state to the constraints as its stabilisation has it, then find what it demands: status.
 
-    ``projected``: whether a projection is due.
+    ``projected``: whether a projection is due. What changes from call to call stands last, for `Field`.
     """
     tools = c.tools
     if not _finite(problem.n, state):

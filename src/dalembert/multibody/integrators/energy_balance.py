@@ -88,7 +88,7 @@ def first_energies(
     lowered: Lowered, tilted: Sequence[Lowered], start: Motion, dstarts: Motion, within: float
 ) -> tuple[float, np.ndarray]:
     """Energy in J at the start (N + 1,), and its derivatives (directions,); ``within`` the first smooth stretch."""
-    energy = _energy_at_start(lowered.real, start.x, start.v, within)
+    energy = _energy_at_start(lowered.real, start.x, start.v, within).real
     derivatives = np.zeros(len(tilted))
     for d, entry in enumerate(tilted):
         x, v = start.x + 1j * STEP * dstarts.x[d], start.v + 1j * STEP * dstarts.v[d]

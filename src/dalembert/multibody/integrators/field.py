@@ -1,12 +1,24 @@
 """The equations of index 1 as a field of rates over the states, for solvers that call it from Python."""
 
+from collections.abc import Callable
+from functools import cached_property
+from typing import NamedTuple
+
 import numpy as np
 
-from dalembert.multibody.integrators.completion import complete, completion, kernels, partition
+from dalembert.multibody.integrators.completion import complete, completion, partition
 from dalembert.multibody.integrators.index1 import PARTITIONED, PROJECTED, Terms
 from dalembert.multibody.integrators.problem import DONE, Problem
 from dalembert.multibody.kernels.motion import Motion, resting
 from dalembert.multibody.lowering import Lowered
+
+
+class _Along(NamedTuple):
+    """Directions, derivatives of the state along them, and `complete` of time, stretch, and whether to project."""
+
+    directions: np.ndarray
+    dstates: Motion
+    complete: Callable[[float, float, bool], int]
 
 
 class Field:
@@ -42,11 +54,11 @@ class Field:
         self.moves = terms.way == PROJECTED and self.width - 1 > self.n
         self.within = 0.0
         self.evaluations = 0
-        self._directions, self._state, self._dstates = directions, state, dstates
+        self._state, self._dstates = state, dstates
         self._calls = lowered.real.need("rates").call(), lowered.dual.call()
         works = self._calls[0].address, self._calls[1].address
         self._completion = completion(problem, terms, *works, self.count + implicit)
-        self._units = np.full(2 * self.n, lowered.upright.need("rates").address if implicit else 0)
+        self._tilted = self._along(directions, dstates)
 
     def __call__(self, t: float, y: np.ndarray) -> np.ndarray:
         """Rates, not numbers where there are none: a solver then takes a shorter step."""
@@ -57,9 +69,11 @@ class Field:
         """Derivative of the motion's rates by coordinates and velocities, (2n, 2n)."""
         n = self.n
         self.put(y)
-        dstates = resting(2 * n, self.width)
+        dstates = self._units.dstates
+        for values in dstates:
+            values.fill(0.0)
         dstates.x[:n, :n] = dstates.v[n:, :n] = np.eye(n)
-        if self._complete(t, False, self._units, dstates) != DONE:
+        if self._complete(self._units, t, projected=False) != DONE:
             return np.full((2 * n, 2 * n), np.nan)
         return np.concatenate([dstates.v[:, :n], dstates.a[:, :n]], axis=1).T
 
@@ -79,14 +93,16 @@ class Field:
 
     def complete(self, t: float, *, projected: bool) -> int:
         """Bring the state to the constraints, then find what it demands: status."""
-        return self._complete(t, projected and self.moves, self._directions, self._dstates)
+        return self._complete(self._tilted, t, projected=projected and self.moves)
 
     def choose(self, t: float) -> bool:
         """Choose independent coordinates if they are parted and that is needed; whether it was done."""
         if self.terms.way != PARTITIONED:
             return False
         dual, tools = self.lowered.dual.address, self._completion.tools
-        return partition(self.problem, self.terms, dual, float(t), self.within, self._state, tools)
+        return partition(
+            self.problem, self.terms, dual, float(t), self.within, self._state, tools.dual_work, tools.partition
+        )
 
     def record(self, out: Motion, dout: Motion, due: int) -> None:
         """Write the present state as that of an output time."""
@@ -100,10 +116,17 @@ class Field:
         slopes = np.concatenate([dfirst[:, :n], dsecond[:, :n]], axis=1)
         return np.concatenate([first[:n], second[:n], slopes.ravel()])
 
-    def _complete(self, t: float, projected: bool, directions: np.ndarray, dstates: Motion) -> int:
-        self.evaluations += 1
+    @cached_property
+    def _units(self) -> _Along:
+        """Coordinates and velocities, one after the other, as directions."""
+        directions = np.full(2 * self.n, self.lowered.upright.need("rates").address)
+        return self._along(directions, resting(2 * self.n, self.width))
+
+    def _along(self, directions: np.ndarray, dstates: Motion) -> _Along:
         models = self.lowered.real.address, self.lowered.dual.address
-        return complete(
-            self.problem, self.terms, *models, directions, float(t), self.within, self._state, dstates, projected,
-            self._completion,
-        )  # fmt: skip
+        own = complete.given(self.problem, self.terms, *models, directions, self._state, dstates, self._completion)
+        return _Along(directions, dstates, own)
+
+    def _complete(self, along: _Along, t: float, *, projected: bool) -> int:
+        self.evaluations += 1
+        return along.complete(float(t), self.within, projected)

@@ -10,7 +10,8 @@ from scipy.sparse import block_diag
 
 from dalembert.errors import InputError, unknown
 from dalembert.kernels.kernel import Compiled
-from dalembert.multibody.integrators.field import Field, kernels
+from dalembert.multibody.integrators.completion import kernels
+from dalembert.multibody.integrators.field import Field
 from dalembert.multibody.integrators.index1 import PROJECTED
 from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.problem import DONE, TOO_MANY_STEPS, Problem

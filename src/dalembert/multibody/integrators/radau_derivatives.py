@@ -82,6 +82,4 @@ def settle_end_along(
     for d in range(len(directions)):
         set_signals(directions[d], last.times[j], within, dual_work)
         state, dstate = row(last.states, j), row(rows(last.derivatives, d), j)
-        settle_along(
-            problem, pattern, matrices, directions[d], state, dstate, moved, dual_work, lifted, VELOCITIES
-        )
+        settle_along(problem, pattern, matrices, directions[d], state, dstate, moved, dual_work, lifted, VELOCITIES)

@@ -107,27 +107,15 @@ class RadauIIA(Integrator):
         fixed = self.step_ends(end, samples[0].jumps)
         room = (_ROOM if fixed is None else max(_ROOM, len(fixed))) if logged else 0
         calls = [[model.call() for _ in range(1 + self.stages)] for model in (samples[0].real, samples[0].dual)]
+        spare = workspace(problem, method, pattern, dstates, *calls)
+        run = integrate.given(problem, method, pattern, directions, dstates, dout, *spare)
         runs = []
         for number, lowered in enumerate(samples):
             log = Log(np.zeros(4, dtype=np.int64), np.zeros(room, dtype=np.int64), np.zeros(room))
             edges = problem.edges[number, : problem.stretches[number] + 1]
             own, start = resting(*shape), Motion(*(array[number] for array in states))
-            status, time, unknown = integrate(
-                problem,
-                method,
-                pattern,
-                edges,
-                self._settings(lowered),
-                lowered.real.need("rates").address,
-                lowered.dual.address,
-                directions,
-                start,
-                dstates,
-                own,
-                dout,
-                log,
-                *workspace(problem, method, pattern, dstates, *calls),
-            )
+            model, dual = lowered.real.need("rates").address, lowered.dual.address
+            status, time, unknown = run(edges, self._settings(lowered), model, dual, start, own, log)
             reason = None if status == DONE else self._explain(lowered, status, time, unknown)
             taken = min(int(log.counts[0]), room)
             runs.append(Run(reason, problem.times, own, dout, log.counts, log.iterations[:taken], log.ends[:taken]))

@@ -12,11 +12,11 @@ from dalembert.multibody.integrators.outputs import record
 from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR, TOO_MANY_STEPS, Log, Problem
 from dalembert.multibody.integrators.radau_coefficients import Coefficients
 from dalembert.multibody.integrators.radau_derivatives import differentiate, settle_end_along
-from dalembert.multibody.integrators.radau_newton import converge, estimate, factorise
+from dalembert.multibody.integrators.radau_newton import converge, factorise
 from dalembert.multibody.integrators.radau_workspace import Along, Outputs, Settings, Step
 from dalembert.multibody.integrators.settling import VELOCITIES, accelerate_roughly, settle
 from dalembert.multibody.kernels.assembly import set_signals
-from dalembert.multibody.kernels.motion import Histories, Motion, Motions, copy, row
+from dalembert.multibody.kernels.motion import Histories, Motion, Motions, clear, copy, row
 
 _AGED = 0.003  # contraction at which the next step begins with new matrices, and outputs have their own
 _SHORTEST = 0.2  # of a step: the one after it (Hairer and Wanner 1996, IV.8); what is foreseen may vanish in the time
@@ -101,14 +101,14 @@ def attempt(
         if not factorise(n, method, pattern, matrices, h):
             return SINGULAR, made, 0.0, speed, 0, 1.0, 0
     stages.listen(method, model, t, h, target, within, works)
-    converged, iterations, rate, worst = converge(
+    converged, iterations, rate, worst, gap, pace = converge(
         n, scale, method, pattern, matrices, model, settings.damped, works, h, new, s, b,
         settings.newton_tolerance, speed, settings.tolerance if settings.step == 0.0 else 0.0,
     )  # fmt: skip
     error, end = 0.0, len(method.c) - 1
     if converged and settings.step == 0.0:
         speed = max(speed, _speed(n, scale, s.v[end]))
-        error = estimate(n, scale, method, pattern, matrices, settings.damped, h, new, s, b, speed) / settings.tolerance
+        error = max(gap, pace / speed) / settings.tolerance
     if converged and error <= 1.0:
         stages.read(n, s, new)
         accelerate_roughly(problem, pattern, matrices, model, new, works[end], moved[2:])
@@ -119,21 +119,24 @@ def attempt(
 
 @kernel
 def integrate(
-    problem: Problem, method: Coefficients, pattern: Pattern, edges: Reals, settings: Settings, model: Address,
-    dual: Address, directions: Integers, start: Motion, dstates: Motions, out: Motions, dout: Histories, log: Log,
+    problem: Problem, method: Coefficients, pattern: Pattern, directions: Integers, dstates: Motions, dout: Histories,
     new: Motion, matrices: Matrices, step: Step, outputs: Outputs, along: Along, consistency: Consistency,
+    edges: Reals, settings: Settings, model: Address, dual: Address, start: Motion, out: Motions, log: Log,
 ) -> tuple[int, float, int]:  # fmt: skip
     """Run one sample between ``edges`` (s): status, time reached, and the unknown that moved most.
 
     ``method`` are the coefficients; ``directions`` are addresses of complex models, one a direction of differentiation.
     ``start`` (N + 1) and its derivatives ``dstates`` (directions, N + 1) are overwritten; ``out`` (times, N + 1) and
-    ``dout`` (directions, times, N + 1) are filled at ``problem.times``.
+    ``dout`` (directions, times, N + 1) are filled at ``problem.times``. The rest is a workspace, which may be that of
+    another sample before.
     """
     n, adaptive, order = problem.n, settings.step == 0.0, len(method.c) + 1.0  # of the estimated error of a step
     moved, dual_work = step.moved, step.dual_work
     last, apart, between, dbetween, shares, lifted, work = outputs
     dold, ds, dual_works, differentiate_step, settle_end, record_along = along
     copy(start, new)
+    clear(matrices.damping)  # is not evaluated where there is none
+    clear(apart.damping)
     due = 0
     speed, h, length, taken = 1.0 / (edges[-1] - edges[0]), 0.0, 0.0, 0.0
     for stretch in range(len(edges) - 1):

@@ -138,15 +138,16 @@ def largest(n, scale, moves):
 def converge(
     n, scale, method, pattern, matrices, model, damped, works, h, start, s, b, tolerance, speed, limit,
 ):  # fmt: skip
-    """Newton's iteration on the stages: whether it converged, iterations, last contraction, unknown that moved most.
+    """Newton's iteration on the stages, which are given as predicted, with their integrals.
 
-    Corrections end at ``tolerance`` times the way that the coordinates go in the step, by ``speed`` (1/s) at least, in
-    parts of their scales. The stages are given as predicted, with their integrals. It also
-    ends where the estimated error of the step is certain to be larger than ``limit``.
+    Answers whether it converged, iterations, last contraction, unknown that moved most, and the estimated error of
+    the step if there is a ``limit`` for it. Corrections end at ``tolerance`` times the way that the coordinates go in
+    the step, by ``speed`` (1/s) at least, in parts of their scales. It also ends where the estimated error is certain
+    to be larger than ``limit``.
     """
     size, count = len(start.x) - 1, len(method.c)
     before, norm, rate, worst = 0.0, 1.0, 1.0, 0
-    closed, seen = 0.0, False
+    closed, seen, converged, error, pace = 0.0, False, False, 0.0, 0.0
     for k in range(n):
         closed = max(closed, _CLOSED * scale[k])
     given, motion, x, v, a, u, m = b.given, b.motion, s.x, s.v, s.a, s.u, s.m
@@ -170,35 +171,41 @@ def converge(
         way = max(h * speed, largest(n, scale, s.dx)[0])
         if iteration > 1 and norm > _NOISE * way:
             rate = norm / before
-        if not norm < 1e100 or (iteration > 2 and rate > 2.0 and norm > 1e-9):
-            break
-        if norm <= tolerance * way or (rate < 1.0 and norm * rate / (1.0 - rate) <= tolerance * way):
-            return True, iteration, rate, worst
-        if iteration > 2 and norm <= _ROUNDING and norm > 0.5 * before:
-            return True, iteration, rate, worst
-        before = norm
-        if not seen and norm <= _VISIBLE * limit * min(1.0, h * speed):
+        lost = not norm < 1e100 or (iteration > 2 and rate > 2.0 and norm > 1e-9)
+        done = not lost and (
+            norm <= tolerance * way
+            or (rate < 1.0 and norm * rate / (1.0 - rate) <= tolerance * way)
+            or (iteration > 2 and norm <= _ROUNDING and norm > 0.5 * before)
+        )
+        ended = lost or done or iteration == MOST_ITERATIONS
+        converged = done or (ended and norm <= _MAGNIFIED)
+        visible = not lost and not done and not seen and norm <= _VISIBLE * limit * min(1.0, h * speed)
+        if visible or (converged and limit > 0.0):
             seen = True
-            if estimate(n, scale, method, pattern, matrices, damped, h, start, s, b, speed) > 1.1 * limit:
-                return True, iteration, rate, worst
-    return norm <= _MAGNIFIED, iteration, rate, worst
+            error, pace = estimate(n, scale, method, pattern, matrices, damped, h, start, s, b)
+        if visible and max(error, pace / speed) > 1.1 * limit:
+            converged = ended = True
+        if ended:
+            break
+        before = norm
+    return converged, iteration, rate, worst, error, pace
 
 
 @inner
-def estimate(n, scale, method, pattern, matrices, damped, h, start, s, b, speed):
-    """Estimated error of a step, as a part of the scales: of coordinates, and of velocities against ``speed``, 1/s.
+def estimate(n, scale, method, pattern, matrices, damped, h, start, s, b):
+    """Estimated error of a step, as a part of the scales: of coordinates, and of velocities, 1/s.
 
     It is the difference to the method of the order of the stages that also weighs the rates at the start, by the
     reciprocal of the real eigenvalue (Hairer and Wanner 1996, IV.8.18).
     """
-    size = len(start.x) - 1
+    size, u, a = len(start.x) - 1, s.u, s.a
     real = method.real / h
     q, v, given, answer = b.weighed[0], b.weighed[1], b.given, b.answer
     for k in range(n):
         q[k], v[k] = start.v[k], start.a[k]
-        for i in range(len(method.c)):
-            q[k] -= method.start[i] * s.u[i, k]
-            v[k] -= method.start[i] * s.a[i, k]
+        for i in range(len(u)):
+            q[k] -= method.start[i] * u[i, k]
+            v[k] -= method.start[i] * a[i, k]
         q[k] /= real
         v[k] /= real
     for k in range(size):
@@ -209,7 +216,7 @@ def estimate(n, scale, method, pattern, matrices, damped, h, start, s, b, speed)
     if damped:
         add_product(n, pattern, matrices.damping, q, 1.0 / real, given)
     solve(pattern.layout, matrices.real, given, answer)
-    error = 0.0
+    error, pace = 0.0, 0.0
     for k in range(n):
         error = max(error, abs(answer[k]) / scale[k])
         v[k] = real * (answer[k] - q[k])
@@ -217,5 +224,5 @@ def estimate(n, scale, method, pattern, matrices, damped, h, start, s, b, speed)
     add_inertia(pattern, matrices, v, given)
     solve(pattern.layout, matrices.rigid, given, answer)
     for k in range(n):
-        error = max(error, abs(answer[k]) / (scale[k] * speed))
-    return error
+        pace = max(pace, abs(answer[k]) / scale[k])
+    return error, pace

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dalembert.kernels.kernel import inner
-from dalembert.kernels.words import Complexes2, Integers, Reals, Reals2
+from dalembert.kernels.words import Complexes2, Reals, Reals2
 from dalembert.multibody.kernels.assembly import set_signals
 
 

@@ -77,71 +77,98 @@ class RungeKutta4(Integrator):
         calls = samples[0].real.call(), samples[0].dual.call()
         works = calls[0].address, calls[1].address
         room = _workspace(states.x.shape[1], len(tilted), completion(problem, terms, *works, len(tilted)))
+        _fill(room.stage.dstates, dstates)
         steps = self.step_ends(end, samples[0].jumps)
         ends = np.zeros(0) if steps is None or not logged else steps[1:]
         runs = []
         for number, lowered in enumerate(samples):
-            shape = len(problem.times), states.x.shape[1]
-            out, dout = resting(*shape), resting(len(tilted), *shape)
+            _fill(room.stage.state, row(states, number))
+            room.completion.tools.partition.rank[0] = 0  # independent coordinates are chosen anew
+            out = resting(1 + len(tilted), len(problem.times), states.x.shape[1])
             edges = problem.edges[number, : problem.stretches[number] + 1]
             counts = np.zeros(4, dtype=np.int64)
-            status, time = integrate(
-                problem, edges, float(self.step), terms, lowered.real.need("rates").address, lowered.dual.address,
-                directions, row(states, number), dstates, out, dout, counts, room,
-            )  # fmt: skip
-            if status == SINGULAR and not np.max(np.abs(states.x[number])) < _UNBOUNDED:
+            models = lowered.real.need("rates").address, lowered.dual.address
+            status, time = integrate(problem, edges, float(self.step), terms, *models, directions, out, counts, room)
+            if status == SINGULAR and not np.max(np.abs(room.stage.state.x)) < _UNBOUNDED:
                 status = DIVERGED
             reason = None if status == DONE else explain(lowered, status, time, 0, f"the step is {self.step:g} s")
             taken = ends[: counts[0]]
             counts[1] = 0
-            runs.append(Run(reason, problem.times, out, dout, counts, np.zeros(len(taken), dtype=np.int64), taken))
+            parts = Motion(*(values[0] for values in out)), Motion(*(values[1:] for values in out))
+            runs.append(Run(reason, problem.times, *parts, counts, np.zeros(len(taken), dtype=np.int64), taken))
         return runs
 
 
-class Workspace(NamedTuple):
-    """States of a step and their derivatives, and the work of completing states."""
+class Stage(NamedTuple):
+    """A state and its derivatives: one after the other in a stack (1 + directions, N + 1), and apart, in its memory."""
 
-    old: Motion
-    total: Motion
-    between: Motion
-    dolds: Motions
-    dtotals: Motions
-    dbetween: Motions
+    stack: Motions
+    state: Motion
+    dstates: Motions
+
+
+class Workspace(NamedTuple):
+    """States of a step with their derivatives: at a stage, between steps, at the step's begin, and their sum.
+
+    And the work of completing states.
+    """
+
+    stage: Stage
+    between: Stage
+    old: Motions
+    total: Motions
     completion: Completion
 
 
 def _workspace(width: int, directions: int, own: Completion) -> Workspace:
-    states = resting(width), resting(width), resting(width)
-    shape = directions, width
-    return Workspace(*states, resting(*shape), resting(*shape), resting(*shape), own)
+    stages, shape = [], (1 + directions, width)
+    for _ in range(2):
+        stack = Motions(*resting(*shape))
+        parts = Motion(*(values[0] for values in stack)), Motions(*(values[1:] for values in stack))
+        stages.append(Stage(stack, *parts))
+    return Workspace(stages[0], stages[1], Motions(*resting(*shape)), Motions(*resting(*shape)), own)
+
+
+def _fill(target: NamedTuple, source: NamedTuple) -> None:
+    """Copy states, or stacks of them."""
+    for values, given in zip(target, source, strict=True):
+        values[:] = given
 
 
 @inner
 def _push(n, share, weight, old, stage, total):
     """Add a stage's rates times ``weight`` to the total; from the old state go along them by ``share`` for the next."""
-    for i in range(n):
-        v, a = stage.v[i], stage.a[i]
-        total.x[i] += weight * v
-        total.v[i] += weight * a
-        stage.x[i] = old.x[i] + share * v
-        stage.v[i] = old.v[i] + share * a
+    for d in range(len(stage.x)):
+        for i in range(n):
+            v, a = stage.v[d, i], stage.a[d, i]
+            total.x[d, i] += weight * v
+            total.v[d, i] += weight * a
+            stage.x[d, i] = old.x[d, i] + share * v
+            stage.v[d, i] = old.v[d, i] + share * a
 
 
 @inner
-def _take(n, total, state):
-    """Coordinates and velocities of another state."""
-    for i in range(n):
-        state.x[i], state.v[i] = total.x[i], total.v[i]
+def _take(n, total, stage):
+    """Coordinates and velocities of other states."""
+    for d in range(len(stage.x)):
+        for i in range(n):
+            stage.x[d, i], stage.v[d, i] = total.x[d, i], total.v[d, i]
 
 
 @inner
-def _record(state, dstates, out, dout, due):
+def _interpolate(n, h, share, old, new, between):
+    """States at a fraction of a step."""
+    for d in range(len(new.x)):
+        own = row(between, d)
+        interpolate(n, h, share, row(old, d), row(new, d), own.x, own.v, own.a)
+
+
+@inner
+def _record(stack, out, due):
     """Write the states at an output time."""
-    copy(state, row(out, due))
-    for d in range(len(dstates.x)):
-        for i in range(len(state.x)):
-            dout.x[d, due, i], dout.v[d, due, i] = dstates.x[d, i], dstates.v[d, i]
-            dout.a[d, due, i] = dstates.a[d, i]
+    for d in range(len(stack.x)):
+        for i in range(stack.x.shape[1]):
+            out.x[d, due, i], out.v[d, due, i], out.a[d, due, i] = stack.x[d, i], stack.v[d, i], stack.a[d, i]
 
 
 _partition_at = partition.at
@@ -150,7 +177,7 @@ _partition_at = partition.at
 @kernel
 def integrate(
     problem: Problem, edges: Reals, step: float, terms: Terms, model: Address, dual: Address, directions: Integers,
-    state: Motion, dstates: Motions, out: Motions, dout: Histories, counts: Integers, room: Workspace,
+    out: Histories, counts: Integers, room: Workspace,
 ) -> tuple[int, float]:  # fmt: skip
     """Run one sample: status and time reached.
 
@@ -165,75 +192,75 @@ def integrate(
         Models in real and in complex numbers.
     directions : array of addresses
         Complex models, one a direction of differentiation.
-    state, dstates : Motion, Motions
-        At the start, (N + 1,), and its derivatives, (directions, N + 1); overwritten.
-    out, dout : Motions, Histories
-        At the output times, (times, N + 1) and (directions, times, N + 1).
+    out : Histories
+        At the output times, (1 + directions, times, N + 1): states, then their derivatives.
     counts : array (2,)
         Steps, and how often independent coordinates were chosen anew.
     room : Workspace
+        With the state at the start, and its derivatives, in ``stage``; overwritten.
     """
-    n, width = problem.n, len(state.x)
-    projects = terms.way == PROJECTED and width - 1 > n
-    own, tools = room.completion, room.completion.tools
-    old, total, between = room.old, room.total, room.between
-    dolds, dtotals, dbetween = room.dolds, room.dtotals, room.dbetween
-    tools.partition.rank[0] = 0
+    n, own, tools = problem.n, room.completion, room.completion.tools
+    stage, between = room.stage, room.between
+    projects = terms.way == PROJECTED and len(stage.state.x) - 1 > n
     due = 0
     for stretch in range(len(edges) - 1):
         begin, end = edges[stretch], edges[stretch + 1]
         within = 0.5 * (begin + end)
         if terms.way == PARTITIONED:
-            _partition_at(own.partition, problem, terms, dual, begin, within, state, tools)
-        status = complete(problem, terms, model, dual, directions, begin, within, state, dstates, False, own)
+            _partition_at(
+                own.partition, problem, terms, dual, begin, within, stage.state, tools.dual_work, tools.partition
+            )
+        status = complete(
+            problem, terms, model, dual, directions, stage.state, stage.dstates, own, begin, within, False
+        )
         if status != DONE:
             return status, begin
         while stretch == 0 and due < len(problem.times) and problem.times[due] <= begin:
-            _record(state, dstates, out, dout, due)
+            _record(stage.stack, out, due)
             due += 1
         steps = max(1, int(np.ceil((end - begin) / step - 1e-6)))
         h = (end - begin) / steps
         for number in range(steps):
             t = begin + number * h
             target = end if number + 1 == steps else begin + (number + 1) * h
-            copy(state, old)
-            copy(state, total)
-            for d in range(len(dstates.x)):
-                copy(row(dstates, d), row(dolds, d))
-                copy(row(dstates, d), row(dtotals, d))
+            for d in range(len(stage.stack.x)):
+                copy(row(stage.stack, d), row(room.old, d))
+            _take(n, stage.stack, room.total)
             for share, weight in ((0.5, 1 / 6), (0.5, 1 / 3), (1.0, 1 / 3), (0.0, 1 / 6)):
                 last = share == 0.0  # the stage after it is the end of the step
-                _push(n, share * h, weight * h, old, state, total)
-                for d in range(len(dstates.x)):
-                    _push(n, share * h, weight * h, row(dolds, d), row(dstates, d), row(dtotals, d))
-                    if last:
-                        _take(n, row(dtotals, d), row(dstates, d))
+                _push(n, share * h, weight * h, room.old, stage.stack, room.total)
                 if last:
-                    _take(n, total, state)
+                    _take(n, room.total, stage.stack)
                     if terms.way == PARTITIONED and _partition_at(
-                        own.partition, problem, terms, dual, target, within, state, tools
+                        own.partition,
+                        problem,
+                        terms,
+                        dual,
+                        target,
+                        within,
+                        stage.state,
+                        tools.dual_work,
+                        tools.partition,
                     ):
                         counts[1] += 1
                 now = target if last else t + share * h
                 status = complete(
-                    problem, terms, model, dual, directions, now, within, state, dstates, last and projects, own
-                )
+                    problem, terms, model, dual, directions, stage.state, stage.dstates, own, now, within,
+                    last and projects,
+                )  # fmt: skip
                 if status != DONE:
                     return status, t
             counts[0] += 1
             while due < len(problem.times) and problem.times[due] <= target + 1e-9 * h:
                 share = min(1.0, (problem.times[due] - t) / h)
-                interpolate(n, h, share, old, state, between.x, between.v, between.a)
-                for d in range(len(dstates.x)):
-                    along = row(dbetween, d)
-                    interpolate(n, h, share, row(dolds, d), row(dstates, d), along.x, along.v, along.a)
+                _interpolate(n, h, share, room.old, stage.stack, between.stack)
                 if share < 1.0 - 1e-9:
-                    now = problem.times[due]
                     status = complete(
-                        problem, terms, model, dual, directions, now, within, between, dbetween, projects, own
-                    )
+                        problem, terms, model, dual, directions, between.state, between.dstates, own,
+                        problem.times[due], within, projects,
+                    )  # fmt: skip
                     if status != DONE:
                         return status, t
-                _record(between, dbetween, out, dout, due)
+                _record(between.stack, out, due)
                 due += 1
     return DONE, edges[-1]

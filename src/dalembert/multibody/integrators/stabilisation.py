@@ -142,5 +142,5 @@ def posed(
         problem = problem._replace(exact_slots=slots, exact_layout=layout)
     alpha, beta = stabilisation.gains(step)
     limit = float(getattr(stabilisation, "limit", 0.0))
-    nonlinear = any(kind.reactions > 0 for kind in samples[0].structure.index)
+    nonlinear = any(kind.takes_reactions for kind in samples[0].data)
     return problem, Terms(float(alpha), float(beta), redundant, stabilisation.way, limit, nonlinear)

@@ -50,7 +50,7 @@ def tangent(dual, slots, n, x, v, a, by, rows, work, matrix):
     for i in range(len(matrix)):
         matrix[i] = 0.0
     own, table = _place(work, x, v, a), model_at(dual)
-    own.matrix, own.mode = address_of(matrix), TANGENT
+    own.matrix, own.entries, own.mode = address_of(matrix), len(matrix), TANGENT
     own.by_x, own.by_v, own.by_a = by
     own.motion, own.constraint = rows
     for k in range(table.block_count):

@@ -78,7 +78,7 @@ def _complex(kind: "Kind") -> BlockKernel:
         x, v, a = complexes(call.x, size), complexes(call.v, size), complexes(call.a, size)
         r, real_position = complexes(call.r, size), reals(call.x, size)
         real_velocity, real_acceleration = reals(call.v, size), reals(call.a, size)
-        matrix, slots = reals(call.matrix, 1), integers2(call.slots, count, width * width)
+        matrix, slots = reals(call.matrix, call.entries), integers2(call.slots, count, width * width)
         tangent = call.mode == TANGENT
         for e in range(count):
             if tangent and known(p[e], m[e]):

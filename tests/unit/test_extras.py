@@ -32,5 +32,5 @@ def test_an_extra_resolves(extra: str, bench_constraints: Path) -> None:
         sys.executable, "-m", "pip", "install", "--quiet", "--dry-run", "--ignore-installed", "--no-build-isolation",
         "--constraint", str(constraints), f"{ROOT}[{extra}]",
     ]  # fmt: skip
-    run = subprocess.run(command, capture_output=True, text=True)
+    run = subprocess.run(command, check=False, capture_output=True, text=True)
     assert run.returncode == 0, run.stderr[-2000:]

@@ -25,17 +25,18 @@ _MOST_ITERATIONS = 60
 _FRAME = {"x": 0, "y": 1, "angle": 2}
 
 
-def assembled(system: System, tilted: bool = False) -> Lowered:
+def assembled(system: System, tilted: bool = False, placed: Lowered | None = None) -> Lowered:
     """Arrays of a system whose joints are closed and whose velocities are consistent, at the start.
 
-    A ``tilted`` system is treated in complex numbers even if only functions of the user's hold the imaginary step.
+    A ``tilted`` system is treated in complex numbers even if only functions of the user's hold the imaginary step;
+    ``placed`` are the arrays of the system as `lower` makes them, where they are there already.
 
     Raises
     ------
     ModelError
         Where the mechanism cannot be assembled, or its driving coordinates contradict its joints.
     """
-    lowered = lower(system)
+    lowered = placed or lower(system)
     if lowered.structure.size == lowered.structure.n:
         return lowered
     model = lowered.real

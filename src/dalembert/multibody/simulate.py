@@ -77,9 +77,9 @@ def simulate(
 
 def prepared(system: System, end: float, solver: Integrator) -> tuple[Lowered, Integrator]:
     """The assembled mechanism and the integrator that suits it, once nothing speaks against the two."""
-    raw = lower(system)
-    prepare([*raw.kernels(False), *solver.suiting(raw, end).kernels(raw.structure, False)])
-    lowered = assembled(system)
+    placed = lower(system)
+    prepare([*placed.kernels(False), *solver.suiting(placed, end).kernels(placed.structure, False)])
+    lowered = assembled(system, placed=placed)
     solver = solver.suiting(lowered, end)
     if not solver.takes_redundancy:
         refuse_redundancy(lowered)

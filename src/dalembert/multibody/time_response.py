@@ -187,8 +187,9 @@ class TimeResponse:
     @cached_property
     def _frame(self) -> "_Frame":
         system = self.builder(**self.parameters.mapping(self.parameters.start))
-        self._prepare(lower(system), observer(system, lower(system), self.channel_names), derivatives=False)
-        lowered = assembled(system)
+        placed = lower(system)
+        self._prepare(placed, observer(system, placed, self.channel_names), derivatives=False)
+        lowered = assembled(system, placed=placed)
         if not self.solver.suiting(lowered, float(self.times[-1])).takes_redundancy:
             refuse_redundancy(lowered)
         refuse_kinks(lowered, float(self.times[-1]))

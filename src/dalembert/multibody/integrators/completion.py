@@ -1,4 +1,4 @@
-"""From coordinates and velocities to a whole state: onto the constraints, then to what the equations of index 1 demand."""
+"""Whole states from coordinates and velocities: onto the constraints, then what the equations of index 1 demand."""
 
 from typing import NamedTuple
 

@@ -19,8 +19,8 @@ class Surplus(NamedTuple):
     """Work for redundant constraints.
 
     ``partition``: that of the constraints, whose Jacobian's range has the ``basis`` (m, m) in its first columns.
-    ``product`` (N, N), by columns, and ``small``: work for the matrix on the range. ``invert``, ``turn``: addresses of the kernels, 0 if no
-    constraint is redundant, and 0 if there are no derivatives.
+    ``product`` (N, N), by columns, and ``small``: work for the matrix on the range; ``across`` (3, m) for derivatives.
+    ``invert``, ``turn``: addresses of the kernels, 0 if no constraint is redundant, ``turn`` 0 without derivatives.
     """
 
     partition: Partition

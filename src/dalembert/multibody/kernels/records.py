@@ -20,12 +20,13 @@ def _record(integers: str, reals: str = "") -> np.dtype:
 
 #: What changes from call to call. Vectors have N + 1 entries, of which the last one stays zero: absent unknowns of a
 #: component point to it. ``x v a``: coordinates with multipliers, velocities, accelerations; ``coordinates``: how many
-#: of the unknowns are no multipliers; ``last``: N. ``r rate second totals matrix``: what kernels add to; ``entries``: of the matrix. ``signals``
-#: (signals, 3) at the time ``t``, ``within`` its smooth stretch. ``mode``: residual or tangent of a complex kernel.
-#: ``slots``: where the entries of the block's local matrices stand in ``matrix``. The tangent is the derivative along
-#: ``by_x dq + by_v dv + by_a da``, its rows multiplied by ``motion`` and ``constraint``.
+#: of the unknowns are no multipliers; ``last``: N. ``r rate second totals matrix``: what kernels add to; ``entries`` of
+#: the matrix. ``signals`` (signals, 3) at the time ``t``, ``within`` its smooth stretch. ``mode``: residual or tangent
+#: of a complex kernel. ``slots``: where the entries of the block's local matrices stand in ``matrix``. The tangent is
+#: the derivative along ``by_x dq + by_v dv + by_a da``, its rows multiplied by ``motion`` and ``constraint``.
 CALL = _record(
-    "coordinates last x v a r rate second totals matrix entries signals signal_count callbacks callback_count mode slots",
+    "coordinates last x v a r rate second totals matrix entries signals signal_count callbacks callback_count "
+    "mode slots",
     "t within by_x by_v by_a motion constraint",
 )
 #: Components of one kind: how many, their unknowns (count, width), integers and numbers, and the kind's kernels in the

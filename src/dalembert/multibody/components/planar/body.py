@@ -97,15 +97,15 @@ class Body:
 
     def rigid_modes(self, coordinates: np.ndarray, frame: np.ndarray) -> np.ndarray:
         """Derivatives of the coordinates by the frame: place (x, y) and angle about that place, (size, 3)."""
-        modes = np.zeros((self.size, 3), dtype=np.result_type(coordinates, frame))
-        i = 0
-        while i < self.size:
-            if self.coordinate_kinds[i] == ANGLE:
+        kinds, i = self.coordinate_kinds, 0
+        modes = np.zeros((len(kinds), 3), dtype=np.result_type(coordinates, frame))
+        while i < len(kinds):
+            if kinds[i] == ANGLE:
                 modes[i, 2] = 1.0
                 i += 1
                 continue
             x, y = coordinates[i], coordinates[i + 1]
-            if self.coordinate_kinds[i] == POSITION:
+            if kinds[i] == POSITION:
                 modes[i, 0] = modes[i + 1, 1] = 1.0
                 x, y = x - frame[0], y - frame[1]
             modes[i, 2], modes[i + 1, 2] = -y, x

@@ -1,50 +1,109 @@
-"""What a user waits for: the first simulation on a machine (compiles), a later process (loads), and the help text."""
+"""What a user waits for: kernels that nobody has compiled yet, a later process, a study, the help text.
 
+Processor seconds of whole processes with those that they start, divided by the time of a loop in plain Python that runs
+beside them, and multiplied by the loop's time on a quiet machine: so a busy machine gives about the same numbers.
+"""
+
+import os
+import resource
 import subprocess
 import sys
 import tempfile
 import time
-from os import environ
 from pathlib import Path
 
 from benchmarks import timing
 
-SIMULATION = "from benchmarks import ours; from benchmarks.cases import PENDULUM; " + (
-    "ours.simulated(ours.cable_pendulum(), PENDULUM.integration, ours.JOINT_AND_TIP)"
+QUIET = 0.12  # s that the loop takes on a quiet machine of the kind that the tables were made on
+ROOT = Path(__file__).parents[1]
+
+_HEAD = "import numpy as np, dalembert as da; times = np.linspace(0.0, 0.2, 3)\n"
+_RIGID = (
+    _HEAD
+    + """
+def arm(angle=0.5):
+    system = da.System()
+    bar = system.add(da.RigidBar("bar", length=1.0, mass=1.0, angle=angle))
+    system.add(da.RevoluteJoint("pin", system.ground, bar.start))
+    return system
+"""
 )
-SENSITIVITY = "from benchmarks.sensitivities import BEAM, _row; from benchmarks import ours; " + (
-    "_row('', ours.beam_pendulum, BEAM, 1)"
+_SIMULATE = _RIGID + "da.simulate(arm(), 0.2, da.{solver}, times).channels(['bar.end.x'])"
+_FIT = (
+    _HEAD
+    + """
+from benchmarks import ours
+from benchmarks.sensitivities import BEAM, _row
+_row('', ours.beam_pendulum, BEAM, 2)
+"""
 )
+_FRICTION = (
+    _HEAD
+    + """
+system = da.VibrationSystem(da.lumped({"m": 1.0}, [("m", None, 1.0, 0.04)]))
+system.add(da.HarmonicForce("m", 1.0))
+system.add(da.FrictionContact("damper", "m", friction=0.5, preload=2.0, law=da.Elastic(0.8)))
+da.frequency_response(system, np.array([0.17, 0.18]), da.HarmonicBalance(harmonics=3))
+"""
+)
+_SOLVERS = (
+    "GeneralizedAlpha(step=1e-2)", "RadauIIA()", "Variational(step=1e-2)", "EnergyMomentum(step=1e-2)",
+    "RungeKutta4(step=1e-2)", "OdeSolver()", "Collocation(step=1e-2)",
+)  # fmt: skip
 
 
 def main() -> list[dict[str, object]]:
-    with tempfile.TemporaryDirectory() as cache:
-        fresh = {**environ, "NUMBA_CACHE_DIR": cache}
+    with tempfile.TemporaryDirectory() as folder:
         rows = [
-            {"what": "first simulation on a machine, all compiled", "seconds": _run(SIMULATION, fresh)},
-            {"what": "simulation in a later process", "seconds": _warm(SIMULATION, fresh)},
-            {"what": "first sensitivity on a machine, after that", "seconds": _run(SENSITIVITY, fresh)},
-            {"what": "sensitivity in a later process", "seconds": _warm(SENSITIVITY, fresh)},
-            {"what": "import dalembert", "seconds": _warm("import dalembert", fresh)},
+            _row("rigid mechanism, first simulation, nothing compiled", _SIMULATE.format(solver=_SOLVERS[0]), folder)
         ]
-    help_text = [str(Path(sys.executable).with_name("dalembert")), "--help"]
-    rows.append({"what": "dalembert --help", "seconds": min(_timed(help_text, dict(environ)) for _ in range(5))})
-    timing.report("startup", "Waiting times, whole processes", rows)
+        rows += [
+            _row(f"then the same by {solver.partition('(')[0]}", _SIMULATE.format(solver=solver), folder)
+            for solver in _SOLVERS[1:]
+        ]
+        rows.append(_row("friction in frequency, nothing compiled", _FRICTION, f"{folder}/friction"))
+        rows.append(_row("flexible pendulum with sensitivities, nothing compiled", _FIT, f"{folder}/fit"))
+        rows.append(_row("flexible pendulum with sensitivities, later process", _FIT, f"{folder}/fit"))
+        study = [sys.executable, "-m", "dalembert.cli", "run", "studies/flexible-pendulum/identify.toml"]
+        run = [*study, "--out", f"{folder}/run", "--force"]
+        rows.append(_row("the demo's study, nothing compiled", run, f"{folder}/study"))
+        rows.append(_row("the demo's study, later process", run, f"{folder}/study"))
+        rows.append(_row("import dalembert", "import dalembert", folder))
+        rows.append(_row("dalembert --help", [sys.executable, "-m", "dalembert.cli", "--help"], folder))
+    timing.report("startup", "Waiting times: whole processes", rows)
     return rows
 
 
-def _run(code: str, environment: dict[str, str]) -> float:
-    return _timed([sys.executable, "-c", code], environment)
+def _row(what: str, command: str | list[str], cache: str) -> dict[str, object]:
+    """Processor and wall-clock seconds of a process, scaled to a quiet machine."""
+    arguments = [sys.executable, "-c", command] if isinstance(command, str) else command
+    before = _children()
+    loops = [_loop() for _ in range(3)]
+    began = time.perf_counter()
+    subprocess.run(
+        arguments,
+        check=True,
+        cwd=ROOT,
+        env={**os.environ, "DALEMBERT_CACHE_DIR": cache},
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
+    wall, used = time.perf_counter() - began, _children() - before
+    scale = QUIET / min(loops + [_loop() for _ in range(3)])
+    return {"what": what, "CPU s": round(used * scale, 2), "wall s": round(wall * scale, 2)}
 
 
-def _warm(code: str, environment: dict[str, str]) -> float:
-    return min(_run(code, environment) for _ in range(3))
+def _children() -> float:
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
-def _timed(command: list[str], environment: dict[str, str]) -> float:
-    before = time.perf_counter()
-    subprocess.run(command, check=True, env=environment, stdout=subprocess.DEVNULL)
-    return time.perf_counter() - before
+def _loop() -> float:
+    """Processor time of a loop in plain Python."""
+    began, total = time.process_time(), 0
+    for i in range(2_000_000):
+        total += i * i & 7
+    return time.process_time() - began
 
 
 if __name__ == "__main__":

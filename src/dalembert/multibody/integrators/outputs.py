@@ -55,7 +55,7 @@ def record_along(
 ) -> None:  # fmt: skip
     """Write the derivatives of the state at an output time along all directions.
 
-    ``whole``: at the end of the step; else between the ends from ``oldest`` on, with the weights and moves of the state.
+    ``whole``: at the end of the step; else between ends from ``oldest`` on, with the weights and moves of the state.
     """
     t = problem.times[due]
     for d in range(len(directions)):

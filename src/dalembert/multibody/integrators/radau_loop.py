@@ -4,7 +4,6 @@ import numpy as np
 
 from dalembert.kernels.kernel import inner, kernel
 from dalembert.kernels.words import Address, Integers, Reals
-from dalembert.multibody.integrators import radau_stages as stages
 from dalembert.multibody.integrators.consistent import Consistency, accelerate
 from dalembert.multibody.integrators.ends import append, support
 from dalembert.multibody.integrators.matrices import Matrices, Pattern, renew, weigh_masses
@@ -12,32 +11,21 @@ from dalembert.multibody.integrators.outputs import record
 from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR, TOO_MANY_STEPS, Log, Problem
 from dalembert.multibody.integrators.radau_coefficients import Coefficients
 from dalembert.multibody.integrators.radau_derivatives import differentiate, settle_end_along
-from dalembert.multibody.integrators.radau_newton import converge, factorise
+from dalembert.multibody.integrators.radau_step import attempt, speed_of
 from dalembert.multibody.integrators.radau_workspace import Along, Outputs, Settings, Step
-from dalembert.multibody.integrators.settling import VELOCITIES, accelerate_roughly, settle
+from dalembert.multibody.integrators.settling import VELOCITIES, settle
 from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.motion import Histories, Motion, Motions, clear, copy, row
 
 _AGED = 0.003  # contraction at which the next step begins with new matrices, and outputs have their own
 _SHORTEST = 0.2  # of a step: the one after it (Hairer and Wanner 1996, IV.8); what is foreseen may vanish in the time
-_NEAR = 1.25  # ratio of a step to the one that the kept systems were factorised for
-_FAR = 1.5  # ratio of a step to the one before, from which the latter alone predicts
 _HALVINGS = 8  # of a fixed step that Newton's iteration does not converge on
-
-
-@inner
-def _speed(n, scale, v):
-    """Largest velocity against the scales, 1/s."""
-    speed = 0.0
-    for i in range(n):
-        speed = max(speed, abs(v[i]) / scale[i])
-    return speed
 
 
 @inner
 def _first_step(n, scale, span, tolerance, order, state):
     """A step in which coordinates move by a small part of their scales."""
-    rate = max(_speed(n, scale, state.v), np.sqrt(_speed(n, scale, state.a)))
+    rate = max(speed_of(n, scale, state.v), np.sqrt(speed_of(n, scale, state.a)))
     return min(0.1 * span, 0.3 * tolerance ** (1.0 / order) / (rate + 1e-300))
 
 
@@ -63,58 +51,12 @@ def _settle_ends(
         if not settle(problem, pattern, own, model, state, moved, work, VELOCITIES):
             return False
         if len(directions) > 0:
-            _settle_end_along_at(
-                along, problem, pattern, own, directions, within, last, j, moved, dual_work, lifted
-            )  # fmt: skip
+            _settle_end_along_at(along, problem, pattern, own, directions, within, last, j, moved, dual_work, lifted)
         last.settled[j] = True
     return True
 
 
 _settle_end_along_at, _differentiate_at = settle_end_along.at, differentiate.at
-
-
-@kernel
-def attempt(
-    problem: Problem, method: Coefficients, pattern: Pattern, model: Address, dual: Address, settings: Settings,
-    t: float, target: float, within: float, before: float, earlier: float, stale: bool, made: float, speed: float,
-    new: Motion, matrices: Matrices, room: Step,
-) -> tuple[int, float, float, float, int, float, int]:  # fmt: skip
-    """A step from ``new``, which moves if the step is good.
-
-    Status, step that the kept systems are for, error against the tolerance, largest velocity, iterations, contraction,
-    unknown that moved most.
-    """
-    n, scale, h = problem.n, problem.scale, target - t
-    s, past, b, weights, moved, works, dual_work = room
-    if before > 0.0:
-        stages.go_on(n, h, method, before, earlier if h <= _FAR * before else 0.0, past, s, b, weights)
-    else:
-        stages.begin(n, h, method, new, s)
-    stages.integrate_stages(n, h, method, new, s)
-    if stale:
-        m = len(method.c) // 2
-        middle, place = t + method.c[m] * h, Motion(s.x[m], s.v[m], s.a[m], s.a[m])
-        if not renew(problem, pattern, matrices, dual, settings.damped, middle, within, place, dual_work):
-            return SINGULAR, made, 0.0, speed, 0, 1.0, 0
-    if stale or not (made <= _NEAR * h and h <= _NEAR * made):
-        made = h
-        if not factorise(n, method, pattern, matrices, h):
-            return SINGULAR, made, 0.0, speed, 0, 1.0, 0
-    stages.listen(method, model, t, h, target, within, works)
-    converged, iterations, rate, worst, gap, pace = converge(
-        n, scale, method, pattern, matrices, model, settings.damped, works, h, new, s, b,
-        settings.newton_tolerance, speed, settings.tolerance if settings.step == 0.0 else 0.0,
-    )  # fmt: skip
-    error, end = 0.0, len(method.c) - 1
-    if converged and settings.step == 0.0:
-        speed = max(speed, _speed(n, scale, s.v[end]))
-        error = max(gap, pace / speed) / settings.tolerance
-    if converged and error <= 1.0:
-        stages.read(n, s, new)
-        accelerate_roughly(problem, pattern, matrices, model, new, works[end], moved[2:])
-    else:
-        stages.go_back(past, s)
-    return DONE if converged else NEWTON_FAILED, made, error, speed, iterations, rate, worst
 
 
 @kernel
@@ -130,7 +72,8 @@ def integrate(
     ``dout`` (directions, times, N + 1) are filled at ``problem.times``. The rest is a workspace, which may be that of
     another sample before.
     """
-    n, adaptive, order = problem.n, settings.step == 0.0, len(method.c) + 1.0  # of the estimated error of a step
+    n, scale, times, counts = problem.n, problem.scale, problem.times, log.counts
+    adaptive, order = settings.step == 0.0, len(method.c) + 1.0  # of the estimated error of a step
     moved, dual_work = step.moved, step.dual_work
     last, apart, between, dbetween, shares, lifted, work = outputs
     dold, ds, dual_works, differentiate_step, settle_end, record_along = along
@@ -147,10 +90,10 @@ def integrate(
         if stretch == 0:
             set_signals(dual, t, within, dual_work)  # those of a direction would count as masses
             weigh_masses(pattern, matrices, dual, n, new, dual_work)
-            length = _first_step(n, problem.scale, end - t, settings.tolerance, order, new)
+            length = _first_step(n, scale, end - t, settings.tolerance, order, new)
         steps = 1 if adaptive else max(1, int(np.ceil((end - t) / settings.step - 1e-6)))
         begin, nominal, number, level = t, (end - t) / steps, 0, 0
-        far = False
+        far = False  # whether the kept matrices are from a place that outputs are far from
         stale, fresh, made, before, earlier, former = True, True, 0.0, 0.0, 0.0, 0.0
         last.known[0] = 0
         arrived, settled = True, stretch == 0
@@ -158,17 +101,16 @@ def integrate(
             if arrived:  # in one place: what is inlined twice is compiled twice
                 append(t, new, dstates, settled, last)
             arrived, settled, ready = False, False, False
-            while due < len(problem.times) and problem.times[due] <= t + 1e-9 * taken:
+            while due < len(times) and times[due] <= t + 1e-9 * taken:
                 ready = ready or _settle_ends(
                     problem, pattern, matrices, apart, far, model, dual, directions, settings.damped, within, last,
                     moved, work, dual_work, lifted, settle_end,
                 )  # fmt: skip
                 if not ready or not record(
-                    problem, pattern, apart if far else matrices, far, model, dual, directions, last, within,
-                    out, dout, due, between, dbetween, shares, moved, work,
-                    dual_work, lifted, record_along,
+                    problem, pattern, apart if far else matrices, far, model, dual, directions, last, within, out,
+                    dout, due, between, dbetween, shares, moved, work, dual_work, lifted, record_along,
                 ):  # fmt: skip
-                    return NEWTON_FAILED, problem.times[due], 0
+                    return NEWTON_FAILED, times[due], 0
                 due += 1
             if number == steps:
                 break
@@ -182,14 +124,14 @@ def integrate(
                 problem, method, pattern, model, dual, settings, t, target, within, before, earlier, stale, made,
                 speed, new, matrices, step,
             )  # fmt: skip
-            log.counts[1] += iterations
+            counts[1] += iterations
             if status == SINGULAR:
                 return SINGULAR, t, 0
-            log.counts[2] += 1 if made == h else 0
+            counts[2] += 1 if made == h else 0
             fresh, stale = fresh or stale, False
             converged = status == DONE
             if not converged or not error <= 1.0:
-                log.counts[3] += 1
+                counts[3] += 1
                 earlier = 0.0
                 stale = not converged  # so that matrices are not those of a place that the step does not reach
                 if stale and not fresh:  # once more, as long
@@ -206,20 +148,20 @@ def integrate(
                 continue
             if len(directions) > 0:
                 _differentiate_at(
-                    differentiate_step, problem, method, pattern, matrices, directions, t, target, within,
-                    step.s, dold, dstates, ds, step.b, dual_works,
+                    differentiate_step, problem, method, pattern, matrices, directions, t, target, within, step.s,
+                    dold, dstates, ds, step.b, dual_works,
                 )  # fmt: skip
             arrived, speed, before, earlier, taken = True, own, h, before, h
-            if log.counts[0] < len(log.iterations):
-                log.iterations[log.counts[0]] = iterations
-                log.ends[log.counts[0]] = target
-            log.counts[0] += 1
+            if counts[0] < len(log.iterations):
+                log.iterations[counts[0]] = iterations
+                log.ends[counts[0]] = target
+            counts[0] += 1
             t = target
             number += 1 if reached else 0
             level -= 1 if level > 0 else 0
             fresh, stale, far = False, rate > _AGED, rate > _AGED
             if adaptive:
-                if log.counts[0] >= settings.most_steps and not reached:
+                if counts[0] >= settings.most_steps and not reached:
                     return TOO_MANY_STEPS, t, 0
                 error = max(error, 1e-30)
                 length = h * min(3.0, 0.9 * error ** (-1.0 / order))

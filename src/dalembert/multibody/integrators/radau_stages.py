@@ -53,8 +53,10 @@ def stages(count: int, width: int) -> Stages:
 
 def buffers(count: int, width: int) -> Buffers:
     """Room for a step; the vectors are as long as a complex system."""
+    motion, weighed, rate, place, pace, pull, moved = np.zeros((7, count, width))
     given, answer = np.zeros((2, 2 * width))
-    return Buffers(*np.zeros((7, count, width)), given, answer, np.zeros((10, width), complex))
+    lifted = np.zeros((10, width), complex)
+    return Buffers(motion, weighed, rate, place, pace, pull, moved, given, answer, lifted)
 
 
 @inner

@@ -2,7 +2,9 @@
 
 import dataclasses
 import inspect
+from collections.abc import Iterator, Mapping
 from functools import cache
+from importlib.metadata import entry_points
 from typing import Any, get_args
 
 from dalembert.study.components import settings_of
@@ -11,21 +13,35 @@ from dalembert.study.structure_parts import LinearSpring, LumpedMass
 ROLES = {"Body": "body", "Joint": "joint", "Load": "load", "Signal": "signal", "Integrator": "solver"}
 
 
+COMPONENTS = "dalembert.components"
+"""Group of entry points: modules of other packages that define components, signals or integrators."""
+
+
 @cache
 def catalogue() -> dict[str, tuple[type, ...]]:
-    """Public dataclasses of :mod:`dalembert.multibody` by their role: body, joint, load, signal and solver.
+    """Dataclasses by their role: body, joint, load, signal and solver.
 
-    The role is that of the base class: what derives from ``Body`` stands in ``[[model.body]]``.
+    The role is that of the base class: what derives from ``Body`` stands in ``[[model.body]]``. Those of the package are
+    its public ones; those of others are all that have been imported, or that an entry point names.
     """
     from dalembert import multibody
 
-    found: dict[str, list[type]] = {role: [] for role in ROLES.values()}
-    for name in dir(multibody):
-        kind = getattr(multibody, name)
-        if dataclasses.is_dataclass(kind) and isinstance(kind, type) and not inspect.isabstract(kind):
-            for role in (ROLES[base.__name__] for base in kind.__mro__[1:] if base.__name__ in ROLES):
-                found[role].append(kind)
-    return {role: tuple(kinds) for role, kinds in found.items()}
+    for entry in entry_points(group=COMPONENTS):
+        entry.load()
+    return {
+        role: tuple(sorted(_concrete(getattr(multibody, base), vars(multibody)), key=lambda kind: kind.__name__))
+        for base, role in ROLES.items()
+    }
+
+
+def _concrete(base: type, public: Mapping[str, Any]) -> Iterator[type]:
+    """Dataclasses that derive from a base, but for those of the package that are not public."""
+    for kind in base.__subclasses__():
+        yield from _concrete(kind, public)
+        own = kind.__module__.partition(".")[0] == __name__.partition(".")[0]
+        shown = public.get(kind.__name__) is kind if own else not kind.__name__.startswith("_")
+        if shown and dataclasses.is_dataclass(kind) and not inspect.isabstract(kind):
+            yield kind
 
 
 @cache

@@ -30,9 +30,9 @@ class Settings(NamedTuple):
 
 
 class Step(NamedTuple):
-    """Stages of a step and of the one before, buffers, calls of the stages; room for moves and for weights.
+    """Stages of a step and of the one before, buffers, and the calls of the stages.
 
-    ``weights`` (stages + 1, 2 stages) and ``moved`` (6, N + 1) are room.
+    ``weights`` (stages + 1, 2 stages) of the prediction and ``moved`` (6, N + 1) are room.
     """
 
     s: Stages

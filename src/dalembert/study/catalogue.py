@@ -21,8 +21,8 @@ COMPONENTS = "dalembert.components"
 def catalogue() -> dict[str, tuple[type, ...]]:
     """Dataclasses by their role: body, joint, load, signal and solver.
 
-    The role is that of the base class: what derives from ``Body`` stands in ``[[model.body]]``. Those of the package are
-    its public ones; those of others are all that have been imported, or that an entry point names.
+    The role is that of the base class: what derives from ``Body`` stands in ``[[model.body]]``. Those of the package
+    are its public ones; those of others are all that have been imported, or that an entry point names.
     """
     from dalembert import multibody
 

@@ -182,7 +182,8 @@ def system(k):
     return system
 
 times = np.linspace(0.0, 1.0, 21)
-model = da.TimeResponse(system, {"k": (5.0, 40.0)}, ["bar.end.y", "two.centre.angle"], times, GeneralizedAlpha(step=0.01))
+names, solver = ["bar.end.y", "two.centre.angle"], GeneralizedAlpha(step=0.01)
+model = da.TimeResponse(system, {"k": (5.0, 40.0)}, names, times, solver)
 y, angle = model.evaluate(np.array([20.0])).only()[0].T
 assert abs(angle[-1] + 1.5) < 1e-9, angle[-1]
 fit = da.identify(model, da.Measurements.of(times, {"bar.end.y": y}), seed=0)

@@ -231,7 +231,7 @@ def _origin(module: str | None, owner: Any, *role: str) -> Origin | None:
     """Module and name there of an object, unless the module is a script or does not hold the object."""
     space = vars(sys.modules[module]) if module in sys.modules else {}
     names = [name for name, value in space.items() if value is owner]
-    return (module, names[0], role) if names and module != "__main__" else None
+    return (module, names[0], role) if module and names and module != "__main__" else None
 
 
 def find(origin: Origin) -> Compiled:

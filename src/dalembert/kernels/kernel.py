@@ -64,6 +64,12 @@ class Compiled:
         """How another process finds the kernel, None if it cannot."""
         return _origin(self.function.__module__, self)
 
+    def __reduce__(self) -> Any:
+        """Another process takes the kernel of its own, whose addresses are others."""
+        if self.origin is None:
+            raise TypeError(f"kernel {self.symbol} is defined in a script; move it into a module")
+        return find, (self.origin,)
+
     @property
     def family(self) -> str:
         """Kernels of a family share inner functions: one process compiles them."""

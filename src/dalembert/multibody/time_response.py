@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -89,6 +90,10 @@ class TimeResponse:
             ("workers", workers or cores()),
         ):
             object.__setattr__(self, name, value)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Without what was computed from the fields, which holds addresses of this process."""
+        return {name: value for name, value in vars(self).items() if name in self.__dataclass_fields__}
 
     @property
     def channels(self) -> tuple[Channel, ...]:

@@ -47,8 +47,8 @@ _NAMES = {
     """,
     "multibody": """
         System AncfBeam AncfCable RigidBody RigidBar PointMass Point
-        RevoluteJoint PrismaticJoint FixedJoint DistanceJoint PrescribedMotion
-        Force Torque Spring TorsionSpring UserForce
+        RevoluteJoint PrismaticJoint FixedJoint DistanceJoint GearJoint PrescribedMotion
+        Bushing Force Torque Spring TorsionSpring UserForce
         Step Harmonic Polynomial Table Custom
         Augmented Automatic Baumgarte Collocation EnergyMomentum GaussNewton GeneralizedAlpha OdeSolver Partitioning
         Projection RadauIIA RungeKutta4 Variational

@@ -67,6 +67,7 @@ from dalembert.multibody import AncfCable as AncfCable
 from dalembert.multibody import Augmented as Augmented
 from dalembert.multibody import Automatic as Automatic
 from dalembert.multibody import Baumgarte as Baumgarte
+from dalembert.multibody import Bushing as Bushing
 from dalembert.multibody import Collocation as Collocation
 from dalembert.multibody import Custom as Custom
 from dalembert.multibody import DistanceJoint as DistanceJoint
@@ -74,6 +75,7 @@ from dalembert.multibody import EnergyMomentum as EnergyMomentum
 from dalembert.multibody import FixedJoint as FixedJoint
 from dalembert.multibody import Force as Force
 from dalembert.multibody import GaussNewton as GaussNewton
+from dalembert.multibody import GearJoint as GearJoint
 from dalembert.multibody import GeneralizedAlpha as GeneralizedAlpha
 from dalembert.multibody import Harmonic as Harmonic
 from dalembert.multibody import OdeSolver as OdeSolver

@@ -1,0 +1,64 @@
+"""Compiling ahead: everything, once; whoever compiles, the bits are the same."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from dalembert.kernels import packaged
+from dalembert.kernels.everything import package_kernels
+from dalembert.kernels.kernel import find
+from dalembert.multibody.components.planar.cable_element import CABLE
+from dalembert.multibody.integrators import generalized_alpha, radau_loop
+
+MOVE = """
+import hashlib
+from flexible_pendulum import tip
+
+model = tip({"theta1": (0.6, 1.0), "theta2": (0.4, 0.65)}, end=0.5)
+values, jacobian = model.linearise([0.7, 0.5])
+print(hashlib.sha256(model.evaluate([[0.7, 0.5], [0.9, 0.6]]).values.tobytes()).hexdigest())
+print(hashlib.sha256(values.tobytes() + jacobian.tobytes()).hexdigest())
+"""
+
+
+def test_everything_is_listed_once_and_found_by_other_processes() -> None:
+    kernels = package_kernels()
+    symbols = [kernel.symbol for kernel in kernels]
+    assert len(set(symbols)) == len(symbols)
+    expected = generalized_alpha.integrate, radau_loop.integrate, *CABLE.all_kernels()
+    assert {kernel.symbol for kernel in expected} | {"dal_vibration_friction_period_forces_real"} < set(symbols)
+    assert all(find(kernel.origin) is kernel for kernel in kernels)
+
+
+def moved(cache: Path, *first: str) -> str:
+    """Digests of a motion and its derivatives, computed by a process with that cache and path."""
+    here = {
+        **os.environ,
+        "DALEMBERT_CACHE_DIR": str(cache),
+        "PYTHONPATH": os.pathsep.join([*first, *(path for path in sys.path if path)]),
+    }
+    run = subprocess.run([sys.executable, "-c", MOVE], env=here, capture_output=True, text=True, check=True)
+    return run.stdout
+
+
+@pytest.mark.slow
+def test_a_process_that_compiles_and_one_that_does_not_compute_the_same_bits(tmp_path: Path) -> None:
+    answers = {moved(tmp_path) for _ in range(2)}
+    assert len(answers) == 1
+    assert list(tmp_path.rglob("*.o"))
+
+
+@pytest.mark.slow
+def test_the_object_of_a_wheel_computes_the_same_bits_without_compiling(tmp_path: Path) -> None:
+    if packaged.family() is None:
+        pytest.skip("no object is made for this processor")
+    package = Path(packaged.__file__).parents[1]
+    copy = tmp_path / "installed" / "dalembert"
+    shutil.copytree(package, copy)
+    packaged.build(copy / "kernels")
+    assert moved(tmp_path / "empty", str(copy.parent)) == moved(tmp_path / "cache")
+    assert not (tmp_path / "empty").exists()

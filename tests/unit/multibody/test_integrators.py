@@ -52,3 +52,24 @@ def test_a_step_ends_where_a_load_jumps(solver: mb.Integrator) -> None:
     speed = 3.0 * np.clip(times - 0.31, 0.0, 0.42)
     place = 1.5 * np.clip(times - 0.31, 0.0, 0.42) ** 2 + 3.0 * 0.42 * np.clip(times - 0.73, 0.0, None)
     np.testing.assert_allclose(values, np.column_stack([place, speed]), atol=1e-13)
+
+
+def pushed(force: float) -> mb.System:
+    """A bar on a pin under a force that acts from the start on."""
+    system = mb.System()
+    bar = system.add(mb.RigidBar("bar", 1.0, 1.0, angle=-0.5))
+    system.add(mb.RevoluteJoint("O", system.ground, bar.start))
+    system.add(mb.Force("push", bar.end, x=force))
+    return system
+
+
+@pytest.mark.parametrize(
+    "solver",
+    [mb.Variational(step=2e-3), mb.EnergyMomentum(step=2e-3), mb.RadauIIA()],
+    ids=lambda own: type(own).__name__,
+)
+def test_a_parameter_of_a_load_at_the_start_counts_as_no_mass(solver: mb.Integrator) -> None:
+    model = mb.TimeResponse(pushed, {"force": (1.0, 3.0)}, ["bar.end.x"], np.linspace(0.0, 1.0, 6), solver)
+    at, h = np.array([2.0]), 1e-4
+    slope = (model.evaluate(at + h).only()[0] - model.evaluate(at - h).only()[0]) / (2 * h)
+    np.testing.assert_allclose(model.jacobian(at)[:, :, 0], slope, atol=1e-6 * np.abs(slope).max())

@@ -22,6 +22,7 @@ from numba.core.registry import cpu_target as _cpu_target
 from numba.core.typing.templates import AbstractTemplate, infer_global, make_concrete_template
 from numba.extending import lower_builtin
 
+from dalembert.kernels.pipeline import Pipeline, hastened
 from dalembert.kernels.refusals import refusals
 from dalembert.kernels.views import array_at, intrinsic
 from dalembert.kernels.words import count, fields, leaves
@@ -268,13 +269,13 @@ def _flags() -> Any:
 @global_compiler_lock
 def optimised(function: Callable, symbol: str, addresses: int, cpu: str | None = None) -> Any:
     """LLVM's module of a function of so many addresses that returns nothing, optimised for a processor."""
-    with _apart(), refusals(function):
+    with _apart(), hastened(), refusals(function):
         context = cpu_target.target_context
         context.refresh()
         cpu_target.typing_context.refresh()
         arguments = (types.int64,) * addresses
         compiled = compiler.compile_extra(
-            cpu_target.typing_context, context, function, arguments, types.none, _flags(), {}
+            cpu_target.typing_context, context, function, arguments, types.none, _flags(), {}, pipeline_class=Pipeline
         )
         module = _linked(compiled.library)
         _add_entry(module, compiled.fndesc.llvm_func_name, symbol, addresses)

@@ -1,0 +1,85 @@
+"""Numba's compiler without the work that kernels do not need: half of the time goes into passes and comparisons.
+
+Kernels have no closures, no array expressions, no ``with``, no exceptions, and no literal loops.
+"""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from numba.core import types
+from numba.core.compiler import CompilerBase, Flags
+from numba.core.compiler_machinery import PassManager
+from numba.core.typed_passes import (
+    AnnotateTypes,
+    IRLegalization,
+    NativeLowering,
+    NoPythonBackend,
+    NopythonTypeInference,
+    PreLowerStripPhis,
+)
+from numba.core.types.functions import BaseFunction
+from numba.core.untyped_passes import (
+    DeadBranchPrune,
+    FixupArgs,
+    GenericRewrites,
+    IRProcessing,
+    ReconstructSSA,
+    RewriteSemanticConstants,
+    TranslateByteCode,
+)
+
+_PASSES = (
+    TranslateByteCode, FixupArgs, IRProcessing, RewriteSemanticConstants, DeadBranchPrune, GenericRewrites,
+    ReconstructSSA, NopythonTypeInference, PreLowerStripPhis, IRLegalization, AnnotateTypes, NativeLowering,
+    NoPythonBackend,
+)  # fmt: skip
+
+
+class Pipeline(CompilerBase):
+    """The passes that kernels need."""
+
+    def define_pipelines(self) -> list[PassManager]:
+        """One list of passes."""
+        manager = PassManager("kernels")
+        for entry in _PASSES:
+            manager.add_pass(entry, entry.__name__)
+        manager.finalize()
+        return [manager]
+
+
+def _same_flags(self: Any, other: object) -> Any:
+    return self._values == other._values if isinstance(other, Flags) else NotImplemented
+
+
+def _flags_hash(self: Any) -> int:
+    return len(self.options)  # Numba's is the same for all flags, too, after a look at each
+
+
+_SCALARS = (types.Number, types.Boolean, types.IntegerLiteral, types.Array)
+_resolve = BaseFunction.get_call_type
+_resolved: dict[Any, Any] = {}
+
+
+def _call_type(self: Any, context: Any, args: Any, kws: Any) -> Any:
+    """The signature of a function of scalars and arrays, which Numba would look for at each call of the source."""
+    if kws or not all(isinstance(kind, _SCALARS) for kind in args):
+        return _resolve(self, context, args, kws)
+    key = self, context, tuple(args)
+    if key not in _resolved:
+        _resolved[key] = _resolve(self, context, args, kws)
+    return _resolved[key]
+
+
+@contextmanager
+def hastened() -> Iterator[None]:
+    """Compare flags and resolve calls at less cost in this block; the code that is generated stays the same."""
+    flags: Any = Flags
+    usual = flags.__eq__, flags.__hash__
+    flags.__eq__, flags.__hash__ = _same_flags, _flags_hash
+    BaseFunction.get_call_type = _call_type
+    try:
+        yield
+    finally:
+        flags.__eq__, flags.__hash__ = usual
+        BaseFunction.get_call_type = _resolve

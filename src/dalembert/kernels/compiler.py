@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
 from types import SimpleNamespace
-from typing import Annotated, Any, get_args, get_origin
+from typing import Any
 
 import llvmlite.binding as ll
 from llvmlite import ir
@@ -22,15 +22,13 @@ from numba.core.registry import cpu_target as _cpu_target
 from numba.core.typing.templates import AbstractTemplate, infer_global, make_concrete_template
 from numba.extending import lower_builtin
 
+from dalembert.kernels.arguments import WORD, accepted, load_words, numba_type, read_words, store_words
 from dalembert.kernels.pipeline import Pipeline, hastened
 from dalembert.kernels.refusals import refusals
-from dalembert.kernels.views import array_at, intrinsic
-from dalembert.kernels.words import count, fields, leaves
+from dalembert.kernels.views import intrinsic
+from dalembert.kernels.words import count
 
-_WORD = ir.IntType(64)
 cpu_target: Any = _cpu_target  # whose type stubs do not know its contexts
-_SCALARS = {int: types.int64, float: types.float64, bool: types.boolean}
-_ITEMS = {"u1": types.uint8, "i8": types.int64, "f8": types.float64, "c16": types.complex128}
 _OPTIMISATION = 3
 
 
@@ -116,65 +114,6 @@ class Inner(CPUDispatcher):
         return template, folded, given, {}
 
 
-def numba_type(annotation: Any) -> Any:
-    """Numba's type of an argument."""
-    if annotation in _SCALARS:
-        return _SCALARS[annotation]
-    if get_origin(annotation) is Annotated:
-        leaf = next(leaves(annotation))
-        return types.Array(_ITEMS[leaf.dtype], leaf.axes, "C")
-    if get_origin(annotation) is tuple:
-        return types.Tuple([numba_type(entry) for entry in get_args(annotation)])
-    return types.BaseTuple.from_types([numba_type(entry) for entry in fields(annotation).values()], annotation)
-
-
-def _load(context: Any, builder: Any, annotation: Any, words: Any, at: int) -> Any:
-    """Generate an argument from its words."""
-
-    def word(k: int) -> Any:
-        return builder.gep(words, [_WORD(k)])
-
-    if annotation is float:
-        return builder.load(builder.bitcast(word(at), ir.DoubleType().as_pointer()))
-    if annotation is bool:
-        return builder.icmp_unsigned("!=", builder.load(word(at)), _WORD(0))
-    if annotation is int:
-        return builder.load(word(at))
-    if get_origin(annotation) is Annotated:
-        leaf, kind = next(leaves(annotation)), numba_type(annotation)
-        shape = [builder.load(word(at + 1 + axis)) for axis in range(leaf.axes)]
-        return array_at(context, builder, kind, builder.load(word(at)), shape)
-    values = []
-    for entry in fields(annotation).values():
-        values.append(_load(context, builder, entry, words, at))
-        at += count(entry)
-    return context.make_tuple(builder, numba_type(annotation), values)
-
-
-def _store(context: Any, builder: Any, annotation: Any, value: Any, words: Any, at: int) -> None:
-    """Generate the words of an argument."""
-
-    def put(entry: Any, k: int) -> None:
-        place = builder.gep(words, [_WORD(k)])
-        builder.store(entry, builder.bitcast(place, entry.type.as_pointer()))
-
-    if annotation is bool:
-        put(builder.zext(value, _WORD), at)
-    elif annotation in _SCALARS:
-        put(value, at)
-    elif get_origin(annotation) is Annotated:
-        leaf = next(leaves(annotation))
-        array = cgutils.create_struct_proxy(numba_type(annotation))(context, builder, value=value)
-        put(builder.ptrtoint(array.data, _WORD), at)
-        for axis, length in enumerate(cgutils.unpack_tuple(builder, array.shape, leaf.axes)):
-            put(length, at + 1 + axis)
-    else:
-        entries = get_args(annotation) if get_origin(annotation) is tuple else list(fields(annotation).values())
-        for k, entry in enumerate(entries):
-            _store(context, builder, entry, builder.extract_value(value, k), words, at)
-            at += count(entry)
-
-
 def _compiled_only(*_: Any) -> Any:
     raise NotImplementedError
 
@@ -187,9 +126,9 @@ def entry_point(function: Callable, arguments: tuple[Any, ...], result: Any) -> 
     @intrinsic(_compiled_only)
     def load(typingctx, address):
         def generate(context, builder, signature, values):
-            words, at, loaded = builder.inttoptr(values[0], _WORD.as_pointer()), 0, []
+            words, at, loaded = builder.inttoptr(values[0], WORD.as_pointer()), 0, []
             for annotation in arguments:
-                loaded.append(_load(context, builder, annotation, words, at))
+                loaded.append(load_words(context, builder, annotation, words, at))
                 at += count(annotation)
             return context.make_tuple(builder, kinds, loaded)
 
@@ -199,13 +138,14 @@ def entry_point(function: Callable, arguments: tuple[Any, ...], result: Any) -> 
     def store(typingctx, address, value):
         if result is None:
             return types.void(types.int64, value), lambda context, *_: context.get_dummy_value()
+        kind = numba_type(result)
 
         def generate(context, builder, signature, values):
-            words = builder.inttoptr(values[0], _WORD.as_pointer())
-            _store(context, builder, result, values[1], words, behind)
+            words = builder.inttoptr(values[0], WORD.as_pointer())
+            store_words(context, builder, result, kind, values[1], words, behind)
             return context.get_dummy_value()
 
-        return types.void(types.int64, numba_type(result)), generate
+        return types.void(types.int64, kind), generate
 
     def entry(address):
         store(address, function(*load(address)))
@@ -219,7 +159,6 @@ def caller(handle: Any, symbol: str | None, arguments: tuple[Any, ...], result: 
     The words are written to the stack of the caller.
     """
     leading = () if symbol else (types.int64,)
-    kinds = (*leading, *(numba_type(annotation) for annotation in arguments))
     answer = types.none if result is None else numba_type(result)
     behind = sum(map(count, arguments))
     size = behind + (0 if result is None else count(result))
@@ -228,30 +167,28 @@ def caller(handle: Any, symbol: str | None, arguments: tuple[Any, ...], result: 
         key = handle
 
         def generic(self, args: Any, kws: Any) -> Any:
-            return answer(*kinds)
+            if len(args) != len(leading) + len(arguments):
+                return None
+            given = args[len(leading) :]
+            return answer(*leading, *map(accepted, arguments, given))
 
-    @lower_builtin(handle, *kinds)
+    @lower_builtin(handle, types.VarArg(types.Any))
     def lower(context: Any, builder: Any, signature: Any, values: Any) -> Any:
         with builder.goto_entry_block():
-            words = builder.alloca(_WORD, size=max(size, 1))
-        at = 0
-        for annotation, value in zip(arguments, values[len(leading) :], strict=True):
-            _store(context, builder, annotation, value, words, at)
+            words = builder.alloca(WORD, size=max(size, 1))
+        at, kinds = 0, signature.args[len(leading) :]
+        for annotation, kind, value in zip(arguments, kinds, values[len(leading) :], strict=True):
+            store_words(context, builder, annotation, kind, value, words, at)
             at += count(annotation)
-        kind = ir.FunctionType(ir.VoidType(), [_WORD])
+        kind = ir.FunctionType(ir.VoidType(), [WORD])
         if symbol:
             function = cgutils.get_or_insert_function(builder.module, kind, symbol)
         else:
             function = builder.inttoptr(values[0], kind.as_pointer())
-        builder.call(function, [builder.ptrtoint(words, _WORD)])
+        builder.call(function, [builder.ptrtoint(words, WORD)])
         if result is None:
             return context.get_dummy_value()
-        if get_origin(result) is not tuple:
-            return _load(context, builder, result, words, behind)
-        entries = enumerate(get_args(result))
-        return context.make_tuple(
-            builder, answer, [_load(context, builder, entry, words, behind + k) for k, entry in entries]
-        )
+        return read_words(context, builder, result, words, behind)
 
     infer_global(handle, types.Function(Template))
 

@@ -41,7 +41,7 @@ class Pipeline(CompilerBase):
 
     def define_pipelines(self) -> list[PassManager]:
         """One list of passes."""
-        manager = PassManager("kernels")
+        manager = PassManager("nopython")
         for entry in _PASSES:
             manager.add_pass(entry, entry.__name__)
         manager.finalize()

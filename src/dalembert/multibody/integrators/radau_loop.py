@@ -75,8 +75,7 @@ def integrate(
     n, scale, times, counts = problem.n, problem.scale, problem.times, log.counts
     adaptive, order = settings.step == 0.0, len(method.c) + 1.0  # of the estimated error of a step
     moved, dual_work = step.moved, step.dual_work
-    last, apart, between, dbetween, shares, lifted, work = outputs
-    dold, ds, dual_works, differentiate_step, settle_end, record_along = along
+    last, apart, shares, lifted, work = outputs.last, outputs.apart, outputs.shares, outputs.lifted, outputs.work
     copy(start, new)
     clear(matrices.damping)  # is not evaluated where there is none
     clear(apart.damping)
@@ -104,11 +103,11 @@ def integrate(
             while due < len(times) and times[due] <= t + 1e-9 * taken:
                 ready = ready or _settle_ends(
                     problem, pattern, matrices, apart, far, model, dual, directions, settings.damped, within, last,
-                    moved, work, dual_work, lifted, settle_end,
+                    moved, work, dual_work, lifted, along.settle_end,
                 )  # fmt: skip
                 if not ready or not record(
                     problem, pattern, apart if far else matrices, far, model, dual, directions, last, within, out,
-                    dout, due, between, dbetween, shares, moved, work, dual_work, lifted, record_along,
+                    dout, due, outputs.between, outputs.dbetween, shares, moved, work, dual_work, lifted, along.record,
                 ):  # fmt: skip
                     return NEWTON_FAILED, times[due], 0
                 due += 1
@@ -148,8 +147,8 @@ def integrate(
                 continue
             if len(directions) > 0:
                 _differentiate_at(
-                    differentiate_step, problem, method, pattern, matrices, directions, t, target, within, step.s,
-                    dold, dstates, ds, step.b, dual_works,
+                    along.differentiate, problem, method, pattern, matrices, directions, t, target, within, step.s,
+                    along.dold, dstates, along.ds, step.b, along.works,
                 )  # fmt: skip
             arrived, speed, before, earlier, taken = True, own, h, before, h
             if counts[0] < len(log.iterations):

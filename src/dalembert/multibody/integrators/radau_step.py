@@ -36,7 +36,7 @@ def attempt(
     unknown that moved most.
     """
     n, scale, h = problem.n, problem.scale, target - t
-    s, past, b, weights, moved, works, dual_work = room
+    s, past, b, weights, works = room.s, room.past, room.b, room.weights, room.works
     if before > 0.0:
         stages.go_on(n, h, method, before, earlier if h <= _FAR * before else 0.0, past, s, b, weights)
     else:
@@ -45,7 +45,7 @@ def attempt(
     if stale:
         m = len(method.c) // 2
         middle, place = t + method.c[m] * h, Motion(s.x[m], s.v[m], s.a[m], s.a[m])
-        if not renew(problem, pattern, matrices, dual, settings.damped, middle, within, place, dual_work):
+        if not renew(problem, pattern, matrices, dual, settings.damped, middle, within, place, room.dual_work):
             return SINGULAR, made, 0.0, speed, 0, 1.0, 0
     if stale or not (made <= _NEAR * h and h <= _NEAR * made):
         made = h
@@ -62,7 +62,7 @@ def attempt(
         error = max(gap, pace / speed) / settings.tolerance
     if converged and error <= 1.0:
         stages.read(n, s, new)
-        accelerate_roughly(problem, pattern, matrices, model, new, works[end], moved[2:])
+        accelerate_roughly(problem, pattern, matrices, model, new, works[end], room.moved[2:])
     else:
         stages.go_back(past, s)
     return DONE if converged else NEWTON_FAILED, made, error, speed, iterations, rate, worst

@@ -23,7 +23,7 @@ from numba.core.typing.templates import AbstractTemplate, infer_global, make_con
 from numba.extending import lower_builtin
 
 from dalembert.kernels.arguments import WORD, accepted, load_words, numba_type, read_words, store_words
-from dalembert.kernels.pipeline import Pipeline, hastened
+from dalembert.kernels.pipeline import PIPELINE, hastened
 from dalembert.kernels.refusals import refusals
 from dalembert.kernels.views import intrinsic
 from dalembert.kernels.words import count
@@ -212,7 +212,7 @@ def optimised(function: Callable, symbol: str, addresses: int, cpu: str | None =
         cpu_target.typing_context.refresh()
         arguments = (types.int64,) * addresses
         compiled = compiler.compile_extra(
-            cpu_target.typing_context, context, function, arguments, types.none, _flags(), {}, pipeline_class=Pipeline
+            cpu_target.typing_context, context, function, arguments, types.none, _flags(), {}, pipeline_class=PIPELINE
         )
         module = _linked(compiled.library)
         _add_entry(module, compiled.fndesc.llvm_func_name, symbol, addresses)

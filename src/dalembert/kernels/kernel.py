@@ -14,7 +14,7 @@ from numba import njit
 from dalembert.kernels.compiler import Inner, caller, entry_point, object_code
 from dalembert.kernels.digest import digest, needs
 from dalembert.kernels.objects import OBJECTS
-from dalembert.kernels.pipeline import Pipeline
+from dalembert.kernels.pipeline import PIPELINE
 from dalembert.kernels.words import address, form, leaves, packer, unpack
 
 _Function = TypeVar("_Function", bound=Callable)
@@ -31,7 +31,7 @@ _OPTIONS: dict[str, Any] = {
 
 
 def _decorator(**options: Any) -> Callable[[_Function], _Function]:
-    decorate: Any = njit(**_OPTIONS, pipeline_class=Pipeline, **options)
+    decorate: Any = njit(**_OPTIONS, pipeline_class=PIPELINE, **options)
 
     def decorated(function: _Function) -> _Function:
         dispatcher = decorate(function)

@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from numba.core import types
+from numba.core.base import BaseContext
 from numba.core.compiler import CompilerBase, Flags
 from numba.core.compiler_machinery import PassManager
 from numba.core.typed_passes import (
@@ -28,7 +29,9 @@ from numba.core.untyped_passes import (
     RewriteSemanticConstants,
     TranslateByteCode,
 )
+from numba.np import arrayobj as _arrayobj
 
+arrayobj: Any = _arrayobj
 _PASSES = (
     TranslateByteCode, FixupArgs, IRProcessing, RewriteSemanticConstants, DeadBranchPrune, GenericRewrites,
     ReconstructSSA, NopythonTypeInference, PreLowerStripPhis, IRLegalization, AnnotateTypes, NativeLowering,
@@ -46,6 +49,9 @@ class Pipeline(CompilerBase):
             manager.add_pass(entry, entry.__name__)
         manager.finalize()
         return [manager]
+
+
+PIPELINE: Any = Pipeline
 
 
 def _same_flags(self: Any, other: object) -> Any:
@@ -71,15 +77,50 @@ def _call_type(self: Any, context: Any, args: Any, kws: Any) -> Any:
     return _resolved[key]
 
 
+class _Fields:
+    """Fields of a value that is only read, without Numba's copy of it on the stack for each access."""
+
+    def __init__(self, context: Any, builder: Any, kind: Any, value: Any) -> None:
+        self._builder, self._value = builder, value
+        self._place = context.data_model_manager[kind].get_field_position
+
+    def __getattr__(self, name: str) -> Any:
+        return self._builder.extract_value(self._value, self._place(name))
+
+    def _getvalue(self) -> Any:
+        return self._value
+
+
+_make_array = arrayobj.make_array
+
+
+def _array_fields(kind: Any) -> Any:
+    def made(context: Any, builder: Any, value: Any = None, ref: Any = None) -> Any:
+        if value is None or not isinstance(kind, types.Array):
+            return _make_array(kind)(context, builder, value=value, ref=ref)
+        return _Fields(context, builder, kind, value)
+
+    return made
+
+
+_make_complex = BaseContext.make_complex
+
+
+def _complex_parts(self: Any, builder: Any, typ: Any, value: Any = None) -> Any:
+    return _make_complex(self, builder, typ) if value is None else _Fields(self, builder, typ, value)
+
+
 @contextmanager
 def hastened() -> Iterator[None]:
-    """Compare flags and resolve calls at less cost in this block; the code that is generated stays the same."""
+    """Compare flags, resolve calls and read arrays at less cost in this block; the optimised code stays the same."""
     flags: Any = Flags
     usual = flags.__eq__, flags.__hash__
     flags.__eq__, flags.__hash__ = _same_flags, _flags_hash
-    BaseFunction.get_call_type = _call_type
+    BaseFunction.get_call_type, arrayobj.make_array = _call_type, _array_fields
+    BaseContext.make_complex = _complex_parts
     try:
         yield
     finally:
         flags.__eq__, flags.__hash__ = usual
-        BaseFunction.get_call_type = _resolve
+        BaseFunction.get_call_type, arrayobj.make_array = _resolve, _make_array
+        BaseContext.make_complex = _make_complex

@@ -18,7 +18,7 @@ from dalembert.kernels.objects import OBJECTS, cached_path, is_writable
 if TYPE_CHECKING:
     from dalembert.kernels.kernel import Compiled
 
-_FEW = 3  # kernels that are not worth another process, which takes about as long to begin as two of them to compile
+_FEW = 14  # kernels for each other process, which takes as long to begin as ten of them to compile
 _WORKER = "DALEMBERT_WORKER"  # says that a process compiles for another one, so that it begins none itself
 Progress = Callable[[int, int, str], None]
 

@@ -8,7 +8,6 @@ import numpy as np
 from numba import from_dtype, types
 from numba.core import cgutils
 from numba.extending import intrinsic as _typed_intrinsic
-from numba.np.arrayobj import make_array, populate_array
 
 
 def intrinsic(plain: Callable[..., Any], **options: Any) -> Callable[[Callable], Any]:
@@ -27,16 +26,24 @@ def array_at(context: Any, builder: Any, kind: types.Array, address: Any, shape:
     import llvmlite.ir as ir
 
     word = ir.IntType(64)
-    array = make_array(kind)(context, builder)
     item = context.get_data_type(kind.dtype)
     size = word(context.get_abi_sizeof(item))
-    strides, step = [], size
-    for length in reversed(shape):
-        strides.insert(0, step)
+    strides, step = [size], size
+    for length in reversed(shape[1:]):
         step = builder.mul(step, length)
-    pointer = builder.inttoptr(address, item.as_pointer())
-    populate_array(array, data=pointer, shape=shape, strides=strides, itemsize=size, meminfo=None)
-    return array._getvalue()
+        strides.insert(0, step)
+    entries = shape[0]
+    for length in shape[1:]:
+        entries = builder.mul(entries, length)
+    parts = {"nitems": entries, "itemsize": size, "data": builder.inttoptr(address, item.as_pointer())}
+    parts |= {"shape": cgutils.pack_array(builder, shape), "strides": cgutils.pack_array(builder, strides)}
+    # the fields in Numba's order; the others, of the memory's owner, are null
+    model = context.data_model_manager[kind]
+    array = ir.Constant(context.get_value_type(kind), None)
+    for k, name in enumerate(model._fields):
+        if name in parts:
+            array = builder.insert_value(array, parts[name], k)
+    return array
 
 
 def memory(dtype: Any, address: int, *shape: int) -> np.ndarray:

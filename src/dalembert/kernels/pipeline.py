@@ -13,6 +13,7 @@ from numba.core.compiler import CompilerBase, Flags
 from numba.core.compiler_machinery import PassManager
 from numba.core.typed_passes import (
     AnnotateTypes,
+    InlineOverloads,
     IRLegalization,
     NativeLowering,
     NoPythonBackend,
@@ -34,8 +35,8 @@ from numba.np import arrayobj as _arrayobj
 arrayobj: Any = _arrayobj
 _PASSES = (
     TranslateByteCode, FixupArgs, IRProcessing, RewriteSemanticConstants, DeadBranchPrune, GenericRewrites,
-    ReconstructSSA, NopythonTypeInference, PreLowerStripPhis, IRLegalization, AnnotateTypes, NativeLowering,
-    NoPythonBackend,
+    ReconstructSSA, NopythonTypeInference, PreLowerStripPhis, InlineOverloads, IRLegalization, AnnotateTypes,
+    NativeLowering, NoPythonBackend,
 )  # fmt: skip
 
 

@@ -94,10 +94,11 @@ BUSHING = Kind(
 
 @dataclass(frozen=True)
 class Bushing(Load):
-    """An elastic bearing between two points, without force in the position of the start.
+    """An elastic bearing between two points, unloaded at the start.
 
-    Its forces are those of springs and dampers along the axes of a, and of a torsion spring with damper:
-    force = stiffness x displacement + damping x velocity, each for itself.
+    A spring with a damper acts along each axis of a, and a torsion spring with a damper between their angles:
+    force = stiffness x displacement + damping x velocity. The three are uncoupled. The forces act at b, so that a also
+    takes the torque of their lever.
 
     Parameters
     ----------

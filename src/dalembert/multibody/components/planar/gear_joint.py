@@ -44,14 +44,15 @@ GEAR = Kind(
 class GearJoint(Joint):
     """A gear pair: b turns ``ratio`` times as fast as a.
 
-    The wheels need their own bearings, such as revolute joints to the ground. The torque of the channel
-    ``<name>.torque`` acts on b; a carries ``ratio`` times as much, with the opposite sign.
+    The wheels need bearings, such as revolute joints to the ground. The joint compares absolute angles, so the bodies
+    that carry the bearings must not turn. The channel ``<name>.torque`` is the torque on b; the torque on a is
+    ``-ratio`` times as large.
 
     Parameters
     ----------
     name : str
     a, b : Point
-        Of rigid bodies, whose turns are counted.
+        Of rigid bodies, whose angles count full turns.
     ratio : float
         Angular velocity of b per angular velocity of a: negative for an external gear pair (-teeth of a / teeth of b),
         positive for an internal one or a belt.

@@ -118,6 +118,20 @@ def test_a_step_too_long_for_the_stiffness_is_told() -> None:
         mb.simulate(system, 10.0, mb.RungeKutta4(0.01))
 
 
+@pytest.mark.parametrize("method", ["LSODA", "BDF"])
+def test_partitioning_without_constraints_takes_the_steps_of_augmented(method: str) -> None:
+    """Nothing depends on the constraints, so the solver does not start again after each step."""
+    system = mb.System()
+    mass = system.add(mb.PointMass("mass", 1.0, (1.0, 0.0)))
+    system.add(mb.Spring("spring", system.ground.point(0.0, 0.0), mass.centre, 400.0, free_length=0.5))
+    parted, whole = (
+        mb.simulate(system, 0.1, mb.OdeSolver(method, stabilisation=stabilisation, most_steps=1000))
+        for stabilisation in (mb.Partitioning(), mb.Augmented())
+    )
+    assert np.array_equal(parted.run.ends, whole.run.ends)
+    assert np.array_equal(parted.states.x, whole.states.x)
+
+
 @pytest.mark.parametrize(
     ("make", "sentence"),
     [

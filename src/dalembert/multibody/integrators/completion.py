@@ -64,14 +64,15 @@ def partition(
 ) -> bool:
     """Choose the independent coordinates if that is needed: at first, or where the present ones have become bad.
 
-    Whether it was done. ``work``: address of a call in complex numbers.
+    Whether there are now other dependent ones; never without constraints. ``work``: address of a call in complex
+    numbers.
     """
     set_signals(dual, t, within, work)
     linearise(problem, dual, state, work, own)
     if own.rank[0] > 0 and invert(problem, own) and dependence(problem, own) <= terms.limit:
         return False
     choose(problem, own)
-    return True
+    return own.rank[0] > 0
 
 
 @inner

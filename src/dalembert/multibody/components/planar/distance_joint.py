@@ -81,5 +81,4 @@ class DistanceJoint(Joint):
                 f"distance joint {self.name!r}: its points {self.a} and {self.b} coincide and no length is given; "
                 "give a length, or use a revolute joint"
             )
-        index = pair.slots + lowering.multipliers(self.name, 1)
-        lowering.add(DISTANCE, index, [*pair.data, length], pair.integers, self.name)
+        self._add(lowering, pair, [length])

@@ -61,5 +61,4 @@ class FixedJoint(Joint):
     def lower(self, lowering: "Lowering") -> None:
         pair = lowering.pair(self.a, self.b, self.name)
         self._oriented()
-        index = pair.slots + lowering.multipliers(self.name, 3)
-        lowering.add(FIXED, index, [*pair.data, pair.rest_angle], pair.integers, self.name)
+        self._add(lowering, pair, [pair.rest_angle])

@@ -86,6 +86,4 @@ class GearJoint(Joint):
                 f"gear joint {self.name!r}: {self.a} or {self.b} is a node of a beam, whose turns are not counted; "
                 "fix a rigid body to the node, and give the gear that body"
             )
-        offset = pair.angles[1] - self.ratio * pair.angles[0]
-        index = pair.slots + lowering.multipliers(self.name, 1)
-        lowering.add(GEAR, index, [*pair.data, self.ratio, offset], pair.integers, self.name)
+        self._add(lowering, pair, [self.ratio, pair.angles[1] - self.ratio * pair.angles[0]])

@@ -1,16 +1,18 @@
 """What planar joints share: the base class, and the outputs of a joint."""
 
 from abc import abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 from dalembert.kernels.kernel import inlined
+from dalembert.multibody.components.fields import Number
 from dalembert.multibody.components.planar.pairs import relative_angle, relative_spin
 from dalembert.multibody.components.points import Side, require_direction
 from dalembert.multibody.kernels.kind import Kind
 
 if TYPE_CHECKING:
-    from dalembert.multibody.lowering import Lowering
+    from dalembert.multibody.lowering import Lowering, Pair
 
 OUTPUTS = (("angle", "rad"), ("rate", "rad/s"), ("force_x", "N"), ("force_y", "N"), ("torque", "N*m"))
 
@@ -28,6 +30,14 @@ class Joint:
     @abstractmethod
     def lower(self, lowering: "Lowering") -> None:
         """Write the rows of the kernels."""
+
+    def _add(
+        self, lowering: "Lowering", pair: "Pair", numbers: Sequence[Number] = (), integers: Sequence[int] = ()
+    ) -> list[int | None]:
+        """Add the joint with the numbers and integers that follow those of its markers; its unknowns."""
+        index = pair.slots + lowering.multipliers(self.name, self.kind.multipliers)
+        lowering.add(self.kind, index, [*pair.data, *numbers], [*pair.integers, *integers], self.name)
+        return index
 
     def _oriented(self, advice: str = "a revolute or distance joint, or a rigid body") -> None:
         """Refuse sides that have no direction."""

@@ -105,7 +105,5 @@ class PrescribedMotion(Joint):
         pair = lowering.pair(self.a, self.b, self.name)
         if self.coordinate == "angle":
             self._oriented()
-        index = pair.slots + lowering.multipliers(self.name, 1)
         lowering.kinks += [(time, self.name) for time in as_signal(self.motion).kinks]
-        integers = [*pair.integers, _COORDINATES[self.coordinate], lowering.signal(self.motion)]
-        lowering.add(MOTION, index, pair.data, integers, self.name)
+        self._add(lowering, pair, integers=[_COORDINATES[self.coordinate], lowering.signal(self.motion)])

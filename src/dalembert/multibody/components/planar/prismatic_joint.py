@@ -142,8 +142,7 @@ class PrismaticJoint(Joint):
     def lower(self, lowering: "Lowering") -> None:
         pair = lowering.pair(self.a, self.b, self.name)
         self._oriented()
-        index = pair.slots + lowering.multipliers(self.name, 2)
-        lowering.add(PRISMATIC, index, [*pair.data, pair.rest_angle, self.angle], pair.integers, self.name)
+        index = self._add(lowering, pair, [pair.rest_angle, self.angle])
         if friction.coefficients(self):
             law = self.viscous or 0.0, self.coulomb or 0.0, self.friction_coefficient or 0.0
             numbers = [*pair.data, self.angle, *law, self.slip_velocity]

@@ -140,8 +140,7 @@ class RevoluteJoint(Joint):
 
     def lower(self, lowering: "Lowering") -> None:
         pair = lowering.pair(self.a, self.b, self.name)
-        index = pair.slots + lowering.multipliers(self.name, 2)
-        lowering.add(REVOLUTE, index, pair.data, pair.integers, self.name)
+        index = self._add(lowering, pair)
         if friction.coefficients(self):
             self._oriented("a rigid body where a joint has friction")
             lever = (self.friction_coefficient or 0.0) * (self.pin_radius or 0.0)

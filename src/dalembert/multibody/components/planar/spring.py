@@ -5,12 +5,11 @@ from typing import TYPE_CHECKING
 
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number, number, require_not_negative
-from dalembert.multibody.components.planar import pairs, spring_law
 from dalembert.multibody.components.planar.load import Load
 from dalembert.multibody.components.planar.pairs import push_pair, separation, separation_rate
+from dalembert.multibody.components.planar.spring_law import spring_kind, tension
 from dalembert.multibody.components.points import Side
 from dalembert.multibody.kernels.dual import root
-from dalembert.multibody.kernels.kind import Kind
 
 if TYPE_CHECKING:
     from dalembert.multibody.lowering import Lowering
@@ -31,37 +30,13 @@ def _stretch(x, v, p, m):
 def _residual(x, v, a, p, m, inputs, r):
     """Tension on both ends."""
     elongation, rate = _stretch(x, v, p, m)
-    force = spring_law.tension(elongation, rate, p)
+    force = tension(elongation, rate, p)
     dx, dy = separation(x, p, m)
     per_length = force / root(dx * dx + dy * dy + _TINY)
     push_pair(x, p, m, per_length * dx, per_length * dy, r)
 
 
-@inlined
-def _energy(x, v, p, m, inputs):
-    elongation, rate = _stretch(x, v, p, m)
-    return spring_law.energy(elongation, rate, p)
-
-
-@inlined
-def _observe(x, v, a, p, m, inputs, out):
-    elongation, rate = _stretch(x, v, p, m)
-    out[0], out[1] = elongation, spring_law.tension(elongation, rate, p)
-
-
-SPRING = Kind(
-    "spring",
-    coordinates=pairs.COORDINATES,
-    numbers=(*pairs.NUMBERS, *spring_law.NUMBERS),
-    integers=pairs.INTEGERS,
-    residual=_residual,
-    energy=_energy,
-    outputs=(("elongation", "m"), ("force", "N")),
-    observe=_observe,
-    dissipates=True,
-    holds=True,
-    holds_frame=False,
-)
+SPRING = spring_kind("spring", _stretch, _residual, holds_frame=False)
 
 
 @dataclass(frozen=True)

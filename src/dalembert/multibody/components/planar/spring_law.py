@@ -1,8 +1,11 @@
-"""The law of springs with dampers: tension = (stiffness + cubic e^2) e + damping de/dt, e the elongation."""
+"""Springs with dampers: tension = (stiffness + cubic e^2) e + damping de/dt, e the elongation (or the twist)."""
+
+from collections.abc import Callable
+from typing import Any
 
 from dalembert.kernels.kernel import inlined
-
-NUMBERS = ("rest", "stiffness", "damping", "cubic")
+from dalembert.multibody.components.planar import pairs
+from dalembert.multibody.kernels.kind import Kind
 
 
 @inlined
@@ -12,9 +15,33 @@ def tension(elongation, rate, p):
     return (p.stiffness + p.cubic * square) * elongation + p.damping * rate
 
 
-@inlined
-def energy(elongation, rate, p):
-    """No kinetic energy; energy stored; power of the damper."""
-    square = elongation * elongation
-    stored = (0.5 * p.stiffness + 0.25 * p.cubic * square) * square
-    return 0.0 * stored, stored, -p.damping * rate * rate
+def spring_kind(name: str, stretch: Callable[..., Any], residual: Callable[..., Any], **properties: Any) -> Kind:
+    """Kind of a spring, from ``stretch(x, v, p, m)``, which returns elongation and rate, and its residual."""
+    elongation_and_rate: Any = stretch
+
+    @inlined
+    def energy(x, v, p, m, inputs):
+        """No kinetic energy; energy stored; power of the damper."""
+        elongation, rate = elongation_and_rate(x, v, p, m)
+        square = elongation * elongation
+        stored = (0.5 * p.stiffness + 0.25 * p.cubic * square) * square
+        return 0.0 * stored, stored, -p.damping * rate * rate
+
+    @inlined
+    def observe(x, v, a, p, m, inputs, out):
+        elongation, rate = elongation_and_rate(x, v, p, m)
+        out[0], out[1] = elongation, tension(elongation, rate, p)
+
+    return Kind(
+        name,
+        coordinates=pairs.COORDINATES,
+        numbers=(*pairs.NUMBERS, "rest", "stiffness", "damping", "cubic"),
+        integers=pairs.INTEGERS,
+        residual=residual,
+        energy=energy,
+        outputs=(("elongation", "m"), ("force", "N")),
+        observe=observe,
+        dissipates=True,
+        holds=True,
+        **properties,
+    )

@@ -5,12 +5,11 @@ from typing import TYPE_CHECKING
 
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number, number
-from dalembert.multibody.components.planar import pairs, spring_law
 from dalembert.multibody.components.planar.load import Load
 from dalembert.multibody.components.planar.pairs import relative_angle, relative_spin, twist_pair
+from dalembert.multibody.components.planar.spring_law import spring_kind, tension
 from dalembert.multibody.components.points import Side, require_direction
 from dalembert.multibody.kernels.dual import wrapped
-from dalembert.multibody.kernels.kind import Kind
 
 if TYPE_CHECKING:
     from dalembert.multibody.lowering import Lowering
@@ -27,33 +26,10 @@ def _stretch(x, v, p, m):
 def _residual(x, v, a, p, m, inputs, r):
     """Torque on both sides."""
     twisted, rate = _stretch(x, v, p, m)
-    twist_pair(x, m, spring_law.tension(twisted, rate, p), r)
+    twist_pair(x, m, tension(twisted, rate, p), r)
 
 
-@inlined
-def _energy(x, v, p, m, inputs):
-    elongation, rate = _stretch(x, v, p, m)
-    return spring_law.energy(elongation, rate, p)
-
-
-@inlined
-def _observe(x, v, a, p, m, inputs, out):
-    elongation, rate = _stretch(x, v, p, m)
-    out[0], out[1] = elongation, spring_law.tension(elongation, rate, p)
-
-
-TORSION_SPRING = Kind(
-    "torsion_spring",
-    coordinates=pairs.COORDINATES,
-    numbers=(*pairs.NUMBERS, *spring_law.NUMBERS),
-    integers=pairs.INTEGERS,
-    residual=_residual,
-    energy=_energy,
-    outputs=(("elongation", "m"), ("force", "N")),
-    observe=_observe,
-    dissipates=True,
-    holds=True,
-)
+TORSION_SPRING = spring_kind("torsion_spring", _stretch, _residual)
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""What a user waits for: kernels that nobody has compiled yet, a later process, a study, the help text.
+"""What a user waits for: kernels that nobody has compiled yet, a later process, a wheel, a study, the help text.
 
 Processor seconds of whole processes with those that they start, divided by the time of a loop in plain Python that runs
 beside them, and multiplied by the loop's time on a quiet machine: so a busy machine gives about the same numbers.
@@ -11,6 +11,8 @@ import sys
 import tempfile
 import time
 from pathlib import Path
+
+from tests.installed_wheel import install_wheel
 
 from benchmarks import timing
 
@@ -61,6 +63,7 @@ def main() -> list[dict[str, object]]:
             _row(f"then the same by {solver.partition('(')[0]}", _SIMULATE.format(solver=solver), folder)
             for solver in _SOLVERS[1:]
         ]
+        rows.append(_of_a_wheel(Path(folder)))
         rows.append(_row("friction in frequency, nothing compiled", _FRICTION, f"{folder}/friction"))
         rows.append(_row("flexible pendulum with sensitivities, nothing compiled", _FIT, f"{folder}/fit"))
         rows.append(_row("flexible pendulum with sensitivities, later process", _FIT, f"{folder}/fit"))
@@ -74,7 +77,18 @@ def main() -> list[dict[str, object]]:
     return rows
 
 
-def _row(what: str, command: str | list[str], cache: str) -> dict[str, object]:
+def _of_a_wheel(folder: Path) -> dict[str, object]:
+    """The first simulation of a user who has installed a wheel with kernels, which must compile nothing."""
+    site, cache = install_wheel(folder), folder / "cache of the wheel"
+    row = _row(
+        "rigid mechanism, first simulation, from a wheel", _SIMULATE.format(solver=_SOLVERS[0]), str(cache), site
+    )
+    if cache.exists():
+        raise RuntimeError(f"the wheel lacks kernels, which were compiled: {sorted(cache.rglob('*'))}")
+    return row
+
+
+def _row(what: str, command: str | list[str], cache: str, package: Path = ROOT / "src") -> dict[str, object]:
     """Processor and wall-clock seconds of a process, scaled to a quiet machine."""
     arguments = [sys.executable, "-c", command] if isinstance(command, str) else command
     before = _children()
@@ -84,7 +98,7 @@ def _row(what: str, command: str | list[str], cache: str) -> dict[str, object]:
         arguments,
         check=True,
         cwd=ROOT,
-        env={**os.environ, "DALEMBERT_CACHE_DIR": cache},
+        env={**os.environ, "DALEMBERT_CACHE_DIR": cache, "PYTHONPATH": str(package)},
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
     )

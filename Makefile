@@ -24,7 +24,7 @@ BENCH_PIP := .venv-bench/bin/python -m pip install --quiet --disable-pip-version
 
 help:
 	@echo "make demo        identify a flexible double pendulum from measured motion, and write its report"
-	@echo "make test        format, lint, types, floors, tests (what a change must pass)"
+	@echo "make test        format, lint, types, layers, tests (what a change must pass)"
 	@echo "make verify      make test, the slow tests too, and whether the validation page is up to date"
 	@echo "make validation  regenerate docs/validation.md from a full run of the verification tests"
 	@echo "make docs        the documentation, as HTML in docs/_build"
@@ -61,7 +61,7 @@ docs: .venv/docs.stamp
 	$(BIN)/sphinx-build --fail-on-warning --keep-going --quiet docs docs/_build
 	@echo "The documentation: $(CURDIR)/docs/_build/index.html"
 
-# All kernels as one object file, so that nobody who installs the wheel waits for the compiler.
+# The wheel contains all kernels as one object file, so that its users compile nothing.
 wheel: .venv/core.stamp
 	DALEMBERT_KERNELS=1 $(PIP:install=wheel) --no-build-isolation --no-deps --wheel-dir dist .
 	@ls dist/*.whl
@@ -87,7 +87,7 @@ clean:
 	$(PIP) --no-build-isolation --editable .
 	@touch $@
 
-# The peers of the benchmarks ask for other versions of some packages, so that they have an environment of their own.
+# The benchmarks use a separate environment, because their peers need other versions of some packages.
 .venv-bench/stamp: .venv/bin/python pyproject.toml constraints.txt benchmarks/constraints.txt
 	$(PYTHON) -m venv .venv-bench
 	grep -v $$(sed -n 's/^\([a-z-]*\)==.*/-e ^\1==/p' benchmarks/constraints.txt) constraints.txt > .venv-bench/constraints.txt

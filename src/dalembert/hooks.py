@@ -1,4 +1,4 @@
-"""Doors from a result to what shows it: names that resolve late, so that no floor imports one above it."""
+"""Doors from a result to what shows it: names that resolve late, so that no layer imports one above it."""
 
 from collections.abc import Callable
 from importlib import import_module

@@ -19,6 +19,6 @@ def resistance(reaction, rate, p):
 
 
 def coefficients(joint: Any) -> dict[str, Number]:
-    """Friction coefficients that a joint has; one that is zero stays in the model: it may be a parameter's bound."""
+    """Friction coefficients of a joint. A zero one stays in the model: it may be the bound of a parameter."""
     values = {name: getattr(joint, name) for name in ("viscous", "coulomb", "friction_coefficient")}
     return {name: value for name, value in values.items() if value is not None}

@@ -117,7 +117,8 @@ class RevoluteJoint(Joint):
     slip_rate : float
         Relative angular velocity, rad/s, over which the Coulomb torque turns its sign, as tanh(rate / slip_rate).
 
-    Without any of the first three there is no friction; one that is zero may be a parameter's value.
+    Without ``viscous``, ``coulomb`` and ``friction_coefficient`` there is no friction. A coefficient of zero stays in
+    the model: it may be the value of a parameter.
     """
 
     viscous: Number | None = number("N*m*s", None)

@@ -1,1 +1,1 @@
-"""Compiled kernels: C functions of an address, each compiled alone, kept as an object file, reached by its symbol."""
+"""Compiled kernels: C functions of an address, compiled separately, stored as object files, called by their symbols."""

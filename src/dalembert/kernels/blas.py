@@ -1,4 +1,4 @@
-"""Products of matrices inside kernels, by the BLAS of SciPy, whose addresses they are given."""
+"""Products of matrices inside kernels, by the BLAS of SciPy, which receive their addresses as arguments."""
 
 import ctypes
 from functools import cache

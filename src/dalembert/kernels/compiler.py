@@ -1,7 +1,7 @@
 """From a Python function to an object file with one C function, by Numba and LLVM.
 
-Numba optimises, and turns into machine code, each inner function by itself, though only its copy inside its callers is
-used. Here inner functions stay as they come from Numba, and the whole of a kernel is optimised once.
+Numba optimises each inner function and generates machine code for it, although only its copy inside its callers is used.
+Here inner functions are not optimised, and the whole of a kernel is optimised once.
 """
 
 import gc
@@ -28,7 +28,7 @@ from dalembert.kernels.refusals import refusals
 from dalembert.kernels.views import intrinsic
 from dalembert.kernels.words import count
 
-cpu_target: Any = _cpu_target  # whose type stubs do not know its contexts
+cpu_target: Any = _cpu_target  # its type stubs lack the contexts
 _OPTIMISATION = 3
 
 
@@ -37,7 +37,7 @@ _NO_ENVIRONMENT = SimpleNamespace(set_env=lambda name, environment: None)
 
 
 class _Library(CPUCodeLibrary):
-    """Code that stays as it is until a kernel takes it in."""
+    """Code that is not optimised before it is linked into a kernel."""
 
     def _optimize_functions(self, ll_module: Any) -> None:
         ll_module.data_layout = self._codegen._data_layout
@@ -102,7 +102,7 @@ class Inner(CPUDispatcher):
         return self.py_func(*arguments, **named)
 
     def get_call_template(self, args: Any, kws: Any) -> Any:
-        """One signature, that of these arguments: others would be tried, too, records as if they were alike."""
+        """One signature, that of these arguments. Numba would also try others, and treat all records as equal."""
         own: Any = self
         positional, named = map(types.unliteral, args), {name: types.unliteral(kind) for name, kind in kws.items()}
         folded, given = own._compiler.fold_argument_types(tuple(positional), named)
@@ -119,7 +119,7 @@ def _compiled_only(*_: Any) -> Any:
 
 
 def entry_point(function: Callable, arguments: tuple[Any, ...], result: Any) -> Callable:
-    """A function of one address: of the words of the arguments, behind which it writes those of the result."""
+    """A function of one address: of the words of the arguments; it writes the words of the result after them."""
     kinds = types.Tuple([numba_type(annotation) for annotation in arguments])
     behind = sum(map(count, arguments))
 
@@ -205,7 +205,7 @@ def _flags() -> Any:
 
 @global_compiler_lock
 def optimised(function: Callable, symbol: str, addresses: int, cpu: str | None = None) -> Any:
-    """LLVM's module of a function of so many addresses that returns nothing, optimised for a processor."""
+    """LLVM's module of a function of ``addresses`` addresses that returns nothing, optimised for a processor."""
     with _apart(), hastened(), refusals(function):
         context = cpu_target.target_context
         context.refresh()
@@ -226,7 +226,7 @@ def object_code(function: Callable, symbol: str, addresses: int) -> bytes:
 
 
 def _add_entry(module: Any, native: str, symbol: str, addresses: int) -> None:
-    """Add a plain C function around the native one, the only one to be seen from outside."""
+    """Add a plain C function around the native one, the only exported one."""
     given = ", ".join(f"i64 %{k}" for k in range(addresses))
     stub = ll.parse_assembly(
         f'declare i32 @"{native}"(ptr, ptr{", i64" * addresses})\n'

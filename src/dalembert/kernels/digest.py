@@ -1,4 +1,4 @@
-"""What a kernel is made of: the functions and constants that it reaches, and a digest of them all.
+"""The functions and constants that a kernel depends on, and their digest.
 
 A cached kernel is used when its digest is that of the present source. The digest is of compiled Python code, so that
 comments do not matter; of the value of each constant; and of the files of functions that Numba replaces.
@@ -105,7 +105,7 @@ def _code_texts(code: CodeType) -> Iterator[str]:
 
 
 def _foreign(module: str) -> bool:
-    """Whether a module is of a library, whose version stands for its code."""
+    """Whether a module is of a library, which its version identifies."""
     root = module.partition(".")[0]
     return root in _LIBRARIES or root in sys.stdlib_module_names
 

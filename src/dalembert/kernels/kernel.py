@@ -1,4 +1,4 @@
-"""Kernels: functions compiled alone, and called by their symbol from other kernels, or from Python."""
+"""Kernels: functions that are compiled separately, and called by their symbol from other kernels, or from Python."""
 
 import ctypes
 import inspect
@@ -20,7 +20,7 @@ from dalembert.kernels.words import address, form, leaves, packer, unpack
 _Function = TypeVar("_Function", bound=Callable)
 
 # No fast-math, not even the fusing of a product with a sum (a thirtieth of a simulation's time): results are those of
-# IEEE arithmetic. Nothing is allocated: what a kernel writes to, NumPy makes and Python keeps alive.
+# IEEE arithmetic. A kernel allocates no memory: NumPy allocates, and Python keeps the arrays alive.
 _OPTIONS: dict[str, Any] = {
     "nogil": True,
     "error_model": "numpy",
@@ -62,11 +62,11 @@ class Compiled:
 
     @cached_property
     def origin(self) -> Origin | None:
-        """How another process finds the kernel, None if it cannot."""
+        """Module and name by which another process imports the kernel; None if there is none."""
         return _origin(self.function.__module__, self)
 
     def __reduce__(self) -> Any:
-        """Another process takes the kernel of its own, whose addresses are others."""
+        """In another process: the kernel of the same origin, which has other addresses."""
         if self.origin is None:
             raise TypeError(f"kernel {self.symbol} is defined in a script; move it into a module")
         return find, (self.origin,)
@@ -93,7 +93,7 @@ class Compiled:
 
     @property
     def entry(self) -> tuple[Callable, str, int]:
-        """The Python function of so many addresses that is compiled, its symbol, and how many they are."""
+        """The Python function to compile, its symbol, and the number of addresses that it takes."""
         raise NotImplementedError
 
     def object_code(self) -> bytes:
@@ -215,7 +215,7 @@ class Kernel(Compiled):
         return self.called(self._entry, self.packed(arguments))
 
     def given(self, *arguments: Any) -> Callable[..., Any]:
-        """This kernel with its first arguments, whose words are made once: what is called often costs less so."""
+        """This kernel with its first arguments, whose words are packed once. This makes frequent calls faster."""
         first, packers = [], self._packers[len(arguments) :]
         for pack, value in zip(self._packers, arguments, strict=False):
             pack(value, first)

@@ -1,4 +1,4 @@
-"""Object files of kernels: where they are found, and how they come into the process."""
+"""Object files of kernels: where they are stored, and how they are loaded."""
 
 import hashlib
 import os
@@ -68,7 +68,7 @@ def read_cached(kernel: "Compiled") -> bytes | None:
 
 
 def is_writable() -> bool:
-    """Whether objects can be kept."""
+    """Whether the folder can be written."""
     try:
         cache_folder().mkdir(parents=True, exist_ok=True)
     except OSError:
@@ -152,7 +152,7 @@ class Objects:
             return self._engine.get_function_address(kernel.symbol)
 
     def _reached(self, kernels: Iterable["Compiled"]) -> list["Compiled"]:
-        """Kernels that are not loaded among these and those that they call; the called ones behind their callers."""
+        """Kernels that are not loaded among these and those that they call; callers first."""
         self._load_package()
         reached: dict[str, Compiled] = {}
         ahead = list(kernels)

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from dalembert.kernels.kernel import Compiled
 
 _FEW = 14  # kernels for each other process, which takes as long to begin as ten of them to compile
-_WORKER = "DALEMBERT_WORKER"  # says that a process compiles for another one, so that it begins none itself
+_WORKER = "DALEMBERT_WORKER"  # set in a worker process, which must not start workers
 Progress = Callable[[int, int, str], None]
 
 
@@ -79,7 +79,7 @@ def _next(tasks: "queue.SimpleQueue[list[Compiled]]") -> "list[Compiled] | None"
 
 
 def _serve(tasks: "queue.SimpleQueue[list[Compiled]]", folder: Path | None, done: _Counter) -> None:
-    """Hand kernels to a process of their own, one after the other; what it cannot compile is left to this process."""
+    """Send kernels to a worker process, one after the other. This process compiles what the worker cannot."""
     command = [sys.executable, "-c", "from dalembert.kernels.preparation import work; work()"]
     environment = {**os.environ, _WORKER: "1", "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
     try:
@@ -114,7 +114,7 @@ def _serve(tasks: "queue.SimpleQueue[list[Compiled]]", folder: Path | None, done
 
 
 def work() -> None:
-    """Compile kernels that are named on the standard input, one a line, into the files that are named with them."""
+    """Read kernels and files from the standard input, a pair a line, and compile each kernel into its file."""
     from dalembert.kernels.kernel import find
     from dalembert.kernels.objects import write_object
 
@@ -152,7 +152,7 @@ def observed(progress: Progress) -> Iterator[None]:
 
 @contextmanager
 def _shown(total: int) -> Iterator[Progress]:
-    """Progress on the terminal: a line that is written again and again, elsewhere one line."""
+    """Progress on the terminal: a line that is updated, elsewhere one line."""
     if _OBSERVERS:
         yield _OBSERVERS[-1]
         return

@@ -1,4 +1,4 @@
-"""What a kernel cannot do, said with file and line."""
+"""Errors for operations that kernels do not support, with file and line."""
 
 import dis
 import re
@@ -26,7 +26,7 @@ _NOISE = re.compile(r"^(Failed in nopython|During:|File |\s*\^|\s*<source elided
 
 @contextmanager
 def refusals(function: Callable) -> Iterator[None]:
-    """Turn what Numba says of a kernel's source into a sentence.
+    """Translate Numba's errors about a kernel's source into a short message.
 
     Raises
     ------
@@ -40,7 +40,7 @@ def refusals(function: Callable) -> Iterator[None]:
         raise ModelError(_sentence(error, function)) from error
     except KeyError as error:
         raise ModelError(
-            f"a kernel reads {error}, which is no column of its record. Declare it, or correct the name"
+            f"A kernel reads {error}, but its record has no such column. Declare the column, or correct the name"
         ) from error
 
 

@@ -22,7 +22,7 @@ def intrinsic(plain: Callable[..., Any], **options: Any) -> Callable[[Callable],
 
 
 def array_at(context: Any, builder: Any, kind: types.Array, address: Any, shape: list) -> Any:
-    """Generate an array structure over memory that others keep alive."""
+    """Generate an array structure over memory that the caller keeps alive."""
     import llvmlite.ir as ir
 
     word = ir.IntType(64)

@@ -1,4 +1,4 @@
-"""Arguments of kernels as 64-bit words: an annotation says how many an argument takes, and how they are filled."""
+"""Arguments of kernels as 64-bit words: an annotation defines their number and their content."""
 
 import ctypes
 from collections.abc import Callable, Iterator
@@ -50,7 +50,9 @@ def leaves(annotation: Any) -> Iterator[Any]:
         for entry in fields(annotation).values():
             yield from leaves(entry)
     else:
-        raise TypeError(f"{annotation!r} is no argument of a kernel; use int, float, bool, an array or a NamedTuple")
+        raise TypeError(
+            f"{annotation!r} cannot be an argument of a kernel. Use int, float, bool, an array or a NamedTuple"
+        )
 
 
 @cache

@@ -39,7 +39,7 @@ def test_an_argument_without_a_form_is_refused() -> None:
     def function(text: str) -> None:
         """Takes what no kernel takes."""
 
-    with pytest.raises(TypeError, match="is no argument of a kernel"):
+    with pytest.raises(TypeError, match="cannot be an argument of a kernel"):
         kernel(function)
 
 

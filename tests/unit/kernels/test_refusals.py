@@ -66,5 +66,5 @@ def test_it_is_refused_with_its_line(constraint: Callable, expected: str) -> Non
 
 def test_an_unknown_column_is_named() -> None:
     kind = Kind("odd", coordinates=2, multipliers=1, numbers=("length",), constraint=mistypes)
-    with pytest.raises(ModelError, match="a kernel reads 'lenght', which is no column of its record"):
+    with pytest.raises(ModelError, match="A kernel reads 'lenght', but its record has no such column"):
         kind.kernel("residual", float).object_code()

@@ -1,7 +1,7 @@
 """From a Python function to an object file with one C function, by Numba and LLVM.
 
-Numba optimises each inner function and generates machine code for it, although only its copy inside its callers is used.
-Here inner functions are not optimised, and the whole of a kernel is optimised once.
+Numba optimises each inner function and generates machine code for it, although only its copy inside its callers is
+used. Here inner functions are not optimised, and the whole of a kernel is optimised once.
 """
 
 import gc

@@ -109,6 +109,7 @@ class Lowered:
             self.structure.size,
             self.structure.n,
             dtype,
+            self.structure.reduction,
         )
 
     @cached_property

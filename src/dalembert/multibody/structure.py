@@ -1,24 +1,15 @@
-"""The structure of a model: which unknowns each component couples, and where the entries of its matrices are kept."""
+"""The structure of a model: which unknowns each component couples, in the full system and in the reduced one."""
 
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.sparse import csr_matrix
-from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from dalembert.kernels.kernel import Compiled
+from dalembert.multibody.couplings import Couplings
 from dalembert.multibody.kernels.kind import Kind
-from dalembert.multibody.kernels.linear import (
-    BAND_KERNELS,
-    DENSE_KERNELS,
-    Layout,
-    band_layout,
-    dense_layout,
-    padded,
-)
-
-_SMALL = 90  # unknowns up to which a kept dense inverse is faster than a kept band factorisation
+from dalembert.multibody.kernels.linear import Layout
+from dalembert.multibody.kernels.reduction import Reduction, reduction
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,82 +54,51 @@ class Structure:
         )
 
     @cached_property
-    def _couplings(self) -> tuple[np.ndarray, np.ndarray]:
-        """Rows and columns of all local matrix entries, kind after kind; absent slots give the number ``size``."""
-        rows = [np.repeat(index[:, :, None], index.shape[1], axis=2).ravel() for index in self.index.values()]
-        columns = [np.repeat(index[:, None, :], index.shape[1], axis=1).ravel() for index in self.index.values()]
-        return np.concatenate(rows), np.concatenate(columns)
-
-    def _slots(self, places: np.ndarray) -> np.ndarray:
-        """Addresses of the positions of all local entries, those of each block (count, width, width); kept alive."""
-        places = np.ascontiguousarray(places)
-        self._kept_alive.append(places)
-        counts = [index.shape[0] * index.shape[1] ** 2 for index in self.index.values()]
-        return places.ctypes.data + 8 * np.cumsum([0, *counts], dtype=np.int64)[: len(counts)]
+    def full(self) -> Couplings:
+        """The system in coordinates and multipliers."""
+        return Couplings(self.index, self.size)
 
     @cached_property
-    def _kept_alive(self) -> list[np.ndarray]:
-        return []
+    def reduction(self) -> Reduction:
+        """Rows of the reduced system."""
+        return reduction(self.index, self.n, self.size)
 
     @cached_property
-    def coordinate_layout(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Slots that give each local entry its own place, with the rows and columns of the places."""
-        rows, columns = self._couplings
-        return self._slots(np.arange(len(rows))), rows, columns
-
-    @cached_property
-    def entries(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Slots of a list of the matrix's entries, each once, with their rows and columns."""
-        rows, columns = self._couplings
-        inside = (rows < self.size) & (columns < self.size)
-        numbers, own = np.unique(rows[inside] * self.size + columns[inside], return_inverse=True)
-        places = np.zeros(len(rows), dtype=np.int64)  # nothing is written for absent slots
-        places[inside] = own
-        return self._slots(places), numbers // self.size, numbers % self.size
-
-    @cached_property
-    def dense(self) -> tuple[np.ndarray, Layout]:
-        """Slots and layout of a dense matrix by columns."""
-        rows, columns = self._couplings
-        lead = padded(self.size)
-        return self._slots(columns * lead + rows), dense_layout(self.size)
-
-    @cached_property
-    def _reordered(self) -> tuple[np.ndarray, int]:
-        """Positions of unknowns and of the absent one in a band (reverse Cuthill-McKee), and the reach of the band."""
-        rows, columns = self._couplings
-        inside = (rows < self.size) & (columns < self.size)
-        pattern = csr_matrix(
-            (np.ones(inside.sum(), dtype=np.int8), (rows[inside], columns[inside])), shape=(self.size, self.size)
-        )
-        order = np.zeros(self.size + 1, dtype=np.int64)
-        order[reverse_cuthill_mckee(pattern, symmetric_mode=True)] = np.arange(self.size)
-        return order, padded(int(np.max(np.abs(order[rows] - order[columns])[inside])))
-
-    @cached_property
-    def band(self) -> tuple[np.ndarray, Layout]:
-        """Slots and layout of a band matrix after reordering."""
-        rows, columns = self._couplings
-        order, reach = self._reordered
-        i, j, layout = order[rows], order[columns], band_layout(order[: self.size], reach)
-        return self._slots(j * layout.lead + 2 * reach + i - j), layout
+    def reduced(self) -> Couplings:
+        """The system in increments, without internal constraints; the full one of a model that has none."""
+        return Couplings(self.reduction.index, self.reduction.size) if self.reduction.nodes else self.full
 
     @property
-    def _is_banded(self) -> bool:
-        return 2 * self._reordered[1] < self.size
+    def coordinate_layout(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Slots that give each local entry of the full matrix its own place, with rows and columns of the places."""
+        return self.full.separate
+
+    @property
+    def entries(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Slots of a list of the full matrix's entries, each once, with their rows and columns."""
+        return self.full.entries
+
+    @property
+    def dense(self) -> tuple[np.ndarray, Layout]:
+        """Slots and layout of the full matrix as a dense one."""
+        return self.full.dense
+
+    @property
+    def fresh(self) -> tuple[np.ndarray, Layout]:
+        """Slots and layout for a full matrix that is factorised at each step."""
+        return self.full.fresh
 
     @property
     def linear_kernels(self) -> list[Compiled]:
-        """Kernels of the linear systems of both layouts."""
-        dense = self.size <= _SMALL or not self._is_banded
-        return [*DENSE_KERNELS * dense, *BAND_KERNELS * self._is_banded]
+        """Kernels of the linear systems of the full matrix."""
+        return self.full.linear_kernels
 
     @property
-    def kept(self) -> tuple[np.ndarray, Layout]:
-        """Slots and layout for a factorisation that is kept over many solutions."""
-        return self.dense if self.size <= _SMALL else self.fresh
-
-    @cached_property
-    def fresh(self) -> tuple[np.ndarray, Layout]:
-        """Slots and layout for a matrix that is factorised at each step."""
-        return self.band if self._is_banded else self.dense
+    def reduced_kernels(self) -> list[Compiled]:
+        """Kernels of the reduced system that the full one does not have."""
+        if not self.reduction.nodes:
+            return []
+        linear = [kernel for kernel in self.reduced.linear_kernels if kernel not in self.full.linear_kernels]
+        roles = [("reduced", float), ("reduced", complex), ("restore", float), ("restore", complex)]
+        roles += [("spread", float), ("change", float)]
+        return [*linear, *(kind.kernel(*role) for role in roles for kind in self.index if kind.has(role[0]))]

@@ -10,13 +10,12 @@ from dalembert.errors import InputError, unknown
 from dalembert.kernels.kernel import Compiled, inlined, inner, kernel
 from dalembert.kernels.words import Address, Integers, Reals2
 from dalembert.multibody.integrators.consistent import Consistency, accelerate, accelerate_along, consistency
-from dalembert.multibody.integrators.derivatives import differentiate
+from dalembert.multibody.integrators.derivatives import Differentiation, differentiate, differentiation
 from dalembert.multibody.integrators.integrator import Integrator
-from dalembert.multibody.integrators.newton import Newton, converge, learn
+from dalembert.multibody.integrators.newton import Newton, converge, learn, newton
 from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR, TOO_MANY_STEPS, Log, Problem
 from dalembert.multibody.integrators.run import Run, cut, explain, starts
 from dalembert.multibody.kernels.assembly import set_signals
-from dalembert.multibody.kernels.linear import storage
 from dalembert.multibody.kernels.model import Call, addresses
 from dalembert.multibody.kernels.motion import (
     Histories,
@@ -97,7 +96,8 @@ class GeneralizedAlpha(Integrator):
 
     def kernels(self, structure: Structure, derivatives: bool) -> list[Compiled]:
         """The loop with its linear systems, and what differentiates a step."""
-        return [integrate, *structure.linear_kernels, *[differentiate, accelerate_along] * derivatives]
+        along = [differentiate, accelerate_along] * derivatives
+        return [integrate, *structure.linear_kernels, *structure.reduced_kernels, *along]
 
     def integrate(
         self,
@@ -117,8 +117,8 @@ class GeneralizedAlpha(Integrator):
         room = self._most_logged(samples[0], end) if logged else 0
         log = Log(np.zeros(4, dtype=np.int64), np.zeros(room, dtype=np.int64), np.zeros(room))
         ends = np.zeros((len(samples), 3))
-        models = [entry.real.need("rates") for entry in samples], [entry.dual for entry in samples]
-        directions = addresses(entry.dual.need("rates") for entry in tilted)
+        models = [entry.real.need("rates").reduced() for entry in samples], [entry.dual.reduced() for entry in samples]
+        directions = addresses(entry.dual.need("rates").reduced() for entry in tilted)
         calls = models[0][0].call(), models[1][0].call()
         integrate(
             problem, self._settings(), addresses(models[0]), addresses(models[1]), directions, states, dstates, out,
@@ -166,7 +166,7 @@ class Settings(NamedTuple):
 
 
 class Workspace(NamedTuple):
-    """States of a step, Newton's iteration, consistent accelerations.
+    """States of a step, Newton's iteration, consistent accelerations, derivatives.
 
     ``differentiate``: address of the kernel for the derivatives of a step, 0 if there are none.
     """
@@ -176,16 +176,17 @@ class Workspace(NamedTuple):
     dolds: Motions
     newton: Newton
     consistency: Consistency
+    differentiation: Differentiation
     differentiate: Address
 
 
 def _workspace(problem: Problem, call: Call, dual_call: Call, directions: int) -> Workspace:
-    width = problem.layout.size + 1
-    work, dual_work, vector = call.address, dual_call.address, np.zeros((3, width))
-    newton = Newton(storage(problem.layout), work, dual_work, vector[0], vector[1], np.zeros(2), vector[2])
+    width, work, dual_work = len(problem.scale), call.address, dual_call.address
     along = differentiate.address if directions else 0
-    consistent = consistency(problem, work, dual_work, directions)
-    return Workspace(resting(width), resting(width), resting(directions, width), newton, consistent, along)
+    return Workspace(
+        resting(width), resting(width), resting(directions, width), newton(problem, work, dual_work),
+        consistency(problem, work, dual_work, directions), differentiation(problem, dual_work), along,
+    )  # fmt: skip
 
 
 @kernel
@@ -227,16 +228,16 @@ def integrate(
 def _integrate(problem, edges, settings, model, dual, directions, state, dstates, out, dout, log, room):
     """Run one sample: status, time reached, and the unknown that moved most."""
     n, width = problem.n, len(state.x)
-    old, new, dolds, newton = room.old, room.new, room.dolds, room.newton
+    old, new, dolds, own = room.old, room.new, room.dolds, room.newton
     copy(state, new)
-    newton.memory[0], newton.memory[1] = 0.0, 0.0
+    own.memory[0], own.memory[1] = 0.0, 0.0
     differentiated = len(directions) > 0
     due = 0
     length = settings.step
     for stretch in range(len(edges) - 1):
         begin, end = edges[stretch], edges[stretch + 1]
         within = 0.5 * (begin + end)
-        clear(newton.slope)
+        clear(own.slope)
         if stretch > 0 or settings.consistent:
             if not accelerate(problem, model, dual, directions, begin, within, new, dstates, room.consistency):
                 return SINGULAR, begin, 0
@@ -261,9 +262,9 @@ def _integrate(problem, edges, settings, model, dual, directions, state, dstates
                 target = end if unit + stride == steps * _UNITS else begin + nominal * ((unit + stride) / _UNITS)
             copy(new, old)
             c = coefficients(length, settings.spectral_radius)
-            set_signals(model, target, within, newton.work)
+            set_signals(model, target, within, own.work)
             status, detail = converge(
-                problem, model, dual, c, target, within, settings.newton_tolerance, old, new, newton, log
+                problem, model, dual, c, target, within, settings.newton_tolerance, old, new, own, log
             )
             error = 0.0
             if status == DONE and settings.adaptive:
@@ -273,7 +274,7 @@ def _integrate(problem, edges, settings, model, dual, directions, state, dstates
             if status != DONE or error > 1.0:
                 log.counts[3] += 1
                 copy(old, new)
-                clear(newton.slope)
+                clear(own.slope)
                 if settings.adaptive:
                     length *= max(0.2, 0.9 * error ** (-1 / 3)) if status == DONE else 0.25
                     if length < 1e-12 * (end - begin):
@@ -287,9 +288,19 @@ def _integrate(problem, edges, settings, model, dual, directions, state, dstates
                 log.iterations[log.counts[0]] = detail
                 log.ends[log.counts[0]] = target
             log.counts[0] += 1
-            learn(n, c, old, new, newton.slope)
+            learn(n, c, old, new, own.slope)
             if differentiated and not _differentiate_at(
-                room.differentiate, problem, dual, directions, c, target, within, new, dolds, dstates, room.consistency
+                room.differentiate,
+                problem,
+                dual,
+                directions,
+                c,
+                target,
+                within,
+                new,
+                dolds,
+                dstates,
+                room.differentiation,
             ):
                 return SINGULAR, target, 0
             if problem.projected and width - 1 > n:

@@ -1,12 +1,18 @@
-"""Newton's iteration on the accelerations and multipliers of one step, with a factorisation that is kept over steps."""
+"""Newton's iteration on the accelerations and multipliers of one step, with a factorisation that is kept over steps.
+
+It solves the reduced system for increments. What these change of the coordinates changes the accelerations, divided by
+the step's coefficient, so that the formulas of the step hold for all coordinates alike.
+"""
 
 from typing import NamedTuple
 
+import numpy as np
+
 from dalembert.kernels.kernel import inlined, inner
 from dalembert.kernels.words import Address, Reals
-from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR
-from dalembert.multibody.kernels.assembly import residual, set_signals, tangent
-from dalembert.multibody.kernels.linear import Factors, factorise, solve
+from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR, Problem
+from dalembert.multibody.kernels.assembly import displace, reduced_residual, reduced_tangent, restore, set_signals
+from dalembert.multibody.kernels.linear import Factors, factorise, solve, storage
 from dalembert.multibody.kernels.motion import advance
 
 _MOST_ITERATIONS = 12
@@ -22,7 +28,8 @@ class Newton(NamedTuple):
     """Work of the Newton iteration.
 
     ``memory``: step for which the kept factorisation was made (0: none), contraction seen last. ``slope``: rate of
-    change of accelerations and multipliers over the last step, for the prediction of the next one.
+    change of accelerations and multipliers over the last step, for the prediction of the next one. ``r`` and ``delta``
+    have the rows of the reduced system, ``change`` is the correction of all unknowns: the same array without nodes.
     """
 
     factors: Factors
@@ -30,29 +37,44 @@ class Newton(NamedTuple):
     dual_work: Address
     r: Reals
     delta: Reals
+    change: Reals
     memory: Reals
     slope: Reals
+
+
+def newton(problem: Problem, work: int, dual_work: int) -> Newton:
+    """Room for the iteration."""
+    layout, width = problem.reduced.layout, len(problem.scale)
+    r, delta = np.zeros((2, layout.size + 1))
+    change = delta if problem.reduced.increments == problem.n else np.zeros(width)
+    return Newton(storage(layout), work, dual_work, r, delta, change, np.zeros(2), np.zeros(width))
 
 
 @inner
 def _renew(problem, dual, c, t, within, new, newton):
     set_signals(dual, t, within, newton.dual_work)
-    tangent(
-        dual, problem.slots, problem.n, new.x, new.v, new.a, (c.dq, c.dv, 1.0), (1.0, 1.0 / c.dq), newton.dual_work,
-        newton.factors.matrix,
+    own = problem.reduced
+    reduced_tangent(
+        dual, own.slots, own.increments, own.layout.size, new.x, new.v, new.a, (c.dq, c.dv, 1.0), (1.0, 1.0 / c.dq),
+        newton.dual_work, newton.factors.matrix,
     )  # fmt: skip
-    newton.memory[0] = c.step if factorise(problem.layout, newton.factors) else 0.0
+    newton.memory[0] = c.step if factorise(own.layout, newton.factors) else 0.0
     return newton.memory[0] != 0.0
 
 
 @inlined
-def _predict(n, c, old, slope, new):
+def _predict(n, c, model, old, newton, new):
     """Accelerations and multipliers of the new state, by those of the old one and their last change."""
+    slope, change = newton.slope, newton.change
     for i in range(n):
         new.a[i] = old.a[i] + c.step * slope[i]
     for i in range(n, len(old.x) - 1):
         new.x[i] = old.x[i] + c.step * slope[i]
     advance(n, c, old, new)
+    if restore(model, c.dq, new.x, newton.work, change):
+        for i in range(n):
+            new.a[i] -= change[i]
+        advance(n, c, old, new)
 
 
 @inlined
@@ -65,16 +87,16 @@ def learn(n, c, old, new, slope):
 
 
 @inlined
-def _correct(n, c, scale, delta, old, new):
+def _correct(n, c, scale, change, old, new):
     """Apply a Newton correction: its size against the scales, and the coordinate that moved most."""
     norm, worst = 0.0, 0
     for i in range(n):
-        new.a[i] -= delta[i]
-        moved = c.dq * abs(delta[i]) / scale[i]
+        new.a[i] -= change[i]
+        moved = c.dq * abs(change[i]) / scale[i]
         if norm == norm and not moved <= norm:  # the first that is not a number stays
             norm, worst = moved, i
     for i in range(n, len(old.x) - 1):
-        new.x[i] -= delta[i]
+        new.x[i] -= change[i]
     advance(n, c, old, new)
     return norm, worst
 
@@ -82,8 +104,8 @@ def _correct(n, c, scale, delta, old, new):
 @inlined
 def converge(problem, model, dual, c, t, within, tolerance, old, new, newton, log):
     """Newton iteration on new accelerations and multipliers: status, and iterations or the unknown that moved most."""
-    n, memory = problem.n, newton.memory
-    _predict(n, c, old, newton.slope, new)
+    n, own, memory = problem.n, problem.reduced, newton.memory
+    _predict(n, c, model, old, newton, new)
     fresh = not (0.8 * memory[0] < c.step < 1.25 * memory[0]) or memory[1] > _AGED
     if fresh:
         log.counts[2] += 1
@@ -92,10 +114,11 @@ def converge(problem, model, dual, c, t, within, tolerance, old, new, newton, lo
         memory[1] = _AGED
     before, norm, worst = 0.0, 1.0, 0
     for iteration in range(1, _MOST_ITERATIONS + 1):
-        residual(model, n, new.x, new.v, new.a, newton.work, 1.0 / c.dq, newton.r)
-        solve(problem.layout, newton.factors, newton.r, newton.delta)
+        reduced_residual(model, own.increments, new.x, new.v, new.a, newton.work, 1.0 / c.dq, newton.r)
+        solve(own.layout, newton.factors, newton.r, newton.delta)
+        displace(model, c.dq, new.x, newton.delta, newton.work, newton.change)
         log.counts[1] += 1
-        norm, worst = _correct(n, c, problem.scale, newton.delta, old, new)
+        norm, worst = _correct(n, c, problem.scale, newton.change, old, new)
         if not norm < 1e100 or norm <= tolerance:
             break
         rate = memory[1] if iteration == 1 else norm / before

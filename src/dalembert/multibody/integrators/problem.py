@@ -8,21 +8,33 @@ from dalembert.multibody.kernels.linear import Layout
 DONE, NEWTON_FAILED, SINGULAR, TOO_MANY_STEPS, DIVERGED = range(5)
 
 
+class Reduced(NamedTuple):
+    """The system that Newton's method solves in ``increments`` and multipliers, see :mod:`reduction`.
+
+    ``slots`` and ``layout`` of a matrix that is kept over steps; those of one that is renewed at each step.
+    """
+
+    increments: int
+    slots: Integers
+    layout: Layout
+    exact_slots: Integers
+    exact_layout: Layout
+
+
 class Problem(NamedTuple):
     """What does not change from sample to sample: sizes, scales, where matrix entries go, times.
 
-    ``n`` coordinates; ``scale`` (N + 1,); ``slots`` and ``layout`` of the Newton matrix; those of the sensitivities,
-    whose matrix is renewed at each step; ``times`` of the output. ``edges`` (samples, -) of the smooth stretches of
+    ``n`` coordinates; ``scale`` (N + 1,); ``exact_slots`` and ``exact_layout`` of a full matrix that is renewed often;
+    ``times`` of the output; ``reduced``: the reduced system. ``edges`` (samples, -) of the smooth stretches of
     motion, and how many ``stretches`` each sample has. ``projected``: whether velocities are moved onto the constraints
     wherever accelerations are solved for.
     """
 
     n: int
     scale: Reals
-    slots: Integers
-    layout: Layout
     exact_slots: Integers
     exact_layout: Layout
+    reduced: Reduced
     times: Reals
     edges: Reals2
     stretches: Integers

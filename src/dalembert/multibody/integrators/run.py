@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dalembert.multibody.assemble import scales
-from dalembert.multibody.integrators.problem import DIVERGED, SINGULAR, TOO_MANY_STEPS, Problem
+from dalembert.multibody.integrators.problem import DIVERGED, SINGULAR, TOO_MANY_STEPS, Problem, Reduced
 from dalembert.multibody.kernels.dual import STEP
 from dalembert.multibody.kernels.motion import Motion, resting
 from dalembert.multibody.lowering import Lowered
@@ -61,11 +61,10 @@ def starts(samples: Sequence[Lowered], tilted: Sequence[Lowered]) -> tuple[Motio
 def make_problem(lowered: Lowered, times: np.ndarray) -> Problem:
     """What all samples of a structure share."""
     structure = lowered.structure
-    slots, layout = structure.kept
-    exact_slots, exact_layout = structure.fresh
+    reduced = Reduced(structure.reduction.increments, *structure.reduced.kept, *structure.reduced.fresh)
     return Problem(
-        structure.n, scales(lowered), slots, layout, exact_slots, exact_layout, np.asarray(times, dtype=float),
-        np.zeros((0, 0)), np.zeros(0, dtype=np.int64),
+        structure.n, scales(lowered), *structure.full.fresh, reduced, np.asarray(times, dtype=float), np.zeros((0, 0)),
+        np.zeros(0, dtype=np.int64),
     )  # fmt: skip
 
 

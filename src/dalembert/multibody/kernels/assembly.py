@@ -5,7 +5,7 @@ signals hold the time.
 """
 
 from dalembert.kernels.kernel import inlined, inner
-from dalembert.kernels.views import address_of, call
+from dalembert.kernels.views import address_of, call, integers
 from dalembert.multibody.kernels.records import BLOCK_SIZE, RESIDUAL, TANGENT, block_at, call_at, model_at
 
 
@@ -25,19 +25,46 @@ def set_signals(model, t, within, work):
     call(model_at(model).evaluate, work, model)
 
 
+@inlined
+def _add_residuals(blocks, count, increments, work, scale, r):
+    own, last = call_at(work), len(r) - 1
+    own.r, own.mode, own.increments, own.last_row = address_of(r), RESIDUAL, increments, last
+    for i in range(last):
+        r[i] = 0.0
+    for k in range(count):
+        block = blocks + k * BLOCK_SIZE
+        call(block_at(block).residual, work, block)
+    for i in range(increments, last):
+        r[i] *= scale
+    r[last] = 0.0
+
+
 @inner
 def residual(model, n, x, v, a, work, scale, r):
     """Fill ``r`` (N + 1,): the equations of motion, then the constraints times ``scale``."""
-    own, table, last = _place(work, x, v, a), model_at(model), len(r) - 1
-    own.r, own.mode = address_of(r), RESIDUAL
-    for i in range(last):
-        r[i] = 0.0
-    for k in range(table.block_count):
-        block = table.blocks + k * BLOCK_SIZE
+    _place(work, x, v, a)
+    _add_residuals(model_at(model).blocks, model_at(model).block_count, n, work, scale, r)
+
+
+@inner
+def reduced_residual(model, increments, x, v, a, work, scale, r):
+    """The residual of the reduced system, of fewer rows: projected on increments, without internal constraints."""
+    _place(work, x, v, a)
+    _add_residuals(model_at(model).reduced, model_at(model).reduced_count, increments, work, scale, r)
+
+
+@inlined
+def _add_tangents(blocks, count, slots, by, rows, work, matrix):
+    for i in range(len(matrix)):
+        matrix[i] = 0.0
+    own = call_at(work)
+    own.matrix, own.entries, own.mode = address_of(matrix), len(matrix), TANGENT
+    own.by_x, own.by_v, own.by_a = by
+    own.motion, own.constraint = rows
+    for k in range(count):
+        block = blocks + k * BLOCK_SIZE
+        own.slots = slots[k]
         call(block_at(block).residual, work, block)
-    for i in range(n, last):
-        r[i] *= scale
-    r[last] = 0.0
 
 
 @inner
@@ -47,16 +74,17 @@ def tangent(dual, slots, n, x, v, a, by, rows, work, matrix):
     Rows of the equations of motion are multiplied by ``rows[0]``, those of the constraints by ``rows[1]``. ``dual`` is
     the model in complex numbers, ``slots`` where each block finds the positions of its entries.
     """
-    for i in range(len(matrix)):
-        matrix[i] = 0.0
-    own, table = _place(work, x, v, a), model_at(dual)
-    own.matrix, own.entries, own.mode = address_of(matrix), len(matrix), TANGENT
-    own.by_x, own.by_v, own.by_a = by
-    own.motion, own.constraint = rows
-    for k in range(table.block_count):
-        block = table.blocks + k * BLOCK_SIZE
-        own.slots = slots[k]
-        call(block_at(block).residual, work, block)
+    own = _place(work, x, v, a)
+    own.increments, own.last_row = n, own.last
+    _add_tangents(model_at(dual).blocks, model_at(dual).block_count, slots, by, rows, work, matrix)
+
+
+@inner
+def reduced_tangent(dual, slots, increments, last_row, x, v, a, by, rows, work, matrix):
+    """The tangent of the reduced system, along increments of dq, dv and da, and of multipliers."""
+    own = _place(work, x, v, a)
+    own.increments, own.last_row = increments, last_row
+    _add_tangents(model_at(dual).reduced, model_at(dual).reduced_count, slots, by, rows, work, matrix)
 
 
 @inner
@@ -74,7 +102,7 @@ def constraint_rates(model, n, x, v, a, work, rate, second):
 def constraint_forces(model, x, v, a, work, f):
     """Add the residuals of joints alone to ``f`` (N + 1,): constraint forces, and constraints."""
     own, table = _place(work, x, v, a), model_at(model)
-    own.r, own.mode = address_of(f), RESIDUAL
+    own.r, own.mode, own.increments, own.last_row = address_of(f), RESIDUAL, own.coordinates, own.last
     for k in range(table.block_count):
         block = table.blocks + k * BLOCK_SIZE
         if block_at(block).joins == 1:
@@ -93,3 +121,56 @@ def energies(model, x, v, work, totals):
         block = table.blocks + k * BLOCK_SIZE
         if block_at(block).energy != 0:
             call(block_at(block).energy, work, block)
+
+
+@inlined
+def _deal(table, delta, change):
+    """Increments of coordinates that belong to no node, and of multipliers; 0 for the others."""
+    rows = integers(table.rows, len(change))
+    for i in range(len(change)):
+        change[i] = delta[rows[i]]
+
+
+@inner
+def spread(model, x, delta, work, change):
+    """Fill ``change`` with the corrections of coordinates and multipliers, N(x) ``delta``, of the reduced ``delta``.
+
+    In a model without nodes both are the same array, here and in `displace`.
+    """
+    table, own = model_at(model), call_at(work)
+    if table.node_count == 0:
+        return
+    _deal(table, delta, change)
+    own.x, own.delta, own.change, own.last_row = address_of(x), address_of(delta), address_of(change), len(delta) - 1
+    for k in range(table.node_count):
+        node = table.nodes + k * BLOCK_SIZE
+        call(block_at(node).spread, work, node)
+
+
+@inner
+def displace(model, scale, x, delta, work, change):
+    """Fill ``change`` so that x - ``scale`` change has the increments -``scale`` delta, which may be large."""
+    table, own = model_at(model), call_at(work)
+    if table.node_count == 0:
+        return
+    _deal(table, delta, change)
+    own.x, own.delta, own.change, own.last_row = address_of(x), address_of(delta), address_of(change), len(delta) - 1
+    own.by_x = scale
+    for k in range(table.node_count):
+        node = table.nodes + k * BLOCK_SIZE
+        call(block_at(node).change, work, node)
+
+
+@inner
+def restore(model, scale, x, work, change):
+    """Whether there are nodes; if so, fill ``change`` so that x - ``scale`` change satisfies internal constraints."""
+    table, own = model_at(model), call_at(work)
+    if table.node_count == 0:
+        return False
+    for i in range(len(change)):
+        change[i] = 0.0
+    own.x, own.change, own.by_x = address_of(x), address_of(change), scale
+    for k in range(table.node_count):
+        node = table.nodes + k * BLOCK_SIZE
+        call(block_at(node).restore, work, node)
+    return True

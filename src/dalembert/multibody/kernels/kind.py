@@ -7,11 +7,15 @@ from typing import Any
 
 import numpy as np
 
+from dalembert.errors import ModelError
 from dalembert.kernels.kernel import Compiled
-from dalembert.multibody.kernels import loops
+from dalembert.multibody.kernels import loops, reduced
+from dalembert.multibody.kernels.charts import Chart
 from dalembert.multibody.kernels.constraints import power_of, rates_of, residual_of
 from dalembert.multibody.kernels.debugging import plain
 from dalembert.multibody.kernels.loops import BlockKernel
+
+_MAKERS = {**loops.MAKERS, **reduced.MAKERS}
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,6 +56,11 @@ class Kind:
         Columns that count to the extent of a mechanism, m.
     gravity : tuple of str
         Columns of the gravity that acts on the component.
+    chart : Chart, optional
+        Of a kind whose constraints are the internal ones of its coordinates: how increments change these. Integrators
+        that support it solve for the increments, without these constraints and their multipliers.
+    charts : tuple of Chart
+        Those of the coordinates, one after the other, `flat` ones between them; none if all are flat.
     dissipates : bool or str
         Whether a force depends on velocities; or the column of which any entry that is not zero says so.
     driven, loads : bool
@@ -79,6 +88,8 @@ class Kind:
     observe: Callable[..., Any] | None = None
     lengths: tuple[str, ...] = ()
     gravity: tuple[str, ...] = ()
+    chart: Chart | None = None
+    charts: tuple[Chart, ...] = ()
     dissipates: bool | str = False
     driven: bool = False
     loads: bool = False
@@ -86,10 +97,35 @@ class Kind:
     holds_frame: bool = True
     _kernels: dict[tuple[str, type], BlockKernel] = field(default_factory=dict, init=False, repr=False)
 
+    def __post_init__(self) -> None:
+        sizes = [chart.size for chart in self.charts or [self.chart or Chart(self.coordinates, self.coordinates)]]
+        if sum(sizes) != self.coordinates:
+            raise ModelError(
+                f"kind {self.name!r}: its charts have {' + '.join(map(str, sizes))} coordinates, the kind has "
+                f"{self.coordinates}. Add flat(size) for coordinates without internal constraints"
+            )
+
     @property
     def width(self) -> int:
         """Local unknowns."""
         return self.coordinates + self.multipliers + self.reactions
+
+    @property
+    def increments(self) -> int:
+        """Local increments of the coordinates."""
+        if self.chart is not None:
+            return self.chart.increments
+        return sum(chart.increments for chart in self.charts) if self.charts else self.coordinates
+
+    @property
+    def reduced_width(self) -> int:
+        """Local rows of the reduced system."""
+        return self.increments + self.multipliers + self.reactions
+
+    @property
+    def is_flat(self) -> bool:
+        """Whether increments are simply those of the coordinates, so that one kernel serves both systems."""
+        return self.chart is None and all(chart.is_flat for chart in self.charts)
 
     @property
     def takes_reactions(self) -> bool:
@@ -114,15 +150,15 @@ class Kind:
         return self.dissipates
 
     def kernel(self, role: str, dtype: type) -> Compiled:
-        """The kernel of a role (residual, rates, energy, outputs) in real or in complex numbers."""
+        """The kernel of a role, such as residual, in real or in complex numbers."""
         if (role, dtype) not in self._kernels:
-            self._kernels[role, dtype] = loops.MAKERS[role](self, dtype)
+            self._kernels[role, dtype] = _MAKERS[role](self, dtype)
         own = self._kernels[role, dtype]
         return plain(self, own) or own
 
     def all_kernels(self) -> list[Compiled]:
         """The kernels of all roles that the kind has."""
-        roles = [role for role in loops.MAKERS if self.has(role)]
+        roles = [role for role in _MAKERS if self.has(role)]
         return [self.kernel(role, dtype) for role in roles for dtype in (float, complex)]
 
     def has(self, role: str) -> bool:
@@ -132,6 +168,10 @@ class Kind:
             "rates": self.constraint is not None,
             "energy": self.energy is not None or self.residual is not None,
             "outputs": self.observe is not None,
+            "reduced": self.chart is None and not self.is_flat,
+            "spread": self.chart is not None,
+            "change": self.chart is not None,
+            "restore": self.chart is not None,
         }[role]
 
     @cached_property

@@ -12,11 +12,11 @@ if TYPE_CHECKING:
     from dalembert.multibody.kernels.kind import Kind
 
 
-def _arithmetic(dtype: type) -> tuple[Any, Any]:
+def arithmetic(dtype: type) -> tuple[Any, Any]:
     return (complexes, complexes2) if dtype is complex else (reals, reals2)
 
 
-def _made(loop: Callable[[Any, Any], None], kind: "Kind", role: str, dtype: type) -> BlockKernel:
+def made(loop: Callable[[Any, Any], None], kind: "Kind", role: str, dtype: type) -> BlockKernel:
     return BlockKernel(loop, f"dal_kind_{kind.name}_{role}_{dtype.__name__}", (kind, role, dtype))
 
 
@@ -33,9 +33,9 @@ def _real(kind: "Kind") -> BlockKernel:
     def loop(call_address, block_address):
         call, block = call_at(call_address), block_at(block_address)
         count, size = block.count, call.last + 1
-        index = integers2(block.index, count, width)
+        index, rows = integers2(block.index, count, width), integers2(block.rows, count, width)
         p, m = numbers(block.numbers, count), whole(block.integers, count)
-        x, v, a, r = reals(call.x, size), reals(call.v, size), reals(call.a, size), reals(call.r, size)
+        x, v, a, r = reals(call.x, size), reals(call.v, size), reals(call.a, size), reals(call.r, call.last_row + 1)
         inputs = Inputs(reals2(call.signals, call.signal_count, 3), integers(call.callbacks, call.callback_count))
         own_x, own_v, own_a, own_r = local_x(), local_v(), local_a(), local_r()
         for e in range(count):
@@ -45,9 +45,9 @@ def _real(kind: "Kind") -> BlockKernel:
                 own_r[i] = 0.0
             function(own_x, own_v, own_a, p[e], m[e], inputs, own_r)
             for i in range(width):
-                r[index[e, i]] += own_r[i]
+                r[rows[e, i]] += own_r[i]
 
-    return _made(loop, kind, "residual", float)
+    return made(loop, kind, "residual", float)
 
 
 @inlined
@@ -70,13 +70,13 @@ def _complex(kind: "Kind") -> BlockKernel:
     def loop(call_address, block_address):
         call, block = call_at(call_address), block_at(block_address)
         count, size, n = block.count, call.last + 1, call.coordinates
-        index = integers2(block.index, count, width)
+        index, rows = integers2(block.index, count, width), integers2(block.rows, count, width)
         p, m = numbers(block.numbers, count), whole(block.integers, count)
         inputs = Inputs(complexes2(call.signals, call.signal_count, 3), integers(call.callbacks, call.callback_count))
         own_x, own_v, own_a, own_r = local_x(), local_v(), local_a(), local_r()
         own_real, own_matrix = real_x(), real_matrix()
         x, v, a = complexes(call.x, size), complexes(call.v, size), complexes(call.a, size)
-        r, real_position = complexes(call.r, size), reals(call.x, size)
+        r, real_position = complexes(call.r, call.last_row + 1), reals(call.x, size)
         real_velocity, real_acceleration = reals(call.v, size), reals(call.a, size)
         matrix, slots = reals(call.matrix, call.entries), integers2(call.slots, count, width * width)
         tangent = call.mode == TANGENT
@@ -86,7 +86,7 @@ def _complex(kind: "Kind") -> BlockKernel:
                     own_real[i] = real_position[index[e, i]]
                 formula(own_real, p[e], m[e], call.by_x, call.by_a, own_matrix)
                 for i in range(width):
-                    row = call.motion if index[e, i] < n else call.constraint
+                    row = call.motion if rows[e, i] < call.increments else call.constraint
                     for j in range(width):
                         if own_matrix[i, j] != 0.0:
                             matrix[slots[e, i * width + j]] += own_matrix[i, j] * row
@@ -115,20 +115,20 @@ def _complex(kind: "Kind") -> BlockKernel:
                     own_x[j], own_v[j] = real_position[column], real_velocity[column]
                     own_a[j] = real_acceleration[column]
                     for i in range(width):
-                        row = index[e, i]
-                        if row < call.last:
-                            factor = call.motion if row < n else call.constraint
+                        row = rows[e, i]
+                        if row < call.last_row:
+                            factor = call.motion if row < call.increments else call.constraint
                             matrix[slots[e, i * width + j]] += own_r[i].imag / STEP * factor
                 else:
                     for i in range(width):
-                        r[index[e, i]] += own_r[i]
+                        r[rows[e, i]] += own_r[i]
 
-    return _made(loop, kind, "residual", complex)
+    return made(loop, kind, "residual", complex)
 
 
 def rates(kind: "Kind", dtype: type) -> BlockKernel:
     """Fill the first and second time derivatives of the constraints."""
-    view, view2 = _arithmetic(dtype)
+    view, view2 = arithmetic(dtype)
     function, width, coordinates, multipliers = kind.rates_function, kind.width, kind.coordinates, kind.multipliers
     numbers, whole = records(kind.number_record(dtype)), records(kind.integer_record)
     local_x, local_v, local_a = (local(dtype, width) for _ in range(3))
@@ -153,12 +153,12 @@ def rates(kind: "Kind", dtype: type) -> BlockKernel:
                 row = index[e, coordinates + i]
                 rate[row], second[row] = own_rate[i], own_second[i]
 
-    return _made(loop, kind, "rates", dtype)
+    return made(loop, kind, "rates", dtype)
 
 
 def energy(kind: "Kind", dtype: type) -> BlockKernel:
     """Add kinetic energy, potential energy and power."""
-    view, view2 = _arithmetic(dtype)
+    view, view2 = arithmetic(dtype)
     function, width = kind.energy_function, kind.width
     numbers, whole = records(kind.number_record(dtype)), records(kind.integer_record)
     local_x, local_v = (local(dtype, width) for _ in range(2))
@@ -180,12 +180,12 @@ def energy(kind: "Kind", dtype: type) -> BlockKernel:
             totals[1] += potential
             totals[2] += power
 
-    return _made(loop, kind, "energy", dtype)
+    return made(loop, kind, "energy", dtype)
 
 
 def outputs(kind: "Kind", dtype: type) -> BlockKernel:
     """Fill the outputs of the components, (count, outputs), at the call's ``r``."""
-    view, view2 = _arithmetic(dtype)
+    view, view2 = arithmetic(dtype)
     function: Any = kind.observe
     width, wide = kind.width, len(kind.outputs)
     numbers, whole = records(kind.number_record(dtype)), records(kind.integer_record)
@@ -205,7 +205,7 @@ def outputs(kind: "Kind", dtype: type) -> BlockKernel:
                 own_x[i], own_v[i], own_a[i] = x[g], v[g], a[g]
             function(own_x, own_v, own_a, p[e], m[e], inputs, out[e])
 
-    return _made(loop, kind, "outputs", dtype)
+    return made(loop, kind, "outputs", dtype)
 
 
 MAKERS: dict[str, Callable[["Kind", type], BlockKernel]] = {

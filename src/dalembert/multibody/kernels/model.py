@@ -8,10 +8,8 @@ import numpy as np
 
 from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.kernels.records import BLOCK, CALL, MODEL
+from dalembert.multibody.kernels.reduction import Reduction
 from dalembert.multibody.kernels.signals import EVALUATE
-
-#: Fields of a block that hold kernels, which are compiled when they are first needed.
-ROLES = ("residual", "rates", "energy", "outputs")
 
 
 @dataclass(frozen=True)
@@ -46,6 +44,8 @@ class Model:
     coordinates : int
         Unknowns that are no multipliers.
     dtype : float or complex
+    reduction : Reduction
+        Rows of the reduced system.
     """
 
     blocks: Blocks
@@ -54,37 +54,61 @@ class Model:
     size: int
     coordinates: int
     dtype: type
-    _words: tuple[np.ndarray, np.ndarray] = field(init=False, repr=False)
+    reduction: Reduction
+    _words: tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray] = field(init=False, repr=False)
     _kernels: list[Any] = field(default_factory=list, init=False, repr=False)  # kept alive
 
     def __post_init__(self) -> None:
-        kinds = list(self.blocks.index)
-        rows, head = np.zeros(max(len(kinds), 1), BLOCK), np.zeros(1, MODEL)
-        for row, kind in zip(rows, kinds, strict=False):
-            row["count"] = len(self.blocks.index[kind])
-            row["index"] = self.blocks.index[kind].ctypes.data
-            row["integers"] = self.blocks.integers[kind].ctypes.data
-            row["numbers"] = self.blocks.numbers[kind].ctypes.data
-            row["joins"] = kind.multipliers > 0
-        own = head[0]
-        own["blocks"], own["block_count"] = rows.ctypes.data, len(kinds)
-        own["signal_count"], own["signal_index"] = len(self.signals.index), self.signals.index.ctypes.data
-        own["knots"], own["signal_data"] = self.signals.knots.ctypes.data, self.signals.data.ctypes.data
-        own["knot_count"], own["number_count"] = len(self.signals.knots), len(self.signals.data)
-        own["callbacks"], own["callback_count"] = self.callbacks.ctypes.data, len(self.callbacks)
-        own["evaluate"] = EVALUATE[self.dtype].address
-        object.__setattr__(self, "_words", (head, rows))
+        head, own = np.zeros(1, MODEL), self.reduction
+        full = self._table(self.blocks.index, self.blocks.index)
+        reduced = self._table(own.index, own.index) if own.nodes else full
+        nodes = self._table(own.nodes, own.nodes)
+        table = head[0]
+        table["blocks"], table["block_count"] = full.ctypes.data, len(self.blocks.index)
+        table["reduced"], table["reduced_count"] = reduced.ctypes.data, len(own.index)
+        table["nodes"], table["node_count"] = nodes.ctypes.data, len(own.nodes)
+        table["rows"] = own.rows.ctypes.data
+        table["signal_count"], table["signal_index"] = len(self.signals.index), self.signals.index.ctypes.data
+        table["knots"], table["signal_data"] = self.signals.knots.ctypes.data, self.signals.data.ctypes.data
+        table["knot_count"], table["number_count"] = len(self.signals.knots), len(self.signals.data)
+        table["callbacks"], table["callback_count"] = self.callbacks.ctypes.data, len(self.callbacks)
+        table["evaluate"] = EVALUATE[self.dtype].address
+        object.__setattr__(self, "_words", (head, full, reduced, nodes))
         self.need("residual")
+
+    def _table(self, kinds: Iterable[Kind], rows: Mapping[Kind, np.ndarray]) -> np.ndarray:
+        """Blocks of kinds with the rows of their residuals, without kernels."""
+        kinds = list(kinds)
+        table = np.zeros(max(len(kinds), 1), BLOCK)
+        for block, kind in zip(table, kinds, strict=False):
+            block["count"], block["joins"] = len(self.blocks.index[kind]), kind.multipliers > 0
+            block["index"], block["rows"] = self.blocks.index[kind].ctypes.data, rows[kind].ctypes.data
+            block["integers"] = self.blocks.integers[kind].ctypes.data
+            block["numbers"] = self.blocks.numbers[kind].ctypes.data
+        return table
 
     def need(self, *roles: str) -> "Model":
         """Load the kernels of these roles, and hand the model back."""
-        for row, kind in zip(self._words[1], self.blocks.index, strict=False):
+        for block, kind in zip(self._words[1], self.blocks.index, strict=False):
             for role in roles:
-                if row[role] == 0 and kind.has(role):
-                    kernel = kind.kernel(role, self.dtype)
-                    self._kernels.append(kernel)
-                    row[role] = kernel.address
+                if block[role] == 0 and kind.has(role):
+                    block[role] = self._load(kind, role, self.dtype)
         return self
+
+    def reduced(self) -> "Model":
+        """Load the kernels of the reduced system, and hand the model back."""
+        if self.reduction.nodes:
+            for block, kind in zip(self._words[2], self.reduction.index, strict=False):
+                block["residual"] = self._load(kind, "residual" if kind.is_flat else "reduced", self.dtype)
+            for node, kind in zip(self._words[3], self.reduction.nodes, strict=False):
+                for role, dtype in (("spread", float), ("change", float), ("restore", self.dtype)):
+                    node[role] = self._load(kind, role, dtype)
+        return self
+
+    def _load(self, kind: Kind, role: str, dtype: type) -> int:
+        kernel = kind.kernel(role, dtype)
+        self._kernels.append(kernel)
+        return kernel.address
 
     @property
     def address(self) -> int:
@@ -120,7 +144,7 @@ class Call:
         self._callbacks = np.zeros(1, np.int64) if callbacks is None else callbacks
         self._words = np.zeros(1, CALL)
         own = self._words[0]
-        own["last"], own["coordinates"] = size, coordinates
+        own["last"], own["coordinates"] = own["last_row"], own["increments"] = size, coordinates
         own["signals"], own["signal_count"] = self.signals.ctypes.data, signals
         own["callbacks"], own["callback_count"] = self._callbacks.ctypes.data, len(self._callbacks)
 

@@ -20,22 +20,27 @@ def _record(integers: str, reals: str = "") -> np.dtype:
 
 #: What changes from call to call. Vectors have N + 1 entries, of which the last one stays zero: absent unknowns of a
 #: component point to it. ``x v a``: coordinates with multipliers, velocities, accelerations; ``coordinates``: how many
-#: of the unknowns are no multipliers; ``last``: N. ``r rate second totals matrix``: what kernels add to; ``entries`` of
-#: the matrix. ``signals`` (signals, 3) at the time ``t``, ``within`` its smooth stretch. ``mode``: residual or tangent
-#: of a complex kernel. ``slots``: where the entries of the block's local matrices stand in ``matrix``. The tangent is
-#: the derivative along ``by_x dq + by_v dv + by_a da``, its rows multiplied by ``motion`` and ``constraint``.
+#: of the unknowns are no multipliers; ``last``: N. Rows of residual and tangent are those of ``increments``, then of
+#: multipliers, ``last_row`` in all: as many as the unknowns in the full system, fewer in the reduced one. ``r rate
+#: second totals matrix``: what kernels add to; ``entries`` of the matrix. ``delta``: increments, and the ``change``
+#: that they make of the coordinates. ``signals`` (signals, 3) at the time ``t``, ``within`` its smooth stretch.
+#: ``mode``: residual or tangent of a complex kernel. ``slots``: where the entries of the block's local matrices stand
+#: in ``matrix``. The tangent is the derivative along ``by_x dq + by_v dv + by_a da``, its rows multiplied by ``motion``
+#: and ``constraint``.
 CALL = _record(
-    "coordinates last x v a r rate second totals matrix entries signals signal_count callbacks callback_count "
-    "mode slots",
+    "coordinates last increments last_row x v a r rate second totals matrix entries delta change "
+    "signals signal_count callbacks callback_count mode slots",
     "t within by_x by_v by_a motion constraint",
 )
-#: Components of one kind: how many, their unknowns (count, width), integers and numbers, and the kind's kernels in the
-#: model's arithmetic; 0 where there is none. ``joins``: whether the kind has constraints.
-BLOCK = _record("count index integers numbers residual rates energy outputs joins")
-#: A model: its blocks, and its signals, see :mod:`signals`.
+#: Components of one kind: how many, their unknowns (count, width), the rows of their residual (count, -), integers and
+#: numbers, and the kind's kernels in the model's arithmetic (``spread`` and ``change`` in real numbers); 0 where there
+#: is none. ``joins``: whether the kind has constraints.
+BLOCK = _record("count index rows integers numbers residual rates energy outputs joins spread change restore")
+#: A model: its blocks; those of the reduced system; the nodes as blocks, and the row of each unknown; its signals, see
+#: :mod:`signals`. A model without nodes has one system: ``reduced`` are its blocks.
 MODEL = _record(
-    "blocks block_count signal_count signal_index knots knot_count signal_data number_count "
-    "callbacks callback_count evaluate"
+    "blocks block_count reduced reduced_count nodes node_count rows "
+    "signal_count signal_index knots knot_count signal_data number_count callbacks callback_count evaluate"
 )
 
 RESIDUAL, TANGENT = 0, 1

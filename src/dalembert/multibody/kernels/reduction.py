@@ -9,7 +9,7 @@ from dalembert.errors import ModelError
 from dalembert.multibody.kernels.charts import Chart
 from dalembert.multibody.kernels.kind import Kind
 
-_NODAL = -1  # row of a coordinate of a node, which has none
+_NODAL = -1  # row of an unknown of a node, which has none
 
 
 class Reduction(NamedTuple):
@@ -47,7 +47,7 @@ def reduction(index: Mapping[Kind, np.ndarray], n: int, size: int) -> Reduction:
     counts = [len(index[kind]) * kind.increments for kind in nodal]
     increments = len(flat) + sum(counts)
     own = increments + len(others)
-    rows[:n], rows[n:] = _NODAL, own
+    rows[:-1], rows[-1] = _NODAL, own
     rows[flat], rows[others] = np.arange(len(flat)), increments + np.arange(len(others))
     nodes: dict[Kind, np.ndarray] = {}
     places: dict[tuple[Chart | None, int], np.ndarray] = {}  # rows of the node with this first coordinate
@@ -60,7 +60,7 @@ def reduction(index: Mapping[Kind, np.ndarray], n: int, size: int) -> Reduction:
     components = {
         kind: _rows_of(kind, unknowns, rows, places, size) for kind, unknowns in index.items() if kind.chart is None
     }
-    return Reduction(increments, own, components, nodes, rows)
+    return Reduction(increments, own, components, nodes, np.where(rows == _NODAL, own, rows))
 
 
 def _rows_of(
@@ -70,17 +70,15 @@ def _rows_of(
     parts, at = [], 0
     for chart in kind.charts:
         own = index[:, at : at + chart.size]
-        if chart.is_flat:
-            parts.append(rows[own])
-        else:
-            none = np.full(chart.increments, rows[-1])
-            known = {**places, (chart, absent): none}
-            parts.append(np.array([known.get((chart, int(first)), none + _NODAL - rows[-1]) for first in own[:, 0]]))
+        known = {**places, (chart, absent): np.full(chart.increments, rows[-1])}
+        none = np.full(chart.increments, _NODAL)
+        nodal = [known.get((chart, int(first)), none) for first in own[:, 0]]
+        parts.append(rows[own] if chart.is_flat else np.array(nodal))
         at += chart.size
     found = np.ascontiguousarray(np.concatenate([*parts, rows[index[:, at:]]], axis=1))
     if np.any(found == _NODAL):
         raise ModelError(
-            f"kind {kind.name!r}: a component depends on coordinates that internal constraints hold, but the kind does "
-            "not declare their charts. Add them to its 'charts'"
+            f"kind {kind.name!r}: a component depends on coordinates that internal constraints hold, or on their "
+            "multipliers, but the kind does not declare their charts. Add them to its 'charts'"
         )
     return found

@@ -6,6 +6,7 @@ import numpy as np
 
 import dalembert.multibody as mb
 from dalembert.kernels.kernel import inlined
+from dalembert.kernels.views import stack
 from dalembert.multibody.components.fields import Number
 from dalembert.multibody.components.planar import markers
 from dalembert.multibody.components.planar.body import GRADIENT, POSITION, Body, Marker, with_points
@@ -108,21 +109,25 @@ def cayley_in_space(x, d, dx):
 
 @inlined
 def orthonormal(x, p, m, dx):
-    """Newton's iteration for the nearest rotation: D <- 1.5 D - 0.5 D (D^T D), which converges quadratically."""
+    """Newton's iteration for the nearest rotation, D <- 1.5 D - 0.5 D (D^T D), to rounding."""
+    before = stack(x, 9)
     for i in range(9):
         dx[i] = 0.0 * x[i]
-    for _ in range(4):
-        before = (
-            x[0] + dx[0], x[1] + dx[1], x[2] + dx[2], x[3] + dx[3], x[4] + dx[4], x[5] + dx[5], x[6] + dx[6],
-            x[7] + dx[7], x[8] + dx[8],
-        )  # fmt: skip
+    for _ in range(20):
+        largest = 0.0
+        for i in range(9):
+            before[i] = x[i] + dx[i]
         for i in range(3):
             for j in range(3):
-                product = -1.0 if i == j else 0.0
-                for k in range(3):
-                    product = product + before[3 * i + k] * before[3 * j + k]
+                product = before[3 * i] * before[3 * j]
+                product += before[3 * i + 1] * before[3 * j + 1] + before[3 * i + 2] * before[3 * j + 2]
+                if i == j:
+                    product -= 1.0
+                largest = max(largest, abs(product.real))
                 for k in range(3):
                     dx[3 * i + k] -= 0.5 * product * before[3 * j + k]
+        if largest < 1e-8:  # its square is rounding
+            break
 
 
 @inlined

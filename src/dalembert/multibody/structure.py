@@ -9,6 +9,7 @@ from dalembert.kernels.kernel import Compiled
 from dalembert.multibody.couplings import Couplings
 from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.kernels.linear import Layout
+from dalembert.multibody.kernels.nodes import CHANGE, RESTORE, SPREAD
 from dalembert.multibody.kernels.reduction import Reduction, reduction
 
 
@@ -101,4 +102,5 @@ class Structure:
         linear = [kernel for kernel in self.reduced.linear_kernels if kernel not in self.full.linear_kernels]
         roles = [("reduced", float), ("reduced", complex), ("restore", float), ("restore", complex)]
         roles += [("spread", float), ("change", float)]
-        return [*linear, *(kind.kernel(*role) for role in roles for kind in self.index if kind.has(role[0]))]
+        nodes = [SPREAD, CHANGE, *RESTORE.values()]
+        return [*linear, *nodes, *(kind.kernel(*role) for role in roles for kind in self.index if kind.has(role[0]))]

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dalembert.kernels.kernel import inlined, kernel
+from dalembert.kernels.kernel import kernel
 from dalembert.kernels.words import Address, Complexes, Complexes2, Integers, Reals
 from dalembert.multibody.integrators.lifting import lift
 from dalembert.multibody.integrators.problem import Problem
@@ -60,9 +60,13 @@ def differentiate(
     for d in range(len(directions)):
         dold, dnew = row(dolds, d), row(dnews, d)
         copy(dnew, dold)
-        advance(n, c, dold, dnew)
-        lift(n, new, dnew, lifted)
-        _restore(n, c, directions[d], new, dold, dnew, room)
+        for again in (False, True):
+            advance(n, c, dold, dnew)
+            lift(n, new, dnew, lifted)
+            if again or not restore(directions[d], c.dq, lifted[0], room.dual_work, room.moved):
+                break
+            for i in range(n):  # the derivatives of the coordinates keep the internal constraints
+                dnew.a[i] -= room.moved[i].imag / STEP
         set_signals(directions[d], t, within, room.dual_work)
         reduced_residual(directions[d], own.increments, lifted[0], lifted[1], lifted[2], room.dual_work, 1.0 / c.dq, r)
         for i in range(len(r) - 1):
@@ -72,13 +76,3 @@ def differentiate(
         subtract(n, change, dnew)
         advance(n, c, dold, dnew)
     return True
-
-
-@inlined
-def _restore(n, c, model, new, dold, dnew, room):
-    """Move the derivatives of the coordinates into the tangent space of the internal constraints."""
-    if restore(model, c.dq, room.lifted[0], room.dual_work, room.moved):
-        for i in range(n):
-            dnew.a[i] -= room.moved[i].imag / STEP
-        advance(n, c, dold, dnew)
-        lift(n, new, dnew, room.lifted)

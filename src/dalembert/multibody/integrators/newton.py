@@ -70,11 +70,12 @@ def _predict(n, c, model, old, newton, new):
         new.a[i] = old.a[i] + c.step * slope[i]
     for i in range(n, len(old.x) - 1):
         new.x[i] = old.x[i] + c.step * slope[i]
-    advance(n, c, old, new)
-    if restore(model, c.dq, new.x, newton.work, change):
+    for again in (False, True):
+        advance(n, c, old, new)
+        if again or not restore(model, c.dq, new.x, newton.work, change):
+            break
         for i in range(n):
             new.a[i] -= change[i]
-        advance(n, c, old, new)
 
 
 @inlined

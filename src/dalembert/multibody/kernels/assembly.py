@@ -5,7 +5,7 @@ signals hold the time.
 """
 
 from dalembert.kernels.kernel import inlined, inner
-from dalembert.kernels.views import address_of, call, integers
+from dalembert.kernels.views import address_of, call
 from dalembert.multibody.kernels.records import BLOCK_SIZE, RESIDUAL, TANGENT, block_at, call_at, model_at
 
 
@@ -124,53 +124,38 @@ def energies(model, x, v, work, totals):
 
 
 @inlined
-def _deal(table, delta, change):
-    """Increments of coordinates that belong to no node, and of multipliers; 0 for the others."""
-    rows = integers(table.rows, len(change))
-    for i in range(len(change)):
-        change[i] = delta[rows[i]]
+def _of_nodes(kernel, model, x, change, work):
+    own = call_at(work)
+    own.x, own.change = address_of(x), address_of(change)
+    call(kernel, work, model)
 
 
-@inner
+@inlined
 def spread(model, x, delta, work, change):
     """Fill ``change`` with the corrections of coordinates and multipliers, N(x) ``delta``, of the reduced ``delta``.
 
     In a model without nodes both are the same array, here and in `displace`.
     """
-    table, own = model_at(model), call_at(work)
-    if table.node_count == 0:
-        return
-    _deal(table, delta, change)
-    own.x, own.delta, own.change, own.last_row = address_of(x), address_of(delta), address_of(change), len(delta) - 1
-    for k in range(table.node_count):
-        node = table.nodes + k * BLOCK_SIZE
-        call(block_at(node).spread, work, node)
+    if model_at(model).spread != 0:
+        own = call_at(work)
+        own.delta, own.last_row = address_of(delta), len(delta) - 1
+        _of_nodes(model_at(model).spread, model, x, change, work)
 
 
-@inner
+@inlined
 def displace(model, scale, x, delta, work, change):
     """Fill ``change`` so that x - ``scale`` change has the increments -``scale`` delta, which may be large."""
-    table, own = model_at(model), call_at(work)
-    if table.node_count == 0:
-        return
-    _deal(table, delta, change)
-    own.x, own.delta, own.change, own.last_row = address_of(x), address_of(delta), address_of(change), len(delta) - 1
-    own.by_x = scale
-    for k in range(table.node_count):
-        node = table.nodes + k * BLOCK_SIZE
-        call(block_at(node).change, work, node)
+    if model_at(model).change != 0:
+        own = call_at(work)
+        own.delta, own.last_row, own.by_x = address_of(delta), len(delta) - 1, scale
+        _of_nodes(model_at(model).change, model, x, change, work)
 
 
-@inner
+@inlined
 def restore(model, scale, x, work, change):
     """Whether there are nodes; if so, fill ``change`` so that x - ``scale`` change satisfies internal constraints."""
-    table, own = model_at(model), call_at(work)
-    if table.node_count == 0:
+    if model_at(model).restore == 0:
         return False
-    for i in range(len(change)):
-        change[i] = 0.0
-    own.x, own.change, own.by_x = address_of(x), address_of(change), scale
-    for k in range(table.node_count):
-        node = table.nodes + k * BLOCK_SIZE
-        call(block_at(node).restore, work, node)
+    call_at(work).by_x = scale
+    _of_nodes(model_at(model).restore, model, x, change, work)
     return True

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from dalembert.multibody.kernels.kind import Kind
+from dalembert.multibody.kernels.nodes import CHANGE, RESTORE, SPREAD
 from dalembert.multibody.kernels.records import BLOCK, CALL, MODEL
 from dalembert.multibody.kernels.reduction import Reduction
 from dalembert.multibody.kernels.signals import EVALUATE
@@ -98,6 +99,9 @@ class Model:
     def reduced(self) -> "Model":
         """Load the kernels of the reduced system, and hand the model back."""
         if self.reduction.nodes:
+            head = self._words[0]
+            head["spread"], head["change"] = SPREAD.address, CHANGE.address
+            head["restore"] = RESTORE[self.dtype].address
             for block, kind in zip(self._words[2], self.reduction.index, strict=False):
                 block["residual"] = self._load(kind, "residual" if kind.is_flat else "reduced", self.dtype)
             for node, kind in zip(self._words[3], self.reduction.nodes, strict=False):

@@ -36,10 +36,11 @@ CALL = _record(
 #: numbers, and the kind's kernels in the model's arithmetic (``spread`` and ``change`` in real numbers); 0 where there
 #: is none. ``joins``: whether the kind has constraints.
 BLOCK = _record("count index rows integers numbers residual rates energy outputs joins spread change restore")
-#: A model: its blocks; those of the reduced system; the nodes as blocks, and the row of each unknown; its signals, see
-#: :mod:`signals`. A model without nodes has one system: ``reduced`` are its blocks.
+#: A model: its blocks; those of the reduced system; the nodes as blocks, the row of each unknown, and
+#: kernels of all nodes; its signals, see :mod:`signals`. A model without nodes has one system, ``reduced`` are its
+#: blocks, and no such kernels.
 MODEL = _record(
-    "blocks block_count reduced reduced_count nodes node_count rows "
+    "blocks block_count reduced reduced_count nodes node_count rows spread change restore "
     "signal_count signal_index knots knot_count signal_data number_count callbacks callback_count evaluate"
 )
 

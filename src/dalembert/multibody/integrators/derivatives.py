@@ -4,14 +4,21 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dalembert.kernels.kernel import kernel
+from dalembert.kernels.kernel import inlined, kernel
 from dalembert.kernels.words import Address, Complexes, Complexes2, Integers, Reals
 from dalembert.multibody.integrators.lifting import lift
 from dalembert.multibody.integrators.problem import Problem
-from dalembert.multibody.kernels.assembly import reduced_residual, reduced_tangent, restore, set_signals, spread
+from dalembert.multibody.kernels.assembly import (
+    has_nodes,
+    reduced_residual,
+    reduced_tangent,
+    restore,
+    set_signals,
+    spread,
+)
 from dalembert.multibody.kernels.dual import STEP
 from dalembert.multibody.kernels.linear import Factors, factorise, solve, storage
-from dalembert.multibody.kernels.motion import Coefficients, Motion, Motions, advance, copy, row, subtract
+from dalembert.multibody.kernels.motion import Coefficients, Motion, Motions, advance, copy, row, shift, subtract
 
 
 class Differentiation(NamedTuple):
@@ -60,13 +67,10 @@ def differentiate(
     for d in range(len(directions)):
         dold, dnew = row(dolds, d), row(dnews, d)
         copy(dnew, dold)
-        for again in (False, True):
-            advance(n, c, dold, dnew)
-            lift(n, new, dnew, lifted)
-            if again or not restore(directions[d], c.dq, lifted[0], room.dual_work, room.moved):
-                break
-            for i in range(n):  # the derivatives of the coordinates keep the internal constraints
-                dnew.a[i] -= room.moved[i].imag / STEP
+        advance(n, c, dold, dnew)
+        if has_nodes(directions[d]):
+            _restore(n, c, directions[d], new, dnew, room)
+        lift(n, new, dnew, lifted)
         set_signals(directions[d], t, within, room.dual_work)
         reduced_residual(directions[d], own.increments, lifted[0], lifted[1], lifted[2], room.dual_work, 1.0 / c.dq, r)
         for i in range(len(r) - 1):
@@ -76,3 +80,15 @@ def differentiate(
         subtract(n, change, dnew)
         advance(n, c, dold, dnew)
     return True
+
+
+@inlined
+def _restore(n, c, model, new, dnew, room):
+    """Move the derivatives of the coordinates into the tangent space of the internal constraints."""
+    x, moved, change = room.lifted[0], room.moved, room.change
+    for i in range(len(x)):
+        x[i] = complex(new.x[i], STEP * dnew.x[i])
+    restore(model, c.dq, x, room.dual_work, moved)
+    for i in range(n):
+        change[i] = moved[i].imag / STEP
+    shift(n, c, change, dnew)

@@ -13,7 +13,7 @@ from dalembert.kernels.words import Address, Reals
 from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR, Problem
 from dalembert.multibody.kernels.assembly import displace, reduced_residual, reduced_tangent, restore, set_signals
 from dalembert.multibody.kernels.linear import Factors, factorise, solve, storage
-from dalembert.multibody.kernels.motion import advance
+from dalembert.multibody.kernels.motion import advance, shift
 
 _MOST_ITERATIONS = 12
 _SLOW = 0.3  # contraction at which an iteration is not worth going on with the kept factorisation
@@ -70,12 +70,9 @@ def _predict(n, c, model, old, newton, new):
         new.a[i] = old.a[i] + c.step * slope[i]
     for i in range(n, len(old.x) - 1):
         new.x[i] = old.x[i] + c.step * slope[i]
-    for again in (False, True):
-        advance(n, c, old, new)
-        if again or not restore(model, c.dq, new.x, newton.work, change):
-            break
-        for i in range(n):
-            new.a[i] -= change[i]
+    advance(n, c, old, new)
+    if restore(model, c.dq, new.x, newton.work, change):
+        shift(n, c, change, new)
 
 
 @inlined

@@ -131,12 +131,18 @@ def _of_nodes(kernel, model, x, change, work):
 
 
 @inlined
+def has_nodes(model):
+    """Whether a model has nodes, so that the reduced system differs from the full one."""
+    return model_at(model).node_count > 0
+
+
+@inlined
 def spread(model, x, delta, work, change):
     """Fill ``change`` with the corrections of coordinates and multipliers, N(x) ``delta``, of the reduced ``delta``.
 
     In a model without nodes both are the same array, here and in `displace`.
     """
-    if model_at(model).spread != 0:
+    if has_nodes(model):
         own = call_at(work)
         own.delta, own.last_row = address_of(delta), len(delta) - 1
         _of_nodes(model_at(model).spread, model, x, change, work)
@@ -145,7 +151,7 @@ def spread(model, x, delta, work, change):
 @inlined
 def displace(model, scale, x, delta, work, change):
     """Fill ``change`` so that x - ``scale`` change has the increments -``scale`` delta, which may be large."""
-    if model_at(model).change != 0:
+    if has_nodes(model):
         own = call_at(work)
         own.delta, own.last_row, own.by_x = address_of(delta), len(delta) - 1, scale
         _of_nodes(model_at(model).change, model, x, change, work)
@@ -154,7 +160,7 @@ def displace(model, scale, x, delta, work, change):
 @inlined
 def restore(model, scale, x, work, change):
     """Whether there are nodes; if so, fill ``change`` so that x - ``scale`` change satisfies internal constraints."""
-    if model_at(model).restore == 0:
+    if not has_nodes(model):
         return False
     call_at(work).by_x = scale
     _of_nodes(model_at(model).restore, model, x, change, work)

@@ -110,6 +110,17 @@ def advance(n, c, old, new):
 
 
 @inner
+def shift(n, c, change, state):
+    """Take a change off the accelerations of an advanced state, with what it changes of the rest."""
+    share = (1.0 - c.alpha_f) / (1.0 - c.alpha_m)
+    for i in range(n):
+        state.a[i] -= change[i]
+        state.w[i] -= share * change[i]
+        state.v[i] -= c.dv * change[i]
+        state.x[i] -= c.dq * change[i]
+
+
+@inner
 def interpolate(n, h, s, old, new, x, v, a):
     """State at the fraction ``s`` of a step ``h``: cubic for coordinates and velocities, linear for the rest."""
     if s > 1.0 - 1e-9:

@@ -100,7 +100,7 @@ class Structure:
         if not self.reduction.nodes:
             return []
         linear = [kernel for kernel in self.reduced.linear_kernels if kernel not in self.full.linear_kernels]
-        roles = [("reduced", float), ("reduced", complex), ("restore", float), ("restore", complex)]
-        roles += [("spread", float), ("change", float)]
-        nodes = [SPREAD, CHANGE, *RESTORE.values()]
-        return [*linear, *nodes, *(kind.kernel(*role) for role in roles for kind in self.index if kind.has(role[0]))]
+        components = [kind.kernel("reduced", dtype) for dtype in (float, complex) for kind in self.reduction.index]
+        roles = (("spread", float), ("change", float), ("restore", float), ("restore", complex))
+        nodes = [kind.kernel(*role) for role in roles for kind in self.reduction.nodes]
+        return [*linear, *components, *nodes, SPREAD, CHANGE, *RESTORE.values()]

@@ -74,8 +74,7 @@ def tangent(dual, slots, n, x, v, a, by, rows, work, matrix):
     Rows of the equations of motion are multiplied by ``rows[0]``, those of the constraints by ``rows[1]``. ``dual`` is
     the model in complex numbers, ``slots`` where each block finds the positions of its entries.
     """
-    own = _place(work, x, v, a)
-    own.increments, own.last_row = n, own.last
+    _place(work, x, v, a)
     _add_tangents(model_at(dual).blocks, model_at(dual).block_count, slots, by, rows, work, matrix)
 
 
@@ -102,7 +101,7 @@ def constraint_rates(model, n, x, v, a, work, rate, second):
 def constraint_forces(model, x, v, a, work, f):
     """Add the residuals of joints alone to ``f`` (N + 1,): constraint forces, and constraints."""
     own, table = _place(work, x, v, a), model_at(model)
-    own.r, own.mode, own.increments, own.last_row = address_of(f), RESIDUAL, own.coordinates, own.last
+    own.r, own.mode = address_of(f), RESIDUAL
     for k in range(table.block_count):
         block = table.blocks + k * BLOCK_SIZE
         if block_at(block).joins == 1:

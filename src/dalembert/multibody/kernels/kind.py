@@ -10,7 +10,7 @@ import numpy as np
 from dalembert.errors import ModelError
 from dalembert.kernels.kernel import Compiled
 from dalembert.multibody.kernels import loops, reduced
-from dalembert.multibody.kernels.charts import Chart
+from dalembert.multibody.kernels.charts import Chart, flat
 from dalembert.multibody.kernels.constraints import power_of, rates_of, residual_of
 from dalembert.multibody.kernels.debugging import plain
 from dalembert.multibody.kernels.loops import BlockKernel
@@ -98,12 +98,17 @@ class Kind:
     _kernels: dict[tuple[str, type], BlockKernel] = field(default_factory=dict, init=False, repr=False)
 
     def __post_init__(self) -> None:
-        sizes = [chart.size for chart in self.charts or [self.chart or Chart(self.coordinates, self.coordinates)]]
+        sizes = [chart.size for chart in self.parts]
         if sum(sizes) != self.coordinates:
             raise ModelError(
                 f"kind {self.name!r}: its charts have {' + '.join(map(str, sizes))} coordinates, the kind has "
                 f"{self.coordinates}. Add flat(size) for coordinates without internal constraints"
             )
+
+    @property
+    def parts(self) -> tuple[Chart, ...]:
+        """Charts of all coordinates."""
+        return (self.chart,) if self.chart is not None else self.charts or (flat(self.coordinates),)
 
     @property
     def width(self) -> int:
@@ -113,9 +118,7 @@ class Kind:
     @property
     def increments(self) -> int:
         """Local increments of the coordinates."""
-        if self.chart is not None:
-            return self.chart.increments
-        return sum(chart.increments for chart in self.charts) if self.charts else self.coordinates
+        return sum(chart.increments for chart in self.parts)
 
     @property
     def reduced_width(self) -> int:
@@ -124,8 +127,8 @@ class Kind:
 
     @property
     def is_flat(self) -> bool:
-        """Whether increments are simply those of the coordinates, so that one kernel serves both systems."""
-        return self.chart is None and all(chart.is_flat for chart in self.charts)
+        """Whether increments are simply those of the coordinates."""
+        return all(chart.is_flat for chart in self.parts)
 
     @property
     def takes_reactions(self) -> bool:

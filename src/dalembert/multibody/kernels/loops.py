@@ -33,9 +33,9 @@ def _real(kind: "Kind") -> BlockKernel:
     def loop(call_address, block_address):
         call, block = call_at(call_address), block_at(block_address)
         count, size = block.count, call.last + 1
-        index, rows = integers2(block.index, count, width), integers2(block.rows, count, width)
+        index = integers2(block.index, count, width)
         p, m = numbers(block.numbers, count), whole(block.integers, count)
-        x, v, a, r = reals(call.x, size), reals(call.v, size), reals(call.a, size), reals(call.r, call.last_row + 1)
+        x, v, a, r = reals(call.x, size), reals(call.v, size), reals(call.a, size), reals(call.r, size)
         inputs = Inputs(reals2(call.signals, call.signal_count, 3), integers(call.callbacks, call.callback_count))
         own_x, own_v, own_a, own_r = local_x(), local_v(), local_a(), local_r()
         for e in range(count):
@@ -45,7 +45,7 @@ def _real(kind: "Kind") -> BlockKernel:
                 own_r[i] = 0.0
             function(own_x, own_v, own_a, p[e], m[e], inputs, own_r)
             for i in range(width):
-                r[rows[e, i]] += own_r[i]
+                r[index[e, i]] += own_r[i]
 
     return made(loop, kind, "residual", float)
 
@@ -70,14 +70,13 @@ def _complex(kind: "Kind") -> BlockKernel:
     def loop(call_address, block_address):
         call, block = call_at(call_address), block_at(block_address)
         count, size, n = block.count, call.last + 1, call.coordinates
-        increments, last_row = call.increments, call.last_row
-        index, rows = integers2(block.index, count, width), integers2(block.rows, count, width)
+        index = integers2(block.index, count, width)
         p, m = numbers(block.numbers, count), whole(block.integers, count)
         inputs = Inputs(complexes2(call.signals, call.signal_count, 3), integers(call.callbacks, call.callback_count))
         own_x, own_v, own_a, own_r = local_x(), local_v(), local_a(), local_r()
         own_real, own_matrix = real_x(), real_matrix()
         x, v, a = complexes(call.x, size), complexes(call.v, size), complexes(call.a, size)
-        r, real_position = complexes(call.r, last_row + 1), reals(call.x, size)
+        r, real_position = complexes(call.r, size), reals(call.x, size)
         real_velocity, real_acceleration = reals(call.v, size), reals(call.a, size)
         matrix, slots = reals(call.matrix, call.entries), integers2(call.slots, count, width * width)
         tangent = call.mode == TANGENT
@@ -87,7 +86,7 @@ def _complex(kind: "Kind") -> BlockKernel:
                     own_real[i] = real_position[index[e, i]]
                 formula(own_real, p[e], m[e], call.by_x, call.by_a, own_matrix)
                 for i in range(width):
-                    row = call.motion if rows[e, i] < increments else call.constraint
+                    row = call.motion if index[e, i] < n else call.constraint
                     for j in range(width):
                         if own_matrix[i, j] != 0.0:
                             matrix[slots[e, i * width + j]] += own_matrix[i, j] * row
@@ -116,13 +115,13 @@ def _complex(kind: "Kind") -> BlockKernel:
                     own_x[j], own_v[j] = real_position[column], real_velocity[column]
                     own_a[j] = real_acceleration[column]
                     for i in range(width):
-                        row = rows[e, i]
-                        if row < last_row:
-                            factor = call.motion if row < increments else call.constraint
+                        row = index[e, i]
+                        if row < call.last:
+                            factor = call.motion if row < n else call.constraint
                             matrix[slots[e, i * width + j]] += own_r[i].imag / STEP * factor
                 else:
                     for i in range(width):
-                        r[rows[e, i]] += own_r[i]
+                        r[index[e, i]] += own_r[i]
 
     return made(loop, kind, "residual", complex)
 

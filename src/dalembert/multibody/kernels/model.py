@@ -103,7 +103,7 @@ class Model:
             head["spread"], head["change"] = SPREAD.address, CHANGE.address
             head["restore"] = RESTORE[self.dtype].address
             for block, kind in zip(self._words[2], self.reduction.index, strict=False):
-                block["residual"] = self._load(kind, "residual" if kind.is_flat else "reduced", self.dtype)
+                block["residual"] = self._load(kind, "reduced", self.dtype)
             for node, kind in zip(self._words[3], self.reduction.nodes, strict=False):
                 for role, dtype in (("spread", float), ("change", float), ("restore", self.dtype)):
                     node[role] = self._load(kind, role, dtype)

@@ -25,7 +25,7 @@ def reduced(kind: "Kind", dtype: type) -> BlockKernel:
 def _real(kind: "Kind") -> BlockKernel:
     function, width, narrow = kind.residual_function, kind.width, kind.reduced_width
     coordinates, increments = kind.coordinates, kind.increments
-    project, others = projecting(kind.charts), width - coordinates
+    project, others = projecting(kind.parts), width - coordinates
     numbers, whole = records(kind.number_record(float)), records(kind.integer_record)
     local_x, local_v, local_a, local_r = (local(float, width) for _ in range(4))
     local_s = local(float, narrow)
@@ -56,7 +56,7 @@ def _real(kind: "Kind") -> BlockKernel:
 def _complex(kind: "Kind") -> BlockKernel:
     function, width, narrow = kind.residual_function, kind.width, kind.reduced_width
     coordinates, increments = kind.coordinates, kind.increments
-    project, spread, others = projecting(kind.charts), spreading(kind.charts), width - coordinates
+    project, spread, others = projecting(kind.parts), spreading(kind.parts), width - coordinates
     numbers, whole = records(kind.number_record(complex)), records(kind.integer_record)
     local_x, local_v, local_a, local_r, local_dx = (local(complex, width) for _ in range(5))
     local_s, local_d = (local(complex, narrow) for _ in range(2))

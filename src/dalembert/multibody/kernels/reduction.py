@@ -68,7 +68,7 @@ def _rows_of(
 ) -> np.ndarray:
     """Rows of the components of a kind, (count, reduced width)."""
     parts, at = [], 0
-    for chart in kind.charts:
+    for chart in kind.parts:
         own = index[:, at : at + chart.size]
         known = {**places, (chart, absent): np.full(chart.increments, rows[-1])}
         none = np.full(chart.increments, _NODAL)

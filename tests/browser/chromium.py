@@ -17,6 +17,7 @@ OPTIONS = (
     "--disable-gpu",
     "--disable-quic",
     "--no-first-run",
+    "--no-startup-window",
     "--disable-background-networking",
     "--disable-component-update",
     "--disable-sync",
@@ -31,6 +32,20 @@ os.dup2(there[1], 4)
 os.execv(sys.argv[3], sys.argv[3:])
 """
 """The browser reads at descriptor 3 and writes at 4, whatever the pipes' ends are called here."""
+STILL = """(async () => {
+    const found = %s;
+    if (!found || found.disabled) return null;
+    found.scrollIntoView({block: "center", behavior: "instant"});
+    const middle = () => {
+        const box = found.getBoundingClientRect();
+        return [box.x + box.width / 2, box.y + box.height / 2];
+    };
+    const before = middle();
+    await new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn)));
+    const [x, y] = middle();
+    return x === before[0] && y === before[1] && found.contains(document.elementFromPoint(x, y)) ? [x, y] : null;
+})()"""
+"""Middle of an element that is enabled, does not move from one picture to the next, and is not covered; else null."""
 
 
 class Chromium:
@@ -41,7 +56,7 @@ class Chromium:
         read_there, write_here = os.pipe()
         command = [sys.executable, "-c", LAUNCH, str(read_there), str(write_there), str(program), *OPTIONS]
         self.process = subprocess.Popen(
-            [*command, f"--user-data-dir={profile}", "about:blank"],
+            [*command, f"--user-data-dir={profile}"],
             pass_fds=(read_there, write_there),
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
@@ -51,6 +66,8 @@ class Chromium:
         self.reader, self.writer = read_here, write_here
         self.buffer, self.number = b"", 0
         self.events: list[dict[str, Any]] = []
+        # Without a page the window would close with each test, and another one is dear.
+        self.kept = self.send("Target.createTarget", url="about:blank")["targetId"]
 
     def open(
         self, path: Path, *, width: int = 1200, height: int = 900, scheme: str = "light", touch: bool = False
@@ -72,6 +89,23 @@ class Chromium:
         tab.send("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=touch)
         tab.send("Emulation.setTouchEmulationEnabled", enabled=touch)
         return tab
+
+    @property
+    def pages(self) -> list[dict[str, Any]]:
+        """Open pages but the one that is kept, and frames that are processes of their own."""
+        targets = self.send("Target.getTargets")["targetInfos"]
+        return [one for one in targets if one["type"] in ("page", "iframe") and one["targetId"] != self.kept]
+
+    def close_pages(self) -> None:
+        """Close all pages, wait until they are gone, and forget their events."""
+        for page in self.pages:
+            if page["type"] == "page":
+                self.send("Target.closeTarget", targetId=page["targetId"])
+        end = time.monotonic() + PATIENCE
+        while open_ := self.pages:
+            assert time.monotonic() < end, f"pages stay open: {open_}"
+            time.sleep(0.05)
+        self.events.clear()
 
     def send(self, method: str, session: str | None = None, **parameters: Any) -> dict[str, Any]:
         """Answer to one command; events that come meanwhile are kept."""
@@ -117,12 +151,13 @@ class Tab:
         assert "exceptionDetails" not in answer, answer["exceptionDetails"]
         return answer["result"].get("value")
 
-    def until(self, script: str) -> None:
-        """Wait until a script says true."""
+    def until(self, script: str) -> Any:
+        """Wait until a script says true, or gives something; that."""
         end = time.monotonic() + PATIENCE
-        while not self._asked(script):
+        while not (answer := self._asked(script)):
             assert time.monotonic() < end, f"never came true: {script}"
             time.sleep(0.05)
+        return answer
 
     def _asked(self, script: str) -> Any:
         """Value of a script; nothing while one page gives way to another."""
@@ -141,14 +176,16 @@ class Tab:
         for kind in ("keyDown", "keyUp"):
             self.send("Input.dispatchKeyEvent", type=kind, key=name, code=key, text=text, windowsVirtualKeyCode=code)
 
+    def move_focus(self, inside: "Tab | None" = None) -> None:
+        """Press Tab, and wait until the focus has moved; ``inside`` is the page in a frame to which it moves."""
+        page = inside or self
+        page.run("window.focused = document.hasFocus() && document.activeElement; true")
+        self.press("Tab")
+        page.until("document.hasFocus() && document.activeElement !== window.focused")
+
     def click(self, script: str) -> None:
-        """Click with the mouse in the middle of an element that a script finds."""
-        self.until(f"Boolean({script})")
-        place = self.run(
-            f"(() => {{ const found = {script}; found.scrollIntoView({{block: 'center', behavior: 'instant'}}); "
-            "const box = found.getBoundingClientRect(); "
-            "return [box.x + box.width / 2, box.y + box.height / 2] })()"
-        )
+        """Click with the mouse in the middle of an element that a script finds, once it can be clicked and is still."""
+        place = self.until(STILL % script)
         for kind in ("mousePressed", "mouseReleased"):
             self.send("Input.dispatchMouseEvent", type=kind, x=place[0], y=place[1], button="left", clickCount=1)
 

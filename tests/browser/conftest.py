@@ -13,11 +13,19 @@ NAMES = ("chromium", "chromium-browser", "google-chrome", "chrome")
 
 
 @pytest.fixture(scope="session")
-def chromium(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Chromium]:
-    """The browser; ``CHROMIUM`` in the environment names the program."""
+def running(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Chromium]:
+    """The browser, with no page that is seen; ``CHROMIUM`` in the environment names the program."""
     program = os.environ.get("CHROMIUM") or next(filter(None, map(shutil.which, NAMES)), None)
     if program is None:
         pytest.skip("no Chromium was found, so no page was opened in a browser; install one, or name it in CHROMIUM")
-    running = Chromium(Path(program), tmp_path_factory.mktemp("profile"))
+    browser = Chromium(Path(program), tmp_path_factory.mktemp("profile"))
+    yield browser
+    browser.close()
+
+
+@pytest.fixture
+def chromium(running: Chromium) -> Iterator[Chromium]:
+    """The browser for one test, with which its pages are closed: one that plays a film would take half a core."""
+    assert running.pages == []
     yield running
-    running.close()
+    running.close_pages()

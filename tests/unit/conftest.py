@@ -1,7 +1,10 @@
-"""A cluster on the loopback, for the modules that ask for one."""
+"""What modules may ask for: a cluster on the loopback, and a process that has no compiled kernels."""
+
+from pathlib import Path
 
 import pytest
 
+from dalembert.kernels import objects, preparation
 from loopback_cluster import cluster
 
 
@@ -19,3 +22,13 @@ def client(started):
         client.wait_for_workers(2, timeout=60)
         yield client
     assert all(worker.poll() is None for worker in started.workers[:2])
+
+
+@pytest.fixture
+def nothing_compiled(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A process that has loaded nothing, and an empty folder."""
+    monkeypatch.setattr(objects, "cache_folder", lambda: tmp_path)
+    own = objects.Objects()
+    own._packaged = True
+    monkeypatch.setattr(preparation, "OBJECTS", own)
+    return tmp_path

@@ -122,6 +122,8 @@ def _searched(
     polynomial: ChebyshevPolynomial, low: np.ndarray, high: np.ndarray, method: str, points: int | None, starts: int
 ) -> PolynomialBounds:
     outputs = polynomial.coefficients.shape[1]
+    if method != "scan":
+        _prepare()
     points = 21 if points is None and method == "scan" else points
     spread = scan.spread(polynomial, points)
     least, most = polynomial.eta(low), polynomial.eta(high)
@@ -137,6 +139,14 @@ def _searched(
     inside = np.clip(polynomial.points(at), low[:, None], high[:, None])
     place = np.where(at == least[:, None], low[:, None], np.where(at == most[:, None], high[:, None], inside))
     return PolynomialBounds(found[0], found[1], place[0], place[1])
+
+
+def _prepare() -> None:
+    """Load or compile the search for extremes; the import takes time, and other methods need no kernel."""
+    from dalembert.kernels.preparation import prepare
+    from dalembert.surrogate.extremes import extremes
+
+    prepare([extremes])
 
 
 def _pick(values: np.ndarray, spread: scan.Scan, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

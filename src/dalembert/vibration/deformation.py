@@ -12,9 +12,10 @@ from dalembert.structure.mode_shapes import drawn_nodes
 from dalembert.structure.node_motion import known_nodes, node_motion
 from dalembert.vibration.contacts import FrictionContact
 from dalembert.vibration.curve import FrequencyCurve
-from dalembert.vibration.equations import equations
+from dalembert.vibration.equations import Equations
 from dalembert.vibration.fourier import synthesis
 from dalembert.vibration.harmonic_balance import HarmonicBalance
+from dalembert.vibration.lowering import lower
 from dalembert.vibration.storage import fields_of, stored
 from dalembert.vibration.system import VibrationSystem
 from dalembert.vibration.threads import one_thread
@@ -160,7 +161,7 @@ def _largest(curve: FrequencyCurve) -> int:
 
 def _response(system: VibrationSystem, curve: FrequencyCurve, point: int) -> np.ndarray:
     """Coefficients of all degrees of freedom, (size, coefficients), from the unknowns that the curve keeps."""
-    problem = equations(system, HarmonicBalance(**curve.provenance["method"]))
+    problem = Equations(lower(system).real, HarmonicBalance(**curve.provenance["method"]))
     balance, unknowns = problem.balance(int(curve.samples[point])), curve.unknowns[point]
     if unknowns.shape != balance.shape or curve.contacts != problem.lowered.contacts:
         raise InputError(

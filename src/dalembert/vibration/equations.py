@@ -14,6 +14,7 @@ from dalembert.vibration.fourier import Fourier
 from dalembert.vibration.harmonic_balance import AUTOMATIC, MOST_SAMPLES, HarmonicBalance
 from dalembert.vibration.lowering import Lowered, lower
 from dalembert.vibration.newton import Plane, Solution, correct
+from dalembert.vibration.preparation import prepare_balance
 from dalembert.vibration.springs import BilinearStop, CubicSpring
 from dalembert.vibration.system import StaticForce, VibrationSystem
 
@@ -100,8 +101,23 @@ class Equations:
         return norm(evaluation.residual) / (solution.point.load + norm(evaluation.forces) or 1.0)
 
 
-def equations(system: VibrationSystem, method: HarmonicBalance) -> Equations:
-    """The equations of a system.
+def equations(
+    system: VibrationSystem,
+    method: HarmonicBalance,
+    *,
+    residuals: bool = True,
+    stability: bool = False,
+    derivatives: bool = False,
+) -> Equations:
+    """Return the equations of a system, once the kernels that solve them are compiled.
+
+    Parameters
+    ----------
+    system : VibrationSystem
+    method : HarmonicBalance
+    residuals, stability, derivatives : bool
+        What is computed beside residuals with their Jacobians: residuals alone, as :meth:`Equations.solve` does, the
+        stability of solutions by the time map, derivatives by parameters.
 
     Raises
     ------
@@ -113,6 +129,7 @@ def equations(system: VibrationSystem, method: HarmonicBalance) -> Equations:
     lowered = lower(system).real
     if method.odd_only:
         _require_symmetry(lowered)
+    prepare_balance(lowered, residuals=residuals, stability=stability, derivatives=derivatives)
     return Equations(lowered, method)
 
 

@@ -52,7 +52,7 @@ def floquet_multipliers(system: VibrationSystem, curve: FrequencyCurve, point: i
     if way not in (AUTOMATIC, HILL, TIME_MAP):
         raise InputError(unknown("way", way, (AUTOMATIC, HILL, TIME_MAP), "floquet_multipliers"))
     with one_thread():
-        problem = equations(system, HarmonicBalance(**curve.provenance["method"]))
+        problem = equations(system, HarmonicBalance(**curve.provenance["method"]), stability=way != HILL)
         begin = restarted(problem, curve, point, "floquet_multipliers")
         factors = np.exp(2 * np.pi * exponents(problem, begin, way).values)
     return factors[np.argsort(-np.abs(factors), kind="stable")]

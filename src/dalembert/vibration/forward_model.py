@@ -164,7 +164,7 @@ class FrequencyResponse:
         return frequency_response(self.system(vector), self.frequencies, self.method)
 
     def _linearise(self, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        problem = equations(self.system(vector), self.method)
+        problem = equations(self.system(vector), self.method, derivatives=True)
         places = self._places(problem.lowered)
         values = np.empty((len(self.frequencies), len(places)))
         jacobian = np.empty((*values.shape, len(vector)))

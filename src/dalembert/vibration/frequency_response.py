@@ -131,7 +131,7 @@ def frequency_response(
         )
     settings = {"continuation": continuation, "frequencies": list(map(float, frequencies)) if ends else "given"}
     with one_thread():
-        problem = recorded(equations(system, method), checkpoint)
+        problem = recorded(equations(system, method, stability=stability), checkpoint)
         return _followed(problem, omegas, settings, observe, start, stability, on_point)
 
 

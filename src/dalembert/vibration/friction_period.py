@@ -176,7 +176,7 @@ def _forces(
         balanced(displacements[c], z, before, force, result[c], states[c], kept, numbers[c], tangents, normal, memory)
 
 
-_forces_real, _forces_complex = kernels(_forces)
+forces_real, forces_complex = kernels(_forces)
 
 
 def forces(
@@ -195,9 +195,9 @@ def forces(
     forces : array like ``displacements``; the normal one is N - N0
     states : array of uint8, shape (contacts, samples)
     """
-    law = _forces_real
+    law = forces_real
     if not displacements.dtype == numbers.dtype == float:
-        law, displacements, numbers = _forces_complex, displacements.astype(complex), numbers.astype(complex)
+        law, displacements, numbers = forces_complex, displacements.astype(complex), numbers.astype(complex)
     result, states = np.empty_like(displacements), np.empty(displacements.shape[::2], dtype=np.uint8)
     law(displacements, numbers, tangents, normal, memory, result, states)
     return result, states

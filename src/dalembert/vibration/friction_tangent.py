@@ -126,7 +126,7 @@ def _begin_again(kept, moved, tangents):
 
 
 @kernel
-def _tangent(
+def forces_and_slopes(
     numbers: Reals2, tangents: int, normal: bool, memory: bool, synthesis: Reals2, analysis: Reals2, gemm: Address,
     displacements: Reals3, result: Reals3, states: Bytes2, jacobians: Reals4, room: Reals,
 ) -> None:  # fmt: skip
@@ -189,7 +189,7 @@ def tangent_of(
         Of displacements as in :func:`dalembert.vibration.friction_period.forces`. It returns forces and states as
         there, and Jacobians, shape (contacts, columns * coefficients, columns * coefficients).
     """
-    call = _tangent.given(numbers, tangents, normal, memory, synthesis, analysis, gemm())
+    call = forces_and_slopes.given(numbers, tangents, normal, memory, synthesis, analysis, gemm())
     count, columns = synthesis.shape[1], tangents + normal
 
     def tangent(displacements: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

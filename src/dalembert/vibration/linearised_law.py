@@ -12,7 +12,7 @@ STEP = 1e-30
 
 
 @kernel
-def _linearised(motion: Reals2, numbers: Complexes, tangents: int, normal: bool, result: Reals3) -> None:
+def linearise(motion: Reals2, numbers: Complexes, tangents: int, normal: bool, result: Reals3) -> None:
     columns, samples = motion.shape
     size = columns + tangents
     d, z, moved = stack(numbers, 3), stack(numbers, 2), stack(numbers, 2)
@@ -60,5 +60,5 @@ def linearised(motion: np.ndarray, numbers: np.ndarray, tangents: int, normal: b
     """
     columns, samples = motion.shape
     result = np.empty((samples, columns + tangents, columns + tangents))
-    _linearised(motion, numbers.astype(complex), tangents, normal, result)
+    linearise(motion, numbers.astype(complex), tangents, normal, result)
     return result

@@ -97,7 +97,7 @@ def backbone(
     if ends and (len(sizes) != 2 or sizes[0] == sizes[1]):
         raise InputError(f"backbone: the ends are {amplitudes}; expected two different amplitudes in m")
     with one_thread():
-        free = _without_harmonic_forces(equations(system, method))
+        free = _without_harmonic_forces(equations(system, method, residuals=False))
         linear = ModeEquations(free, -1).linear(mode)
         names = free.lowered.structure.dofs
         row = int(np.abs(linear.shape).argmax()) if dof is None else names.index(dof)

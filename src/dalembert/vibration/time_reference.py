@@ -17,6 +17,7 @@ from dalembert.vibration.harmonic_balance import HarmonicBalance
 from dalembert.vibration.lowering import lower
 from dalembert.vibration.newmark import Newmark
 from dalembert.vibration.periodic_motion import PeriodicMotion
+from dalembert.vibration.preparation import prepare_time
 from dalembert.vibration.shooting import shoot
 from dalembert.vibration.system import VibrationSystem
 from dalembert.vibration.threads import one_thread
@@ -89,6 +90,7 @@ def steady_state(
     lowered = lower(system).real
     problem = InTime(lowered, 2 * np.pi * frequency, method.steps_per_period, method.stand_in)
     rows = observed(lowered, observe)
+    prepare_time(lowered, on_curve=start is not None)
     with one_thread():
         run = _Run(problem, method, [])
         state = run.rest() if start is None else run.on_curve(system, *start)

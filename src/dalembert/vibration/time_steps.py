@@ -246,7 +246,7 @@ def _change(state, record, omega, room):
 
 
 @kernel
-def _advance(
+def go_through(
     modes: Modes, elements: Elements, users: Address, scheme: Scheme, state: State, omega: float, most: int,
     tolerance: float, record: Record, reaction: Reaction, room: Room,
 ) -> tuple[int, int, float]:  # fmt: skip
@@ -286,4 +286,4 @@ def advance(
     """Go through periods until one changes nothing, in place; how it ended, periods or step, change of the last one."""
     answers = reaction(len(modes.seen), len(state.sliders), record.states.shape[1])
     room = _room(modes, state)
-    return _advance(modes, elements, users, scheme, state, omega, most, tolerance, record, answers, room)
+    return go_through(modes, elements, users, scheme, state, omega, most, tolerance, record, answers, room)

@@ -12,16 +12,6 @@ from dalembert.multibody.components.planar.point_mass import POINT_MASS
 from dalembert.multibody.components.planar.sensor import SENSOR
 
 
-@pytest.fixture
-def nothing_compiled(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A process that has loaded nothing, and an empty folder."""
-    monkeypatch.setattr(objects, "cache_folder", lambda: tmp_path)
-    own = objects.Objects()
-    own._packaged = True
-    monkeypatch.setattr(preparation, "OBJECTS", own)
-    return tmp_path
-
-
 def kernels() -> list:
     return [*POINT_MASS.all_kernels(), *SENSOR.all_kernels()]
 

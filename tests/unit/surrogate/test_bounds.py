@@ -1,9 +1,12 @@
+from pathlib import Path
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from dalembert.errors import InputError
+from dalembert.kernels.preparation import observed
 from dalembert.surrogate import ChebyshevPolynomial, bounds
 from dalembert.surrogate.basis import full_tensor, total_degree
 from support import says
@@ -21,6 +24,18 @@ def test_bounds_of_a_monotone_function_are_at_corners() -> None:
     np.testing.assert_allclose([found.lower[0], found.upper[0]], np.exp([-0.5, 0.25]), rtol=1e-12)
     assert found.at_lower.tolist() == [[0.25, 0.75]]
     assert found.at_upper.tolist() == [[0.5, 0.25]]
+
+
+def test_the_search_alone_is_compiled_and_reported(nothing_compiled: Path) -> None:
+    parabola = ChebyshevPolynomial([-1.0], [1.0], [[0], [2]], [[0.5], [0.5]])
+    seen: list[tuple[int, int, str]] = []
+    with observed(lambda *progress: seen.append(progress)):
+        for method in ("scan", "bernstein"):
+            bounds(parabola, [-1.0], [0.4], method)
+        assert seen == []
+        for _ in range(2):
+            bounds(parabola, [-1.0], [0.4])
+    assert seen == [(1, 1, "dal_surrogate_extremes_extremes")]
 
 
 def test_bounds_of_an_interior_extreme_and_of_a_product() -> None:

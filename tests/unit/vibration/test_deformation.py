@@ -5,7 +5,7 @@ import pytest
 
 from dalembert.errors import InputError
 from dalembert.structure import ModeShapes, eigenmodes, mode_shapes, node_motion
-from dalembert.vibration import Deformation, HarmonicBalance, deformation, frequency_response
+from dalembert.vibration import Deformation, HarmonicBalance, deformation, frequency_response, preparation
 from frequency_cases import strip
 from support import says
 from vibrating_systems import two_masses
@@ -33,6 +33,12 @@ def test_nodes_move_as_the_observed_degrees_of_freedom_do(solved):
         shape.motion(np.array([0.0]))[0], shape.coefficients[:, :, [0, 1, 3, 5]].sum(axis=2), atol=1e-18
     )
     assert not shape.coefficients[np.isin(kept, nodes.rows(nodes.members("left")))].any()  # clamped
+
+
+def test_it_needs_no_kernel(solved, monkeypatch):
+    system, curve, _ = solved
+    monkeypatch.setattr(preparation, "prepare", lambda kernels: pytest.fail(f"{kernels} would be compiled"))
+    deformation(system, curve)
 
 
 def test_contacts_keep_their_places_states_and_energies(solved):

@@ -45,7 +45,7 @@ STILL = """(async () => {
     const [x, y] = middle();
     return x === before[0] && y === before[1] && found.contains(document.elementFromPoint(x, y)) ? [x, y] : null;
 })()"""
-"""Middle of an element that is enabled, does not move from one picture to the next, and is not covered; else null."""
+"""Middle of an element if it is enabled, not covered, and at rest over two animation frames; else null."""
 
 
 class Chromium:
@@ -66,7 +66,7 @@ class Chromium:
         self.reader, self.writer = read_here, write_here
         self.buffer, self.number = b"", 0
         self.events: list[dict[str, Any]] = []
-        # Without a page the window would close with each test, and another one is dear.
+        # Without a page the window would close after each test; a new window costs processor time.
         self.kept = self.send("Target.createTarget", url="about:blank")["targetId"]
 
     def open(
@@ -92,12 +92,12 @@ class Chromium:
 
     @property
     def pages(self) -> list[dict[str, Any]]:
-        """Open pages but the one that is kept, and frames that are processes of their own."""
+        """Open pages except the one that is kept, and frames in separate processes."""
         targets = self.send("Target.getTargets")["targetInfos"]
         return [one for one in targets if one["type"] in ("page", "iframe") and one["targetId"] != self.kept]
 
     def close_pages(self) -> None:
-        """Close all pages, wait until they are gone, and forget their events."""
+        """Close all pages, wait until they are closed, and delete their events."""
         for page in self.pages:
             if page["type"] == "page":
                 self.send("Target.closeTarget", targetId=page["targetId"])
@@ -152,7 +152,7 @@ class Tab:
         return answer["result"].get("value")
 
     def until(self, script: str) -> Any:
-        """Wait until a script says true, or gives something; that."""
+        """Wait until the value of a script is true, and return the value."""
         end = time.monotonic() + PATIENCE
         while not (answer := self._asked(script)):
             assert time.monotonic() < end, f"never came true: {script}"
@@ -177,14 +177,14 @@ class Tab:
             self.send("Input.dispatchKeyEvent", type=kind, key=name, code=key, text=text, windowsVirtualKeyCode=code)
 
     def move_focus(self, inside: "Tab | None" = None) -> None:
-        """Press Tab, and wait until the focus has moved; ``inside`` is the page in a frame to which it moves."""
+        """Press Tab and wait until the focus has moved. ``inside``: the page in a frame that receives the focus."""
         page = inside or self
         page.run("window.focused = document.hasFocus() && document.activeElement; true")
         self.press("Tab")
         page.until("document.hasFocus() && document.activeElement !== window.focused")
 
     def click(self, script: str) -> None:
-        """Click with the mouse in the middle of an element that a script finds, once it can be clicked and is still."""
+        """Click in the middle of an element that a script finds, once it is enabled, not covered and at rest."""
         place = self.until(STILL % script)
         for kind in ("mousePressed", "mouseReleased"):
             self.send("Input.dispatchMouseEvent", type=kind, x=place[0], y=place[1], button="left", clickCount=1)

@@ -14,7 +14,7 @@ NAMES = ("chromium", "chromium-browser", "google-chrome", "chrome")
 
 @pytest.fixture(scope="session")
 def running(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Chromium]:
-    """The browser, with no page that is seen; ``CHROMIUM`` in the environment names the program."""
+    """The browser for all tests; ``CHROMIUM`` in the environment names the program."""
     program = os.environ.get("CHROMIUM") or next(filter(None, map(shutil.which, NAMES)), None)
     if program is None:
         pytest.skip("no Chromium was found, so no page was opened in a browser; install one, or name it in CHROMIUM")
@@ -25,7 +25,7 @@ def running(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Chromium]:
 
 @pytest.fixture
 def chromium(running: Chromium) -> Iterator[Chromium]:
-    """The browser for one test, with which its pages are closed: one that plays a film would take half a core."""
+    """The browser for one test. Its pages are closed after it: a page that plays an animation takes half a core."""
     assert running.pages == []
     yield running
     running.close_pages()

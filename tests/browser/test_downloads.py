@@ -67,7 +67,7 @@ def _numbers(line: str) -> list[float]:
 def test_every_figure_is_saved_as_svg_and_as_png(chromium, path, folder):
     names = list(figures(fit(), trajectory=motion()))
     assert 4 < len(names) <= 10
-    for kind in ("SVG", "PNG"):  # a page each: of more than ten files in a second Chromium drops some
+    for kind in ("SVG", "PNG"):  # one page each: Chromium drops downloads of a page beyond ten per second
         tab = chromium.open(path)
         for name in names:
             tab.click(_button(name, kind))

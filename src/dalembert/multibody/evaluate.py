@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from dalembert.kernels.kernel import kernel
+from dalembert.kernels.kernel import Compiled, kernel
 from dalembert.kernels.words import Address, Reals, Reals2
 from dalembert.multibody.kernels import assembly
 from dalembert.multibody.kernels.histories import energy_history
@@ -78,6 +78,13 @@ def _violations(
             out[s, level] = 0.0
             for i in range(n, x.shape[1] - 1):
                 out[s, level] = max(out[s, level], abs(values[level, i]))
+
+
+def energy_kernels(lowered: Lowered, derivatives: bool) -> list[Compiled]:
+    """Kernels of :func:`energies`, and those that differentiate them."""
+    types = (float, complex)[: 1 + derivatives]
+    kinds = [kind for kind in lowered.data if kind.has("energy")]
+    return [energy_history, *(kind.kernel("energy", dtype) for dtype in types for kind in kinds)]
 
 
 def energies(model: Model, x: np.ndarray, v: np.ndarray, times: np.ndarray, within: np.ndarray) -> np.ndarray:

@@ -9,7 +9,7 @@ from dalembert.forward import Channel
 from dalembert.kernels.kernel import Compiled
 from dalembert.multibody.components.planar import markers
 from dalembert.multibody.components.planar.sensor import DIRECTIONAL, SENSOR
-from dalembert.multibody.evaluate import energies
+from dalembert.multibody.evaluate import energies, energy_kernels
 from dalembert.multibody.kernels.histories import outputs_history
 from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.kernels.model import Model
@@ -64,11 +64,11 @@ class Observer:
     channels: tuple[Channel, ...]
     rows: tuple[_Row, ...]
 
-    def kernels(self, derivatives: bool) -> list[Compiled]:
+    def kernels(self, lowered: Lowered, derivatives: bool) -> list[Compiled]:
         """Kernels that read the channels, and those that differentiate them."""
-        kinds = [kind for kind in dict.fromkeys(row.kind for row in self.rows) if kind is not None]
-        types = (float, complex)[: 1 + derivatives]
-        return [outputs_history, *(kind.kernel("outputs", dtype) for dtype in types for kind in kinds)]
+        kinds, types = dict.fromkeys(row.kind for row in self.rows), (float, complex)[: 1 + derivatives]
+        own = [kind.kernel("outputs", dtype) for dtype in types for kind in kinds if kind is not None]
+        return [*[outputs_history] * bool(own), *own, *(energy_kernels(lowered, derivatives) if None in kinds else [])]
 
     def read(self, lowered: Lowered, model: Model, x: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
         """Values (samples, channels) from states (samples, N + 1), real or complex."""

@@ -10,10 +10,11 @@ from scipy.sparse import csr_matrix
 from scipy.sparse.linalg import lsqr, splu
 
 from dalembert.errors import SolveError
+from dalembert.kernels.preparation import prepare
 from dalembert.multibody.assemble import assembled, refuse_redundancy, scales
 from dalembert.multibody.drawing import Drawing, draw
 from dalembert.multibody.evaluate import residual, tangent
-from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.lowering import Lowered, lower
 from dalembert.multibody.observe import observer
 from dalembert.multibody.system import System
 
@@ -97,7 +98,9 @@ def equilibrium(system: System) -> Equilibrium:
     >>> equilibrium(system).channels(["bob.centre.y"]).round(4)
     array([-1.0981])
     """
-    lowered = assembled(system)
+    placed = lower(system)
+    prepare(placed.kernels(False))
+    lowered = assembled(system, placed=placed)
     refuse_redundancy(lowered)
     still = np.zeros_like(np.real(lowered.x))
 

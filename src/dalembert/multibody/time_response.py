@@ -204,7 +204,7 @@ class TimeResponse:
         """Compile, or load, what the method needs."""
         solver = self.solver.suiting(lowered, float(self.times[-1]))
         kernels = lowered.kernels(derivatives), solver.kernels(lowered.structure, derivatives)
-        prepare([*kernels[0], *kernels[1], *observer.kernels(derivatives)])
+        prepare([*kernels[0], *kernels[1], *observer.kernels(lowered, derivatives)])
 
     def _runs(self, samples: Sequence[Lowered]) -> list[Run]:
         if not samples:

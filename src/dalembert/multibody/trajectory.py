@@ -9,9 +9,10 @@ import numpy as np
 import xarray as xr
 
 from dalembert.files import write_dataset
+from dalembert.kernels.preparation import prepare
 from dalembert.multibody.assemble import redundancy
 from dalembert.multibody.drawing import Drawing, draw
-from dalembert.multibody.evaluate import energies, violations
+from dalembert.multibody.evaluate import energies, energy_kernels, violations
 from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.run import Run
 from dalembert.multibody.kernels.motion import Motion
@@ -64,10 +65,9 @@ class Trajectory:
         InputError
             For an unknown name, with the nearest ones.
         """
-        states = self.states
-        return observer(self.system, self.lowered, tuple(names)).read(
-            self.lowered, self.lowered.real, states.x, states.v, states.a
-        )
+        states, own = self.states, observer(self.system, self.lowered, tuple(names))
+        prepare(own.kernels(self.lowered, False))
+        return own.read(self.lowered, self.lowered.real, states.x, states.v, states.a)
 
     def reactions(self, joint: str) -> np.ndarray:
         """Force (N) along x and y and torque (N m) of a joint on its second side, (samples, 3)."""
@@ -85,6 +85,7 @@ class Trajectory:
     @cached_property
     def _energies(self) -> dict[str, np.ndarray]:
         """Energies at all times of the run."""
+        prepare(energy_kernels(self.lowered, False))
         states, times = self.run.states, self.run.times
         kinetic, potential, power = energies(self.lowered.real, states.x, states.v, times, _beside(times, -1)).T
         after = power

@@ -124,7 +124,7 @@ def serve(root: Path, host: str = "127.0.0.1", port: int = 8080, token: str = ""
 
 
 def _listening(host: str, port: int) -> socket.socket:
-    """A socket at an address; who connects before the pages are ready waits for them."""
+    """Return a socket that listens at an address. Connections wait in it until the pages are ready."""
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     listening = socket.socket(family, socket.SOCK_STREAM)
     listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)

@@ -142,7 +142,7 @@ def _searched(
 
 
 def _prepare() -> None:
-    """Load or compile the search for extremes; the import takes time, and other methods need no kernel."""
+    """Compile or load the kernel of the search. Imported here because other methods need no compiler."""
     from dalembert.kernels.preparation import prepare
     from dalembert.surrogate.extremes import extremes
 

@@ -109,15 +109,15 @@ def equations(
     stability: bool = False,
     derivatives: bool = False,
 ) -> Equations:
-    """Return the equations of a system, once the kernels that solve them are compiled.
+    """Return the equations of a system. Their kernels are compiled or loaded.
 
     Parameters
     ----------
     system : VibrationSystem
     method : HarmonicBalance
     residuals, stability, derivatives : bool
-        What is computed beside residuals with their Jacobians: residuals alone, as :meth:`Equations.solve` does, the
-        stability of solutions by the time map, derivatives by parameters.
+        What is computed in addition to residuals with their Jacobians: residuals alone (:meth:`Equations.solve` needs
+        them), the stability of solutions by the time map, derivatives with respect to parameters.
 
     Raises
     ------

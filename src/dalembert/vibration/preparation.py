@@ -1,4 +1,4 @@
-"""Kernels that a computation needs, loaded or compiled before it begins."""
+"""Compile the kernels of a computation before it starts: in parallel, and with progress."""
 
 from collections.abc import Sequence
 from threading import Lock
@@ -13,11 +13,11 @@ from dalembert.vibration.time_elements import react, settle
 from dalembert.vibration.time_steps import go_through
 
 _TURN = Lock()
-"""Samples of an ensemble begin together: one thread compiles, and the others wait."""
+"""Threads of an ensemble start together: one of them compiles, and the others wait."""
 
 
 def prepare_balance(lowered: Lowered, *, residuals: bool, stability: bool, derivatives: bool) -> None:
-    """Prepare harmonic balance; the arguments are those of :func:`dalembert.vibration.equations.equations`."""
+    """Compile or load the kernels of harmonic balance. The arguments are those of :func:`dalembert.vibration.equations.equations`."""
     if lowered.blocks:
         elastic = any(block.kind == ELASTIC for block in lowered.blocks)
         own = {forces_real: residuals, linearise: stability and elastic, forces_complex: derivatives}
@@ -25,7 +25,7 @@ def prepare_balance(lowered: Lowered, *, residuals: bool, stability: bool, deriv
 
 
 def prepare_time(lowered: Lowered, *, on_curve: bool) -> None:
-    """Prepare integration in time, from rest or from a point of a curve."""
+    """Compile or load the kernels of integration in time, from rest or from a point of a curve."""
     balance = [forces_and_slopes, forces_real] if lowered.blocks else []
     _prepare([react, go_through, *([settle, *balance] if on_curve else [])])
 

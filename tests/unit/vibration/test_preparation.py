@@ -1,4 +1,4 @@
-"""What a computation in frequency or in time calls is prepared beforehand, and nothing else."""
+"""A computation in frequency or in time prepares the kernels that it calls, and no others."""
 
 from collections.abc import Callable
 from pathlib import Path

@@ -4,7 +4,7 @@ SHELL := /bin/sh
 .DEFAULT_GOAL := help
 .SUFFIXES:
 .DELETE_ON_ERROR:
-.PHONY: help demo checks kernels test verify validation docs bench wheel clean
+.PHONY: help demo names checks kernels test verify validation docs bench wheel clean
 
 DEMO_STUDY := studies/flexible-pendulum/identify.toml
 DEMO_RUN := runs/demo
@@ -24,6 +24,7 @@ BENCH_PIP := .venv-bench/bin/python -m pip install --quiet --disable-pip-version
 
 help:
 	@echo "make demo        identify a flexible double pendulum from measured motion, and write its report"
+	@echo "make names       write the index of components and the stubs of public names from the sources"
 	@echo "make test        format, lint, types, layers, tests (what a change must pass)"
 	@echo "make verify      make test, the slow tests too, and whether the validation page is up to date"
 	@echo "make validation  regenerate docs/validation.md from a full run of the verification tests"
@@ -35,6 +36,10 @@ help:
 demo: .venv/core.stamp
 	$(BIN)/dalembert run $(DEMO_STUDY) --out $(DEMO_RUN) --force
 	@echo "The report: $(CURDIR)/$(DEMO_RUN)/report.html"
+
+# Only the standard library, so that it runs where the sources do not import.
+names: .venv/bin/python
+	$(BIN)/python tools/public_names.py
 
 checks: .venv/test.stamp
 	$(BIN)/ruff format --check

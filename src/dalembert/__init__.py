@@ -1,10 +1,11 @@
 """Simulate mechanical systems, identify their parameters from measured motion, and bound what is uncertain.
 
 The public names are imported where they are first used, so that ``import dalembert`` costs almost nothing;
-``__init__.pyi`` says the same to type checkers and editors.
+``__init__.pyi``, which ``make names`` writes, says the same to type checkers and editors.
 """
 
-from importlib import import_module
+from dalembert.component_index import KINDS
+from dalembert.lazy import lazy_names
 
 __version__ = "0.1.0"
 
@@ -46,13 +47,8 @@ _NAMES = {
         design identifiability identify identify_bands identify_set predict profile
     """,
     "multibody": """
-        System AncfBeam AncfCable RigidBody RigidBar PointMass Point
-        RevoluteJoint PrismaticJoint FixedJoint DistanceJoint GearJoint PrescribedMotion
-        Bushing Force Torque Spring TorsionSpring UserForce
-        Step Harmonic Polynomial Table Custom
-        Augmented Automatic Baumgarte Collocation EnergyMomentum GaussNewton GeneralizedAlpha OdeSolver Partitioning
-        Projection RadauIIA RungeKutta4 Variational
-        TimeResponse Trajectory WorkPrecision simulate equilibrium modes work_precision
+        System Point TimeResponse Trajectory WorkPrecision simulate equilibrium modes work_precision
+        Augmented Baumgarte GaussNewton Partitioning Projection
     """,
     "export": "export_vtk",
     "uncertainty": """
@@ -68,16 +64,11 @@ _NAMES = {
         Newmark PeriodicMotion TimeComparison compare_in_time steady_state
     """,
 }
-_HOME = {name: module for module, names in _NAMES.items() for name in names.split()}
+_HOMES = {name: f"{__name__}.{module}" for module, names in _NAMES.items() for name in names.split()}
+_HOMES |= {name: f"{__name__}.multibody" for names in KINDS.values() for name in names}
 
-
-def __getattr__(name: str) -> object:
-    if name in _HOME:
-        return getattr(import_module(f"{__name__}.{_HOME[name]}"), name)
-    if name in _MODULES:
-        return import_module(f"{__name__}.{name}")
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+__getattr__, _names = lazy_names(__name__, _HOMES, _MODULES)
 
 
 def __dir__() -> list[str]:
-    return sorted(["__version__", *_HOME, *_MODULES])
+    return ["__version__", *_names()]

@@ -20,7 +20,7 @@ from dalembert.multibody.integrators.run import Run, make_problem
 from dalembert.multibody.kernels.dual import STEP
 from dalembert.multibody.lowering import Lowered, lower
 from dalembert.multibody.observe import Observer, observer
-from dalembert.multibody.simulate import checked, integrator
+from dalembert.multibody.simulation import checked, integrator
 from dalembert.multibody.system import System
 from dalembert.parameters import Parameter, Parameters
 

@@ -1,12 +1,13 @@
-"""Which kinds a study file may name: found among the public names of the packages that define them."""
+"""Which kinds a study file may name: those of the packages that define them."""
 
 import dataclasses
 import inspect
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from functools import cache
 from importlib.metadata import entry_points
 from typing import Any, get_args
 
+from dalembert.component_index import KINDS
 from dalembert.study.components import settings_of
 from dalembert.study.structure_parts import LinearSpring, LumpedMass
 
@@ -22,25 +23,25 @@ def catalogue() -> dict[str, tuple[type, ...]]:
     """Dataclasses by their role: body, joint, load, signal and solver.
 
     The role is that of the base class: what derives from ``Body`` stands in ``[[model.body]]``. Those of the package
-    are its public ones; those of others are all that have been imported, or that an entry point names.
+    are in its index; those of others are all that have been imported, or that an entry point names.
     """
     from dalembert import multibody
 
     for entry in entry_points(group=COMPONENTS):
         entry.load()
-    return {
-        role: tuple(sorted(_concrete(getattr(multibody, base), vars(multibody)), key=lambda kind: kind.__name__))
-        for base, role in ROLES.items()
-    }
+    found = {}
+    for base, role in ROLES.items():
+        kinds = [*(getattr(multibody, name) for name in KINDS[base]), *_of_others(getattr(multibody, base))]
+        found[role] = tuple(sorted(kinds, key=lambda kind: kind.__name__))
+    return found
 
 
-def _concrete(base: type, public: Mapping[str, Any]) -> Iterator[type]:
-    """Dataclasses that derive from a base, but for those of the package that are not public."""
+def _of_others(base: type) -> Iterator[type]:
+    """Dataclasses of other packages that derive from a base."""
     for kind in base.__subclasses__():
-        yield from _concrete(kind, public)
-        own = kind.__module__.partition(".")[0] == __name__.partition(".")[0]
-        shown = public.get(kind.__name__) is kind if own else not kind.__name__.startswith("_")
-        if shown and dataclasses.is_dataclass(kind) and not inspect.isabstract(kind):
+        yield from _of_others(kind)
+        foreign = kind.__module__.partition(".")[0] != __name__.partition(".")[0] and not kind.__name__.startswith("_")
+        if foreign and dataclasses.is_dataclass(kind) and not inspect.isabstract(kind):
             yield kind
 
 

@@ -1,5 +1,7 @@
 """Points: the named frames of bodies and of the ground that joints, loads and channels refer to."""
 
+__all__ = ["Ground", "GroundPoint", "Point"]
+
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 

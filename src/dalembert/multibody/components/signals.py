@@ -1,5 +1,7 @@
 """Functions of time for loads and prescribed motions."""
 
+__all__ = ["Constant", "Custom", "Harmonic", "Polynomial", "Signal", "Step", "Table"]
+
 from abc import abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field

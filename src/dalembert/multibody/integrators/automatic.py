@@ -1,5 +1,7 @@
 """The integrator that suits the mechanism."""
 
+__all__ = ["Automatic"]
+
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 

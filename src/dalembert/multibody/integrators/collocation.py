@@ -1,5 +1,7 @@
 """Time steps as minimisations: what a polynomial leaves of the equations of motion is made as small as it can be."""
 
+__all__ = ["Collocation", "GaussNewton"]
+
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 

@@ -1,5 +1,7 @@
 """The midpoint rule with the energy balanced to rounding, with the derivatives of its discrete solution."""
 
+__all__ = ["EnergyMomentum"]
+
 from collections.abc import Sequence
 from dataclasses import dataclass
 

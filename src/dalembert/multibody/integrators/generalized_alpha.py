@@ -1,5 +1,7 @@
 """Generalized-alpha for the index-3 equations, with the derivatives of its discrete solution."""
 
+__all__ = ["GeneralizedAlpha"]
+
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple

@@ -1,5 +1,7 @@
 """What an integrator is to those who ask for a motion."""
 
+__all__ = ["Integrator"]
+
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import fields

@@ -1,5 +1,7 @@
 """SciPy's error-controlled methods for the equations of index 1."""
 
+__all__ = ["OdeSolver"]
+
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise

@@ -1,5 +1,7 @@
 """Radau IIA for the stabilised index-2 equations, with the derivatives of its discrete solution."""
 
+__all__ = ["RadauIIA"]
+
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 

@@ -1,5 +1,7 @@
 """The classical method of Runge and Kutta for the equations of index 1, with exact derivatives."""
 
+__all__ = ["RungeKutta4"]
+
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple

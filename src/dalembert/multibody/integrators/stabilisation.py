@@ -1,5 +1,7 @@
 """How a method that integrates the differentiated constraints keeps to the constraints themselves."""
 
+__all__ = ["Augmented", "Baumgarte", "Partitioning", "Projection"]
+
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 

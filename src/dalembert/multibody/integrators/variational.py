@@ -1,5 +1,7 @@
 """The constrained variational integrator of the midpoint rule, with the derivatives of its discrete solution."""
 
+__all__ = ["Variational"]
+
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 

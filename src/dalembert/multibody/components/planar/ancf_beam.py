@@ -1,5 +1,7 @@
 """The fully parametrised ANCF beam."""
 
+__all__ = ["AncfBeam"]
+
 from dataclasses import InitVar, dataclass, field
 from typing import TYPE_CHECKING
 

@@ -1,5 +1,7 @@
 """The gradient-deficient ANCF cable."""
 
+__all__ = ["AncfCable"]
+
 from dataclasses import InitVar, dataclass, field
 from typing import TYPE_CHECKING
 

@@ -1,5 +1,7 @@
 """What every planar body offers."""
 
+__all__ = ["Body"]
+
 from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -1,5 +1,7 @@
 """Bushings: elastic bearings with stiffness and damping in both directions and in torsion."""
 
+__all__ = ["Bushing"]
+
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 

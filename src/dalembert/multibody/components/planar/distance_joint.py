@@ -1,5 +1,7 @@
 """The distance joint."""
 
+__all__ = ["DistanceJoint"]
+
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 

@@ -1,5 +1,7 @@
 """The fixed joint."""
 
+__all__ = ["FixedJoint"]
+
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 

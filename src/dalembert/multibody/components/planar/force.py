@@ -1,5 +1,7 @@
 """Forces at a point."""
 
+__all__ = ["Force"]
+
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 

@@ -1,5 +1,7 @@
 """The gear joint: a fixed ratio between the angles of two bodies."""
 
+__all__ = ["GearJoint"]
+
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 

@@ -1,5 +1,7 @@
 """What planar joints share: the base class, and the outputs of a joint."""
 
+__all__ = ["Joint"]
+
 from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass

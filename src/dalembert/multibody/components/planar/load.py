@@ -1,5 +1,7 @@
 """What acts without a constraint."""
 
+__all__ = ["Load"]
+
 from abc import abstractmethod
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar

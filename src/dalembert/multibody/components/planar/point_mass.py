@@ -1,5 +1,7 @@
 """The point mass."""
 
+__all__ = ["PointMass"]
+
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 

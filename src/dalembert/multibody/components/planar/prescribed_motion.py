@@ -1,5 +1,7 @@
 """Prescribed motions: a coordinate of a point that follows a function of time."""
 
+__all__ = ["PrescribedMotion"]
+
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 

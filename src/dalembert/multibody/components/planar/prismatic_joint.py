@@ -1,5 +1,7 @@
 """The prismatic joint, and its friction."""
 
+__all__ = ["PrismaticJoint"]
+
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 

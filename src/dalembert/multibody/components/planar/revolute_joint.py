@@ -1,5 +1,7 @@
 """The revolute joint, and its friction."""
 
+__all__ = ["RevoluteJoint"]
+
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 

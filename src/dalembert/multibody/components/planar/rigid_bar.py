@@ -1,5 +1,7 @@
 """The rigid bar."""
 
+__all__ = ["RigidBar"]
+
 from dataclasses import InitVar, dataclass, field
 
 from dalembert.multibody.components.fields import Number, number, pair, require

@@ -1,5 +1,7 @@
 """The rigid body with named points."""
 
+__all__ = ["RigidBody"]
+
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 

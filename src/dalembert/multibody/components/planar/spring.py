@@ -1,5 +1,7 @@
 """Springs with dampers along the connection of two points."""
 
+__all__ = ["Spring"]
+
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 

@@ -1,5 +1,7 @@
 """Torques on bodies."""
 
+__all__ = ["Torque"]
+
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 

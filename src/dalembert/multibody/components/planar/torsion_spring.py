@@ -1,5 +1,7 @@
 """Torsional springs with dampers."""
 
+__all__ = ["TorsionSpring"]
+
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 

@@ -4,6 +4,8 @@ The function gets the time and, for a and for b, position, velocity, angle and a
 the force (fx, fy) and the torque on a.
 """
 
+__all__ = ["UserForce"]
+
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any

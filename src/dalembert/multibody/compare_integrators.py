@@ -17,7 +17,7 @@ from dalembert.multibody.fingerprint import fingerprint
 from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.run import make_problem
 from dalembert.multibody.lowering import lower
-from dalembert.multibody.simulate import prepared, simulate
+from dalembert.multibody.simulation import prepared, simulate
 from dalembert.multibody.system import System
 from dalembert.multibody.trajectory import Trajectory
 from dalembert.results import Result, facts_of, stored_facts, told_of

@@ -1,7 +1,7 @@
 """From standard deviations to intervals: the noise of a fit, and the quantile that belongs to it."""
 
 import numpy as np
-from scipy.stats import norm, t
+from scipy.special import ndtri, stdtrit  # quantiles; scipy.stats takes long to load
 
 from dalembert.errors import InputError
 from dalembert.inverse.fit import Fit
@@ -33,8 +33,8 @@ def freedom(fit: Fit) -> int:
 def quantile(fit: Fit, level: float) -> float:
     """Deviations on either side of a value that hold it with probability ``level``: normal, or Student's t."""
     if noise_is_known(fit):
-        return float(norm.ppf((1 + level) / 2))
-    return float(t.ppf((1 + level) / 2, freedom(fit))) if freedom(fit) > 0 else np.nan
+        return float(ndtri((1 + level) / 2))
+    return float(stdtrit(freedom(fit), (1 + level) / 2)) if freedom(fit) > 0 else np.nan
 
 
 def variance(fit: Fit) -> float:

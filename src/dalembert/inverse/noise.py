@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import chi2
+from scipy.special import chdtri
 
 from dalembert.inverse.problem import Problem
 
@@ -44,7 +44,7 @@ def noise_floor(problem: Problem) -> NoiseFloor:
     expected = float(np.sum(weights * (given**2 + quanta**2 / 12 + (1e-6 * spread) ** 2))) + problem.priors
     source = "given deviations" if given.any() else "rounding of the data" if quanta.any() else "arithmetic"
     return NoiseFloor(
-        expected * float(chi2.ppf(0.999, problem.compared)) / problem.compared,
+        expected * float(chdtri(problem.compared, 0.001)) / problem.compared,
         source,
         expected < SMALL * signal(problem),
     )

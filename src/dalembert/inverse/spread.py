@@ -1,9 +1,10 @@
 """Points spread over the box of the parameters, for starts to be chosen from."""
 
 import numpy as np
-from scipy.stats import qmc
+import scipy
 
 from dalembert.inverse.problem import Problem
+from dalembert.latin_hypercube import latin_hypercube
 
 SPREADS = ("latin-hypercube", "sobol")
 
@@ -17,7 +18,7 @@ def spread_points(problem: Problem, number: int, seed: int, spread: str) -> np.n
     low, high = problem.search.lower, problem.search.upper
     rng = np.random.default_rng((seed, 1))
     if spread == "sobol":
-        unit = qmc.Sobol(len(low), rng=rng).random_base2(max(0, (number - 1).bit_length()))[:number]
+        unit = scipy.stats.qmc.Sobol(len(low), rng=rng).random_base2(max(0, (number - 1).bit_length()))[:number]
     else:
-        unit = qmc.LatinHypercube(len(low), rng=rng).random(number)
+        unit = latin_hypercube(len(low), number, rng)
     return low + (high - low) * unit

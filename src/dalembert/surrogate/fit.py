@@ -4,9 +4,9 @@ from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.stats import qmc
 
 from dalembert.errors import InputError, SolveError
+from dalembert.latin_hypercube import latin_hypercube
 from dalembert.surrogate.basis import chebyshev, products
 from dalembert.surrogate.polynomial import ChebyshevPolynomial
 from dalembert.surrogate.runs import Function, Runs, failed
@@ -110,8 +110,7 @@ def _held_out(runs: Runs, number: int, seed: int) -> np.ndarray:
         raise InputError(f"held_out is {number}; expected zero or more runs")
     if number == 0:
         return np.empty((0, runs.directions))
-    sampler = qmc.LatinHypercube(runs.directions, rng=np.random.default_rng((seed, 3)))
-    return -np.cos(np.pi * sampler.random(number))
+    return -np.cos(np.pi * latin_hypercube(runs.directions, number, np.random.default_rng((seed, 3))))
 
 
 def _scale(values: np.ndarray, groups: ArrayLike | None) -> np.ndarray:

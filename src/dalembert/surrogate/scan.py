@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import qmc
+import scipy
 
 from dalembert.surrogate.basis import chebyshev, products
 from dalembert.surrogate.polynomial import ChebyshevPolynomial
@@ -42,7 +42,7 @@ def spread(polynomial: ChebyshevPolynomial, points: int | None) -> Scan:
     least = FEWEST if len(degrees) <= 3 else 0
     sides = np.where(degrees > 0, np.maximum(degrees + 2, least) if points is None else points, 1)
     if np.prod(sides.astype(float)) > MOST_POINTS:
-        sobol = qmc.Sobol(2 * len(degrees), scramble=False).random_base2(12)
+        sobol = scipy.stats.qmc.Sobol(2 * len(degrees), scramble=False).random_base2(12)
         place, end = sobol[:, : len(degrees)], sobol[:, len(degrees) :]
         return Scan(np.where(end < 0.25, 0.0, np.where(end < 0.5, 1.0, place)), np.empty(0, dtype=int))
     lines = [

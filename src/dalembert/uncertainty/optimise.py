@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from scipy.stats import qmc
+import scipy
 
 from dalembert.settings import expect
 from dalembert.uncertainty.found import Found
@@ -83,6 +83,10 @@ class Optimise:
             return np.zeros((1, 0))
         corners = np.stack(np.meshgrid(*[[-1.0, 1.0]] * f, indexing="ij"), -1).reshape(-1, f) if f <= 4 else None
         number = 8 * f if self.start is None else self.start
-        inside = 2 * qmc.LatinHypercube(f, optimization="random-cd", rng=seed).random(number) - 1 if number else None
+        inside = (
+            2 * scipy.stats.qmc.LatinHypercube(f, optimization="random-cd", rng=seed).random(number) - 1
+            if number
+            else None
+        )
         faces = np.concatenate([np.eye(f), -np.eye(f)]) if f > 1 else None
         return np.concatenate([part for part in (np.zeros((1, f)), corners, faces, inside) if part is not None])

@@ -6,10 +6,10 @@ from itertools import product
 from typing import ClassVar
 
 import numpy as np
-from scipy.stats import qmc
 
 from dalembert.errors import InputError
 from dalembert.intervals import Box
+from dalembert.latin_hypercube import latin_hypercube
 from dalembert.settings import expect, expect_at_least
 from dalembert.uncertainty.found import Extremes, Found
 from dalembert.uncertainty.runs import Runs
@@ -179,7 +179,7 @@ class LatinHypercube(Drawn):
     runs: int = 200
 
     def shares(self, dimensions: int, seed: int) -> np.ndarray:
-        return qmc.LatinHypercube(dimensions, rng=seed).random(self.runs)
+        return latin_hypercube(dimensions, self.runs, np.random.default_rng(seed))
 
 
 def _grid_size(name: str, each: int, box: Box, most: int, instead: str) -> int:

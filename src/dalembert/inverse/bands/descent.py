@@ -1,10 +1,10 @@
 """Least squares over middles and radii on a surrogate."""
 
 import numpy as np
-from scipy.stats import qmc
 
 from dalembert.inverse.bands.band_problem import BandProblem
 from dalembert.inverse.bands.candidate import Candidate, candidate, slopes
+from dalembert.latin_hypercube import latin_hypercube
 from dalembert.optimize import LeastSquares, Minimum, Progress
 from dalembert.surrogate import ChebyshevPolynomial, bounds
 
@@ -57,8 +57,7 @@ def screened(problem: BandProblem, polynomial: ChebyshevPolynomial, number: int,
     """The best of ``number`` scattered boxes as starts, unknowns (up to starts, d + k), no two of them close."""
     unknowns = problem.unknowns
     width = unknowns.upper - unknowns.lower
-    sampler = qmc.LatinHypercube(len(width), rng=np.random.default_rng((seed, 1)))
-    x = unknowns.lower + width * sampler.random(number)
+    x = unknowns.lower + width * latin_hypercube(len(width), number, np.random.default_rng((seed, 1)))
     found = bounds(polynomial, *unknowns.ends(x))
     order = x[np.argsort(problem.fitness(found.lower, found.upper), kind="stable")]
     chosen = order[:1]

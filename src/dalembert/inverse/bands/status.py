@@ -1,7 +1,7 @@
 """How an identification from bands went, in full sentences with advice."""
 
 import numpy as np
-from scipy.stats import norm
+from scipy.special import ndtri
 
 from dalembert.inverse.bands.band_problem import BandProblem
 from dalembert.inverse.bands.check import scale
@@ -52,7 +52,7 @@ def _misfit(problem: BandProblem, found: Found) -> str:
         f"{given.channels[int(np.argmax(share))]!r}; {_largest(problem, apart)}."
     ]
     largest = np.max(np.abs(apart) / np.where(rms > 0, rms, 1.0))
-    stands_out = largest > norm.isf(CHANCE / (2 * max(1, 2 * np.count_nonzero(problem.weights))))
+    stands_out = largest > -ndtri(CHANCE / (2 * max(1, 2 * np.count_nonzero(problem.weights))))
     if stands_out:
         parts.append(f"One bound stands out, {largest:.2g} times the rms of its channel: look whether it is a slip.")
     if not stands_out and random_residuals(np.hstack(tuple(apart)), (problem.shape[0], 2 * problem.shape[1])):

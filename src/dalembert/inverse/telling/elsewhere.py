@@ -3,7 +3,7 @@
 from functools import partial
 
 import numpy as np
-from scipy.stats import qmc
+import scipy
 
 from dalembert.errors import SolveError
 from dalembert.inverse.descent import Memo
@@ -64,7 +64,7 @@ def _starts(problem: Problem, vector: np.ndarray, k: int, interval: tuple[float,
     size = len(vector)
     grid = np.repeat(search.points(vector)[None], 1 if size == 1 else 1 + OTHERS, axis=0)
     if size > 1:
-        spread = qmc.Halton(size, scramble=False).random(1 + OTHERS)[1:]  # its first point is a corner
+        spread = scipy.stats.qmc.Halton(size, scramble=False).random(1 + OTHERS)[1:]  # its first point is a corner
         grid[1:] = search.lower + spread * (search.upper - search.lower)
     points = np.repeat(grid[None], SCANNED, axis=0)
     points[:, :, k] = values[:, None]

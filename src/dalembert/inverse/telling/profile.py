@@ -5,7 +5,7 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
-from scipy.stats import chi2, f
+from scipy.special import chdtri, fdtri
 
 from dalembert.data import Measurements
 from dalembert.errors import InputError, unknown
@@ -118,7 +118,7 @@ def profile(
     at = problem.linearise(values)
     best = float(np.sum(problem.residuals(values, at.response) ** 2))
     known = noise_is_known(fit)
-    threshold = float(chi2.ppf(level, 1) if known else f.ppf(level, 1, freedom(fit)))
+    threshold = float(chdtri(1, 1 - level) if known else fdtri(1, freedom(fit), level))
     walk = Walk(best, noise, threshold, points, LeastSquares(trials=30))
     ways = [(fit.parameters.names.index(name), side) for name in chosen for side in (-1, 1)]
     curves, sides = [], []

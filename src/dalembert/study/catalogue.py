@@ -2,12 +2,13 @@
 
 import dataclasses
 import inspect
+import sys
 from collections.abc import Iterator
-from functools import cache
+from functools import cache, lru_cache
 from importlib.metadata import entry_points
 from typing import Any, get_args
 
-from dalembert.component_index import KINDS
+from dalembert.component_index import HOMES, KINDS
 from dalembert.study.components import settings_of
 from dalembert.study.structure_parts import LinearSpring, LumpedMass
 
@@ -18,31 +19,56 @@ COMPONENTS = "dalembert.components"
 """Group of entry points: modules of other packages that define components, signals or integrators."""
 
 
-@cache
-def catalogue() -> dict[str, tuple[type, ...]]:
-    """Dataclasses by their role: body, joint, load, signal and solver.
+Words = frozenset[str] | None
+"""Names that a document uses, so that a schema for it needs no others; None for all that there are."""
+
+
+@lru_cache(maxsize=16)
+def catalogue(words: Words = None) -> dict[str, tuple[type, ...]]:
+    """Dataclasses by their role: body, joint, load, signal and solver; only those that words name, if given.
 
     The role is that of the base class: what derives from ``Body`` stands in ``[[model.body]]``. Those of the package
     are in its index; those of others are all that have been imported, or that an entry point names.
     """
     from dalembert import multibody
 
-    for entry in entry_points(group=COMPONENTS):
-        entry.load()
     found = {}
     for base, role in ROLES.items():
-        kinds = [*(getattr(multibody, name) for name in KINDS[base]), *_of_others(getattr(multibody, base))]
-        found[role] = tuple(sorted(kinds, key=lambda kind: kind.__name__))
+        own = [getattr(multibody, name) for name in KINDS[base] if words is None or name in words]
+        others = [kind for kind in _of_others(base) if words is None or kind.__name__ in words]
+        found[role] = tuple(sorted([*own, *others], key=lambda kind: kind.__name__))
     return found
 
 
-def _of_others(base: type) -> Iterator[type]:
+def kind_names() -> Iterator[str]:
+    """Names of all kinds; none of the package is imported for them."""
+    for base, names in KINDS.items():
+        yield from names
+        yield from (kind.__name__ for kind in _of_others(base))
+
+
+def _of_others(base: str) -> Iterator[type]:
     """Dataclasses of other packages that derive from a base."""
+    _load_entries()
+    home = sys.modules.get(f"dalembert.multibody.{HOMES[base]}")
+    if home is not None:  # else nothing derives from it
+        yield from _derived(getattr(home, base))
+
+
+def _derived(base: type) -> Iterator[type]:
+    """Public dataclasses of other packages that derive from a class."""
     for kind in base.__subclasses__():
-        yield from _of_others(kind)
+        yield from _derived(kind)
         foreign = kind.__module__.partition(".")[0] != __name__.partition(".")[0] and not kind.__name__.startswith("_")
         if foreign and dataclasses.is_dataclass(kind) and not inspect.isabstract(kind):
             yield kind
+
+
+@cache
+def _load_entries() -> None:
+    """Import the modules of other packages that define components."""
+    for entry in entry_points(group=COMPONENTS):
+        entry.load()
 
 
 @cache
@@ -133,19 +159,20 @@ def stabilisations() -> dict[str, type]:
 
 
 @cache
-def parts() -> dict[str, Any]:
-    """Keys for settings that are chosen among several kinds themselves, by the names of their types."""
-    scheme, swarm = settings_of(schemes()), settings_of(swarms())
-    only = settings_of({"total-degree": schemes()["total-degree"]})
-    step = settings_of(step_minimisers())
-    stabilisation = settings_of(stabilisations())
-    return {
-        "Scheme": scheme,
-        "TotalDegree": only,
-        "ParticleSwarm": swarm,
-        "GaussNewton": step,
-        "Stabilisation": stabilisation,
-    }
+def part(name: str) -> Any:
+    """Type of the key for settings that are chosen among several kinds themselves, by the name of their type."""
+    match name:
+        case "Scheme":
+            return settings_of(schemes())
+        case "TotalDegree":
+            return settings_of({"total-degree": schemes()["total-degree"]})
+        case "ParticleSwarm":
+            return settings_of(swarms())
+        case "GaussNewton":
+            return settings_of(step_minimisers())
+        case "Stabilisation":
+            return settings_of(stabilisations())
+    return None
 
 
 @cache

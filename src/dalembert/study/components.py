@@ -47,7 +47,7 @@ def table_of(
     signal: Any = None,
     default: bool = False,
     varying: bool = True,
-    parts: Mapping[str, Any] | None = None,
+    part: Callable[[str], Any] = lambda name: None,
 ) -> type[KindTable]:
     """Table with the constructor's arguments of a dataclass as keys, and ``kind`` to tell it from others.
 
@@ -62,8 +62,8 @@ def table_of(
         Whether this kind is meant when none is given.
     varying : bool
         Whether a number may be an expression of parameters.
-    parts : mapping of str to type, optional
-        Types of the keys for arguments that are dataclasses themselves, by the name of an argument's type.
+    part : callable, optional
+        From the name of an argument's type to the type of its key, where the argument is a dataclass itself; else None.
     """
     kind = kind or target.__name__
     hints = typing.get_type_hints(target.__init__)
@@ -71,7 +71,7 @@ def table_of(
     keys: dict[str, Any] = {"kind": (Literal[kind], kind if default else ...)}  # pyright: ignore[reportInvalidTypeForm]
     for name, argument in inspect.signature(target).parameters.items():
         numeric = (number if varying else fixed)(fields[name].metadata.get("unit"))
-        key = _key(name, _bare(hints[name]), numeric, signal, parts or {})
+        key = _key(name, _bare(hints[name]), numeric, signal, part)
         keys[FORM if name == "kind" else name] = (key, _default(argument))
     table = create_model(kind, __base__=KindTable, __doc__=(target.__doc__ or kind).strip().split("\n")[0], **keys)
     table.target_type = target
@@ -88,19 +88,21 @@ def one_of(tables: Iterable[type[StudyTable]], default: str = "") -> Any:
     return Annotated[reduce(or_, tagged), Discriminator(lambda value: _kind(value, default))]
 
 
-def settings_of(kinds: Mapping[str, type], parts: Mapping[str, Any] | None = None, *, varying: bool = False) -> Any:
+def settings_of(
+    kinds: Mapping[str, type], part: Callable[[str], Any] = lambda name: None, *, varying: bool = False
+) -> Any:
     """Type of a key that takes the settings of one of several kinds: a name, or a table with ``kind`` and settings.
 
     Parameters
     ----------
     kinds : mapping of str to dataclass
         By the names that a study file gives them.
-    parts : mapping of str to type, optional
+    part : callable, optional
         As in :func:`table_of`.
     varying : bool
         Whether a number may be an expression of parameters; if not, the settings are checked by building them.
     """
-    tables = {name: table_of(target, name, varying=varying, parts=parts) for name, target in kinds.items()}
+    tables = {name: table_of(target, name, varying=varying, part=part) for name, target in kinds.items()}
     usual = AfterValidator(lambda name: tables[name].model_validate({"kind": name}))
     key = Annotated[
         Annotated[Literal[tuple(kinds)], usual, Tag("name")]  # pyright: ignore[reportInvalidTypeForm]
@@ -125,7 +127,7 @@ def _kind(value: Any, default: str) -> str:
     return value.get("kind", default) if isinstance(value, dict) else getattr(value, "kind", default)
 
 
-def _key(name: str, hint: Any, numeric: Any, signal: Any, parts: Mapping[str, Any]) -> Any:
+def _key(name: str, hint: Any, numeric: Any, signal: Any, part: Callable[[str], Any]) -> Any:
     """Type of the key for an argument."""
     leaves = _leaves(hint)
     if name == "name":
@@ -134,8 +136,8 @@ def _key(name: str, hint: Any, numeric: Any, signal: Any, parts: Mapping[str, An
     if names & _PLACES:
         point = place(bare="Ground" in names)
         return point | None if _NONE in leaves else point
-    for part in names & parts.keys():
-        return parts[part]
+    for own in filter(None, map(part, sorted(names))):
+        return own
     if signal is not None and "Signal" in names:
         return _told_apart(dict, "signal", signal, "number", numeric)
     if Callable in leaves:

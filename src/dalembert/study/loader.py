@@ -9,7 +9,7 @@ from pydantic import ValidationError
 
 from dalembert.errors import InputError, no_text, unknown
 from dalembert.study.context import Context
-from dalembert.study.schema import study_file
+from dalembert.study.schema import StudyFile, study_file, words_of
 from dalembert.study.sentences import mistakes
 from dalembert.study.study import Study
 from dalembert.study.table import placed
@@ -62,12 +62,20 @@ def load(
     names = {name for table in ("parameters", "constants") for name in _table(document, table)}
     context.names = frozenset(names)
     try:
-        file = study_file().model_validate(document, context=context)
+        file = _validated(document, context)
     except ValidationError as error:
         found = mistakes(error, document, context)
         lines = [f"{shared if shared and place[:1] == ('model',) else path.name}: {text}" for place, text in found]
         raise StudyError("\n".join(dict.fromkeys(lines)), found) from None
     return Study(path, content, file, dict(context.used), name or file.study.name or path.stem)
+
+
+def _validated(document: dict[str, Any], context: Context) -> StudyFile:
+    """The tables of a document. What is wrong with it is told by the whole schema, which knows all that there is."""
+    try:
+        return study_file(words_of(document)).model_validate(document, context=context)
+    except ValidationError:
+        return study_file().model_validate(document, context=context)
 
 
 def _read(path: Path) -> tuple[bytes, dict[str, Any]]:

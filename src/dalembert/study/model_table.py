@@ -1,12 +1,12 @@
 """The table of a study file that describes its model: components as data, or a Python function."""
 
-from functools import cache
+from functools import lru_cache
 from typing import Annotated, Any
 
 from pydantic import Field, create_model, model_validator
 
 from dalembert.errors import unknown
-from dalembert.study.catalogue import catalogue
+from dalembert.study.catalogue import Words, catalogue
 from dalembert.study.components import one_of, table_of
 from dalembert.study.functions import FunctionName
 from dalembert.study.numbers import number
@@ -16,6 +16,8 @@ from dalembert.study.table import Read, StudyTable, problem
 from dalembert.units import is_quantity, si
 
 _TABLES = ("body", "joint", "load")
+LISTS = (*_TABLES, *PARTS)
+"""Tables of which a model has several."""
 
 
 class ModelTable(StudyTable):
@@ -121,14 +123,17 @@ def _dangling(components: list[tuple[str, Any]]) -> list[str]:
     return wrong
 
 
-@cache
-def model_table() -> type[ModelTable]:
-    """The model's table with all kinds of components that there are."""
-    kinds = catalogue()
-    signal = one_of([table_of(target) for target in kinds["signal"]])
-    lists: dict[str, Any] = {
-        table: (list[one_of([table_of(target, signal=signal) for target in kinds[table]])], []) for table in _TABLES
-    }
-    lists |= {name: (kind, []) for name, kind in part_tables().items()}
-    lists["structure"] = (structure_table() | None, None)
+@lru_cache(maxsize=16)
+def model_table(words: Words = None) -> type[ModelTable]:
+    """The model's table with all kinds of components that there are, or those that words name."""
+    lists: dict[str, Any] = {}
+    if words is None or not words.isdisjoint(_TABLES):
+        signal = one_of([table_of(target) for target in catalogue()["signal"]])
+        for table in _TABLES:
+            kinds = catalogue(words)[table] or (catalogue()[table] if table in (words or ()) else ())
+            if kinds:
+                lists[table] = (list[one_of([table_of(target, signal=signal) for target in kinds])], [])
+    if words is None or not words.isdisjoint((*PARTS, "structure")):
+        lists |= {name: (kind, []) for name, kind in part_tables().items()}
+        lists["structure"] = (structure_table() | None, None)
     return create_model("Model", __base__=ModelTable, __doc__=ModelTable.__doc__, **lists)

@@ -1,6 +1,7 @@
 """Numbers of a study file: plain, with a unit, or as an expression of parameters and constants."""
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
 from typing import Annotated, Any
@@ -9,13 +10,14 @@ import numpy as np
 from pydantic import (
     AfterValidator,
     Discriminator,
+    GetJsonSchemaHandler,
     PlainValidator,
     Tag,
     ValidationInfo,
-    WithJsonSchema,
     create_model,
     model_validator,
 )
+from pydantic_core import CoreSchema
 
 from dalembert.errors import InputError, unknown
 from dalembert.study.context import Context
@@ -56,17 +58,23 @@ def number(unit: str | None) -> Any:
         names = info.context.names if isinstance(info.context, Context) else None
         return checked(read_number, value, unit, names)
 
-    return Annotated[Any, PlainValidator(read), _schema(unit)]
+    return Annotated[Any, PlainValidator(read), _Described(unit)]
 
 
 @cache
 def fixed(unit: str | None) -> Any:
     """Type of a key whose number may not depend on parameters."""
-    return Annotated[float, PlainValidator(lambda value: checked(read_number, value, unit)), _schema(unit)]
+    return Annotated[float, PlainValidator(lambda value: checked(read_number, value, unit)), _Described(unit)]
 
 
-def _schema(unit: str | None) -> WithJsonSchema:
-    return WithJsonSchema({"anyOf": [{"type": "number"}, {"type": "string"}], "description": expected(unit)})
+@dataclass(frozen=True)
+class _Described:
+    """What editors show of a number: made where a schema is asked for, since its example needs the table of units."""
+
+    unit: str | None
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        return {"anyOf": [{"type": "number"}, {"type": "string"}], "description": expected(self.unit)}
 
 
 class Grid(StudyTable):

@@ -1,7 +1,7 @@
 """The whole study file: its tables, and that they fit together."""
 
-from collections.abc import Mapping
-from functools import cache
+from collections.abc import Iterator, Mapping
+from functools import lru_cache
 from typing import Annotated, Any
 
 from pydantic import (
@@ -13,11 +13,11 @@ from pydantic import (
     model_validator,
 )
 
-from dalembert.study.catalogue import balance
+from dalembert.study.catalogue import Words, balance, kind_names
 from dalembert.study.components import buildable_table
 from dalembert.study.data_table import BandsTable, DataTable
 from dalembert.study.experiments import ExperimentTable, SensorTable, wrong_experiments
-from dalembert.study.model_table import ModelTable, model_table
+from dalembert.study.model_table import LISTS, ModelTable, model_table
 from dalembert.study.parameters import ParameterTable, check_names, read_constants
 from dalembert.study.solvers import solver
 from dalembert.study.table import Name, StudyTable, problem
@@ -95,13 +95,36 @@ def _wrong_settings(file: StudyFile) -> list[str]:
     return wrong
 
 
-@cache
-def study_file() -> type[StudyFile]:
-    """The study file with all the kinds that there are."""
-    fields: dict[str, Any] = {name: (task.table() | None, None) for name, task in TASKS.items()}
-    fields |= {"model": (model_table(), ...), "solver": (solver() | None, None)}
-    fields |= {"harmonic_balance": (buildable_table(balance()) | None, None)}
+@lru_cache(maxsize=16)
+def study_file(words: Words = None) -> type[StudyFile]:
+    """The study file with all tables and kinds that there are, or with those that words name.
+
+    Most of the kinds take some time to be imported and to be made tables of, and a document uses few of them.
+    """
+    fields: dict[str, Any] = {
+        name: (task.table() | None, None) for name, task in TASKS.items() if words is None or name in words
+    }
+    fields |= {"model": (model_table(words), ...), "solver": (solver(words) | None, None)}
+    if words is None or "harmonic_balance" in words:
+        fields["harmonic_balance"] = (buildable_table(balance()) | None, None)
     return create_model("Study", __base__=StudyFile, __doc__=StudyFile.__doc__, **fields)
+
+
+def words_of(document: Mapping[str, Any]) -> frozenset[str]:
+    """Which of the names that choose tables and kinds occur in a document, as keys or as values."""
+    return frozenset({*TASKS, *LISTS, "structure", "harmonic_balance", *kind_names()}.intersection(_texts(document)))
+
+
+def _texts(value: Any) -> Iterator[str]:
+    """All keys and texts in a document."""
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, Mapping):
+        yield from value
+        yield from _texts(list(value.values()))
+    elif isinstance(value, list):
+        for entry in value:
+            yield from _texts(entry)
 
 
 def json_schema() -> dict[str, Any]:

@@ -1,20 +1,19 @@
 """The table of an integrator, of whichever kind."""
 
-from functools import cache
+from functools import lru_cache
 from typing import Annotated, Any
 
 from pydantic import AfterValidator
 
-from dalembert.study.catalogue import catalogue, parts
+from dalembert.study.catalogue import Words, catalogue, part
 from dalembert.study.components import buildable, one_of, table_of
 
 DEFAULT = "GeneralizedAlpha"  # where a table names no kind
 
 
-@cache
-def solver() -> Any:
-    """Type of a key that takes any integrator, checked by building it."""
-    tables = [
-        table_of(kind, default=kind.__name__ == DEFAULT, varying=False, parts=parts()) for kind in catalogue()["solver"]
-    ]
+@lru_cache(maxsize=16)
+def solver(words: Words = None) -> Any:
+    """Type of a key that takes any integrator, or one that words name, checked by building it."""
+    kinds = catalogue(None if words is None else words | {DEFAULT})["solver"]
+    tables = [table_of(kind, default=kind.__name__ == DEFAULT, varying=False, part=part) for kind in kinds]
     return Annotated[one_of(tables, DEFAULT), AfterValidator(buildable)]

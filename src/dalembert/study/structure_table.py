@@ -80,10 +80,10 @@ def structure_table() -> Any:
 def part_tables() -> dict[str, Any]:
     """Types of the lists of masses, springs, forces and contacts, by the names of their tables."""
     law = settings_of(laws(), varying=True)
-    own = dict.fromkeys(laws(), law)
+    own = dict.fromkeys(laws(), law).get
     found = {}
     for name, (first, *others) in structure_parts().items():
-        tables = [table_of(first, default=True, parts=own), *(table_of(kind, parts=own) for kind in others)]
+        tables = [table_of(first, default=True, part=own), *(table_of(kind, part=own) for kind in others)]
         found[name] = list[one_of(tables, first.__name__)]  # pyright: ignore[reportInvalidTypeForm]
     return found
 

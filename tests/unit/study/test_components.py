@@ -183,7 +183,7 @@ class Method:
 
 
 GRID = settings_of({"coarse": Coarse, "fine": Fine})
-METHOD = TypeAdapter(settings_of({"method": Method}, {"Coarse": GRID}))
+METHOD = TypeAdapter(settings_of({"method": Method}, {"Coarse": GRID}.get))
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import Field, create_model
 
-from dalembert.study.catalogue import band_methods, parts
+from dalembert.study.catalogue import band_methods, part
 from dalembert.study.components import settings_of
 from dalembert.study.events import teller
 from dalembert.study.intervals import IntervalKey, Number
@@ -39,7 +39,7 @@ class IdentifyBandsTable(StudyTable):
 def identify_bands_table() -> type[IdentifyBandsTable]:
     """The task's table with all the methods that there are."""
     names = ", ".join(f"'{name}'" for name in band_methods())
-    method = (settings_of(band_methods(), parts()) | None, Field(None, description=f"{names}, or a table of settings"))
+    method = (settings_of(band_methods(), part) | None, Field(None, description=f"{names}, or a table of settings"))
     fields: dict[str, Any] = {"method": method}
     return create_model("IdentifyBands", __base__=IdentifyBandsTable, **fields)
 

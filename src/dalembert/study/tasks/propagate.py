@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from pydantic import Field, create_model
 
 from dalembert.intervals import Box
-from dalembert.study.catalogue import parts, propagation_methods
+from dalembert.study.catalogue import part, propagation_methods
 from dalembert.study.components import settings_of
 from dalembert.study.events import teller
 from dalembert.study.intervals import IntervalKey
@@ -43,7 +43,7 @@ class PropagateTable(StudyTable):
 @cache
 def propagate_table() -> type[PropagateTable]:
     """The task's table with all the methods that there are."""
-    method = settings_of(propagation_methods(), parts())
+    method = settings_of(propagation_methods(), part)
     names = ", ".join(f"'{name}'" for name in propagation_methods())
     fields: dict[str, Any] = {
         "method": (method | None, Field(None, description=f"{names}, or a table with kind and settings")),

@@ -13,6 +13,8 @@ from dalembert.errors import DataError, InputError, unwritable
 if TYPE_CHECKING:
     from xarray import Dataset
 
+    from dalembert.contents import Contents
+
 _STORAGE = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EACCES, errno.EPERM)
 """What the system says of a disk without room, and of a folder that may not be written to."""
 
@@ -67,10 +69,10 @@ def write_text(path: str | os.PathLike[str], text: str) -> None:
         temporary.write_text(text, encoding="utf-8", newline="\n")
 
 
-def write_dataset(path: str | os.PathLike[str], dataset: "Dataset") -> None:
-    """Write a dataset to a NetCDF-4 file atomically."""
+def write_contents(path: str | os.PathLike[str], contents: "Contents") -> None:
+    """Write a NetCDF-4 file atomically."""
     with replacing(path) as temporary:
-        dataset.to_netcdf(temporary, engine="h5netcdf")
+        contents.write(temporary)
 
 
 def read_dataset(path: str | os.PathLike[str], *, form: str, expected: str) -> "Dataset":

@@ -7,7 +7,8 @@ from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from dalembert.files import read_dataset, write_dataset
+from dalembert.contents import Contents
+from dalembert.files import read_dataset, write_contents
 from dalembert.hooks import hook
 
 if TYPE_CHECKING:
@@ -20,8 +21,12 @@ class Result(ABC):
     FORMAT: ClassVar[str]
 
     @abstractmethod
+    def contents(self) -> Contents:
+        """Everything as labelled arrays, with units as attributes."""
+
     def to_xarray(self) -> "Dataset":
-        """Everything as an :class:`xarray.Dataset`."""
+        """Everything as an :class:`xarray.Dataset`, with units as attributes."""
+        return self.contents().to_xarray()
 
     @classmethod
     @abstractmethod
@@ -30,7 +35,7 @@ class Result(ABC):
 
     def save(self, path: str | Path) -> None:
         """Write everything to a NetCDF-4 file, whole or not at all; :meth:`load` gives back the same bits."""
-        write_dataset(path, self.to_xarray())
+        write_contents(path, self.contents())
 
     @classmethod
     def load(cls, path: str | Path) -> Self:

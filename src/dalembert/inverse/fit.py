@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from dalembert.contents import Contents
 from dalembert.data import Measurements
 from dalembert.errors import InputError
 from dalembert.inverse.doubts import doubts
@@ -143,11 +144,10 @@ class Fit(Result):
 
         return summary(self)
 
-    def to_xarray(self) -> Any:
-        """Everything as an :class:`xarray.Dataset`, with units as attributes."""
-        from dalembert.inverse.storage import to_xarray
+    def contents(self) -> Contents:
+        from dalembert.inverse.storage import contents_of
 
-        return to_xarray(self)
+        return contents_of(self)
 
     @classmethod
     def from_xarray(cls, dataset: Any) -> "Fit":

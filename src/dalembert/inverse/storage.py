@@ -3,6 +3,7 @@
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
+from dalembert.contents import Contents
 from dalembert.inverse.fit import Fit
 from dalembert.inverse.stored_data import data_labels, data_of, stored_data
 from dalembert.inverse.stored_nodes import nodes_of, stored_nodes, told_nodes
@@ -19,10 +20,8 @@ if TYPE_CHECKING:
 FACTS = ("method", "status", "success", "fitness", "simulations")
 
 
-def to_xarray(fit: Fit) -> "Dataset":
-    """Dataset over parameter, sample coordinate, channel, step and start; what is not an array stands in attributes."""
-    from xarray import Dataset
-
+def contents_of(fit: Fit) -> Contents:
+    """Arrays over parameter, sample coordinate, channel, step and start; what is not an array stands in attributes."""
     variables: dict[str, Any] = {
         "values": ("parameter", fit.values),
         "deviations": ("parameter", fit.deviations),
@@ -54,11 +53,11 @@ def to_xarray(fit: Fit) -> "Dataset":
         if fit.validation is None
         else {"what": fit.validation.what, "misfit": fit.validation.misfit, "fitted": fit.validation.fitted},
     }
-    return Dataset(variables, coordinates, stored_facts(fit, FACTS, **told))
+    return Contents(variables, coordinates, stored_facts(fit, FACTS, **told))
 
 
 def from_xarray(dataset: "Dataset") -> Fit:
-    """The fit that :func:`to_xarray` turned into a dataset."""
+    """The fit that is in a dataset."""
     told = told_of(dataset)
     a = {str(name): variable.values for name, variable in dataset.variables.items()}
     history, starts = search_of(a, told["ends"], told["samples"])

@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from dalembert.contents import Contents
 from dalembert.errors import DalembertError, InputError
 from dalembert.forward import Checkpoint
 from dalembert.multibody.callbacks import in_complex_numbers
@@ -123,14 +124,12 @@ class WorkPrecision(Result):
             lines.append(f"{row.settings:{width}} {told}")
         return "\n".join([*lines, "", self.status])
 
-    def to_xarray(self) -> Any:
-        """The rows as an :class:`xarray.Dataset` over the dimension ``run``."""
-        from xarray import Dataset
-
+    def contents(self) -> Contents:
+        """The rows as arrays over the dimension ``run``."""
         rows = [asdict(row) for row in self.rows]
-        return Dataset(
+        return Contents(
             {name: ("run", [row[name] for row in rows]) for name in Row.__dataclass_fields__},
-            attrs=stored_facts(self, ("end", "apart"), channels=self.channels, reference=self.reference),
+            attributes=stored_facts(self, ("end", "apart"), channels=self.channels, reference=self.reference),
         )
 
     @classmethod

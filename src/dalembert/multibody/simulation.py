@@ -6,7 +6,6 @@ from dalembert.errors import InputError, SolveError, unknown
 from dalembert.kernels.preparation import prepare
 from dalembert.multibody.assemble import assembled, refuse_kinks, refuse_redundancy
 from dalembert.multibody.callbacks import in_complex_numbers
-from dalembert.multibody.integrators.automatic import Automatic
 from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha
 from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.run import make_problem
@@ -100,6 +99,8 @@ def integrator(given: Integrator | str | None, end: float) -> Integrator:
         if given != "auto":
             known = unknown("solver", given, ("auto",))
             raise InputError(f"{known} Or give an integrator, such as GeneralizedAlpha(step=1e-3)")
+        from dalembert.multibody.integrators.automatic import Automatic  # with all integrators that it may choose
+
         return Automatic()
     return given
 

@@ -4,11 +4,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
-from dalembert.files import write_dataset
+from dalembert.contents import Contents
+from dalembert.files import write_contents
 from dalembert.kernels.preparation import prepare
 from dalembert.multibody.assemble import redundancy
 from dalembert.multibody.drawing import Drawing, draw
@@ -19,6 +20,9 @@ from dalembert.multibody.kernels.motion import Motion
 from dalembert.multibody.lowering import Lowered
 from dalembert.multibody.observe import channel_names, observer
 from dalembert.multibody.system import System
+
+if TYPE_CHECKING:
+    from xarray import Dataset
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,7 +121,7 @@ class Trajectory:
         """Lines of the bodies and places of the joints over time; ``points`` a beam element."""
         return draw(self.system, self.lowered, self.times, self.states.x, points)
 
-    def to_xarray(self, names: Sequence[str] | None = None) -> xr.Dataset:
+    def contents(self, names: Sequence[str] | None = None) -> Contents:
         """Channels (all if not named), energies and violations, labelled with units."""
         names = tuple(names or self.channel_names)
         channels = observer(self.system, self.lowered, names).channels
@@ -129,11 +133,15 @@ class Trajectory:
         variables |= {f"energy.{name}": ("time", value, {"units": "J"}) for name, value in self.energies.items()}
         variables |= {f"violation.{name}": ("time", value) for name, value in self.violations.items()}
         coordinates = {"time": ("time", self.times, {"units": "s"})}
-        return xr.Dataset(variables, coordinates, {"solver": repr(self.solver), "steps": int(self.run.counts[0])})
+        return Contents(variables, coordinates, {"solver": repr(self.solver), "steps": int(self.run.counts[0])})
+
+    def to_xarray(self, names: Sequence[str] | None = None) -> "Dataset":
+        """Return :meth:`contents` as an :class:`xarray.Dataset`."""
+        return self.contents(names).to_xarray()
 
     def save(self, path: str | Path, names: Sequence[str] | None = None) -> None:
-        """Write :meth:`to_xarray` as NetCDF-4, whole or not at all."""
-        write_dataset(path, self.to_xarray(names))
+        """Write :meth:`contents` as NetCDF-4, whole or not at all."""
+        write_contents(path, self.contents(names))
 
     def summary(self) -> str:
         """A few lines: steps, Newton iterations, energy balance and constraint violations."""

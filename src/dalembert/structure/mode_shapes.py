@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
+from dalembert.contents import Contents
 from dalembert.errors import InputError
 from dalembert.results import Result
 from dalembert.structure.eigenmodes import EigenModes
@@ -52,17 +53,14 @@ class ModeShapes(Result):
         """A line: the frequencies."""
         return "modes at " + ", ".join(f"{value:.6g}" for value in self.frequencies) + " Hz"
 
-    def to_xarray(self) -> "Dataset":
-        """Everything as an :class:`xarray.Dataset`, with units as attributes."""
-        import xarray as xr
-
+    def contents(self) -> Contents:
         variables = {
             "frequencies": (("mode",), self.frequencies, {"units": "Hz"}),
             "places": (("node", "axis"), self.places, {"units": "m"}),
             "faces": (("face", "corner"), self.faces),
             "shapes": (("mode", "node", "axis"), self.shapes),
         }
-        return xr.Dataset(variables, attrs={"format": self.FORMAT})
+        return Contents(variables, attributes={"format": self.FORMAT})
 
     @classmethod
     def from_xarray(cls, dataset: "Dataset") -> "ModeShapes":

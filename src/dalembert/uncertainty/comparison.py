@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from dalembert.contents import Contents
 from dalembert.errors import ClusterError, DalembertError, InputError, StorageError
 from dalembert.forward import Executor, ForwardModel, on_cluster, takes_executor
 from dalembert.results import Result
@@ -101,8 +102,8 @@ class Comparison(Result):
         notes += [f"{method} gave no bounds: {reason}" for method, reason in self.refused]
         return "\n".join([*table([head, *rows]), "", *notes])
 
-    def to_xarray(self) -> Any:
-        """All results as one :class:`xarray.Dataset` over the dimension ``method``."""
+    def contents(self) -> Contents:
+        """All results as arrays over the dimension ``method``."""
         from dalembert.uncertainty.storage import compared
 
         return compared(self)

@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from dalembert.contents import Contents
 from dalembert.data import Bands
 from dalembert.intervals import Box
 from dalembert.results import Result
@@ -68,11 +69,10 @@ class Propagation(Bands, Result):
 
         return summary(self)
 
-    def to_xarray(self) -> Any:
-        """Everything as an :class:`xarray.Dataset`, with units as attributes."""
-        from dalembert.uncertainty.storage import to_xarray
+    def contents(self) -> Contents:
+        from dalembert.uncertainty.storage import contents_of
 
-        return to_xarray(self)
+        return contents_of(self)
 
     @classmethod
     def from_xarray(cls, dataset: Any) -> "Propagation":

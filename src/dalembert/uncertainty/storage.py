@@ -2,6 +2,9 @@
 
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from dalembert.contents import Contents
 from dalembert.forward.stored_coordinate import coordinate_of, stored_coordinate
 from dalembert.intervals import Box
 from dalembert.results import facts_of, stored_facts, told_of
@@ -15,10 +18,8 @@ if TYPE_CHECKING:
 FACTS = ("method", "kind", "runs", "success", "status", "seconds")
 
 
-def to_xarray(result: Propagation) -> "Dataset":
-    """Dataset over sample coordinate, channel and parameter; what is not an array stands in attributes."""
-    from xarray import Dataset
-
+def contents_of(result: Propagation) -> Contents:
+    """Arrays over sample coordinate, channel and parameter; what is not an array stands in attributes."""
     bands = ("sample", "channel")
     variables: dict[str, Any] = {
         "lower": (bands, result.lower),
@@ -38,11 +39,11 @@ def to_xarray(result: Propagation) -> "Dataset":
         "coordinate": stored_coordinate(result.coordinate),
     }
     attributes = stored_facts(result, FACTS, failures=result.failures, provenance=result.provenance)
-    return Dataset(variables, coordinates, attributes)
+    return Contents(variables, coordinates, attributes)
 
 
 def from_xarray(dataset: "Dataset") -> Propagation:
-    """The propagation that :func:`to_xarray` turned into a dataset."""
+    """The propagation that is in a dataset."""
     told = told_of(dataset)
     a = {str(name): variable.values for name, variable in dataset.variables.items()}
     return Propagation(
@@ -61,18 +62,18 @@ def from_xarray(dataset: "Dataset") -> Propagation:
     )
 
 
-def compared(comparison: Comparison) -> "Dataset":
-    """Dataset of all results over the dimension ``method``; what a method does not know is NaN."""
-    from xarray import concat
-
-    parts = [to_xarray(result) for result in comparison.results]
-    own = [{"attributes": part.attrs, "variables": [str(name) for name in part.data_vars]} for part in parts]
-    stacked = concat(
-        parts, "method", data_vars="all", coords="minimal", compat="override", join="override", combine_attrs="drop"
-    )
-    return stacked.assign_coords(method=[result.method for result in comparison.results]).assign_attrs(
-        stored_facts(comparison, ("reference",), results=own, refused=comparison.refused)
-    )
+def compared(comparison: Comparison) -> Contents:
+    """Arrays of all results over the dimension ``method``; what a method does not know is NaN."""
+    parts = [contents_of(result) for result in comparison.results]
+    own = [{"attributes": part.attributes, "variables": list(part.variables)} for part in parts]
+    variables = {}
+    for name, (over, like, *_) in {name: entry for part in parts for name, entry in part.variables.items()}.items():
+        missing = ((), np.full(np.shape(like), np.nan))
+        over = (over,) if isinstance(over, str) else over
+        variables[name] = ("method", *over), np.stack([part.variables.get(name, missing)[1] for part in parts])
+    coordinates = {**parts[0].coordinates, "method": ("method", [result.method for result in comparison.results])}
+    facts = stored_facts(comparison, ("reference",), results=own, refused=comparison.refused)
+    return Contents(variables, coordinates, facts)
 
 
 def comparison_from(dataset: "Dataset") -> Comparison:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from dalembert.contents import Contents
 from dalembert.results import Result
 from dalembert.units import unit_of
 from dalembert.vibration.amplitudes import Amplitude, observed_column
@@ -126,8 +127,7 @@ class Backbone(Result):
             lines.append(f"not found: {lost}")
         return "\n".join(lines)
 
-    def to_xarray(self) -> "Dataset":
-        """Everything as an :class:`xarray.Dataset`, with units as attributes."""
+    def contents(self) -> Contents:
         return stored(self, _DIMENSIONS, {**_UNITS, "amplitudes": unit_of(self.dof)}, _NAMES)
 
     @classmethod

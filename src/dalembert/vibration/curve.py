@@ -8,6 +8,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.optimize import minimize_scalar
 
+from dalembert.contents import Contents
 from dalembert.errors import InputError, unknown
 from dalembert.results import Result
 from dalembert.units import unit_of
@@ -232,8 +233,7 @@ class FrequencyCurve(Result):
         lost = ~self.converged
         return list(zip(self.frequencies[lost].tolist(), self.residuals[lost].tolist(), strict=True))
 
-    def to_xarray(self) -> "Dataset":
-        """Everything as an :class:`xarray.Dataset`, with units as attributes."""
+    def contents(self) -> Contents:
         return stored(self, _DIMENSIONS, _UNITS, _NAMES)
 
     @classmethod

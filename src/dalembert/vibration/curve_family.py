@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import numpy as np
 
+from dalembert.contents import Contents
 from dalembert.errors import InputError
 from dalembert.results import Result
 from dalembert.units import unit_of
@@ -140,20 +141,20 @@ class CurveFamily(Result):
             ]
         return "\n".join(lines)
 
-    def to_xarray(self) -> "Dataset":
-        """Everything as an :class:`xarray.Dataset`: those of each curve end in its number, ``_0``."""
-        import xarray as xr
-
-        kept = {row: curve.to_xarray() for row, curve in enumerate(self.curves) if curve is not None}
-        numbered = [one.rename({name: f"{name}_{row}" for name in (*one.dims, *one)}) for row, one in kept.items()]
+    def contents(self) -> Contents:
+        """Everything as arrays: the names and dimensions of each curve end in its number, ``_0``."""
+        kept = {row: curve.contents() for row, curve in enumerate(self.curves) if curve is not None}
+        variables: dict[str, Any] = {"values": ("value", self.values, {"units": self.unit})}
+        for row, one in kept.items():
+            for name, (over, *rest) in one.variables.items():
+                variables[f"{name}_{row}"] = (tuple(f"{dimension}_{row}" for dimension in over), *rest)
         attributes = {
             "format": self.FORMAT,
             "parameter": self.parameter,
             "failures": json.dumps(self.failures),
-            "curves": json.dumps({row: dict(one.attrs) for row, one in kept.items()}),
+            "curves": json.dumps({row: dict(one.attributes) for row, one in kept.items()}),
         }
-        values = xr.Dataset({"values": ("value", self.values, {"units": self.unit})}, attrs=attributes)
-        return xr.merge([values, *numbered], combine_attrs="override")
+        return Contents(variables, attributes=attributes)
 
     @classmethod
     def from_xarray(cls, dataset: "Dataset") -> "CurveFamily":

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from dalembert.contents import Contents
 from dalembert.errors import InputError
 from dalembert.results import Result
 from dalembert.structure.mode_shapes import drawn_nodes
@@ -85,8 +86,7 @@ class Deformation(Result):
         largest = np.linalg.norm(self.motion(np.linspace(0, 2 * np.pi, 64)), axis=2).max(initial=0.0)
         return f"{len(self.places)} nodes at {self.frequency:.6g} Hz, displacements up to {largest:.6g} m"
 
-    def to_xarray(self) -> "Dataset":
-        """Everything as an :class:`xarray.Dataset`, with units as attributes."""
+    def contents(self) -> Contents:
         return stored(self, _DIMENSIONS, _UNITS, _NAMES)
 
     @classmethod

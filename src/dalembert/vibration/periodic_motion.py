@@ -1,11 +1,12 @@
 """A periodic motion in time."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from dalembert.contents import Contents
 from dalembert.errors import InputError, unknown
 from dalembert.results import Result, facts_of, plain_facts
 from dalembert.units import unit_of
@@ -124,9 +125,9 @@ class PeriodicMotion(Result):
         lines += [f"{dof}: largest {self.amplitude(dof):.6g} {unit_of(dof)}" for dof in self.dofs[:8]]
         return "\n".join(lines)
 
-    def to_xarray(self) -> "Dataset":
-        """Everything as an :class:`xarray.Dataset`, with units as attributes."""
-        return stored(self, _DIMENSIONS, _UNITS, _NAMES).assign_attrs(plain_facts(self, _FACTS))
+    def contents(self) -> Contents:
+        found = stored(self, _DIMENSIONS, _UNITS, _NAMES)
+        return replace(found, attributes={**found.attributes, **plain_facts(self, _FACTS)})
 
     @classmethod
     def from_xarray(cls, dataset: "Dataset") -> "PeriodicMotion":

@@ -9,6 +9,7 @@ from time import perf_counter
 
 import numpy as np
 
+from dalembert.contents import Contents
 from dalembert.forward import Checkpoint
 from dalembert.vibration.condensation import Point
 from dalembert.vibration.curve import FrequencyCurve
@@ -84,20 +85,18 @@ def recorded(problem: Equations, checkpoint: Checkpoint | None) -> Equations:
 
 def keep_curve(checkpoint: Checkpoint, key: bytes, curve: FrequencyCurve, seconds: float) -> None:
     """Keep a whole curve, which took so long."""
-    dataset = curve.to_xarray()
-    told = {"variables": {name: dataset[name].dims for name in dataset}, "attributes": dict(dataset.attrs)}
-    text = np.frombuffer(json.dumps(told).encode(), np.uint8)
-    checkpoint.keep(key, (text, *(dataset[name].values for name in dataset)), seconds)
+    contents = curve.contents()
+    over = {name: dimensions for name, (dimensions, *_) in contents.variables.items()}
+    text = np.frombuffer(json.dumps({"variables": over, "attributes": dict(contents.attributes)}).encode(), np.uint8)
+    checkpoint.keep(key, (text, *(values for _, values, *_ in contents.variables.values())), seconds)
 
 
 def kept_curve(checkpoint: Checkpoint, key: bytes) -> FrequencyCurve | None:
     """The curve that was kept, or None."""
-    import xarray as xr
-
     known = checkpoint.recall(key)
     if known is None:
         return None
     text, *arrays = known
     told = json.loads(text.tobytes())
     variables = dict(zip(told["variables"], zip(told["variables"].values(), arrays, strict=True), strict=True))
-    return FrequencyCurve.from_xarray(xr.Dataset(variables, attrs=told["attributes"]))
+    return FrequencyCurve.from_xarray(Contents(variables, attributes=told["attributes"]).to_xarray())

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from dalembert.contents import Contents
 from dalembert.errors import InputError
 from dalembert.results import Result
 from dalembert.units import unit_of
@@ -101,8 +102,7 @@ class ResonanceTrack(Result):
             lines.append(f"not found where {self.parameter} is {lost} {self.unit}".rstrip())
         return "\n".join(lines)
 
-    def to_xarray(self) -> "Dataset":
-        """Everything as an :class:`xarray.Dataset`, with units as attributes."""
+    def contents(self) -> Contents:
         units = {"values": self.unit, "frequencies": "Hz", "amplitudes": unit_of(self.dof)}
         return stored(self, _DIMENSIONS, units, _NAMES)
 

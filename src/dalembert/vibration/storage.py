@@ -4,6 +4,8 @@ import json
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from dalembert.contents import Contents
+
 if TYPE_CHECKING:
     from xarray import Dataset
 
@@ -11,16 +13,15 @@ Dimensions = Mapping[str, tuple[str, ...]]
 """Names of arrays of a result, each with the names of its dimensions."""
 
 
-def stored(result: Any, dimensions: Dimensions, units: Mapping[str, str], names: Sequence[str]) -> "Dataset":
-    """A :class:`~dalembert.results.Result` as a dataset: arrays; as attributes its format, ``names`` and provenance."""
-    import xarray as xr
-
+def stored(result: Any, dimensions: Dimensions, units: Mapping[str, str], names: Sequence[str]) -> Contents:
+    """A :class:`~dalembert.results.Result` as arrays; as attributes its format, ``names`` and provenance."""
     variables = {
         name: (over, getattr(result, name), {"units": units[name]} if units.get(name) else {})
         for name, over in dimensions.items()
     }
     told = {"names": {name: getattr(result, name) for name in names}, "provenance": dict(result.provenance)}
-    return xr.Dataset(variables, attrs={"format": result.FORMAT, **{key: json.dumps(own) for key, own in told.items()}})
+    attributes = {"format": result.FORMAT, **{key: json.dumps(own) for key, own in told.items()}}
+    return Contents(variables, attributes=attributes)
 
 
 def fields_of(dataset: "Dataset", dimensions: Dimensions, truths: Sequence[str] = ()) -> dict[str, Any]:

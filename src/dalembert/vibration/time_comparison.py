@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from dalembert.contents import Contents
 from dalembert.errors import InputError
 from dalembert.forward import Checkpoint, ensemble
 from dalembert.results import Result
@@ -96,8 +97,7 @@ class TimeComparison(Result):
         lines += [f"not periodic yet in time, so not to be compared: {late}"] * bool(late)
         return "\n".join(lines)
 
-    def to_xarray(self) -> "Dataset":
-        """Everything as an :class:`xarray.Dataset`, with units as attributes."""
+    def contents(self) -> Contents:
         return stored(self, _DIMENSIONS, _UNITS, ("dofs", "kind"))
 
     @classmethod

@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from dalembert.contents import Contents
 from dalembert.data import Bands
 from dalembert.intervals import Box
 from dalembert.inverse.doubts import doubts
@@ -136,11 +137,10 @@ class BandFit(Result):
 
         return summary(self)
 
-    def to_xarray(self) -> Any:
-        """Everything as an :class:`xarray.Dataset`, with units as attributes."""
-        from dalembert.inverse.bands.storage import to_xarray
+    def contents(self) -> Contents:
+        from dalembert.inverse.bands.storage import contents_of
 
-        return to_xarray(self)
+        return contents_of(self)
 
     @classmethod
     def from_xarray(cls, dataset: Any) -> "BandFit":

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from dalembert.contents import Contents
 from dalembert.data import Bands
 from dalembert.forward.stored_coordinate import coordinate_of, stored_coordinate
 from dalembert.intervals import Box
@@ -24,10 +25,8 @@ FACTS = ("method", "status", "success", "fitness", "simulations", "seconds")
 ARRAYS = ("middle_deviations", "radius_deviations", "correlation", "singular_values", "directions", *TABLES)
 
 
-def to_xarray(fit: BandFit) -> "Dataset":
-    """Dataset over parameter, unknown, sample, channel, step and start; what is no array stands in attributes."""
-    from xarray import Dataset
-
+def contents_of(fit: BandFit) -> Contents:
+    """Arrays over parameter, unknown, sample, channel, step and start; what is no array stands in attributes."""
     variables: dict[str, Any] = {
         "box_lower": ("parameter", fit.box.lower),
         "box_upper": ("parameter", fit.box.upper),
@@ -57,11 +56,11 @@ def to_xarray(fit: BandFit) -> "Dataset":
         "ends": stored_ends(fit.starts),
         "provenance": fit.provenance,
     }
-    return Dataset(variables, coordinates, stored_facts(fit, FACTS, **told))
+    return Contents(variables, coordinates, stored_facts(fit, FACTS, **told))
 
 
 def from_xarray(dataset: "Dataset") -> BandFit:
-    """The result that :func:`to_xarray` turned into a dataset."""
+    """The result that is in a dataset."""
     told = told_of(dataset)
     a = {str(name): variable.values for name, variable in dataset.variables.items()}
     along = coordinate_of(dataset["coordinate"])

@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from dalembert.contents import Contents
 from dalembert.data import Measurements
 from dalembert.intervals import Box
 from dalembert.parameters import Parameters
@@ -88,11 +89,10 @@ class ParameterSet(Result):
 
         return summary(self)
 
-    def to_xarray(self) -> Any:
-        """Everything as an :class:`xarray.Dataset`, with units as attributes."""
-        from dalembert.inverse.sets.storage import to_xarray
+    def contents(self) -> Contents:
+        from dalembert.inverse.sets.storage import contents_of
 
-        return to_xarray(self)
+        return contents_of(self)
 
     @classmethod
     def from_xarray(cls, dataset: Any) -> "ParameterSet":

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from dalembert.contents import Contents
 from dalembert.intervals import Box
 from dalembert.inverse.sets.parameter_set import ParameterSet
 from dalembert.inverse.stored_data import data_labels, data_of, stored_data
@@ -18,10 +19,8 @@ if TYPE_CHECKING:
 FACTS = ("status", "success", "resolution", "runs", "seconds")
 
 
-def to_xarray(found: ParameterSet) -> "Dataset":
-    """Dataset over parameter, side, box, sample and channel; what is no array stands in attributes."""
-    from xarray import Dataset
-
+def contents_of(found: ParameterSet) -> Contents:
+    """Arrays over parameter, side, box, sample and channel; what is no array stands in attributes."""
     variables: dict[str, Any] = {
         **stored_data(found.data),
         "error": (("sample", "channel"), np.array(found.error)),
@@ -38,11 +37,11 @@ def to_xarray(found: ParameterSet) -> "Dataset":
         **data_labels(found.data),
     }
     told = {"parameters": [asdict(item) for item in found.parameters], "provenance": found.provenance}
-    return Dataset(variables, coordinates, stored_facts(found, FACTS, **told))
+    return Contents(variables, coordinates, stored_facts(found, FACTS, **told))
 
 
 def from_xarray(dataset: "Dataset") -> ParameterSet:
-    """The result that :func:`to_xarray` turned into a dataset."""
+    """The result that is in a dataset."""
     told = told_of(dataset)
     a = {str(name): variable.values for name, variable in dataset.variables.items()}
     parameters = Parameters(tuple(Parameter(**item) for item in told["parameters"]))

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
+from dalembert.contents import Contents
 from dalembert.errors import listed
 from dalembert.inverse.summary import table
 from dalembert.parameters import Parameter, Parameters
@@ -111,17 +112,15 @@ class Designs(Result):
         more = [f"and {len(self.scores) - 20} more"] if len(self.scores) > 20 else []
         return "\n".join([*table(rows), *more, "", self.status])
 
-    def to_xarray(self) -> "Dataset":
-        """Everything as an :class:`xarray.Dataset` over design and parameter."""
-        from xarray import Dataset
-
+    def contents(self) -> Contents:
+        """Everything as arrays over design and parameter."""
         told = {
             "parameters": [asdict(item) for item in self.parameters],
             "sensors": self.sensors,
             "noise": dict(self.noise),
             "provenance": self.provenance,
         }
-        return Dataset(
+        return Contents(
             {
                 "at": ("parameter", self.at),
                 "horizons": ("design", self.horizons, {"units": self.unit}),

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
+from dalembert.contents import Contents
 from dalembert.data import Measurements
 from dalembert.errors import listed
 from dalembert.forward import Coordinate
@@ -122,10 +123,8 @@ class Prediction(Result):
             rows.append((name, unit, f"{width:.4g}", "not measured" if np.isnan(measured) else f"{measured:.4g}"))
         return "\n".join([*table(rows), "", self.status])
 
-    def to_xarray(self) -> "Dataset":
-        """Everything as an :class:`xarray.Dataset` over sample and channel."""
-        from xarray import Dataset
-
+    def contents(self) -> Contents:
+        """Everything as arrays over sample and channel."""
         from dalembert.inverse.stored_data import stored_data
 
         variables: dict[str, Any] = {
@@ -144,7 +143,7 @@ class Prediction(Result):
                 variables[name] = (tuple(names[dimension] for dimension in over), *rest)
             variables["measured_at"] = stored_coordinate(self.data.coordinate, "measured_sample")
             told["measured"] = self.data.channels
-        return Dataset(
+        return Contents(
             variables,
             {
                 "channel": ("channel", list(self.channels)),

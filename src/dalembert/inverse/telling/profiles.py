@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
+from dalembert.contents import Contents
 from dalembert.errors import listed
 from dalembert.inverse.summary import table
 from dalembert.parameters import Parameter, Parameters
@@ -180,10 +181,8 @@ class Profiles(Result):
             rows.append((curve.name, f"{self.values[k]:.7g}", lower, upper, item.unit, f"{self.deviations[k]:.2g}"))
         return "\n".join([*table(rows), "", self.status])
 
-    def to_xarray(self) -> "Dataset":
-        """Everything as an :class:`xarray.Dataset` over parameter, profile and point."""
-        from xarray import Dataset
-
+    def contents(self) -> Contents:
+        """Everything as arrays over parameter, profile and point."""
         told = {
             "parameters": [asdict(item) for item in self.parameters],
             "known": self.known,
@@ -191,7 +190,7 @@ class Profiles(Result):
             "elsewhere": [curve.elsewhere for curve in self.curves],
             "provenance": self.provenance,
         }
-        return Dataset(
+        return Contents(
             {
                 "values": ("parameter", self.values),
                 "deviations": ("parameter", self.deviations),

@@ -4,6 +4,7 @@ import math
 import re
 from functools import cache
 
+from dalembert.decimal_units import decimal_unit, in_si
 from dalembert.errors import InputError
 
 # Units of a structure's degrees of freedom by their direction: displacements, rotations, twist, modal coordinate.
@@ -111,6 +112,9 @@ def is_si(unit: str) -> bool:
     >>> is_si("Pa"), is_si("rad/s"), is_si("mm"), is_si("deg"), is_si("potato")
     (True, True, False, False, False)
     """
+    known = decimal_unit(unit)
+    if known is not None:
+        return known[0] == 0
     try:
         return _registry().Quantity(1, _unit(unit)).to_base_units().magnitude == 1
     except ValueError:
@@ -152,6 +156,9 @@ def _converted(value: object, unit: str | None) -> float:
             return float(value)
         except ValueError:
             raise ValueError from None
+    quick = in_si(match[1], match[2], unit)
+    if quick is not None:
+        return quick
     given = _unit(match[2])
     quantity = _registry().Quantity(float(match[1]), given)
     if unit is None:
@@ -185,7 +192,7 @@ def _angular(unit) -> bool:
 
 @cache
 def _registry():
-    import pint  # a third of a second that only a study with unit strings pays
+    import pint  # a third of a second that only a study with units such as degrees pays
 
     return pint.UnitRegistry()
 

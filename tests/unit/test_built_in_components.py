@@ -18,16 +18,16 @@ PLACES = {
     "components/planar/own_disc": "OwnDisc",
     "integrators/own_alpha": "OwnAlpha",
 }
-KINDS = {"Joint": "OwnGears", "Load": "OwnPull", "Body": "OwnDisc", "Integrator": "OwnAlpha"}
+KINDS = {"joint": "OwnGears", "load": "OwnPull", "body": "OwnDisc", "solver": "OwnAlpha"}
 CODE = """
 import dalembert as da
 from dalembert.component_index import KINDS
 from dalembert.study import load
-from dalembert.study.catalogue import ROLES, catalogue
+from dalembert.study.catalogue import ROLES, kinds_of
 
-for base, name in {kinds}.items():
-    assert name in KINDS[base] and name in dir(da) and getattr(da, name).__name__ == name
-    assert getattr(da, name) in catalogue()[ROLES[base]]
+for role, name in {kinds}.items():
+    assert name in KINDS[ROLES[role]] and name in dir(da) and getattr(da, name).__name__ == name
+    assert getattr(da, name) in kinds_of(role)
 study = load("study.toml")
 print([type(component).__name__ for component in study.system().bodies], type(study.solver).__name__)
 """

@@ -4,7 +4,7 @@ import dataclasses
 import inspect
 import sys
 from collections.abc import Iterator
-from functools import cache, lru_cache
+from functools import cache
 from importlib.metadata import entry_points
 from typing import Any, get_args
 
@@ -12,7 +12,8 @@ from dalembert.component_index import HOMES, KINDS
 from dalembert.study.components import settings_of
 from dalembert.study.structure_parts import LinearSpring, LumpedMass
 
-ROLES = {"Body": "body", "Joint": "joint", "Load": "load", "Signal": "signal", "Integrator": "solver"}
+ROLES = {"body": "Body", "joint": "Joint", "load": "Load", "signal": "Signal", "solver": "Integrator"}
+"""Base class of the kinds that a table names."""
 
 
 COMPONENTS = "dalembert.components"
@@ -23,21 +24,19 @@ Words = frozenset[str] | None
 """Names that a document uses, so that a schema for it needs no others; None for all that there are."""
 
 
-@lru_cache(maxsize=16)
-def catalogue(words: Words = None) -> dict[str, tuple[type, ...]]:
-    """Dataclasses by their role: body, joint, load, signal and solver; only those that words name, if given.
+@cache
+def kinds_of(role: str, words: Words = None) -> tuple[type, ...]:
+    """Dataclasses of a role, in the order of their names; only those that words name, if given.
 
     The role is that of the base class: what derives from ``Body`` stands in ``[[model.body]]``. Those of the package
     are in its index; those of others are all that have been imported, or that an entry point names.
     """
     from dalembert import multibody
 
-    found = {}
-    for base, role in ROLES.items():
-        own = [getattr(multibody, name) for name in KINDS[base] if words is None or name in words]
-        others = [kind for kind in _of_others(base) if words is None or kind.__name__ in words]
-        found[role] = tuple(sorted([*own, *others], key=lambda kind: kind.__name__))
-    return found
+    base = ROLES[role]
+    own = [getattr(multibody, name) for name in KINDS[base] if words is None or name in words]
+    others = [kind for kind in _of_others(base) if words is None or kind.__name__ in words]
+    return tuple(sorted([*own, *others], key=lambda kind: kind.__name__))
 
 
 def kind_names() -> Iterator[str]:

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 from pydantic import Field, create_model, model_validator
 
 from dalembert.errors import unknown
-from dalembert.study.catalogue import Words, catalogue
+from dalembert.study.catalogue import Words, kinds_of
 from dalembert.study.components import one_of, table_of
 from dalembert.study.functions import FunctionName
 from dalembert.study.numbers import number
@@ -128,9 +128,9 @@ def model_table(words: Words = None) -> type[ModelTable]:
     """The model's table with all kinds of components that there are, or those that words name."""
     lists: dict[str, Any] = {}
     if words is None or not words.isdisjoint(_TABLES):
-        signal = one_of([table_of(target) for target in catalogue()["signal"]])
+        signal = one_of([table_of(target) for target in kinds_of("signal")])
         for table in _TABLES:
-            kinds = catalogue(words)[table] or (catalogue()[table] if table in (words or ()) else ())
+            kinds = kinds_of(table, words) or (kinds_of(table) if table in (words or ()) else ())
             if kinds:
                 lists[table] = (list[one_of([table_of(target, signal=signal) for target in kinds])], [])
     if words is None or not words.isdisjoint((*PARTS, "structure")):

@@ -4,7 +4,7 @@ import dataclasses
 import inspect
 import sys
 from collections.abc import Iterator
-from functools import cache
+from functools import cache, lru_cache
 from importlib.metadata import entry_points
 from typing import Any, get_args
 
@@ -24,7 +24,7 @@ Words = frozenset[str] | None
 """Names that a document uses, so that a schema for it needs no others; None for all that there are."""
 
 
-@cache
+@lru_cache(maxsize=64)
 def kinds_of(role: str, words: Words = None) -> tuple[type, ...]:
     """Dataclasses of a role, in the order of their names; only those that words name, if given.
 

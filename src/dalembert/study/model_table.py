@@ -16,8 +16,6 @@ from dalembert.study.table import Read, StudyTable, problem
 from dalembert.units import is_quantity, si
 
 _TABLES = ("body", "joint", "load")
-LISTS = (*_TABLES, *PARTS)
-"""Tables of which a model has several."""
 
 
 class ModelTable(StudyTable):

@@ -17,7 +17,7 @@ from dalembert.study.catalogue import Words, balance, kind_names
 from dalembert.study.components import buildable_table
 from dalembert.study.data_table import BandsTable, DataTable
 from dalembert.study.experiments import ExperimentTable, SensorTable, wrong_experiments
-from dalembert.study.model_table import LISTS, ModelTable, model_table
+from dalembert.study.model_table import ModelTable, model_table
 from dalembert.study.parameters import ParameterTable, check_names, read_constants
 from dalembert.study.solvers import solver
 from dalembert.study.table import Name, StudyTable, problem
@@ -104,15 +104,19 @@ def study_file(words: Words = None) -> type[StudyFile]:
     fields: dict[str, Any] = {
         name: (task.table() | None, None) for name, task in TASKS.items() if words is None or name in words
     }
-    fields |= {"model": (model_table(words), ...), "solver": (solver(words) | None, None)}
+    fields["model"] = (model_table(words), ...)
+    if words is None or "solver" in words:
+        fields["solver"] = (solver(words) | None, None)
     if words is None or "harmonic_balance" in words:
         fields["harmonic_balance"] = (buildable_table(balance()) | None, None)
     return create_model("Study", __base__=StudyFile, __doc__=StudyFile.__doc__, **fields)
 
 
 def words_of(document: Mapping[str, Any]) -> frozenset[str]:
-    """Which of the names that choose tables and kinds occur in a document, as keys or as values."""
-    return frozenset({*TASKS, *LISTS, "structure", "harmonic_balance", *kind_names()}.intersection(_texts(document)))
+    """Names that choose tables and kinds: tables of a document and of its model, and kinds that are named anywhere."""
+    model = document.get("model")
+    tables = {*document, *(model if isinstance(model, Mapping) else ())}
+    return frozenset(tables | {*kind_names()}.intersection(_texts(document)))
 
 
 def _texts(value: Any) -> Iterator[str]:

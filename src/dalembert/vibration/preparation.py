@@ -17,7 +17,7 @@ _TURN = Lock()
 
 
 def prepare_balance(lowered: Lowered, *, residuals: bool, stability: bool, derivatives: bool) -> None:
-    """Compile or load the kernels of harmonic balance; arguments as of :func:`dalembert.vibration.equations.equations`."""
+    """Prepare the kernels of harmonic balance, for the same arguments as ``equations`` takes."""
     if lowered.blocks:
         elastic = any(block.kind == ELASTIC for block in lowered.blocks)
         own = {forces_real: residuals, linearise: stability and elastic, forces_complex: derivatives}

@@ -242,7 +242,7 @@ def test_its_derivative_is_the_slope_of_the_motion(kind: type, name: str) -> Non
 BASES = (mb.Body, mb.Joint, mb.Load, mb.Signal)
 KINDS = [
     entry
-    for entry in vars(mb).values()
+    for entry in (getattr(mb, name) for name in dir(mb))
     if isinstance(entry, type) and issubclass(entry, (*BASES, mb.GroundPoint)) and entry not in BASES
 ]
 

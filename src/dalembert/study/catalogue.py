@@ -3,12 +3,13 @@
 import dataclasses
 import inspect
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import cache, lru_cache
 from importlib.metadata import entry_points
 from typing import Any, get_args
 
 from dalembert.component_index import HOMES, KINDS
+from dalembert.errors import InputError
 from dalembert.study.components import settings_of
 from dalembert.study.structure_parts import LinearSpring, LumpedMass
 
@@ -35,7 +36,7 @@ def kinds_of(role: str, words: Words = None) -> tuple[type, ...]:
 
     base = ROLES[role]
     own = [getattr(multibody, name) for name in KINDS[base] if words is None or name in words]
-    others = [kind for kind in _of_others(base) if words is None or kind.__name__ in words]
+    others = _distinct(kind for kind in _of_others(base) if words is None or kind.__name__ in words)
     return tuple(sorted([*own, *others], key=lambda kind: kind.__name__))
 
 
@@ -61,6 +62,25 @@ def _derived(base: type) -> Iterator[type]:
         foreign = kind.__module__.partition(".")[0] != __name__.partition(".")[0] and not kind.__name__.startswith("_")
         if foreign and dataclasses.is_dataclass(kind) and not inspect.isabstract(kind):
             yield kind
+
+
+def _distinct(kinds: Iterable[type]) -> Iterable[type]:
+    """One kind of each name: the newest definition of a file, as a notebook or a reload makes several."""
+    by_name: dict[str, type] = {}
+    for kind in kinds:
+        other = by_name.setdefault(kind.__name__, kind)
+        if _file(kind) != _file(other):
+            raise InputError(
+                f"two components are named {kind.__name__!r}, in the modules {other.__module__!r} and "
+                f"{kind.__module__!r}. Rename one, or import only one of the modules"
+            )
+        by_name[kind.__name__] = kind
+    return by_name.values()
+
+
+def _file(kind: type) -> str:
+    """The file that defines a kind; its module if there is none."""
+    return getattr(sys.modules.get(kind.__module__), "__file__", None) or kind.__module__
 
 
 @cache

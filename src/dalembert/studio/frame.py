@@ -27,7 +27,6 @@ def frame(title: str) -> Iterator[None]:
     ui.colors(primary=LIGHT.series[0])
     ui.add_css(LOOKS)
     main = ui.column().classes("w-full max-w-6xl mx-auto p-2 sm:p-4 gap-4").props("role=main id=main")
-    ui.skip_link("Skip to the content", target=main)
     with ui.header().classes("items-center gap-x-6 gap-y-1 py-2").props("role=banner"):
         ui.link("dalembert", "/").classes("text-white no-underline text-lg font-bold")
         with ui.row().classes("gap-4").props("role=navigation"):
@@ -35,6 +34,7 @@ def frame(title: str) -> Iterator[None]:
                 ui.link(name, path).classes("text-white")
         ui.space()
         ui.label(__version__).classes("text-xs opacity-80 max-sm:hidden")
+    ui.skip_link("Skip to the content", target=main)  # after the header, which would move before it
     with main:
         ui.label(title).classes("text-2xl font-bold break-words max-w-full").props("role=heading aria-level=1")
         yield

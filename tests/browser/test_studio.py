@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from dalembert.study.template import begin
+
 pytestmark = pytest.mark.slow
 COMMAND = Path(sys.executable).with_name("dalembert")
 TEXT = "(document.body?.innerText ?? '')"
@@ -29,6 +31,14 @@ def address(root):
         found = re.search(r"http://\S+", studio.stdout.readline())
         yield found[0].rstrip("/")
         studio.terminate()
+
+
+@pytest.fixture(scope="module")
+def known(root):
+    """Runs "first" and "second" of a study "known"."""
+    study = begin("identify", root / "studies" / "known")
+    for name in ("first", "second"):
+        subprocess.run([COMMAND, "run", study, "--out", root / "runs" / name], check=True)
 
 
 @pytest.fixture
@@ -179,10 +189,7 @@ def test_a_name_with_a_script_is_refused_and_one_that_is_there_is_shown_as_text(
     assert tab.run("document.images.length") == 0
 
 
-def test_two_runs_side_by_side(visit, root, address):
-    folder = root / "studies" / "drag"
-    for name in ("first", "second"):
-        subprocess.run([COMMAND, "run", folder / "study.toml", "--out", root / "runs" / name], check=True)
+def test_two_runs_side_by_side(visit, known, address):
     tab = visit("/")
     for name in ("first", "second"):
         tab.click(f"document.querySelector('[aria-label=\"Choose {name}\"]')")
@@ -200,7 +207,7 @@ def test_two_runs_side_by_side(visit, root, address):
         ("/", f"{TEXT}.includes('Compare chosen runs')"),
         ("/new", "document.querySelector('input[type=file]')"),
         (
-            "/study/drag/study",
+            "/study/known/known",
             "document.querySelectorAll('.cm-line').length && document.querySelector('.js-plotly-plot .trace')",
         ),
         ("/run/first", "document.querySelector('iframe')"),
@@ -211,7 +218,7 @@ def test_two_runs_side_by_side(visit, root, address):
     ],
 )
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_pages_fit_a_phone_in_light_and_dark(visit, path, shown, scheme):
+def test_pages_fit_a_phone_in_light_and_dark(visit, known, path, shown, scheme):
     tab = visit(path, width=390, height=844, touch=True, scheme=scheme)
     tab.until(f"Boolean({shown})")
     assert tab.run("document.documentElement.scrollWidth") <= 390
@@ -219,10 +226,12 @@ def test_pages_fit_a_phone_in_light_and_dark(visit, path, shown, scheme):
     assert (ground == "rgb(255, 255, 255)" or ground == "rgba(0, 0, 0, 0)") == (scheme == "light")
 
 
-def test_the_keyboard_reaches_everything(visit):
+def test_the_keyboard_reaches_everything(visit, known):
     tab = visit("/")
     tab.until(f"{TEXT}.includes('Compare chosen runs')")
-    for wanted in ("Skip to the content", "New study", "Choose first", "first", "Compare chosen runs"):
+    tab.move_focus()
+    assert tab.run("document.activeElement.innerText") == "Skip to the content"
+    for wanted in ("New study", "Choose first", "first", "Compare chosen runs"):
         press_tab_to(tab, wanted)
     tab.run(f"{link('New study')}.focus()")
     tab.press("Enter")
@@ -259,7 +268,7 @@ def fetched(url, **headers):
         return error.code
 
 
-def test_only_files_of_runs_are_given_away(address, root):
+def test_only_files_of_runs_are_given_away(address, known, root):
     (root / "runs" / "first" / "secret.txt").write_text("x")
     assert fetched(f"{address}/files/first/report.html") == 200
     for path in (
@@ -275,7 +284,7 @@ def test_only_files_of_runs_are_given_away(address, root):
     assert fetched(address, Origin="https://evil.example") == 403
 
 
-def test_beyond_this_machine_it_asks_for_a_token(root):
+def test_beyond_this_machine_it_asks_for_a_token(known, root):
     command = [COMMAND, "studio", root, "--host", "0.0.0.0", "--port", "0", "--no-browser"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=os.environ) as studio:
         given = re.search(r"http://\S+", studio.stdout.readline())[0]

@@ -14,8 +14,8 @@ def inexact(parameter: str, error: Exception) -> InputError:
     """The error of a builder that cannot run in complex numbers."""
     return InputError(
         f"the model's function cannot run in complex numbers, as exact derivatives by {parameter!r} need ({error}); "
-        "use NumPy's functions instead of those of math, and no float() or comparison on parameters; "
-        "or wrap the model in a PythonModel with derivative='central-differences'"
+        "use NumPy's functions instead of those of math, dalembert's absolute, norm, hypot and atan2, and no float() "
+        "or comparison on parameters; or give derivative='central-differences'"
     )
 
 

@@ -4,16 +4,17 @@ import hashlib
 import inspect
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 
 from dalembert.errors import DalembertError, InputError, SolveError, told, unknown, users_place
+from dalembert.forward.complex_steps import DIFFERENCE, lost_step, refusal
+from dalembert.forward.differences import COMPLEX_STEP, DERIVATIVES, RELATIVE_STEP
 from dalembert.forward.model import Channel, Coordinate, ForwardModel
 from dalembert.forward.responses import Responses
 from dalembert.parameters import Parameter, Parameters
-
-DERIVATIVES = ("complex-step", "central-differences")
 
 
 @dataclass(frozen=True)
@@ -49,7 +50,7 @@ class PythonModel:
     parameters: Parameters
     channels: tuple[Channel, ...]
     coordinate: Coordinate
-    derivative: str = "complex-step"
+    derivative: str = COMPLEX_STEP
     kept: int | None = field(default=None, repr=False)
 
     def __init__(
@@ -61,7 +62,7 @@ class PythonModel:
         *,
         coordinate: str = "time",
         unit: str = "s",
-        derivative: str = "complex-step",
+        derivative: str = COMPLEX_STEP,
         kept: int | None = None,
     ) -> None:
         if derivative not in DERIVATIVES:
@@ -103,12 +104,14 @@ class PythonModel:
     def jacobian(self, vector: np.ndarray) -> np.ndarray:
         """Derivative of the response, shape (samples, channels, parameters)."""
         vector = np.asarray(vector, dtype=float)
+        if self.derivative == COMPLEX_STEP:
+            self._check(vector)
         jacobian = np.empty((*self._shape, len(vector)))
         for column, scale in enumerate(self.parameters.scale):
             jacobian[:, :, column] = (
                 self._complex_step(vector, column)
-                if self.derivative == "complex-step"
-                else self._central_difference(vector, column, scale * np.finfo(float).eps ** (1 / 3))
+                if self.derivative == COMPLEX_STEP
+                else self._central_difference(vector, column, scale * RELATIVE_STEP)
             )
         return jacobian
 
@@ -118,7 +121,7 @@ class PythonModel:
 
     def first(self, samples: int) -> ForwardModel:
         """The same model, cut to its first ``samples`` samples."""
-        return PythonModel(
+        own = PythonModel(
             self.function,
             self.parameters,
             self.channels,
@@ -128,6 +131,8 @@ class PythonModel:
             derivative=self.derivative,
             kept=samples,
         )
+        own._checked.extend(self._checked)
+        return own
 
     @property
     def _shape(self) -> tuple[int, int]:
@@ -166,6 +171,34 @@ class PythonModel:
         code = getattr(self.function, "__code__", None)
         place = f" ({Path(code.co_filename).name}, line {code.co_firstlineno})" if code else ""
         return f"the model's function{place}"
+
+    @cached_property
+    def _checked(self) -> list[bool]:
+        """Not empty once the complex step was compared with differences."""
+        return []
+
+    def _check(self, vector: np.ndarray) -> None:
+        """Compare the complex step with differences, the first time that it is used: four calls a parameter."""
+        if self._checked:
+            return
+        margin = np.minimum(DIFFERENCE * self.parameters.scale, (self.parameters.upper - self.parameters.lower) / 4)
+        inside = np.clip(vector, self.parameters.lower + margin, self.parameters.upper - margin)
+        for column, (name, step) in enumerate(zip(self.parameters.names, margin / DIFFERENCE, strict=True)):
+            lost = lost_step(lambda shift, column=column: self._moved(inside, column, shift), step)
+            if lost:
+                sample, channel = divmod(lost.entry, len(self.channels))
+                where = f"channel {self.channels[channel].name!r} (sample {sample + 1}) of {self._named}"
+                raise refusal(name, where, lost)
+        self._checked.append(True)
+
+    def _moved(self, vector: np.ndarray, column: int, shift: complex) -> np.ndarray:
+        """The response where a parameter is moved; NaN where the function fails."""
+        moved = vector.astype(type(shift))
+        moved[column] += shift
+        try:
+            return self._call(moved).ravel()
+        except Exception:  # the derivative itself will report it
+            return np.full(int(np.prod(self._shape)), np.nan)
 
     def _complex_step(self, vector: np.ndarray, column: int, step: float = 1e-30) -> np.ndarray:
         moved = vector.astype(complex)

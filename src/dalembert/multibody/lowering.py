@@ -65,6 +65,8 @@ class Lowered:
         Times, s, at which the velocity of a prescribed motion would jump.
     failures : Failures
         What functions of the user's raised.
+    parts : mapping of kind to tuple of str
+        Name of the component that each row belongs to.
     """
 
     structure: Structure
@@ -80,6 +82,7 @@ class Lowered:
     jumps: tuple[float, ...]
     kinks: tuple[tuple[float, str], ...]
     failures: Failures = field(compare=False, repr=False)
+    parts: dict[Kind, tuple[str, ...]] = field(compare=False, repr=False)
 
     @property
     def is_complex(self) -> bool:
@@ -145,6 +148,7 @@ class Lowering:
         self._index: dict[Kind, list] = {}
         self._integers: dict[Kind, list] = {}
         self._data: dict[Kind, list] = {}
+        self._parts: dict[Kind, list[str]] = {}
         self._rows: dict[str, tuple[Kind, int]] = {}
         self._signals: list[tuple[int, int, int, int]] = [(signal_kinds.TIME, 0, 0, 0)]
         self._signal_data: list[Number] = [0.0]
@@ -181,12 +185,14 @@ class Lowering:
         rows.append([_ABSENT if entry is None else entry for entry in index])
         self._integers.setdefault(kind, []).append(list(integers))
         self._data.setdefault(kind, []).append(numbers)
+        self._parts.setdefault(kind, []).append(self._component)
 
     def add_many(self, kind: Kind, index: np.ndarray, numbers: Sequence[Number]) -> None:
         """Components of a kind, index (count, width), that share their numbers."""
         self._index.setdefault(kind, []).extend(index.tolist())
         self._integers.setdefault(kind, []).extend([[]] * len(index))
         self._data.setdefault(kind, []).extend([numbers] * len(index))
+        self._parts.setdefault(kind, []).extend([self._component] * len(index))
 
     def multipliers(self, owner: str, count: int) -> list[int | None]:
         """Unknowns of ``count`` constraints of a joint."""
@@ -301,6 +307,7 @@ class Lowering:
         if n == 0:
             raise ModelError("the system has no body; add one")
         for body in system.bodies:
+            self._component = body.name
             body.lower(self, self._first[body.name])
         for component in (*system.joints, *system.loads):
             self._component = component.name
@@ -333,6 +340,7 @@ class Lowering:
             jumps=tuple(sorted(time for time in self._jumps if np.isfinite(time))),
             kinks=tuple(self.kinks),
             failures=self._failures,
+            parts={kind: tuple(names) for kind, names in self._parts.items()},
         )
         if not all(np.all(np.isfinite(array)) for array in (x, lowered.v, lowered.signal_data, *lowered.data.values())):
             self._refuse_infinite()

@@ -7,12 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from dalembert.errors import InputError, SolveError, told
+from dalembert.errors import InputError, SolveError, told, unknown
 from dalembert.forward import Channel, Coordinate, Responses, ensemble
 from dalembert.forward.builders import cores, inexact, restructured
+from dalembert.forward.differences import COMPLEX_STEP, DERIVATIVES, central_differences
 from dalembert.kernels.preparation import prepare
 from dalembert.multibody.assemble import assembled, refuse_kinks, refuse_redundancy
 from dalembert.multibody.callbacks import in_complex_numbers
+from dalembert.multibody.complex_steps import check_forces, check_numbers
 from dalembert.multibody.fingerprint import fingerprint
 from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.problem import Problem
@@ -42,6 +44,9 @@ class TimeResponse:
         Generalized-alpha with steps of a thousandth of the motion if not given.
     workers : int, optional
         Threads of an ensemble; as many as there are cores if not given.
+    derivative : {"complex-step", "central-differences"}
+        The complex step is exact, and needs a builder that runs in complex numbers. When it is first used, it is
+        compared with differences of the model's numbers, and of the forces of the user's functions.
 
     Examples
     --------
@@ -65,6 +70,7 @@ class TimeResponse:
     times: np.ndarray
     solver: Integrator
     workers: int = field(default=1, compare=False)
+    derivative: str = COMPLEX_STEP
 
     def __init__(
         self,
@@ -74,7 +80,10 @@ class TimeResponse:
         times: np.ndarray,
         solver: Integrator | str | None = None,
         workers: int | None = None,
+        derivative: str = COMPLEX_STEP,
     ) -> None:
+        if derivative not in DERIVATIVES:
+            raise InputError(unknown("derivative", derivative, DERIVATIVES, "TimeResponse"))
         times = np.asarray(times, dtype=float)
         times = checked(times, times[-1] if times.ndim == 1 and len(times) else 0.0)
         if times[-1] <= 0:
@@ -88,6 +97,7 @@ class TimeResponse:
             ("times", times),
             ("solver", integrator(solver, float(times[-1]))),
             ("workers", workers or cores()),
+            ("derivative", derivative),
         ):
             object.__setattr__(self, name, value)
 
@@ -112,7 +122,8 @@ class TimeResponse:
 
     @cached_property
     def _fingerprint(self) -> str:
-        asked = self.parameters.names, self.channel_names, self.solver
+        differences = [self.derivative] * (self.derivative != COMPLEX_STEP)
+        asked = self.parameters.names, self.channel_names, self.solver, *differences
         return fingerprint(self._frame.lowered, self.times, *asked)
 
     def evaluate(self, vectors: np.ndarray) -> Responses:
@@ -154,11 +165,14 @@ class TimeResponse:
         Raises
         ------
         InputError
-            Where the builder, or a function of the user's in the model, cannot run in complex numbers.
+            Where the builder, or a function of the user's in the model, cannot run in complex numbers, or loses the
+            imaginary part.
         SolveError
             Where the solver could not go on.
         """
         vector = self.parameters.vector(vector).astype(float)
+        if self.derivative != COMPLEX_STEP:
+            return central_differences(self, vector)
         frame = self._frame
         self._prepare(frame.lowered, frame.observer, derivatives=True)
         with in_complex_numbers(strict=True):
@@ -170,6 +184,7 @@ class TimeResponse:
         for name, own in zip(self.parameters.names, tilted, strict=True):
             for error in (*lowered.failures.inexact, *own.failures.inexact):
                 raise inexact(name, error) from error
+        self._check(vector, lowered, result)
         states, slopes = result.states, result.derivatives
         values = frame.observer.read(lowered, lowered.real, states.x, states.v, states.a)
         jacobian = np.empty((*values.shape, len(vector)))
@@ -181,13 +196,29 @@ class TimeResponse:
 
     def first(self, samples: int) -> "TimeResponse":
         """The same model, cut to its first ``samples`` samples; its simulations end earlier."""
-        return TimeResponse(
-            self.builder, self.parameters, self.channel_names, self.times[:samples], self.solver, self.workers
-        )
+        own = TimeResponse(
+            self.builder, self.parameters, self.channel_names, self.times[:samples], self.solver, self.workers,
+            self.derivative,
+        )  # fmt: skip
+        own._checked.extend(self._checked)
+        return own
 
     def system(self, vector: np.ndarray) -> System:
         """The mechanism at a parameter vector (parameters,)."""
         return self.builder(**self.parameters.mapping(vector))
+
+    @cached_property
+    def _checked(self) -> list[bool]:
+        """Not empty once the complex step was compared with differences."""
+        return []
+
+    def _check(self, vector: np.ndarray, lowered: Lowered, run: Run) -> None:
+        """Compare the complex step with differences, the first time that it is used."""
+        if not self._checked:
+            with in_complex_numbers(strict=True):
+                check_numbers(self.builder, self.parameters, vector)
+                check_forces(lowered, self.times, run.states, self._frame.problem.scale)
+            self._checked.append(True)
 
     @cached_property
     def _frame(self) -> "_Frame":

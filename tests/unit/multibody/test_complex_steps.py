@@ -1,0 +1,105 @@
+"""A mechanism whose builder, or whose forces, drop the imaginary part is refused; differences serve instead."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from numba import njit
+
+import dalembert as da
+
+TIMES = np.linspace(0.0, 0.5, 11)
+BOUNDS = {"length": (0.5, 2.0), "stiffness": (10.0, 20.0)}
+VALUES = np.array([1.0, 15.0])
+
+
+def arm(safe: Callable = lambda x: x, stiff: Callable = lambda x: x, course: Callable = lambda x: x) -> Callable:
+    """A builder of a bar on a spring, whose parameters go through functions."""
+
+    def build(length: float, stiffness: float) -> da.System:
+        system = da.System()
+        bar = system.add(da.RigidBar("bar", safe(length), 1.0, angle=0.3))
+        system.add(da.RevoluteJoint("pin", system.ground, bar.start, viscous=0.1))
+        system.add(da.Spring("coil", system.ground.point(0.0, 1.0), bar.end, stiff(stiffness)))
+        system.add(da.Force("push", bar.end, x=da.Harmonic(course(length), 3.0)))
+        return system
+
+    return build
+
+
+def response(builder: Callable, **settings: str) -> da.TimeResponse:
+    return da.TimeResponse(builder, BOUNDS, ["bar.end.x"], TIMES, da.GeneralizedAlpha(step=2e-3), **settings)
+
+
+LOSING = {"abs": abs, "norm": lambda x: np.linalg.norm([x, 0.0]), "a part": lambda x: 0.5 * (x + abs(x))}
+
+
+@pytest.mark.parametrize("name", LOSING)
+def test_a_builder_that_loses_the_step_is_refused(name: str) -> None:
+    with pytest.raises(da.InputError, match=r"of 'bar' by 'length' is .* by the complex step, but .* by differences"):
+        response(arm(safe=LOSING[name])).jacobian(VALUES)
+
+
+def test_the_component_and_its_number_are_named() -> None:
+    with pytest.raises(da.InputError, match="derivative of 'stiffness' of 'coil' by 'stiffness' is 0 by the complex"):
+        response(arm(stiff=np.abs)).jacobian(VALUES)
+
+
+def test_a_function_of_time_is_named() -> None:
+    with pytest.raises(da.InputError, match="derivative of a function of time by 'length' is 0 by the complex step"):
+        response(arm(course=abs)).jacobian(VALUES)
+
+
+def test_an_identification_does_not_begin_with_wrong_derivatives() -> None:
+    data = da.Measurements.of(TIMES, {"bar.end.x": np.zeros_like(TIMES)})
+    with pytest.raises(da.InputError, match="by the complex step"):
+        da.identify(response(arm(safe=abs)), data, starts=1, seed=0)
+
+
+def test_safe_functions_and_differences_give_the_derivatives() -> None:
+    exact = response(arm()).jacobian(VALUES)
+    safe = arm(safe=lambda x: da.hypot(x, 0.0), stiff=da.absolute, course=lambda x: da.norm([0.0, x]))
+    np.testing.assert_allclose(response(safe).jacobian(VALUES), exact, rtol=1e-12)
+    differences = response(arm(safe=abs, stiff=abs, course=abs), derivative="central-differences")
+    values, slopes = differences.linearise(VALUES)
+    np.testing.assert_allclose(slopes, exact, atol=1e-6 * np.max(np.abs(exact)))
+    np.testing.assert_array_equal(values, response(arm()).evaluate(VALUES).only()[0])
+
+
+def test_a_parameter_on_its_bound_is_compared_inside() -> None:
+    response(arm(safe=lambda x: da.hypot(x, 0.0))).jacobian(np.array([0.5, 20.0]))
+
+
+def dragged(force: Callable, compiled: bool) -> da.TimeResponse:
+    """A bar that a function of its angular velocity brakes."""
+    own = njit(force) if compiled else force
+
+    def build(rate: float) -> da.System:
+        system = da.System(gravity=(0.0, 0.0))
+        bar = system.add(da.RigidBar("bar", 1.0, 1.0, angle=0.3, angular_velocity=rate))
+        system.add(da.RevoluteJoint("pin", system.ground, bar.start))
+        system.add(da.UserForce("drag", bar.end, own))
+        return system
+
+    return da.TimeResponse(build, {"rate": (0.5, 1.5)}, ["bar.end.x"], TIMES, da.GeneralizedAlpha(step=5e-3))
+
+
+FORCES: dict[str, Callable] = {
+    "quadratic": lambda t, at, against: (0.0, 0.0, -0.1 * at[5] * abs(at[5])),
+    "Stribeck": lambda t, at, against: (0.0, 0.0, -0.05 * (1 + 2 * np.exp(-abs(at[5]))) * np.sign(at[5].real)),
+    "distance": lambda t, at, against: (-np.abs(at[0]) * at[0], 0.0, 0.0),
+}
+
+
+@pytest.mark.parametrize("compiled", [False, True])
+@pytest.mark.parametrize("name", FORCES)
+def test_a_force_that_loses_the_step_of_the_state_is_refused(name: str, compiled: bool) -> None:
+    with pytest.raises(da.InputError, match="a force of 'drag' depends on the state, but its derivative is"):
+        dragged(FORCES[name], compiled).jacobian(np.array([1.0]))
+
+
+def test_a_force_by_safe_functions_is_accepted() -> None:
+    model = dragged(lambda t, at, against: (0.0, 0.0, -0.1 * at[5] * da.absolute(at[5])), compiled=False)
+    slopes = model.jacobian(np.array([1.0]))
+    ahead, behind = model.evaluate(np.array([[1.0 + 1e-5], [1.0 - 1e-5]])).values
+    np.testing.assert_allclose(slopes[:, :, 0], (ahead - behind) / 2e-5, atol=1e-7)

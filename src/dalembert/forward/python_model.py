@@ -104,8 +104,6 @@ class PythonModel:
     def jacobian(self, vector: np.ndarray) -> np.ndarray:
         """Derivative of the response, shape (samples, channels, parameters)."""
         vector = np.asarray(vector, dtype=float)
-        if self.derivative == COMPLEX_STEP:
-            self._check(vector)
         jacobian = np.empty((*self._shape, len(vector)))
         for column, scale in enumerate(self.parameters.scale):
             jacobian[:, :, column] = (
@@ -113,6 +111,8 @@ class PythonModel:
                 if self.derivative == COMPLEX_STEP
                 else self._central_difference(vector, column, scale * RELATIVE_STEP)
             )
+        if self.derivative == COMPLEX_STEP:
+            self._check(vector)
         return jacobian
 
     def linearise(self, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

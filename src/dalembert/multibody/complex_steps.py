@@ -6,7 +6,6 @@ functions of the user's and of components of other packages are compared at stat
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -15,7 +14,6 @@ from dalembert.forward.complex_steps import DIFFERENCE, DROPPING, REMEDY, lost_s
 from dalembert.multibody.components.planar.user_force import USER_FORCE
 from dalembert.multibody.evaluate import residual
 from dalembert.multibody.kernels.kind import Kind
-from dalembert.multibody.kernels.model import Blocks, Model
 from dalembert.multibody.kernels.motion import Motion
 from dalembert.multibody.lowering import Lowered, lower
 from dalembert.multibody.system import System
@@ -84,23 +82,13 @@ def check_forces(lowered: Lowered, times: np.ndarray, states: Motion, scale: np.
         It names the component.
     """
     for kind in filter(_foreign, lowered.data):
-        real, dual = (_alone(lowered, kind, dtype) for dtype in (float, complex))
         for direction in _directions(lowered, states, scale):
             for sample in np.unique(np.linspace(0, len(times) - 1, _STATES).astype(int)):
-                _check_force(
-                    lowered, kind, real, dual, direction, float(times[sample]), [part[sample] for part in states[:3]]
-                )
+                _check_force(lowered, kind, direction, float(times[sample]), [part[sample] for part in states[:3]])
 
 
 def _foreign(kind: Kind) -> bool:
-    return kind is USER_FORCE or kind.source.__module__.partition(".")[0] != __name__.partition(".")[0]
-
-
-def _alone(lowered: Lowered, kind: Kind, dtype: type) -> Model:
-    """The model with the components of one kind only."""
-    whole = replace(lowered, data={key: np.real(data) for key, data in lowered.data.items()}).model(dtype)
-    blocks = Blocks(*({kind: part[kind]} for part in (whole.blocks.index, whole.blocks.integers, whole.blocks.numbers)))
-    return replace(whole, blocks=blocks)
+    return kind is USER_FORCE or (kind.source.__module__ or "").partition(".")[0] != __name__.partition(".")[0]
 
 
 def _directions(lowered: Lowered, states: Motion, scale: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
@@ -112,16 +100,14 @@ def _directions(lowered: Lowered, states: Motion, scale: np.ndarray) -> list[tup
     return [(signs * scale, still), (still, signs * speed)]
 
 
-def _check_force(
-    lowered: Lowered, kind: Kind, real: Model, dual: Model, direction: Sequence[np.ndarray], t: float, state: list
-) -> None:
+def _check_force(lowered: Lowered, kind: Kind, direction: Sequence[np.ndarray], t: float, state: list) -> None:
     x, v, a = state
     dx, dv = direction
 
     def force(shift: complex) -> np.ndarray:
         if isinstance(shift, complex):
-            return residual(lowered, dual, x + shift * dx, v + shift * dv, a.astype(complex), t)
-        return residual(lowered, real, x + shift * dx, v + shift * dv, a, t)
+            return residual(lowered, lowered.upright, x + shift * dx, v + shift * dv, a.astype(complex), t, kind)
+        return residual(lowered, lowered.real, x + shift * dx, v + shift * dv, a, t, kind)
 
     lost = lost_step(force, 1.0)
     if lost:

@@ -7,18 +7,27 @@ from dalembert.kernels.kernel import Compiled, kernel
 from dalembert.kernels.words import Address, Reals, Reals2
 from dalembert.multibody.kernels import assembly
 from dalembert.multibody.kernels.histories import energy_history
+from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.kernels.model import Model
 from dalembert.multibody.kernels.records import RESIDUAL, TANGENT
 from dalembert.multibody.lowering import Lowered
 
 
-def residual(lowered: Lowered, model: Model, x: np.ndarray, v: np.ndarray, a: np.ndarray, t: float = 0.0) -> np.ndarray:
-    """Equations of motion, then constraints, (N,)."""
+def residual(
+    lowered: Lowered,
+    model: Model,
+    x: np.ndarray,
+    v: np.ndarray,
+    a: np.ndarray,
+    t: float = 0.0,
+    only: Kind | None = None,
+) -> np.ndarray:
+    """Equations of motion, then constraints, (N,); what one kind adds to them, if given."""
     x, v, a = map(np.ascontiguousarray, (x, v, a))
     r = np.zeros_like(x)
     call = model.call().set(x=x, v=v, a=a, r=r, mode=RESIDUAL)
     model.evaluate(call, t, t)
-    model.each("residual", call)
+    model.each("residual", call, only=only)
     return r[:-1]
 
 

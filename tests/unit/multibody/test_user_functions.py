@@ -117,8 +117,8 @@ def test_its_derivatives_are_refused(kind: str, reason: str) -> None:
     model = response(NOT_COMPLEX[kind], "bar.end.y" if kind == "function of time" else "plate.grip.x")
     sentence = (
         f"the model's function cannot run in complex numbers, as exact derivatives by 'p' need ({reason}); "
-        "use NumPy's functions instead of those of math, and no float() or comparison on parameters; "
-        "or wrap the model in a PythonModel with derivative='central-differences'"
+        "use NumPy's functions instead of those of math, dalembert's absolute, norm, hypot and atan2, and no float() "
+        "or comparison on parameters; or give derivative='central-differences'"
     )
     with pytest.raises(InputError, match=says(sentence)):
         model.jacobian([1.5])

@@ -123,11 +123,11 @@ class Model:
         """Evaluate the signals of a call."""
         EVALUATE[self.dtype](call.set(t=t, within=within).address, self.address)
 
-    def each(self, role: str, call: "Call", slots: np.ndarray | None = None) -> None:
-        """Call the kernels of a role, block by block."""
+    def each(self, role: str, call: "Call", slots: np.ndarray | None = None, only: Kind | None = None) -> None:
+        """Call the kernels of a role, block by block, or those of one kind."""
         self.need(role)
         for k, kind in enumerate(self.blocks.index):
-            if kind.has(role):
+            if kind.has(role) and only in (None, kind):
                 if slots is not None:
                     call.set(slots=slots[k])
                 kernel: Any = kind.kernel(role, self.dtype)

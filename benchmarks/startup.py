@@ -71,6 +71,8 @@ def main() -> list[dict[str, object]]:
         run = [*study, "--out", f"{folder}/run", "--force"]
         rows.append(_row("the demo's study, nothing compiled", run, f"{folder}/study"))
         rows.append(_row("the demo's study, later process", run, f"{folder}/study"))
+        compile_all = [sys.executable, "-m", "dalembert.cli", "compile"]
+        rows.append(_row("dalembert compile, nothing compiled", compile_all, f"{folder}/all"))
         rows.append(_row("import dalembert", "import dalembert", folder))
         rows.append(_row("dalembert --help", [sys.executable, "-m", "dalembert.cli", "--help"], folder))
     timing.report("startup", "Waiting times: whole processes", rows)

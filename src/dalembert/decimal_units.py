@@ -46,7 +46,7 @@ def decimal_unit(text: str) -> tuple[int, tuple[int, ...]] | None:
 
 
 def in_si(number: str, unit: str, wanted: str | None) -> float | None:
-    """Return a number, given as text, in a coherent SI unit; None where its unit is no power of ten of that.
+    """Return a number, given as text, in a coherent SI unit; None if its unit is not a decimal multiple of it.
 
     ``wanted`` None stands for whatever SI unit fits.
 

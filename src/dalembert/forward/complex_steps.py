@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from dalembert.errors import InputError
+from dalembert.parameters import Parameters
 
 STEP = 1e-30
 """Imaginary step, in scales of the parameter; terms of second order vanish below the rounding of the first."""
@@ -63,10 +64,33 @@ def _differences(
     return slope, _SAFETY * np.abs(wide - slope) + kink + rounding
 
 
-def refusal(parameter: str, where: str, lost: Lost) -> InputError:
-    """The error about a number that loses a complex step."""
-    return InputError(
-        f"the derivative of {where} by {parameter!r} is {lost.by_step:.6g} by the complex step, but "
-        f"{lost.by_differences:.6g} by differences. A function of yours drops the imaginary part, as {DROPPING} do. "
-        f"{REMEDY}"
-    )
+def check_steps(
+    parameters: Parameters, vector: np.ndarray, numbers: Callable[[np.ndarray], np.ndarray], place: Callable[[int], str]
+) -> None:
+    """Raise where numbers that depend on parameters lose the complex step of one of them.
+
+    Parameters
+    ----------
+    parameters : Parameters
+    vector : array (parameters,)
+        Where they are compared; moved inside the bounds, so that the differences stay there.
+    numbers : callable
+        Vector of the numbers at a real or complex vector of parameters.
+    place : callable
+        What an entry of the numbers is, for the message.
+
+    Raises
+    ------
+    InputError
+        It names the parameter and the entry.
+    """
+    margin = np.minimum(DIFFERENCE * parameters.scale, (parameters.upper - parameters.lower) / 4)
+    inside = np.clip(vector, parameters.lower + margin, parameters.upper - margin)
+    for name, unit, scale in zip(parameters.names, np.eye(len(vector)), margin / DIFFERENCE, strict=True):
+        lost = lost_step(lambda shift, unit=unit: numbers(inside + shift * unit), scale)
+        if lost:
+            raise InputError(
+                f"the derivative of {place(lost.entry)} by {name!r} is {lost.by_step:.6g} by the complex step, but "
+                f"{lost.by_differences:.6g} by differences. A function of yours drops the imaginary part, as "
+                f"{DROPPING} do. {REMEDY}"
+            )

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from dalembert.errors import DalembertError, InputError, SolveError, told, unknown, users_place
-from dalembert.forward.complex_steps import DIFFERENCE, lost_step, refusal
+from dalembert.forward.complex_steps import STEP, check_steps
 from dalembert.forward.differences import COMPLEX_STEP, DERIVATIVES, RELATIVE_STEP
 from dalembert.forward.model import Channel, Coordinate, ForwardModel
 from dalembert.forward.responses import Responses
@@ -179,28 +179,22 @@ class PythonModel:
 
     def _check(self, vector: np.ndarray) -> None:
         """Compare the complex step with differences, the first time that it is used: four calls a parameter."""
-        if self._checked:
-            return
-        margin = np.minimum(DIFFERENCE * self.parameters.scale, (self.parameters.upper - self.parameters.lower) / 4)
-        inside = np.clip(vector, self.parameters.lower + margin, self.parameters.upper - margin)
-        for column, (name, step) in enumerate(zip(self.parameters.names, margin / DIFFERENCE, strict=True)):
-            lost = lost_step(lambda shift, column=column: self._moved(inside, column, shift), step)
-            if lost:
-                sample, channel = divmod(lost.entry, len(self.channels))
-                where = f"channel {self.channels[channel].name!r} (sample {sample + 1}) of {self._named}"
-                raise refusal(name, where, lost)
-        self._checked.append(True)
+        if not self._checked:
+            check_steps(self.parameters, vector, self._numbers, self._place)
+            self._checked.append(True)
 
-    def _moved(self, vector: np.ndarray, column: int, shift: complex) -> np.ndarray:
-        """The response where a parameter is moved; NaN where the function fails."""
-        moved = vector.astype(type(shift))
-        moved[column] += shift
+    def _numbers(self, vector: np.ndarray) -> np.ndarray:
+        """The response as a vector; NaN where the function fails."""
         try:
-            return self._call(moved).ravel()
+            return self._call(vector).ravel()
         except Exception:  # the derivative itself will report it
             return np.full(int(np.prod(self._shape)), np.nan)
 
-    def _complex_step(self, vector: np.ndarray, column: int, step: float = 1e-30) -> np.ndarray:
+    def _place(self, entry: int) -> str:
+        sample, channel = divmod(entry, len(self.channels))
+        return f"channel {self.channels[channel].name!r} (sample {sample + 1}) of {self._named}"
+
+    def _complex_step(self, vector: np.ndarray, column: int, step: float = STEP) -> np.ndarray:
         moved = vector.astype(complex)
         moved[column] += 1j * step
         try:

@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from dalembert.errors import InputError
-from dalembert.forward.complex_steps import DIFFERENCE, DROPPING, REMEDY, lost_step, refusal
+from dalembert.forward.complex_steps import DROPPING, REMEDY, check_steps, lost_step
 from dalembert.multibody.components.planar.user_force import USER_FORCE
 from dalembert.multibody.evaluate import residual
 from dalembert.multibody.kernels.kind import Kind
@@ -30,17 +30,12 @@ def check_numbers(builder: Callable[..., System], parameters: Parameters, vector
     InputError
         It names the parameter, the component and its number.
     """
-    margin = np.minimum(DIFFERENCE * parameters.scale, (parameters.upper - parameters.lower) / 4)
-    vector = np.clip(vector, parameters.lower + margin, parameters.upper - margin)
-    for column, (name, scale) in enumerate(zip(parameters.names, parameters.scale, strict=True)):
-        given = dict(zip(parameters.names, vector.tolist(), strict=True))
 
-        def lowered(shift: complex, name: str = name, given: dict = given) -> Lowered:
-            return lower(builder(**{**given, name: given[name] + shift}))
+    def lowered(vector: np.ndarray) -> Lowered:
+        given = [value if value.imag else value.real for value in vector.tolist()]  # one of them is complex at most
+        return lower(builder(**dict(zip(parameters.names, given, strict=True))))
 
-        lost = lost_step(lambda shift, at=lowered: _numbers(at(shift)), min(scale, margin[column] / DIFFERENCE))
-        if lost:
-            raise refusal(name, _place(lowered(0.0), lost.entry), lost)
+    check_steps(parameters, vector, lambda at: _numbers(lowered(at)), lambda entry: _place(lowered(vector), entry))
 
 
 def _numbers(lowered: Lowered) -> np.ndarray:

@@ -71,7 +71,7 @@ def load(
 
 
 def _validated(document: dict[str, Any], context: Context) -> StudyFile:
-    """The tables of a document. What is wrong with it is told by the whole schema, which knows all that there is."""
+    """The tables of a document. The whole schema, with all kinds, reports mistakes."""
     try:
         return study_file(words_of(document)).model_validate(document, context=context)
     except ValidationError:

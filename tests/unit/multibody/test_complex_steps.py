@@ -70,6 +70,18 @@ def test_a_parameter_on_its_bound_is_compared_inside() -> None:
     response(arm(safe=lambda x: da.hypot(x, 0.0))).jacobian(np.array([0.5, 20.0]))
 
 
+def test_a_builder_may_compare_parameters_with_each_other() -> None:
+    def build(length: float, stiffness: float) -> da.System:
+        return arm(stiff=lambda x: x if length.real > 0.1 else 2 * x)(length, stiffness)
+
+    def compares(length: float, stiffness: float) -> da.System:
+        stiff = stiffness * (2 if isinstance(length, float) and length < 0.1 else 1)
+        assert not (isinstance(length, complex) and isinstance(stiffness, complex))
+        return arm()(length, stiff)
+
+    np.testing.assert_array_equal(response(compares).jacobian(VALUES), response(build).jacobian(VALUES))
+
+
 def dragged(force: Callable, compiled: bool) -> da.TimeResponse:
     """A bar that a function of its angular velocity brakes."""
     own = njit(force) if compiled else force

@@ -26,7 +26,7 @@ ARRAYS = ("middle_deviations", "radius_deviations", "correlation", "singular_val
 
 
 def contents_of(fit: BandFit) -> Contents:
-    """Arrays over parameter, unknown, sample, channel, step and start; what is no array stands in attributes."""
+    """Arrays over parameter, unknown, sample, channel, step and start; other facts are attributes."""
     variables: dict[str, Any] = {
         "box_lower": ("parameter", fit.box.lower),
         "box_upper": ("parameter", fit.box.upper),

@@ -20,7 +20,7 @@ FACTS = ("status", "success", "resolution", "runs", "seconds")
 
 
 def contents_of(found: ParameterSet) -> Contents:
-    """Arrays over parameter, side, box, sample and channel; what is no array stands in attributes."""
+    """Arrays over parameter, side, box, sample and channel; other facts are attributes."""
     variables: dict[str, Any] = {
         **stored_data(found.data),
         "error": (("sample", "channel"), np.array(found.error)),

@@ -292,18 +292,9 @@ def _integrate(problem, edges, settings, model, dual, directions, state, dstates
             log.counts[0] += 1
             learn(n, c, old, new, own.slope)
             if differentiated and not _differentiate_at(
-                room.differentiate,
-                problem,
-                dual,
-                directions,
-                c,
-                target,
-                within,
-                new,
-                dolds,
-                dstates,
+                room.differentiate, problem, dual, directions, c, target, within, new, dolds, dstates,
                 room.differentiation,
-            ):
+            ):  # fmt: skip
                 return SINGULAR, target, 0
             if problem.projected and width - 1 > n:
                 if not accelerate(problem, model, dual, directions, target, within, new, dstates, room.consistency):

@@ -13,6 +13,7 @@ _MODULES = (
     "errors",
     "parameters",
     "intervals",
+    "findings",
     "elementary",
     "forward",
     "optimize",
@@ -32,6 +33,7 @@ _NAMES = {
     "errors": "DalembertError InputError ModelError SolveError ClusterError DataError StorageError",
     "parameters": "Parameter Parameters",
     "intervals": "Box Interval",
+    "findings": "Finding",
     "elementary": "absolute atan2 hypot norm",
     "forward": """
         Channel Checkpoint Coordinate Distributed ForwardModel PythonModel Recorded Responses Sensor Sensors on_cluster

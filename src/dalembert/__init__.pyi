@@ -3,6 +3,7 @@ from dalembert import data as data
 from dalembert import elementary as elementary
 from dalembert import errors as errors
 from dalembert import export as export
+from dalembert import findings as findings
 from dalembert import forward as forward
 from dalembert import intervals as intervals
 from dalembert import inverse as inverse
@@ -37,6 +38,7 @@ from dalembert.errors import ModelError as ModelError
 from dalembert.errors import SolveError as SolveError
 from dalembert.errors import StorageError as StorageError
 from dalembert.export import export_vtk as export_vtk
+from dalembert.findings import Finding as Finding
 from dalembert.forward import Channel as Channel
 from dalembert.forward import Checkpoint as Checkpoint
 from dalembert.forward import Coordinate as Coordinate

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from dalembert.contents import Contents
 from dalembert.files import read_dataset, write_contents
+from dalembert.findings import Finding, findings_of, stored_findings
 from dalembert.hooks import hook
 
 if TYPE_CHECKING:
@@ -19,6 +20,13 @@ class Result(ABC):
     """A result that can be written to a file, drawn, and reported."""
 
     FORMAT: ClassVar[str]
+    findings: tuple[Finding, ...] = ()
+    """What the method concludes about the result."""
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """Reasons to doubt the result: the messages of its findings that are more than notes."""
+        return tuple(finding.message for finding in self.findings if finding.doubtful)
 
     @abstractmethod
     def contents(self) -> Contents:
@@ -59,6 +67,7 @@ class Result(ABC):
 
 def stored_facts(result: Result, names: Sequence[str], **told: Any) -> dict[str, Any]:
     """Attributes of a dataset: the format of a result, its numbers and words by name, and, as JSON, what is told."""
+    told = {**told, "findings": stored_findings(result.findings)}
     return {"format": result.FORMAT, **plain_facts(result, names), "settings": json.dumps(told, sort_keys=True)}
 
 
@@ -78,6 +87,11 @@ def facts_of(kind: type[Result], dataset: "Dataset", names: Sequence[str]) -> di
 def told_of(dataset: "Dataset") -> dict[str, Any]:
     """What :func:`stored_facts` was told."""
     return json.loads(dataset.attrs["settings"])
+
+
+def saved_findings(dataset: "Dataset") -> tuple[Finding, ...]:
+    """Findings of a result in a dataset; none in those of versions that had no findings."""
+    return findings_of(told_of(dataset).get("findings", ()))
 
 
 def _types(kind: type[Result]) -> dict[str, Any]:

@@ -9,6 +9,7 @@ import numpy as np
 from dalembert.contents import Contents
 from dalembert.data import Measurements
 from dalembert.errors import InputError
+from dalembert.findings import Finding
 from dalembert.inverse.doubts import doubts
 from dalembert.inverse.estimate import Estimate, Identifiability
 from dalembert.inverse.events import StartEnd, Step
@@ -61,6 +62,8 @@ class Fit(Result):
         How what was not fitted is predicted.
     nodes : Nodes, optional
         Where the segments of multiple shooting meet.
+    findings : tuple of Finding
+        What the method concludes about the result.
     """
 
     FORMAT: ClassVar[str] = "dalembert fit 1"
@@ -85,6 +88,7 @@ class Fit(Result):
     parts: tuple[Part, ...] = ()
     validation: Validation | None = None
     nodes: Nodes | None = None
+    findings: tuple[Finding, ...] = ()
 
     @property
     def experiments(self) -> tuple[ExperimentFit, ...]:
@@ -124,9 +128,10 @@ class Fit(Result):
         """Why the values are to be doubted although the search ended well, each reason in a few words.
 
         The residuals are no mere noise or too large for the given deviations, another minimum explains the data as
-        well, or parameters sit on a bound or are not told, or not apart; empty where nothing speaks against them.
+        well, parameters sit on a bound or are not told, or not apart, or a finding is a warning or an error; empty
+        where nothing speaks against them.
         """
-        return doubts(self.status, self.identifiability())
+        return (*doubts(self.status, self.identifiability()), *super().doubts)
 
     def intervals(self, level: float = 0.95) -> dict[str, tuple[float, float]]:
         """Interval of each parameter that holds its true value with a probability, by name: value ∓ q × deviation.

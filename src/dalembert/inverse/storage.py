@@ -11,7 +11,7 @@ from dalembert.inverse.stored_parts import parts_of, stored_parts, told_parts
 from dalembert.inverse.stored_search import search_of, stored_ends, stored_search
 from dalembert.inverse.validation import Validation
 from dalembert.parameters import Parameter, Parameters
-from dalembert.results import facts_of, stored_facts, told_of
+from dalembert.results import facts_of, saved_findings, stored_facts, told_of
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -79,4 +79,5 @@ def from_xarray(dataset: "Dataset") -> Fit:
         parts=parts_of(a, told["parts"]),
         validation=None if validation is None else Validation(weights=a["validation_weights"], **validation),
         nodes=nodes_of(a, told.get("nodes")),
+        findings=saved_findings(dataset),
     )

@@ -19,6 +19,7 @@ def summary(fit: Fit) -> str:
     ]
     experiments = experiments_table(fit)
     told = [fit.status, *([] if fit.validation is None else [str(fit.validation)]), *fit.identifiability().sentences]
+    told += map(str, fit.findings)
     return "\n".join([*table(rows), "", *facts, "", *experiments, *told])
 
 

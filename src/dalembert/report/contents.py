@@ -1,6 +1,7 @@
 """Which sections a result calls for."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from dalembert.errors import InputError
@@ -191,6 +192,8 @@ def contents(
                 f"report: a {type(result).__name__} was given; expected a result, such as identify(), simulate() or "
                 "propagate() return"
             )
+    if findings := tuple(getattr(result, "findings", ())):
+        sections[0] = replace(sections[0], findings=findings)
     facts = getattr(result, "provenance", {})
     return [*sections, Provenance(facts, study)] if facts or study else sections
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from dalembert.contents import Contents
 from dalembert.data import Bands
+from dalembert.findings import Finding
 from dalembert.intervals import Box
 from dalembert.results import Result
 
@@ -45,6 +46,8 @@ class Propagation(Bands, Result):
         Time taken.
     provenance : mapping
         Versions, seed, hash of the model, method and settings.
+    findings : tuple of Finding
+        What the method concludes about the result.
     """
 
     FORMAT: ClassVar[str] = "dalembert propagation 1"
@@ -62,6 +65,7 @@ class Propagation(Bands, Result):
     status: str
     seconds: float
     provenance: Mapping[str, Any]
+    findings: tuple[Finding, ...] = ()
 
     def summary(self) -> str:
         """The result as a text table with its status."""

@@ -7,7 +7,7 @@ import numpy as np
 from dalembert.contents import Contents
 from dalembert.forward.stored_coordinate import coordinate_of, stored_coordinate
 from dalembert.intervals import Box
-from dalembert.results import facts_of, stored_facts, told_of
+from dalembert.results import facts_of, saved_findings, stored_facts, told_of
 from dalembert.uncertainty.comparison import Comparison
 from dalembert.uncertainty.propagation import Propagation
 
@@ -59,6 +59,7 @@ def from_xarray(dataset: "Dataset") -> Propagation:
         at_upper=a.get("at_upper"),
         failures=tuple(told["failures"]),
         provenance=told["provenance"],
+        findings=saved_findings(dataset),
     )
 
 

@@ -19,7 +19,7 @@ def summary(result: Propagation) -> str:
         f"runs     {result.runs}" + (f", {len(result.failures)} failed" if result.failures else ""),
         f"seconds  {result.seconds:.2f}",
     ]
-    return "\n".join([*table(widths), "", *table(box), "", *facts, "", result.status])
+    return "\n".join([*table(widths), "", *table(box), "", *facts, "", result.status, *map(str, result.findings)])
 
 
 def table(rows: Sequence[Sequence[str]]) -> list[str]:

@@ -8,6 +8,7 @@ import numpy as np
 
 from dalembert.contents import Contents
 from dalembert.data import Bands
+from dalembert.findings import Finding
 from dalembert.intervals import Box
 from dalembert.inverse.doubts import doubts
 from dalembert.inverse.estimate import Estimate, Identifiability
@@ -66,6 +67,8 @@ class BandFit(Result):
         Spent on the whole identification.
     provenance : mapping
         Versions, seed, hashes of model and data, method and settings.
+    findings : tuple of Finding
+        What the method concludes about the result.
     """
 
     FORMAT: ClassVar[str] = "dalembert bandfit 1"
@@ -96,6 +99,7 @@ class BandFit(Result):
     simulations: int
     seconds: float
     provenance: Mapping[str, Any]
+    findings: tuple[Finding, ...] = ()
 
     @property
     def middle(self) -> np.ndarray:
@@ -129,7 +133,7 @@ class BandFit(Result):
     @property
     def doubts(self) -> tuple[str, ...]:
         """Why the intervals are to be doubted although the search ended well, each reason in a few words."""
-        return doubts(self.status, self.identifiability())
+        return (*doubts(self.status, self.identifiability()), *super().doubts)
 
     def summary(self) -> str:
         """The result as a text table with its status."""

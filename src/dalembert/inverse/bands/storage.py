@@ -12,7 +12,7 @@ from dalembert.intervals import Box
 from dalembert.inverse.bands.band_fit import BandFit
 from dalembert.inverse.stored_search import search_of, stored_ends, stored_search
 from dalembert.parameters import Parameter, Parameters
-from dalembert.results import facts_of, stored_facts, told_of
+from dalembert.results import facts_of, saved_findings, stored_facts, told_of
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -80,4 +80,5 @@ def from_xarray(dataset: "Dataset") -> BandFit:
         history=history,
         starts=starts,
         provenance=told["provenance"],
+        findings=saved_findings(dataset),
     )

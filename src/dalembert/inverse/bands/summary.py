@@ -29,4 +29,6 @@ def summary(fit: BandFit) -> str:
         f"seconds      {fit.seconds:.2g}",
         f"starts       {len(fit.starts)}",
     ]
-    return "\n".join([*table(rows), "", *facts, "", fit.status, *fit.identifiability().sentences])
+    return "\n".join(
+        [*table(rows), "", *facts, "", fit.status, *fit.identifiability().sentences, *map(str, fit.findings)]
+    )

@@ -8,6 +8,7 @@ import numpy as np
 
 from dalembert.contents import Contents
 from dalembert.data import Measurements
+from dalembert.findings import Finding
 from dalembert.intervals import Box
 from dalembert.parameters import Parameters
 from dalembert.results import Result
@@ -44,6 +45,8 @@ class ParameterSet(Result):
         How it went and what to do, in full sentences.
     provenance : mapping
         Versions, seed, hashes of model and data, scheme and settings.
+    findings : tuple of Finding
+        What the method concludes about the result.
     """
 
     FORMAT: ClassVar[str] = "dalembert parameterset 1"
@@ -62,6 +65,7 @@ class ParameterSet(Result):
     success: bool
     status: str
     provenance: Mapping[str, Any]
+    findings: tuple[Finding, ...] = ()
 
     @property
     def empty(self) -> bool:

@@ -10,7 +10,7 @@ from dalembert.intervals import Box
 from dalembert.inverse.sets.parameter_set import ParameterSet
 from dalembert.inverse.stored_data import data_labels, data_of, stored_data
 from dalembert.parameters import Parameter, Parameters
-from dalembert.results import facts_of, stored_facts, told_of
+from dalembert.results import facts_of, saved_findings, stored_facts, told_of
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -58,4 +58,5 @@ def from_xarray(dataset: "Dataset") -> ParameterSet:
         surrogate_error=a["surrogate_error"],
         **facts_of(ParameterSet, dataset, FACTS),
         provenance=told["provenance"],
+        findings=saved_findings(dataset),
     )

@@ -17,4 +17,4 @@ def summary(found: ParameterSet) -> str:
         f"simulations  {found.runs}",
         f"seconds      {found.seconds:.2g}",
     ]
-    return "\n".join([*table(rows), "", *facts, "", found.status])
+    return "\n".join([*table(rows), "", *facts, "", found.status, *map(str, found.findings)])

@@ -9,10 +9,11 @@ import numpy as np
 from dalembert.contents import Contents
 from dalembert.data import Measurements
 from dalembert.errors import listed
+from dalembert.findings import Finding
 from dalembert.forward import Coordinate
 from dalembert.forward.stored_coordinate import coordinate_of, stored_coordinate
 from dalembert.inverse.summary import table
-from dalembert.results import Result, facts_of, stored_facts, told_of
+from dalembert.results import Result, facts_of, saved_findings, stored_facts, told_of
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -44,6 +45,8 @@ class Prediction(Result):
         Whether the noise was known, or estimated from the residuals.
     simulations : int
     provenance : mapping
+    findings : tuple of Finding
+        What the method concludes about the result.
     """
 
     FORMAT: ClassVar[str] = "dalembert prediction 1"
@@ -60,6 +63,7 @@ class Prediction(Result):
     known: bool
     simulations: int
     provenance: Mapping[str, Any]
+    findings: tuple[Finding, ...] = ()
 
     @property
     def lower(self) -> np.ndarray:
@@ -121,7 +125,7 @@ class Prediction(Result):
             width = np.max(self.upper[:, k] - self.lower[:, k])
             measured = np.max(self.measured_upper[:, k] - self.measured_lower[:, k])
             rows.append((name, unit, f"{width:.4g}", "not measured" if np.isnan(measured) else f"{measured:.4g}"))
-        return "\n".join([*table(rows), "", self.status])
+        return "\n".join([*table(rows), "", self.status, *map(str, self.findings)])
 
     def contents(self) -> Contents:
         """Everything as arrays over sample and channel."""
@@ -175,4 +179,5 @@ class Prediction(Result):
             **facts_of(cls, dataset, FACTS),
             known=bool(told["known"]),
             provenance=told["provenance"],
+            findings=saved_findings(dataset),
         )

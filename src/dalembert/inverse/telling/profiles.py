@@ -8,9 +8,10 @@ import numpy as np
 
 from dalembert.contents import Contents
 from dalembert.errors import listed
+from dalembert.findings import Finding
 from dalembert.inverse.summary import table
 from dalembert.parameters import Parameter, Parameters
-from dalembert.results import Result, facts_of, stored_facts, told_of
+from dalembert.results import Result, facts_of, saved_findings, stored_facts, told_of
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -80,6 +81,8 @@ class Profiles(Result):
         Whether the noise is known, or estimated from the residuals.
     simulations : int
     provenance : mapping
+    findings : tuple of Finding
+        What the method concludes about the result.
     """
 
     FORMAT: ClassVar[str] = "dalembert profiles 1"
@@ -94,6 +97,7 @@ class Profiles(Result):
     known: bool
     simulations: int
     provenance: Mapping[str, Any]
+    findings: tuple[Finding, ...] = ()
 
     def __getitem__(self, name: str) -> Profile:
         """The profile of a parameter."""
@@ -179,7 +183,7 @@ class Profiles(Result):
             )
             item = self.parameters.items[k]
             rows.append((curve.name, f"{self.values[k]:.7g}", lower, upper, item.unit, f"{self.deviations[k]:.2g}"))
-        return "\n".join([*table(rows), "", self.status])
+        return "\n".join([*table(rows), "", self.status, *map(str, self.findings)])
 
     def contents(self) -> Contents:
         """Everything as arrays over parameter, profile and point."""
@@ -238,4 +242,5 @@ class Profiles(Result):
             **facts_of(cls, dataset, FACTS),
             known=bool(told["known"]),
             provenance=told["provenance"],
+            findings=saved_findings(dataset),
         )

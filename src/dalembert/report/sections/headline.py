@@ -6,6 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from dalembert.findings import Finding
 from dalembert.report.digits import counted, shown, with_deviation
 from dalembert.report.needs import FitLike, IdentifiedLike, SweepLike, TrajectoryLike
 from dalembert.report.needs_integrators import WorkPrecisionLike
@@ -38,11 +39,17 @@ class Headline(Section):
     facts: Sequence[Fact]
     notes: Sequence[str] = ()
     doubts: Sequence[str] = ()
+    findings: Sequence[Finding] = ()
+
+    @property
+    def doubtful(self) -> bool:
+        """Return True if a finding is a reason to doubt the result."""
+        return any(finding.doubtful for finding in self.findings)
 
     @property
     def badge(self) -> str:
         """How the verdict is shown: ``"good"``, ``"doubtful"`` or ``"bad"``."""
-        return "bad" if not self.success else "doubtful" if self.doubts else "good"
+        return "bad" if not self.success else "doubtful" if self.doubts or self.doubtful else "good"
 
 
 def of_fit(fit: FitLike, title: str | None, notes: Sequence[str]) -> Headline:

@@ -250,7 +250,10 @@ CASES: dict[str, Case] = {
     ),
     "another model's data": Case(
         lambda: da.identify(DECAY, Measurements.of(TIMES, {"x": 1 + np.cos(3 * TIMES)})),
-        ("The residuals are no mere noise, neighbouring samples correlate by",),
+        (
+            "The residuals of 'x' are correlated (lag-1 autocorrelation",
+            "They are not noise: the model lacks something.",
+        ),
     ),
     "two minima": Case(
         lambda: da.identify(

@@ -45,7 +45,7 @@ def test_readings_one_step_late_bias_the_damping_and_leave_residuals():
     assert late.values[0] > 1.03 * DAMPING
     assert late.values[1] < 0.99 * STIFFNESS
     assert late.fitness > 1e9 * good.fitness
-    assert "The residuals are no mere noise" in late.status
+    assert "systematic-residuals" in {finding.code for finding in late.findings}
 
 
 def test_an_unknown_delay_gain_and_offset_are_told_apart_from_the_mechanism():

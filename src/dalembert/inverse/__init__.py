@@ -1,6 +1,7 @@
 """Parameters from measurements."""
 
 from dalembert.inverse.bands import BandFit, GlobalSurrogate, Nested, identify_bands
+from dalembert.inverse.correlation import CorrelatedResiduals, NoiseProcess
 from dalembert.inverse.estimate import Identifiability
 from dalembert.inverse.events import (
     Checked,
@@ -29,6 +30,7 @@ from dalembert.inverse.validation import Validation
 __all__ = [
     "BandFit",
     "Checked",
+    "CorrelatedResiduals",
     "Designs",
     "Event",
     "Experiment",
@@ -40,6 +42,7 @@ __all__ = [
     "MultipleShooting",
     "Nested",
     "Nodes",
+    "NoiseProcess",
     "ParameterSet",
     "Paved",
     "Prediction",

@@ -22,7 +22,7 @@ class Estimate:
     directions: np.ndarray
 
 
-def estimate(slopes: np.ndarray, scale: np.ndarray, variance: float) -> Estimate:
+def estimate(slopes: np.ndarray, scale: np.ndarray, variance: float | np.ndarray) -> Estimate:
     """Estimate from the linearised least squares problem, covariance s² (JᵀWJ)⁻¹.
 
     Parameters
@@ -30,8 +30,9 @@ def estimate(slopes: np.ndarray, scale: np.ndarray, variance: float) -> Estimate
     slopes : array, shape (values, parameters)
         W^½ ∂R/∂p · scale, from the singular values of which everything follows.
     scale : array, shape (parameters,)
-    variance : float
-        s², the variance of a weighted residual.
+    variance : float or array, shape (parameters, parameters)
+        s², the variance of a weighted residual. With correlated residuals UᵀΣU: their covariance along the left
+        singular vectors of the slopes, from which follows the covariance (JᵀWJ)⁻¹ JᵀWΣWJ (JᵀWJ)⁻¹.
 
     Notes
     -----
@@ -45,18 +46,36 @@ def estimate(slopes: np.ndarray, scale: np.ndarray, variance: float) -> Estimate
     >>> estimate(np.ones((4, 1)), np.ones(1), variance=0.04).deviations
     array([0.1])
     """
-    short = max(0, len(scale) - len(slopes))
-    _, singular, directions = np.linalg.svd(np.pad(slopes, ((0, short), (0, 0))), full_matrices=False)
+    _, singular, directions = _decomposed(slopes)
     least = UNSEEN * (singular[0] or 1.0)
     unseen = singular <= least
     inverse = 1 / np.maximum(singular, least)
     spread = directions.T * inverse  # (parameters, combinations): spread @ spread.T is (JᵀWJ)⁻¹
+    if isinstance(variance, np.ndarray):
+        values, vectors = np.linalg.eigh(variance)
+        spread, variance = spread @ (vectors * np.sqrt(np.maximum(values, 0.0))), 1.0
     size = np.linalg.norm(spread, axis=1)
     correlation = (spread / size[:, None]) @ (spread / size[:, None]).T
     correlation = np.clip((correlation + correlation.T) / 2, -1, 1)
     np.fill_diagonal(correlation, 1.0)
     lost = np.any(np.abs(directions[unseen]) > 1e-6, axis=0)
     return Estimate(np.where(lost, np.inf, np.sqrt(variance) * size * scale), correlation, singular, directions)
+
+
+def unknown_estimate(parameters: int) -> Estimate:
+    """Return NaN deviations and correlations, for a response without a jacobian."""
+    lost, square = np.full(parameters, np.nan), np.full((parameters, parameters), np.nan)
+    return Estimate(lost, square, lost, square)
+
+
+def left_vectors(slopes: np.ndarray) -> np.ndarray:
+    """Return the left singular vectors of slopes (values, parameters), one column a combination."""
+    return _decomposed(slopes)[0][: len(slopes)]
+
+
+def _decomposed(slopes: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    short = max(0, slopes.shape[1] - len(slopes))
+    return np.linalg.svd(np.pad(slopes, ((0, short), (0, 0))), full_matrices=False)
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,6 +10,7 @@ from dalembert.contents import Contents
 from dalembert.data import Measurements
 from dalembert.errors import InputError
 from dalembert.findings import Finding
+from dalembert.inverse.correlation.correlated import CorrelatedResiduals
 from dalembert.inverse.doubts import doubts
 from dalembert.inverse.estimate import Estimate, Identifiability
 from dalembert.inverse.events import StartEnd, Step
@@ -31,7 +32,8 @@ class Fit(Result):
     parameters : Parameters
     values, deviations : array, shape (parameters,)
         Identified values and their standard deviations: from given deviations of the data if there are any and no
-        weights were given, else from the variance of the residuals. NaN where they could not be computed.
+        weights were given, else from the variance of the residuals. They allow for correlated residuals. NaN where they
+        could not be computed.
     correlation : array, shape (parameters, parameters)
     singular_values : array, shape (parameters,)
         Of W^½ ∂R/∂p · scale, with a row scale/deviation a prior; largest first.
@@ -64,6 +66,8 @@ class Fit(Result):
         Where the segments of multiple shooting meet.
     findings : tuple of Finding
         What the method concludes about the result.
+    correlated : CorrelatedResiduals, optional
+        Noise processes of channels with correlated residuals; None where residuals are taken for independent.
     """
 
     FORMAT: ClassVar[str] = "dalembert fit 1"
@@ -89,6 +93,12 @@ class Fit(Result):
     validation: Validation | None = None
     nodes: Nodes | None = None
     findings: tuple[Finding, ...] = ()
+    correlated: CorrelatedResiduals | None = None
+
+    @property
+    def plain_deviations(self) -> np.ndarray:
+        """Standard deviations for independent residuals (parameters,), whether they are or not."""
+        return self.deviations if self.correlated is None else self.correlated.deviations
 
     @property
     def experiments(self) -> tuple[ExperimentFit, ...]:
@@ -127,7 +137,7 @@ class Fit(Result):
     def doubts(self) -> tuple[str, ...]:
         """Why the values are to be doubted although the search ended well, each reason in a few words.
 
-        The residuals are no mere noise or too large for the given deviations, another minimum explains the data as
+        The residuals are too large for the given deviations, another minimum explains the data as
         well, parameters sit on a bound or are not told, or not apart, or a finding is a warning or an error; empty
         where nothing speaks against them.
         """

@@ -10,7 +10,8 @@ from dalembert.data import Measurements
 from dalembert.errors import DalembertError, InputError, SolveError, StorageError, unknown
 from dalembert.forward import Executor, ForwardModel, takes_executor
 from dalembert.forward.provenance import provenance
-from dalembert.inverse.estimate import Estimate, estimate
+from dalembert.inverse.correlation import CorrelatedResiduals, correlation, correlation_findings
+from dalembert.inverse.estimate import Estimate, estimate, unknown_estimate
 from dalembert.inverse.events import Finished, OnEvent
 from dalembert.inverse.experiments import Experiment, JointModel, Part, joint, joint_weights, placed
 from dalembert.inverse.fit import Fit
@@ -174,7 +175,12 @@ def identify(
     vector = problem.search.vectors(best.point)
     at = best.linearisation or _linearised(problem, vector)
     response = problem.responses(vector[None])[0] if at is None else at.response
-    told = _told(problem, at, best.fitness, known=given or problem.priors > 0)
+    known = given or problem.priors > 0
+    reached = best.fitness <= floor.fitness
+    exact = reached and floor.source == "arithmetic"
+    told, correlated = _told(problem, response, at, best.fitness, known=known, exact=exact)
+    rounded = reached and floor.source == "rounding of the data"
+    findings = correlation_findings(correlated, told.deviations, explained=rounded)
     whole = response if problem is posed else posed.responses(vector[None])[0]
     fit = Fit(
         parameters=model.parameters,
@@ -190,7 +196,7 @@ def identify(
         history=tuple(journal.history),
         starts=tuple(journal.starts),
         success=best.success,
-        status=status(problem, best, response, floor),
+        status=status(problem, best, response, floor, correlated is not None),
         method=method.name if isinstance(method, Minimiser) else type(method).__name__,
         simulations=journal.simulations,
         provenance=provenance(
@@ -209,6 +215,8 @@ def identify(
         parts=parts,
         validation=parted.validation(whole),
         nodes=best.nodes,
+        findings=tuple(findings),
+        correlated=correlated,
     )
     journal.tell(Finished(fit.success, fit.status, fit.fitness, fit.values, fit.simulations))
     return fit
@@ -256,21 +264,25 @@ def _linearised(problem: Problem, vector: np.ndarray) -> Linearisation | None:
         return None
 
 
-def _told(problem: Problem, at: Linearisation | None, fitness: float, known: bool) -> Estimate:
-    """Deviations and correlations, NaN without a jacobian; the noise is known, or estimated from the residuals."""
-    scale = problem.model.parameters.scale
-    if at is None:
-        lost = np.full(len(scale), np.nan)
-        return Estimate(
-            lost, np.full((len(scale), len(scale)), np.nan), lost, np.full((len(scale), len(scale)), np.nan)
-        )
+def _told(
+    problem: Problem, response: np.ndarray, at: Linearisation | None, fitness: float, *, known: bool, exact: bool
+) -> tuple[Estimate, CorrelatedResiduals | None]:
+    """Deviations and correlations, NaN without a jacobian; the noise is known, or estimated from the residuals.
+
+    Residuals of data that are ``exact`` to rounding are not tested for correlation.
+    """
+    scale, plain = problem.model.parameters.scale, replace(problem, loss=None)
     freedom = problem.compared - len(scale)
     variance = 1.0 if known else fitness / freedom if freedom > 0 else np.nan
-    if problem.loss is None:
-        return estimate(problem.slopes(at, scale), scale, variance)
-    plain = replace(problem, loss=None)
-    counted = plain.residual(at.response)[problem.weights.ravel() > 0]
-    return estimate(plain.slopes(at, scale), scale, problem.loss.variance(counted, freedom))
+    residual, slopes = plain.residual(response), None if at is None else plain.slopes(at, scale)
+    if problem.loss is not None:
+        counted = problem.weights.ravel() > 0
+        variance, known = problem.loss.variance(residual[counted], freedom), False
+        residual[counted] = problem.loss.influence(residual[counted])
+    correlated = None if exact else correlation(problem, response, slopes, residual, variance, known=known)
+    if slopes is None:
+        return unknown_estimate(len(scale)), correlated
+    return estimate(slopes, scale, variance if correlated is None else correlated.noise), correlated
 
 
 def _joined(

@@ -89,6 +89,16 @@ class Loss:
         mean = float(np.mean(stiffness(x)))
         return float(np.sum((self.scale * pull(x)) ** 2)) / freedom / mean**2 if freedom > 0 and mean > 0 else np.nan
 
+    def influence(self, residual: np.ndarray) -> np.ndarray:
+        """Return ψ over the mean of ψ' of weighted residuals (values,): what each contributes to the estimate.
+
+        In place of the residuals it makes the covariance of an estimate with this loss that of least squares. The mean
+        square, over the degrees of freedom, is :meth:`variance`.
+        """
+        _, pull, stiffness, _ = LOSSES[self.name]
+        x = np.abs(residual) / self.scale
+        return np.sign(residual) * self.scale * pull(x) / np.mean(stiffness(x))
+
 
 def loss_of(name: str, scale: float | None, *, known: bool) -> Loss | None:
     """Loss by name, None for the square; where deviations are known the scale has a usual value.

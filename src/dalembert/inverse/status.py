@@ -3,15 +3,18 @@
 import numpy as np
 
 from dalembert.inverse.descent import End
-from dalembert.inverse.doubts import EXCESSIVE, RIVALLED, UNEXPLAINED
-from dalembert.inverse.noise import NoiseFloor, autocorrelation, random_residuals, signal
+from dalembert.inverse.doubts import EXCESSIVE, RIVALLED
+from dalembert.inverse.noise import NoiseFloor, signal
 from dalembert.inverse.problem import Problem
 from dalembert.inverse.rivals import rivals
 from dalembert.inverse.simulated import named
 
 
-def status(problem: Problem, best: End, response: np.ndarray, floor: NoiseFloor) -> str:
-    """Whether it converged, how the misfit compares with the known noise, and whether the residuals look like noise."""
+def status(problem: Problem, best: End, response: np.ndarray, floor: NoiseFloor, correlated: bool) -> str:
+    """Whether it converged, how the misfit compares with the known noise, and whether the residuals look like noise.
+
+    Findings say what ``correlated`` residuals mean.
+    """
     parts = ["Converged." if best.success else f"Not converged: {best.message}."]
     ended = [start.fitness for start in problem.journal.starts]
     if len(ended) > 1:
@@ -29,7 +32,6 @@ def status(problem: Problem, best: End, response: np.ndarray, floor: NoiseFloor)
     failed = len(problem.journal.failures)
     if failed:
         parts.append(f"{failed} simulations failed and were passed over, the first: {problem.journal.failures[0]}.")
-    residual = problem.residual(response)
     if problem.loss is not None:
         plain = (np.sqrt(problem.weights) * problem.misfit(response)).ravel()
         beyond = int(np.count_nonzero(np.abs(plain) > problem.loss.scale))
@@ -42,17 +44,11 @@ def status(problem: Problem, best: End, response: np.ndarray, floor: NoiseFloor)
         parts.append(f"The response explains {100 * share:.4g} % of the data's variation.")
     if best.fitness <= floor.fitness:
         parts.append(f"The misfit is at the floor that the noise of the data allows (known from {floor.source}).")
-    elif not random_residuals(residual, problem.weights.shape, problem.data.present):
-        together = autocorrelation(residual, problem.weights.shape, problem.data.present)
-        parts.append(
-            f"{UNEXPLAINED}, neighbouring samples correlate by {together:.2f}; look whether the "
-            "model lacks something, the bounds leave the true values out, or more starts find a better minimum."
-        )
     elif floor.source == "given deviations":
         parts.append(
             f"The misfit is {np.sqrt(best.fitness / floor.fitness):.2g} times {EXCESSIVE}; look "
             "whether they are too small, the model lacks something, or more starts find a better minimum."
         )
-    else:
+    elif not correlated:
         parts.append("What remains looks like noise; give the data's deviations to have it checked against them.")
     return " ".join(parts)

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 from dalembert.contents import Contents
 from dalembert.inverse.fit import Fit
+from dalembert.inverse.stored_correlated import correlated_of, stored_correlated, told_correlated
 from dalembert.inverse.stored_data import data_labels, data_of, stored_data
 from dalembert.inverse.stored_nodes import nodes_of, stored_nodes, told_nodes
 from dalembert.inverse.stored_parts import parts_of, stored_parts, told_parts
@@ -35,6 +36,7 @@ def contents_of(fit: Fit) -> Contents:
         **stored_search(fit.history, fit.starts, "parameter", len(fit.parameters)),
         **stored_parts(fit.parts, len(fit.response)),
         **stored_nodes(fit.nodes),
+        **stored_correlated(fit.correlated),
     }
     if fit.validation is not None:
         variables["validation_weights"] = (("sample", "channel"), fit.validation.weights)
@@ -49,6 +51,7 @@ def contents_of(fit: Fit) -> Contents:
         "samples": fit.history[-1].samples if fit.history else len(fit.response),
         "parts": told_parts(fit.parts),
         "nodes": told_nodes(fit.nodes),
+        "correlated": told_correlated(fit.correlated),
         "validation": None
         if fit.validation is None
         else {"what": fit.validation.what, "misfit": fit.validation.misfit, "fitted": fit.validation.fitted},
@@ -80,4 +83,5 @@ def from_xarray(dataset: "Dataset") -> Fit:
         validation=None if validation is None else Validation(weights=a["validation_weights"], **validation),
         nodes=nodes_of(a, told.get("nodes")),
         findings=saved_findings(dataset),
+        correlated=correlated_of(a, told.get("correlated")),
     )

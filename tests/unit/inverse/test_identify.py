@@ -156,7 +156,7 @@ def test_on_rounded_data_the_first_start_settles_it_and_the_end_is_polished():
 def test_a_model_that_cannot_explain_the_data_is_told_by_its_residuals():
     bent = Measurements.of(TIMES, {"x": 1 + TIMES + 0.5 * np.sin(3 * TIMES), "y": TIMES**2 - 1})
     fit = identify(LINE, bent)
-    assert "The residuals are no mere noise, neighbouring samples correlate by 0.9" in fit.status
+    assert {finding.code for finding in fit.findings} == {"correlated-residuals", "systematic-residuals"}
 
 
 def test_events_tell_the_run_in_order():

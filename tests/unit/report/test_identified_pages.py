@@ -29,10 +29,10 @@ def bent():
 def test_residuals_that_are_no_noise_are_a_doubt(bent, tmp_path):
     assert bent.success
     assert len(bent.doubts) == 1
-    assert bent.doubts[0].startswith("The residuals are no mere noise, neighbouring samples correlate by 0.")
+    assert bent.doubts[0].startswith("The residuals of 'x' stay correlated over")
     text = _text(bent, tmp_path)
     assert "? identified, with doubts" in text
-    assert text.count(bent.doubts[0]) == 2  # beside the verdict, and with the advice in the status
+    assert text.count(bent.doubts[0]) == 2  # beside the verdict, and with the advice among the findings
 
 
 def test_a_fit_that_nothing_speaks_against_has_no_doubts(tmp_path):
@@ -54,7 +54,7 @@ def test_parameters_that_are_not_told_apart_are_a_doubt():
 
 def test_without_sensitivities_what_is_unknown_is_no_doubt(bent):
     lost = bent.singular_values * float("nan")
-    fit = replace(bent, singular_values=lost, status="Converged.")
+    fit = replace(bent, singular_values=lost, status="Converged.", findings=())
     assert fit.identifiability().sentences
     assert fit.doubts == ()
 

@@ -1,8 +1,11 @@
 """What a fitted model foretells, and how surely."""
 
+from collections.abc import Iterator, Sequence
+
 import numpy as np
 
 from dalembert.errors import InputError, unknown
+from dalembert.findings import Finding
 from dalembert.forward import ForwardModel
 from dalembert.forward.provenance import provenance
 from dalembert.inverse.confidence import check_level, noise_is_known, quantile, variance
@@ -11,6 +14,9 @@ from dalembert.inverse.experiments import Experiment
 from dalembert.inverse.fit import Fit
 from dalembert.inverse.telling.prediction import Prediction
 from dalembert.inverse.telling.sensitivity import linearised
+
+INHERITED = ("correlated-residuals", "systematic-residuals")
+"""Findings of the fit that concern its predictions, too."""
 
 
 def predict(model: ForwardModel | Experiment, fit: Fit, level: float = 0.95) -> Prediction:
@@ -41,8 +47,11 @@ def predict(model: ForwardModel | Experiment, fit: Fit, level: float = 0.95) -> 
     -----
     The response's covariance is J C Jᵀ, with its jacobian J and the covariance C of the parameters. Bands are
     ± quantile × deviation, from the normal distribution where the noise is known, else from Student's t; with noise,
-    a measurement's variance is added. A combination that the data did not see, but this response does, leaves the band
-    infinitely wide.
+    a measurement's variance is added. C and that variance allow for correlated residuals. A combination that the data
+    did not see, but this response does, leaves the band infinitely wide.
+
+    Bands follow from the linearised response. Where a band grows as wide on each side as the amplitude of its channel,
+    as in chaotic motion, it ends: from there it is NaN, and a finding names the place.
 
     Examples
     --------
@@ -69,21 +78,71 @@ def predict(model: ForwardModel | Experiment, fit: Fit, level: float = 0.95) -> 
     jacobian = np.zeros((*response.shape, len(fit.values)))
     jacobian[:, :, wiring] = own
     names = tuple(channel.name for channel in model.channels)
+    wraps = [prefix + name in fit.data.wraps for name in names]
+    deviations, width = _deviations(fit, jacobian), quantile(fit, level)
+    ends = [
+        band_end(width * own, column, wraps=turns)
+        for own, column, turns in zip(deviations.T, response.T, wraps, strict=True)
+    ]
+    for column, end in enumerate(ends):
+        deviations[len(response) if end is None else end :, column] = np.nan
     same = data.coordinate.name == model.coordinate.name and set(names) & set(data.channels)
     return Prediction(
         coordinate=model.coordinate,
         channels=names,
         units=tuple(channel.unit for channel in model.channels),
         response=response,
-        deviations=_deviations(fit, jacobian),
+        deviations=deviations,
         noise=np.array([_noise(fit, prefix + name) for name in names]),
         data=data if same else None,
         level=level,
-        quantile=quantile(fit, level),
+        quantile=width,
         known=noise_is_known(fit),
         simulations=1 + len(wiring),
         provenance=provenance(model, level=level, data=fit.data.fingerprint),
+        findings=(*(item for item in fit.findings if item.code in INHERITED), *_ended(model, names, ends)),
     )
+
+
+def band_end(half_widths: np.ndarray, response: np.ndarray, *, wraps: bool = False) -> int | None:
+    """Return the sample at which a band becomes as wide on each side as the response's amplitude, or None.
+
+    Parameters
+    ----------
+    half_widths, response : array, shape (samples,)
+    wraps : bool
+        Whether the channel is an angle known up to whole turns, of an amplitude of at most half a turn.
+
+    Notes
+    -----
+    The band must have been less than half as wide before: one that is wide from the start is of a badly known level,
+    not of a motion that becomes unpredictable.
+
+    >>> band_end(np.array([0.1, 0.3, 0.9, 2.7]), np.array([-1.0, 1.0, -1.0, 1.0]))
+    3
+    """
+    amplitude = min(float(np.ptp(response)) / 2, np.pi if wraps else np.inf)
+    wide = np.flatnonzero(half_widths >= amplitude)
+    if not len(wide) or not np.any(half_widths[: wide[0]] < amplitude / 2) or np.isinf(half_widths[wide[0]]):
+        return None
+    return int(wide[0])
+
+
+def _ended(model: ForwardModel, names: Sequence[str], ends: Sequence[int | None]) -> Iterator[Finding]:
+    """Findings on bands that end."""
+    along = model.coordinate
+    for name, end in zip(names, ends, strict=True):
+        if end is None:
+            continue
+        at = float(along.values[end])
+        yield Finding(
+            "band-ends",
+            "warning",
+            {"channel": name, "at": at},
+            f"The band of {name!r} ends at {f'{at:.4g} {along.unit}'.rstrip()}, where it is as wide as the motion. "
+            "Beyond, these data do not predict the motion.",
+            "Predict a shorter time, or determine the initial state more exactly.",
+        )
 
 
 def _wiring(names: list[str], fit: Fit) -> np.ndarray:
@@ -104,7 +163,12 @@ def _deviations(fit: Fit, jacobian: np.ndarray) -> np.ndarray:
     unseen = singular <= UNSEEN * (singular[0] or 1.0)
     spread = slopes[..., ~unseen] / singular[~unseen]
     lost = np.any(np.abs(slopes[..., unseen]) > 1e-6 * np.linalg.norm(slopes, axis=-1, keepdims=True), axis=-1)
-    return np.where(lost, np.inf, np.sqrt(variance(fit) * np.sum(spread**2, axis=-1)))
+    if fit.correlated is None:
+        squares = variance(fit) * np.sum(spread**2, axis=-1)
+    else:
+        noise = fit.correlated.noise[np.ix_(~unseen, ~unseen)]
+        squares = np.sum((spread @ noise) * spread, axis=-1)
+    return np.where(lost, np.inf, np.sqrt(squares))
 
 
 def _noise(fit: Fit, channel: str) -> float:
@@ -112,7 +176,12 @@ def _noise(fit: Fit, channel: str) -> float:
     if channel not in fit.data.channels:
         return np.nan
     column = fit.data.channels.index(channel)
-    if fit.data.deviations is not None:
+    found = () if fit.correlated is None else fit.correlated.processes
+    process = next((item for item in found if item.channel == channel), None)
+    if fit.data.deviations is not None and process is None:
         return float(fit.data.deviations[column])
     weights = fit.weights[:, column]
-    return float(np.sqrt(variance(fit) / np.mean(weights[weights > 0]))) if np.any(weights > 0) else np.nan
+    if not np.any(weights > 0):
+        return np.nan
+    own = variance(fit) if process is None else max(process.variance, variance(fit) if noise_is_known(fit) else 0.0)
+    return float(np.sqrt(own / np.mean(weights[weights > 0])))

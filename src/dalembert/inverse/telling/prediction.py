@@ -33,7 +33,7 @@ class Prediction(Result):
     response : array, shape (samples, channels)
         At the identified values.
     deviations : array, shape (samples, channels)
-        Standard deviations of the response, from those of the parameters.
+        Standard deviations of the response, from those of the parameters; NaN from where a band ends.
     noise : array, shape (channels,)
         Standard deviation of a measurement; NaN for channels that were not measured.
     data : Measurements or None
@@ -94,7 +94,7 @@ class Prediction(Result):
     def status(self) -> str:
         """How wide the bands are, and what they leave out, in full sentences."""
         part = f"{100 * self.level:g} %"
-        if np.any(np.isnan(self.deviations)):
+        if np.all(np.isnan(self.deviations)):
             return "No bands: the fit has no deviations, since the model gave no sensitivities."
         lost = [repr(name) for name, wide in zip(self.channels, self.deviations.T, strict=True) if np.isinf(wide).any()]
         parts = []
@@ -103,7 +103,12 @@ class Prediction(Result):
                 f"The band of {listed(lost)} is infinitely wide: it depends on a combination of the parameters that "
                 "the data did not tell."
             )
-        ratio = 2 * self.quantile * self.deviations.max(axis=0) / np.maximum(np.ptp(self.response, axis=0), 1e-300)
+        ratio = (
+            2
+            * self.quantile
+            * np.fmax.reduce(self.deviations, axis=0)
+            / np.maximum(np.ptp(self.response, axis=0), 1e-300)
+        )
         finite = np.flatnonzero(np.isfinite(ratio))
         if len(finite):
             widest = finite[np.argmax(ratio[finite])]
@@ -122,8 +127,8 @@ class Prediction(Result):
         """Widths of the bands as a text table with the status."""
         rows = [("channel", "unit", "widest", "with noise")]
         for k, (name, unit) in enumerate(zip(self.channels, self.units, strict=True)):
-            width = np.max(self.upper[:, k] - self.lower[:, k])
-            measured = np.max(self.measured_upper[:, k] - self.measured_lower[:, k])
+            width = np.fmax.reduce(self.upper[:, k] - self.lower[:, k])
+            measured = np.fmax.reduce(self.measured_upper[:, k] - self.measured_lower[:, k])
             rows.append((name, unit, f"{width:.4g}", "not measured" if np.isnan(measured) else f"{measured:.4g}"))
         return "\n".join([*table(rows), "", self.status, *map(str, self.findings)])
 

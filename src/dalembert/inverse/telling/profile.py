@@ -84,7 +84,11 @@ def profile(
     ends at the first crossing, or open at the parameter's bound. A scan of the parameter between its bounds, one batch,
     then looks for further intervals beyond, which are told beside.
 
-    Source: Raue et al., Bioinformatics 25 (2009), 1923-1929; Bates and Watts, Nonlinear Regression Analysis, 1988.
+    Where residuals are correlated, s² is multiplied by the square of the ratio of the parameter's deviation to that for
+    independent residuals, so that the profile of a linear response has the curvature of the corrected covariance.
+
+    Source: Raue et al., Bioinformatics 25 (2009), 1923-1929; Bates and Watts, Nonlinear Regression Analysis, 1988;
+    J. T. Kent, Robust properties of likelihood ratio tests, Biometrika 69 (1982).
 
     Examples
     --------
@@ -119,15 +123,17 @@ def profile(
     best = float(np.sum(problem.residuals(values, at.response) ** 2))
     known = noise_is_known(fit)
     threshold = float(chdtri(1, 1 - level) if known else fdtri(1, freedom(fit), level))
-    walk = Walk(best, noise, threshold, points, LeastSquares(trials=30))
+    factors, seen = np.ones(len(values)), np.isfinite(fit.deviations)
+    factors[seen] = (fit.deviations[seen] / fit.plain_deviations[seen]) ** 2
+    walks = [Walk(best, noise * factor, threshold, points, LeastSquares(trials=30)) for factor in factors.tolist()]
     ways = [(fit.parameters.names.index(name), side) for name in chosen for side in (-1, 1)]
     curves, sides = [], []
-    for k, side in prefetched(problem, partial(_ahead, at, walk), ways):
-        sides.append(walked(problem, at, k, side, walk))
+    for k, side in prefetched(problem, partial(_ahead, at, walks), ways):
+        sides.append(walked(problem, at, k, side, walks[k]))
         if side < 0:
             continue
         curve = _curve(fit, k, sides[-2:])
-        further = elsewhere(problem, values, k, (curve.lower, curve.upper), walk)
+        further = elsewhere(problem, values, k, (curve.lower, curve.upper), walks[k])
         curves.append(replace(curve, elsewhere=further))
     return Profiles(
         parameters=fit.parameters,
@@ -143,9 +149,9 @@ def profile(
     )
 
 
-def _ahead(at: Linearisation, walk: Walk, problem: Problem, way: tuple[int, int]) -> None:
+def _ahead(at: Linearisation, walks: Sequence[Walk], problem: Problem, way: tuple[int, int]) -> None:
     """The same side on a worker of a cluster."""
-    walked(problem, at, *way, walk)
+    walked(problem, at, *way, walks[way[0]])
 
 
 def _names(fit: Fit, names: Collection[str] | None) -> Iterable[str]:

@@ -76,7 +76,7 @@ class Profiles(Result):
     threshold : float
         Quantile of chi-square with one degree of freedom where the noise is known, else of F(1, freedom).
     variance : float
-        Of a weighted residual.
+        Of a weighted residual, without the factor of each parameter that allows for correlated residuals.
     known : bool
         Whether the noise is known, or estimated from the residuals.
     simulations : int

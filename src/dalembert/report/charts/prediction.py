@@ -42,19 +42,21 @@ def prediction(
 
 
 def _channel(figure: go.Figure, result: PredictionLike, column: int, colour: str) -> None:
-    at, name, centre = result.coordinate.values, plain(result.channels[column]), result.response[:, column]
+    along, name, centre = result.coordinate.values, plain(result.channels[column]), result.response[:, column]
     bands = (
         ("measurement", result.measured_lower[:, column], result.measured_upper[:, column], 0.12, "dot"),
         ("response", result.lower[:, column], result.upper[:, column], 0.3, "solid"),
     )
     for word, lower, upper, opacity, dash in bands:
-        if not np.all(np.isfinite(upper - lower)):
+        there = np.isfinite(upper - lower)
+        if np.any(np.isinf(upper - lower)) or not there[0]:
             continue
+        at, lower, upper = along[there], lower[there], upper[there]  # a band may end before the response
         legend = f"{name}, {100 * result.level:g} % of {word}"
         fill_band(figure, at, lower, upper, legend, name, colour, faint(colour, opacity))
         look = {"color": colour, "width": 1.5, "dash": dash}
         draw_line(figure, at, (upper - lower) / 2, f"{name}, ± {word}", name, look, row=2)
-    draw_line(figure, at, centre, f"{name} predicted", name, {"color": colour, "width": 2}, row=1, legend=True)
+    draw_line(figure, along, centre, f"{name} predicted", name, {"color": colour, "width": 2}, row=1, legend=True)
     if result.data is not None and result.channels[column] in result.data.channels:
         measured = result.data.values[:, result.data.channels.index(result.channels[column])]
         kept, when = thin(measured), result.data.coordinate.values

@@ -48,7 +48,7 @@ class Predicting(Section):
         for experiment, told in self.predictions.items():
             half = (told.upper - told.lower) / 2, (told.measured_upper - told.measured_lower) / 2
             for k, (name, unit) in enumerate(zip(told.channels, told.units, strict=True)):
-                widest = (cell(float(np.max(widths[:, k])), digits=3) for widths in half)
+                widest = (cell(float(np.fmax.reduce(widths[:, k])), digits=3) for widths in half)
                 rows.append((*(cell(experiment) for _ in several), cell(name), cell(unit), *widest))
         columns = (*several, "channel", "unit", "± response at most", "± measurement at most")
         level = next(iter(self.predictions.values())).level

@@ -8,6 +8,8 @@ from dalembert.data import Measurements
 from dalembert.errors import InputError
 from dalembert.forward import PythonModel
 from dalembert.inverse import Experiment, Prediction, identify, predict
+from dalembert.inverse.telling.predict import band_end
+from dalembert.report import charts
 from small_models import DECAY, LINE, TIMES, line, measured
 from support import says
 
@@ -101,3 +103,55 @@ def test_what_cannot_be_meant_is_refused():
     sentence = "predict: the model has one that was not identified: unknown parameter 'size'; known: offset, slope"
     with pytest.raises(InputError, match=says(sentence)):
         predict(DECAY, fit)
+
+
+def growing(rate, level):
+    """A band that grows as that of chaotic motion, beside a response of amplitude 1."""
+    return np.stack([level + np.sin(5 * LONG) + rate * (np.exp(LONG) - 1), level + 0 * LONG], axis=1)
+
+
+LONG = np.linspace(0, 8, 161)
+GROWING = PythonModel(growing, {"rate": (-1.0, 1.0), "level": (-9.0, 9.0)}, ["x", "y"], LONG)
+
+
+def test_a_band_ends_where_it_is_as_wide_as_the_motion():
+    short = GROWING.first(41)
+    fit = identify(short, measured(short, [0.0, 0.0], noise=0.02, deviations=0.02), starts=1)
+    told = predict(GROWING, fit)
+    (finding,) = [finding for finding in told.findings if finding.code == "band-ends"]
+    end = int(np.argmax(np.isnan(told.deviations[:, 0])))
+    assert finding.values["channel"] == "x"
+    assert finding.values["at"] == LONG[end]
+    amplitude = np.ptp(told.response[:, 0]) / 2
+    slopes = GROWING.jacobian(fit.values)[:, 0]
+    half = told.quantile * np.linalg.norm(
+        slopes @ np.diag(fit.deviations) @ np.linalg.cholesky(fit.correlation), axis=1
+    )
+    assert np.all(half[:end] < amplitude)
+    assert half[end] >= amplitude
+    assert np.isnan(told.deviations[end:, 0]).all()
+    assert np.isfinite(told.deviations[:, 1]).all()  # wide against a level that does not move, but not growing
+    assert not told.success
+    assert "as wide as the response varies" in told.status
+    assert "The band of 'x' ends at" in told.summary()
+
+
+def test_a_band_that_ends_is_drawn_up_to_its_end(tmp_path):
+    short = GROWING.first(41)
+    fit = identify(short, measured(short, [0.0, 0.0], noise=0.02, deviations=0.02), starts=1)
+    told = predict(GROWING, fit)
+    drawn = [trace.x for trace in charts.prediction(told).data if str(trace.name) == "x, 95 % of response"]
+    assert drawn
+    end = LONG[np.flatnonzero(np.isfinite(told.deviations[:, 0]))[-1]]
+    assert all(np.max(np.array(along, dtype=float)) == end for along in drawn)
+    told.report(tmp_path / "a.html")
+    told.save(tmp_path / "a.nc")
+    again = Prediction.load(tmp_path / "a.nc")
+    np.testing.assert_array_equal(again.deviations, told.deviations)
+    assert again.findings == told.findings
+
+
+def test_a_wide_band_of_a_badly_known_level_does_not_end():
+    assert band_end(np.full(5, 3.0), np.array([0.0, 1.0, 0.0, 1.0, 0.0])) is None
+    assert band_end(np.array([0.0, 2.0, 4.0]), np.array([0.0, 5.0, 10.0])) is None
+    assert band_end(np.array([0.0, 2.0, 4.0]), np.array([0.0, 5.0, 10.0]), wraps=True) == 2

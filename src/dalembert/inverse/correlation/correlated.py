@@ -1,0 +1,73 @@
+"""What is known of correlated residuals of a fit."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+LONG = 0.3
+"""Part of the motion's period from which a correlation time is that of the motion, which decorrelates in a quarter."""
+
+
+@dataclass(frozen=True)
+class NoiseProcess:
+    """The autoregressive process fitted to the residuals of one channel.
+
+    Parameters
+    ----------
+    channel : str
+    p_value : float
+        Probability of such correlations in white noise.
+    first : float
+        Autocorrelation of neighbouring samples; of uneven samples at their median interval.
+    order : int
+        Of the process, by AICc; 1 for the Ornstein–Uhlenbeck process of uneven samples.
+    even : bool
+        Whether the samples are even, gaps left out.
+    variance : float
+        Of a weighted residual.
+    time : float
+        Correlation time: that in which the slowest part of the process's autocorrelation decays by e, in the
+        coordinate's unit.
+    period : float
+        Of the response, 2π times its deviation over that of its rate, at most a third of the record, in the
+        coordinate's unit.
+    unit : str
+        Of the coordinate.
+    """
+
+    channel: str
+    p_value: float
+    first: float
+    order: int
+    even: bool
+    variance: float
+    time: float
+    period: float
+    unit: str
+
+    @property
+    def systematic(self) -> bool:
+        """Whether the correlation lasts as long as the motion's own, so that the residuals are no noise."""
+        return self.time >= LONG * self.period
+
+
+@dataclass(frozen=True, eq=False)
+class CorrelatedResiduals:
+    """Noise processes of the channels whose residuals are correlated, and the deviations without the correction.
+
+    Parameters
+    ----------
+    processes : tuple of NoiseProcess
+    deviations : array, shape (parameters,)
+        For independent residuals: plain standard deviations from s² (JᵀWJ)⁻¹.
+    correlation : array, shape (parameters, parameters)
+        For independent residuals.
+    noise : array, shape (parameters, parameters)
+        Covariance UᵀΣU of the weighted noise along the left singular vectors U of W^½ ∂R/∂p · scale; s² times the unit
+        matrix where residuals are independent.
+    """
+
+    processes: tuple[NoiseProcess, ...]
+    deviations: np.ndarray
+    correlation: np.ndarray
+    noise: np.ndarray

@@ -1,0 +1,160 @@
+"""The covariance of weighted residuals, as far as they are correlated."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from dalembert.inverse.correlation.autoregression import Autoregression, Moments, moments
+from dalembert.inverse.correlation.correlated import CorrelatedResiduals, NoiseProcess
+from dalembert.inverse.correlation.ornstein_uhlenbeck import OrnsteinUhlenbeck, ornstein_uhlenbeck
+from dalembert.inverse.correlation.series import Series, series_of
+from dalembert.inverse.correlation.whiteness import LEVEL, p_value
+from dalembert.inverse.estimate import estimate, left_vectors, unknown_estimate
+from dalembert.inverse.problem import Problem
+
+ROUNDS = 4
+"""Corrections of the autocovariances for the parameters that were fitted; each reduces the bias by an order of 1/n."""
+
+SMALL = 0.5
+"""Part of the given variance below which residuals are small: the remainder then counts as independent noise."""
+
+SLIGHT = 1.1
+"""Ratio of corrected to plain deviations up to which small residuals are not corrected for."""
+
+Process = Autoregression | OrnsteinUhlenbeck
+
+
+def correlation(
+    problem: Problem,
+    response: np.ndarray,
+    slopes: np.ndarray | None,
+    residual: np.ndarray,
+    variance: float,
+    *,
+    known: bool,
+) -> CorrelatedResiduals | None:
+    """Return what is known of correlated residuals at a minimum; None where the tests take them for white noise.
+
+    Parameters
+    ----------
+    problem : Problem
+    response : array, shape (samples, channels)
+    slopes : array, shape (values + priors, parameters)
+        W^½ ∂R/∂p · scale, one row a value of (samples, channels), then one a prior. None without a jacobian.
+    residual : array, shape (values,)
+        Weighted residuals; with a robust loss their influence.
+    variance : float
+        s² of a weighted residual.
+    known : bool
+        Whether it follows from given deviations.
+
+    Notes
+    -----
+    The covariance of the estimate is (JᵀWJ)⁻¹ JᵀW Σ W J (JᵀWJ)⁻¹, with the covariance Σ of processes fitted to each
+    correlated channel, and s² for the others. The tests together take white noise for correlated once in a hundred
+    fits.
+
+    Source: H. White, I. Domowitz, Nonlinear regression with dependent observations, Econometrica 52 (1984).
+    """
+    if not variance > 0:
+        return None
+    scale = problem.model.parameters.scale
+    number = len(scale)
+    basis = np.zeros((len(residual), number)) if slopes is None else left_vectors(slopes)
+    series = list(series_of(problem))
+    tested = [(own, p_value(own, residual[own.rows], basis[own.rows])) for own in series]
+    found = [(own, p) for own, p in tested if p < LEVEL / len(series)]
+    if not found:
+        return None
+    fitted = _fitted([own for own, _ in found], residual, basis, variance)
+    processes = tuple(
+        _summary(own, process, p, response.ravel()[own.rows])
+        for (own, p), (_, process) in zip(found, fitted, strict=True)
+    )
+    if slopes is None:
+        nothing = unknown_estimate(number)
+        return CorrelatedResiduals(processes, nothing.deviations, nothing.correlation, nothing.correlation)
+    noise = _noise(fitted, basis, variance)
+    for (own, process), told in zip(fitted, processes, strict=True):
+        noise += _remainder(process.product(own, basis[own.rows]), basis[own.rows], variance, told, known=known)
+    plain, corrected = estimate(slopes, scale, variance), estimate(slopes, scale, noise)
+    if known and all(process.variance < SMALL * variance for _, process in fitted):
+        seen = np.isfinite(plain.deviations)
+        if np.all(corrected.deviations[seen] <= SLIGHT * plain.deviations[seen]):
+            return None
+    return CorrelatedResiduals(processes, plain.deviations, plain.correlation, noise)
+
+
+def _fitted(
+    series: Sequence[Series], residual: np.ndarray, basis: np.ndarray, variance: float
+) -> list[tuple[Series, Process]]:
+    """A process for each series."""
+    attempts = [_Attempt.at(own, residual[own.rows], basis[own.rows]) for own in series]
+    for _ in range(ROUNDS):
+        processes = [(attempt.series, attempt.process) for attempt in attempts]
+        common = _noise(processes, basis, variance)
+        attempts = [attempt.corrected(common) for attempt in attempts]
+    return [(attempt.series, attempt.process) for attempt in attempts]
+
+
+@dataclass(frozen=True, eq=False)
+class _Attempt:
+    """The process of a series so far; the moments of an even one."""
+
+    series: Series
+    process: Process
+    moments: Moments | None
+
+    @classmethod
+    def at(cls, series: Series, values: np.ndarray, basis: np.ndarray) -> "_Attempt":
+        if series.grid is None:
+            return cls(series, ornstein_uhlenbeck(series, values, basis), None)
+        first = moments(series, values, basis)
+        return cls(series, first.process(), first)
+
+    def corrected(self, common: np.ndarray) -> "_Attempt":
+        if not isinstance(self.process, Autoregression) or self.moments is None:
+            return self
+        better = self.moments.corrected(self.process, common)
+        return _Attempt(self.series, better.process(), better)
+
+
+def _noise(processes: Sequence[tuple[Series, Process]], basis: np.ndarray, variance: float) -> np.ndarray:
+    """UᵀΣU, (parameters, parameters): the processes' covariance, ``variance`` for all other values."""
+    others = np.ones(len(basis), dtype=bool)
+    others[np.concatenate([own.rows for own, _ in processes])] = False
+    total = variance * basis[others].T @ basis[others]
+    return total + sum(process.product(own, basis[own.rows]) for own, process in processes)
+
+
+def _remainder(
+    product: np.ndarray, rows: np.ndarray, variance: float, process: NoiseProcess, *, known: bool
+) -> np.ndarray:
+    """What the noise of a series has beyond its process, (parameters, parameters).
+
+    Where the variance is ``known`` and the process has less than half of it, the remainder counts as independent.
+    Systematic residuals make no combination of parameters better known than independent ones would.
+    """
+    if known and process.variance < SMALL * variance:
+        return (variance - process.variance) * rows.T @ rows
+    if not process.systematic:
+        return np.zeros_like(product)
+    values, vectors = np.linalg.eigh(variance * rows.T @ rows - product)
+    return (vectors * np.maximum(values, 0.0)) @ vectors.T
+
+
+def _summary(own: Series, process: Process, p_value: float, response: np.ndarray) -> NoiseProcess:
+    rate = np.sqrt(np.mean(np.gradient(response, own.along) ** 2))
+    period = 2 * np.pi * np.std(response) / rate if rate > 0 else np.inf
+    return NoiseProcess(
+        channel=own.name,
+        p_value=p_value,
+        first=process.first,
+        order=process.order,
+        even=own.grid is not None,
+        variance=process.variance,
+        time=float(process.decay(own.step)),
+        period=float(min(period, own.length / 3)),
+        unit=own.unit,
+    )

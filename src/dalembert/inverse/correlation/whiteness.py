@@ -1,0 +1,88 @@
+"""Tests of whether residuals are white noise."""
+
+import numpy as np
+from scipy.special import chdtrc
+
+from dalembert.inverse.correlation.series import Series
+
+LEVEL = 0.01
+"""Probability with which white noise is taken for correlated, over all series of a fit."""
+
+LEAST = 10
+"""Fewer values are not tested."""
+
+LAGS = 10
+"""Most lags of the Ljung–Box test, and most bins of intervals of uneven samples."""
+
+
+def p_value(series: Series, values: np.ndarray, basis: np.ndarray) -> float:
+    """Return the probability of correlations at least as large in white noise; 1 for fewer than ten values.
+
+    Parameters
+    ----------
+    series : Series
+    values : array, shape (values,)
+        Weighted residuals.
+    basis : array, shape (values, parameters)
+        These rows of an orthonormal basis of the weighted jacobian's columns. A fit takes the part of the noise along
+        them out of the residuals, which correlates the rest; that is allowed for.
+
+    Notes
+    -----
+    Even samples, with gaps or without: the Ljung–Box test of the first autocorrelation, and of the first ten, with the
+    number of pairs that are there at each lag. The smaller of both probabilities counts twice. Uneven samples:
+    chi-square test of the mean product of neighbours, in bins of their interval.
+
+    Source: G. M. Ljung, G. E. P. Box, On a measure of lack of fit in time series models, Biometrika 65 (1978);
+    D. S. Stoffer, C. M. C. Toloi, A note on the Ljung–Box–Pierce portmanteau statistic with missing data, Statistics
+    and Probability Letters 13 (1992).
+    """
+    if len(values) < LEAST or not np.any(values):
+        return 1.0
+    squares = _squares_of_neighbours if series.grid is None else _squares_of_lags
+    terms = squares(series, values, basis)
+    first, all_terms = chdtrc(1, terms[0]), chdtrc(len(terms), np.sum(terms))
+    return float(all_terms if series.grid is None else min(1.0, 2 * min(first, all_terms)))
+
+
+def on_grid(grid: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """Return rows (values, ...) at the places of an even grid, 0 in its gaps."""
+    table = np.zeros((grid[-1] + 1, *rows.shape[1:]))
+    table[grid] = rows
+    return table
+
+
+def lagged(first: np.ndarray, second: np.ndarray, lag: int) -> float:
+    """Return the sum of products of rows ``lag`` places apart of two tables of the same shape."""
+    return float(np.sum(first[: len(first) - lag] * second[lag:]))
+
+
+def pairs(grid: np.ndarray, lags: int) -> np.ndarray:
+    """Return the numbers of pairs of values that are 0 to ``lags`` places apart, shape (lags + 1,)."""
+    there = on_grid(grid, np.ones(len(grid)))
+    return np.array([lagged(there, there, lag) for lag in range(lags + 1)])
+
+
+def _squares_of_lags(series: Series, values: np.ndarray, basis: np.ndarray) -> np.ndarray:
+    """Terms of Ljung and Box's sum, one for each lag that has pairs."""
+    grid = series.grid
+    assert grid is not None
+    number, lags = len(values), min(LAGS, len(values) // 5)
+    own, along = on_grid(grid, values), on_grid(grid, basis)
+    count = pairs(grid, lags)[1:]
+    left = number - np.sum(along**2)  # degrees of freedom of the squares
+    excess = np.array(
+        [lagged(own, own, k) / np.sum(own**2) + lagged(along, along, k) / left for k in range(1, lags + 1)]
+    )
+    kept = count > 0
+    return (number + 2) * number * excess[kept] ** 2 / count[kept]
+
+
+def _squares_of_neighbours(series: Series, values: np.ndarray, basis: np.ndarray) -> np.ndarray:
+    """Squared mean products of neighbours in units of their deviation, one for each bin of intervals."""
+    left = len(values) - np.sum(basis**2)
+    variance = np.sum(values**2) / left
+    products = values[1:] * values[:-1] / variance + np.sum(basis[1:] * basis[:-1], axis=1)
+    order = np.argsort(np.diff(series.along), kind="stable")
+    bins = np.array_split(products[order], min(LAGS // 2, max(1, len(products) // 10)))
+    return np.array([np.sum(own) ** 2 / len(own) for own in bins])

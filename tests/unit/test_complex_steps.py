@@ -5,8 +5,9 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from dalembert import InputError, PythonModel
-from dalembert.forward.complex_steps import lost_step
+from dalembert import InputError, Measurements, PythonModel, identify, predict
+from dalembert.forward.complex_steps import lost_step, stepped
+from dalembert.forward.wrapped import Wrapped
 
 LOSING: dict[str, Callable] = {
     "abs": abs,
@@ -27,6 +28,25 @@ CARRYING: dict[str, Callable] = {
     "constant": lambda x: 0.0 * x + 1e6,
     "kink": lambda x: np.where(np.real(x) < 1.2, 1.2 - x, x - 1.2),
     "jump": lambda x: x + (np.real(x) > 1.2),
+}
+ROUNDING: dict[str, Callable] = {
+    "three decimals": lambda x: np.round(x, 3),
+    "two decimals": lambda x: np.round(x, 2),
+    "quarters": lambda x: np.floor(4 * np.real(x)) / 4,
+    "inside": lambda x: np.sin(3 * np.round(x, 3)),
+    "a part": lambda x: x**2 + np.round(x, 3),
+    "a factor": lambda x: (x * np.round(x, 3)) ** -3,
+}
+SMOOTH_OR_KINKED: dict[str, Callable] = {
+    "very fast": lambda x: np.sin(4e5 * x),
+    "very steep": lambda x: np.tanh(1e6 * (x - 1.2)),
+    "several steep": lambda x: sum(np.tanh(1e4 * (x - c)) for c in np.linspace(0.6, 1.9, 9)),
+    "dead zone": lambda x: np.where(np.real(x) < 1.3, 0 * x, x - 1.3),
+    "saturated": lambda x: np.where(np.real(x) > 1.5, 1.5 + 0 * x, x),
+    "one choice": lambda x: np.where(np.real(x) > 1.25, 2.0, 1.0) + 0 * x,
+    "high power": lambda x: x**-12,
+    "pulse": lambda x: np.exp(-1e6 * (x - 1.2) ** 2),
+    "zigzag": lambda x: np.where(np.real(x) * 50 % 2 < 1, 1.0, -1.0) * (50 * x - np.round(50 * np.real(x))),
 }
 
 
@@ -59,17 +79,83 @@ def test_a_python_model_names_parameter_channel_and_sample() -> None:
         model.jacobian(np.array([1.0, 1.5]))
 
 
-def test_a_python_model_is_compared_once() -> None:
+@pytest.mark.parametrize("name", ROUNDING)
+@pytest.mark.parametrize("at", [0.77, 1.2, 1.23456])
+def test_rounding_to_few_decimals_is_found(name: str, at: float) -> None:
+    lost = stepped(lambda shift: np.array([1.0, ROUNDING[name](at + shift)]), 1.0, (0.5 - at, 2.0 - at))
+    assert lost is not None
+    assert lost.entry == 1
+    assert lost.by_step != pytest.approx(lost.by_differences, rel=0.1)
+
+
+@pytest.mark.parametrize("name", [*CARRYING, *SMOOTH_OR_KINKED])
+@pytest.mark.parametrize("scale", [0.1, 1.0, 10.0])
+@pytest.mark.parametrize(("at", "room"), [(1.2, (-0.7, 0.8)), (1.2345, (-0.05, 0.1)), (0.77, (-0.27, 1.23))])
+def test_smooth_steep_and_kinked_functions_do_not_follow_steps(
+    name: str, scale: float, at: float, room: tuple[float, float]
+) -> None:
+    function = {**CARRYING, **SMOOTH_OR_KINKED}[name]
+    assert stepped(lambda shift: np.array([1.0, function(at + shift)]), scale, room) is None
+
+
+def test_a_python_model_that_rounds_a_parameter_is_refused() -> None:
+    times = np.linspace(0.0, 1.0, 5)
+    model = PythonModel(lambda rate: np.exp(-np.round(rate, 3) * times), {"rate": (0.1, 2.0)}, ["x"], times)
+    with pytest.raises(InputError, match=r"channel 'x' .* follows 'rate' in steps, as after rounding: .* is -?0 by"):
+        model.jacobian(np.array([1.0]))
+
+
+def counted() -> tuple[PythonModel, list]:
     calls = []
 
     def response(rate: complex) -> np.ndarray:
         calls.append(rate)
         return np.exp(-rate * np.linspace(0.0, 1.0, 3))
 
-    model = PythonModel(response, {"rate": (0.1, 2.0)}, ["x"], np.linspace(0.0, 1.0, 3))
+    return PythonModel(response, {"rate": (0.1, 2.0)}, ["x"], np.linspace(0.0, 1.0, 3)), calls
+
+
+def test_a_python_model_is_compared_once() -> None:
+    model, calls = counted()
     model.jacobian(np.array([2.0]))
-    assert len(calls) == 6  # four for the differences, two in complex numbers
+    assert len(calls) == 12  # four for the differences, six for wide ones, two in complex numbers
     assert all(0.1 <= np.real(rate) <= 2.0 for rate in calls)
     model.jacobian(np.array([1.0]))
     model.first(2).jacobian(np.array([1.0]))
-    assert len(calls) == 8
+    assert len(calls) == 14
+
+
+def test_a_model_is_compared_at_each_vector_once() -> None:
+    model, calls = counted()
+    wrapped = Wrapped(model.first(2))
+    wrapped.check_derivatives(np.array([1.0]))
+    assert len(calls) == 11
+    model.check_derivatives(np.array([1.0]))
+    assert len(calls) == 11
+    model.check_derivatives(np.array([1.5]))
+    assert len(calls) == 16
+
+
+def bent(rate: float) -> np.ndarray:
+    """A response that loses the derivative by the rate above 1 only."""
+    return (rate if np.real(rate) < 1.0 else np.abs(rate) + 0j) * np.linspace(0.0, 1.0, 5)
+
+
+def test_every_identification_compares_at_its_start() -> None:
+    times = np.linspace(0.0, 1.0, 5)
+    model = PythonModel(bent, {"rate": (0.1, 2.0)}, ["x"], times)
+    data = Measurements.of(times, {"x": 0.5 * times})
+    fit = identify(model, data, start={"rate": 0.7}, starts=1)
+    assert fit.values[0] == pytest.approx(0.5)
+    with pytest.raises(InputError, match="by 'rate' is 0 by the complex step"):
+        identify(model, data, start={"rate": 1.5}, starts=1)
+
+
+def test_a_prediction_compares_at_the_identified_values() -> None:
+    times = np.linspace(0.0, 1.0, 5)
+    data = Measurements.of(times, {"x": 1.5 * times})
+    fit = identify(PythonModel(lambda rate: rate * times, {"rate": (0.1, 2.0)}, ["x"], times), data, starts=1)
+    model = PythonModel(bent, {"rate": (0.1, 2.0)}, ["x"], times)
+    model.jacobian(np.array([0.5]))
+    with pytest.raises(InputError, match="by 'rate' is 0 by the complex step"):
+        predict(model, fit)

@@ -2,6 +2,7 @@
 
 from dalembert.forward.checkpoint import Checkpoint
 from dalembert.forward.cluster import Executor, connected, takes_executor
+from dalembert.forward.complex_steps import check_derivatives
 from dalembert.forward.distributed import Distributed, on_cluster
 from dalembert.forward.ensemble import ensemble
 from dalembert.forward.model import Channel, Coordinate, ForwardModel
@@ -24,6 +25,7 @@ __all__ = [
     "Responses",
     "Sensor",
     "Sensors",
+    "check_derivatives",
     "clock",
     "connected",
     "ensemble",

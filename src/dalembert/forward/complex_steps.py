@@ -1,6 +1,14 @@
-"""Whether numbers that depend on a parameter carry its complex step: they are compared with central differences."""
+"""Whether numbers that depend on a parameter carry its complex step: they are compared with differences.
+
+Central differences of a small step find functions that drop the imaginary part. Rounding to few decimals has the
+derivative 0 at almost all points, by both. So the derivative is also integrated over wider intervals, by Simpson's
+rule, and compared with the increments there. Where they differ in interval after interval, at jumps that bisection
+confirms, the numbers follow the parameter in steps.
+"""
 
 from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,6 +21,13 @@ STEP = 1e-30
 DIFFERENCE = 1e-5  # step of the differences, in scales
 _SAFETY = 2.0  # factor of the differences' error, which is six times what Taylor's series expects
 _AGREES = 1e-6  # relative
+_WIDTH = 1e-2  # of the intervals that rounding is sought in, in scales
+_INTERVALS = 6  # side by side
+_MOST, _ALL_FLAT = 4, 2  # intervals with jumps, of any number, and of one that is constant between
+_DIFFERS = 1e-2  # relative, of an increment and the integral of the derivative
+_ENTRIES = 2  # that are halved at most
+_HALVINGS = 40  # until a steep function changes by less than _JUMP of the difference
+_JUMP = 1e-6
 DROPPING = "abs, np.abs, .real, np.linalg.norm, np.angle and rounding"
 REMEDY = "Use absolute, norm, hypot and atan2 of dalembert, or give derivative='central-differences'"
 
@@ -42,8 +57,7 @@ def lost_step(numbers: Callable[[complex], np.ndarray], scale: float) -> Lost | 
     >>> lost_step(lambda shift: np.array([abs(2.0 + shift) + 1j * 0]), 1.0)
     Lost(entry=0, by_step=0.0, by_differences=1.0)
     """
-    lifted: Any = np.asarray(numbers(1j * STEP * scale), dtype=complex)
-    by_step, here = lifted.imag / (STEP * scale), lifted.real
+    here, by_step = _lifted(numbers, 0.0, scale)
     slope, error = _differences(numbers, here, DIFFERENCE * scale)
     excess = np.abs(by_step - slope) - error - _AGREES * np.maximum(np.abs(by_step), np.abs(slope))
     excess[~np.isfinite(excess)] = 0.0
@@ -51,6 +65,102 @@ def lost_step(numbers: Callable[[complex], np.ndarray], scale: float) -> Lost | 
         return None
     worst = int(np.argmax(excess / (np.abs(by_step) + np.abs(slope) + np.finfo(float).tiny)))
     return Lost(worst, float(by_step[worst]), float(f"{slope[worst]:.6g}"))
+
+
+@np.errstate(all="ignore")
+def stepped(numbers: Callable[[complex], np.ndarray], scale: float, room: tuple[float, float]) -> Lost | None:
+    """A number that follows a parameter in steps, as after rounding; None if there is none.
+
+    Parameters
+    ----------
+    numbers, scale
+        As of :func:`lost_step`.
+    room : (least, most)
+        Shifts of the parameter up to its bounds.
+
+    Examples
+    --------
+    >>> stepped(lambda shift: np.array([np.round(1.2 + shift, 3)]), 1.0, (-0.5, 0.5))
+    Lost(entry=0, by_step=0.0, by_differences=1.0)
+    >>> stepped(lambda shift: np.array([np.tanh(1e3 * shift)]), 1.0, (-0.5, 0.5)) is None
+    True
+    """
+    span = room[1] - room[0]
+    wide = _Intervals.around(numbers, scale, room, span, 1)
+    flat = _Intervals.around(numbers, scale, room, span, _INTERVALS) if np.any(wide.differ & wide.flat) else None
+    if flat and (lost := flat.steps(numbers, _ALL_FLAT)):
+        return lost
+    width = min(_WIDTH * scale, span / _INTERVALS)
+    found = _Intervals.around(numbers, scale, room, 2 * width, 1)
+    while np.any(found.differ) and _INTERVALS * width <= span:
+        found = _Intervals.around(numbers, scale, room, _INTERVALS * width, _INTERVALS)
+        if lost := found.steps(numbers, _MOST):
+            return lost
+        width *= 4
+    return None
+
+
+class _Intervals(NamedTuple):
+    """Intervals of the parameter side by side: ends (intervals + 1,), and what numbers do (intervals, numbers)."""
+
+    ends: np.ndarray
+    increments: np.ndarray
+    integrals: np.ndarray  # of the derivatives
+    slopes: np.ndarray  # at the ends and in the middles, (points, numbers)
+    differ: np.ndarray  # whether increment and integral do, beyond the error of the integral
+
+    @classmethod
+    def around(
+        cls, numbers: Callable[[complex], np.ndarray], scale: float, room: tuple[float, float], size: float, count: int
+    ) -> "_Intervals":
+        """Intervals around the parameter, moved inside its bounds."""
+        begin = np.clip(-size / 2, room[0], max(room[1] - size, room[0]))
+        points = begin + size * np.linspace(0.0, 1.0, 2 * count + 1)
+        values, slopes = map(np.array, zip(*(_lifted(numbers, point, scale) for point in points), strict=True))
+        first, middle, last = slopes[:-1:2], slopes[1::2], slopes[2::2]
+        step = size / count
+        coarse, fine = step * (first + last) / 2, step * (first + 4 * middle + last) / 6
+        increments = np.diff(values[::2], axis=0)
+        largest = np.max(np.abs(values), axis=0, initial=0.0)
+        bound = 3 * np.abs(fine - coarse) + _DIFFERS * np.maximum(np.abs(increments), np.abs(fine))
+        excess = np.abs(increments - fine) - bound - 64 * np.finfo(float).eps * largest
+        return cls(points[::2], increments, fine, slopes, np.isfinite(excess) & (excess > 0))
+
+    @property
+    def flat(self) -> np.ndarray:
+        """Which numbers have no derivative anywhere, (numbers,)."""
+        return np.all(self.slopes == 0, axis=0)
+
+    def steps(self, numbers: Callable[[complex], np.ndarray], least: int) -> Lost | None:
+        """A number that jumps in at least so many intervals; in fewer than most, only one that is constant between."""
+        count = np.where(self.flat | (least == _MOST), np.sum(self.differ, axis=0), 0)
+        for entry in np.argsort(-count, kind="stable")[:_ENTRIES]:
+            places = np.flatnonzero(self.differ[:, entry])[:least]
+            if count[entry] >= least and all(self._jumps(numbers, entry, place) for place in places):
+                slope = np.sum(self.increments[:, entry]) / (self.ends[-1] - self.ends[0])
+                return Lost(int(entry), float(np.mean(self.slopes[:, entry])), float(f"{slope:.6g}"))
+        return None
+
+    def _jumps(self, numbers: Callable[[complex], np.ndarray], entry: int, number: int) -> bool:
+        """Whether a number jumps in an interval; a steep one changes by little in a small part of it."""
+        begin, end = self.ends[number : number + 2]
+        slope = self.integrals[number, entry] / (end - begin)
+        after, before = (np.real(numbers(point))[entry] - slope * point for point in (end, begin))
+        whole = abs(after - before)
+        for _ in range(_HALVINGS):
+            middle = (begin + end) / 2
+            between = np.real(numbers(middle))[entry] - slope * middle
+            if abs(after - between) > abs(between - before):
+                begin, before = middle, between
+            else:
+                end, after = middle, between
+        return bool(abs(after - before) > _JUMP * whole)
+
+
+def _lifted(numbers: Callable[[complex], np.ndarray], shift: float, scale: float) -> tuple[np.ndarray, np.ndarray]:
+    """Numbers, and their derivatives by the complex step."""
+    lifted: Any = np.asarray(numbers(shift + 1j * STEP * scale), dtype=complex)
+    return lifted.real, lifted.imag / (STEP * scale)
 
 
 def _differences(
@@ -65,9 +175,16 @@ def _differences(
 
 
 def check_steps(
-    parameters: Parameters, vector: np.ndarray, numbers: Callable[[np.ndarray], np.ndarray], place: Callable[[int], str]
+    parameters: Parameters,
+    vector: np.ndarray,
+    numbers: Callable[[np.ndarray], np.ndarray],
+    place: Callable[[int], str],
+    *,
+    thorough: bool = True,
 ) -> None:
     """Raise where numbers that depend on parameters lose the complex step of one of them.
+
+    Where the numbers cannot be computed they are not compared: the model itself will report it.
 
     Parameters
     ----------
@@ -78,6 +195,9 @@ def check_steps(
         Vector of the numbers at a real or complex vector of parameters.
     place : callable
         What an entry of the numbers is, for the message.
+    thorough : bool
+        Whether parameters are compared one by one, and rounding to few decimals is sought too, which needs wider
+        differences. If not, first all parameters are compared at once.
 
     Raises
     ------
@@ -86,11 +206,84 @@ def check_steps(
     """
     margin = np.minimum(DIFFERENCE * parameters.scale, (parameters.upper - parameters.lower) / 4)
     inside = np.clip(vector, parameters.lower + margin, parameters.upper - margin)
-    for name, unit, scale in zip(parameters.names, np.eye(len(vector)), margin / DIFFERENCE, strict=True):
-        lost = lost_step(lambda shift, unit=unit: numbers(inside + shift * unit), scale)
+    sizes = margin / DIFFERENCE
+    if not thorough and not attempted(partial(lost_step, _together(numbers, inside, sizes), 1.0)):
+        return
+    for column, (name, unit) in enumerate(zip(parameters.names, np.eye(len(vector)), strict=True)):
+        along = _line(numbers, inside, unit)
+        lost = attempted(partial(lost_step, along, sizes[column]))
         if lost:
             raise InputError(
                 f"the derivative of {place(lost.entry)} by {name!r} is {lost.by_step:.6g} by the complex step, but "
                 f"{lost.by_differences:.6g} by differences. A function of yours drops the imaginary part, as "
                 f"{DROPPING} do. {REMEDY}"
             )
+        room = parameters.lower[column] - inside[column], parameters.upper[column] - inside[column]
+        lost = attempted(partial(stepped, along, parameters.scale[column], room)) if thorough else None
+        if lost:
+            raise InputError(
+                f"{place(lost.entry)} follows {name!r} in steps, as after rounding: its derivative is "
+                f"{lost.by_step:.6g} by the complex step, but {lost.by_differences:.6g} by wide differences. "
+                "Do not round a parameter, nor numbers that depend on it"
+            )
+
+
+def _line(
+    numbers: Callable[[np.ndarray], np.ndarray], vector: np.ndarray, unit: np.ndarray
+) -> Callable[[complex], np.ndarray]:
+    """Numbers along a direction (parameters,)."""
+    return lambda shift: numbers(vector + shift * unit)
+
+
+def _together(
+    numbers: Callable[[np.ndarray], np.ndarray], vector: np.ndarray, sizes: np.ndarray
+) -> Callable[[complex], np.ndarray]:
+    """Numbers along all parameters at once; those in complex numbers still get one parameter after the other."""
+    moves = np.diag(sizes * np.random.default_rng(0).uniform(0.5, 1.0, len(sizes)))
+
+    def along(shift: complex) -> np.ndarray:
+        if not isinstance(shift, complex):
+            return numbers(vector + shift * moves.sum(axis=0))
+        lifted = [numbers(vector + shift * move) for move in moves]
+        return np.real(lifted[0]) + 1j * np.sum(np.imag(lifted), axis=0)
+
+    return along
+
+
+def attempted(compare: Callable[[], Lost | None]) -> Lost | None:
+    """What a comparison finds; None where the user's functions fail, which the model itself will report."""
+    try:
+        return compare()
+    except Exception:
+        return None
+
+
+def check_derivatives(model: Any, vector: np.ndarray) -> None:
+    """Compare the complex step of a model with differences at a vector (parameters,), where the model can.
+
+    Nothing is simulated where the model is made by a builder; a Python function is called some times a parameter. A
+    model that was compared at this vector is not compared again.
+
+    Raises
+    ------
+    InputError
+        Where a number of the model loses the complex step of a parameter.
+    """
+    compare = getattr(model, "check_derivatives", None)
+    if compare is not None:
+        compare(np.asarray(vector, dtype=float))
+
+
+@dataclass
+class Compared:
+    """Where a model's complex step was compared with differences; shared with the model's shorter copies."""
+
+    vectors: set[bytes] = field(default_factory=set)
+    functions: bool = False  # whether functions of the user's were, along a motion
+
+    def once(self, vector: np.ndarray, compare: Callable[[bool], None]) -> None:
+        """Compare at a vector where that was not done; thoroughly the first time only."""
+        if vector.tobytes() not in self.vectors:
+            compare(not self.vectors)
+            self.vectors.add(vector.tobytes())
+            self.functions = False

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from dalembert.errors import DalembertError, InputError, SolveError, told, unknown, users_place
-from dalembert.forward.complex_steps import STEP, check_steps
+from dalembert.forward.complex_steps import STEP, Compared, check_steps
 from dalembert.forward.differences import COMPLEX_STEP, DERIVATIVES, RELATIVE_STEP
 from dalembert.forward.model import Channel, Coordinate, ForwardModel
 from dalembert.forward.responses import Responses
@@ -111,9 +111,20 @@ class PythonModel:
                 if self.derivative == COMPLEX_STEP
                 else self._central_difference(vector, column, scale * RELATIVE_STEP)
             )
-        if self.derivative == COMPLEX_STEP:
-            self._check(vector)
+        if not self._compared.vectors:
+            self.check_derivatives(vector)
         return jacobian
+
+    def check_derivatives(self, vector: np.ndarray) -> None:
+        """Compare the complex step with differences at a vector (parameters,), by some calls a parameter.
+
+        Raises
+        ------
+        InputError
+            Where the function drops the imaginary part of a parameter.
+        """
+        if self.derivative == COMPLEX_STEP:
+            self._compared.once(vector, lambda thorough: self._compare(vector, thorough))
 
     def linearise(self, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Response (samples, channels) and its jacobian (samples, channels, parameters)."""
@@ -131,7 +142,7 @@ class PythonModel:
             derivative=self.derivative,
             kept=samples,
         )
-        own._checked.extend(self._checked)
+        vars(own)["_compared"] = self._compared
         return own
 
     @property
@@ -173,15 +184,11 @@ class PythonModel:
         return f"the model's function{place}"
 
     @cached_property
-    def _checked(self) -> list[bool]:
-        """Not empty once the complex step was compared with differences."""
-        return []
+    def _compared(self) -> Compared:
+        return Compared()
 
-    def _check(self, vector: np.ndarray) -> None:
-        """Compare the complex step with differences, the first time that it is used: four calls a parameter."""
-        if not self._checked:
-            check_steps(self.parameters, vector, self._numbers, self._place)
-            self._checked.append(True)
+    def _compare(self, vector: np.ndarray, thorough: bool) -> None:
+        check_steps(self.parameters, vector, self._numbers, self._place, thorough=thorough)
 
     def _numbers(self, vector: np.ndarray) -> np.ndarray:
         """The response as a vector; NaN where the function fails."""

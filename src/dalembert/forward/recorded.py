@@ -10,6 +10,7 @@ import numpy as np
 
 from dalembert.errors import SolveError
 from dalembert.forward.checkpoint import Checkpoint
+from dalembert.forward.complex_steps import check_derivatives
 from dalembert.forward.responses import Responses
 from dalembert.forward.wrapped import Wrapped
 
@@ -86,6 +87,15 @@ class Recorded(Wrapped):
         """Response (samples, channels) and its jacobian (samples, channels, parameters)."""
         values, jacobian = self._once("linearise", vector, lambda: self.model.linearise(vector))
         return values, jacobian
+
+    def check_derivatives(self, vector: np.ndarray) -> None:
+        """Compare the complex step of the model with differences at a vector (parameters,), once a checkpoint."""
+
+        def compared() -> tuple[np.ndarray]:
+            check_derivatives(self.model, vector)
+            return (np.ones(1),)
+
+        self._once("check_derivatives", vector, compared)
 
     def _once(self, what: str, vector: np.ndarray, compute: Callable[[], Sequence[np.ndarray]]) -> Sequence[np.ndarray]:
         """Arrays that are known or computed; a solver that could not go on says so again."""

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import make_interp_spline
 
 from dalembert.errors import InputError, unknown
+from dalembert.forward.complex_steps import check_derivatives
 from dalembert.forward.model import Channel, Coordinate, ForwardModel
 from dalembert.forward.responses import Responses
 from dalembert.parameters import Parameter, Parameters
@@ -148,6 +149,10 @@ class Sensors:
                 if at[what] is not None:
                     jacobian[:, column, at[what]] = slope
         return read, jacobian
+
+    def check_derivatives(self, vector: np.ndarray) -> None:
+        """Compare the complex step of the model with differences at a vector (parameters,)."""
+        check_derivatives(self.model, vector[: len(self.model.parameters)])
 
     def first(self, samples: int) -> "Sensors":
         """The same readings, cut to their first ``samples`` samples; the model is cut where they no longer need it."""

@@ -6,6 +6,7 @@ from typing import Self
 
 import numpy as np
 
+from dalembert.forward.complex_steps import check_derivatives
 from dalembert.forward.model import Channel, Coordinate, ForwardModel
 from dalembert.forward.responses import Responses
 from dalembert.parameters import Parameters
@@ -54,6 +55,10 @@ class Wrapped:
     def linearise(self, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Response (samples, channels) and its jacobian (samples, channels, parameters)."""
         return self.model.linearise(vector)
+
+    def check_derivatives(self, vector: np.ndarray) -> None:
+        """Compare the complex step of the model with differences at a vector (parameters,)."""
+        check_derivatives(self.model, vector)
 
     def first(self, samples: int) -> Self:
         """The same around the model cut to its first ``samples`` samples."""

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from dalembert.data import Measurements
 from dalembert.errors import DalembertError, InputError, unknown
-from dalembert.forward import Channel, Coordinate, Executor, ForwardModel, Responses, on_cluster
+from dalembert.forward import Channel, Coordinate, Executor, ForwardModel, Responses, check_derivatives, on_cluster
 from dalembert.inverse.matching import check_finite, check_samples, columns_of, weights_of
 from dalembert.parameters import Parameter, Parameters
 
@@ -166,6 +166,12 @@ class JointModel:
             response[part.block] = own[: len(part.rows), picked]
             jacobian[np.ix_(part.rows, part.columns, wiring)] = slopes[: len(part.rows), picked]
         return response, jacobian
+
+    def check_derivatives(self, vector: np.ndarray) -> None:
+        """Compare the complex steps of the models with differences at a vector (parameters,)."""
+        for part, model, _, wiring in self._simulated():
+            with told_of(part.name):
+                check_derivatives(model, np.asarray(vector)[wiring])
 
     def first(self, samples: int) -> "JointModel":
         """The same experiments, each cut to its samples in the first rows."""

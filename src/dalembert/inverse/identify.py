@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from dalembert.data import Measurements
 from dalembert.errors import DalembertError, InputError, SolveError, StorageError, unknown
-from dalembert.forward import Executor, ForwardModel, takes_executor
+from dalembert.forward import Executor, ForwardModel, check_derivatives, takes_executor
 from dalembert.forward.provenance import provenance
 from dalembert.inverse.correlation import CorrelatedResiduals, correlation, correlation_findings
 from dalembert.inverse.estimate import Estimate, estimate, unknown_estimate
@@ -153,13 +153,14 @@ def identify(
     origin = None if start is None else _origin(problem, start)
     floor = noise_floor(problem)
 
+    first = _origin(problem, model.parameters.start) if origin is None else origin
+    if squares:
+        check_derivatives(problem.model, problem.search.vectors(first))
     if shooting is not None and isinstance(method, Squares):
-        first = _origin(problem, model.parameters.start) if origin is None else origin
         check_segments(model, data, shooting.states, shooting.segments, weighed=weights is not None)
         check_restart(problem, shooting.states, shooting.segments, problem.search.vectors(first))
         ends = shots(problem, shooting, method, floor, starts=starts, seed=seed, spread=spread, start=first)
     elif isinstance(method, Squares):
-        first = _origin(problem, model.parameters.start) if origin is None else origin
         ends = multistart(problem, method, floor, starts=starts, seed=seed, horizon=horizon, spread=spread, start=first)
     else:
         ends = runs(problem, method, floor, starts=starts, seed=seed, spread=spread, start=origin)

@@ -9,7 +9,7 @@ import numpy as np
 
 from dalembert.data import Measurements
 from dalembert.errors import InputError
-from dalembert.forward import Channel, Coordinate, ForwardModel, Responses
+from dalembert.forward import Channel, Coordinate, ForwardModel, Responses, check_derivatives
 from dalembert.parameters import Parameter, Parameters
 
 
@@ -127,6 +127,10 @@ class Segments:
         for gap, row in zip(self._gaps, self._ends(), strict=True):
             jacobian[row, gap, len(self.model.parameters) + gap - self._gaps[0]] -= 1
         return values, jacobian
+
+    def check_derivatives(self, vector: np.ndarray) -> None:
+        """Compare the complex step of the model with differences at a vector (parameters,), in the first segment."""
+        check_derivatives(self.model, vector[: len(self.model.parameters)])
 
     def first(self, samples: int) -> "Segments":
         """The first segments of at most so many samples."""

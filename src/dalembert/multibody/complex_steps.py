@@ -1,28 +1,65 @@
 """Whether a mechanism carries the complex step of its parameters, and functions of the user's that of the state.
 
 Derivatives by parameters are exact where each number of the model, and each force, carries the imaginary part of what
-it depends on. Numbers are compared with central differences of the same numbers, which needs no simulation. Forces of
-functions of the user's and of components of other packages are compared at states of a motion.
+it depends on. Numbers are compared with central differences of the same numbers, which needs no simulation. What
+functions of the user's and components of other packages return is compared at states of a motion, along the state and
+along the parameters that the functions close over.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from copy import copy
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from dalembert.errors import InputError
-from dalembert.forward.complex_steps import DROPPING, REMEDY, check_steps, lost_step
-from dalembert.multibody.components.planar.user_force import USER_FORCE
+from dalembert.forward.complex_steps import DROPPING, REMEDY, attempted, check_steps, lost_step
+from dalembert.multibody.callbacks import in_complex_numbers
+from dalembert.multibody.components.planar.user_force import USER_FORCE, UserForce
+from dalembert.multibody.components.signals import Custom
 from dalembert.multibody.evaluate import residual
 from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.kernels.motion import Motion
 from dalembert.multibody.lowering import Lowered, lower
+from dalembert.multibody.observe import Observer
 from dalembert.multibody.system import System
 from dalembert.parameters import Parameters
 
-_STATES = 5  # of a motion at which forces are compared
+_STATES = 5  # of a motion at which functions are compared
 
 
-def check_numbers(builder: Callable[..., System], parameters: Parameters, vector: np.ndarray) -> None:
+@dataclass(frozen=True)
+class Along:
+    """A motion with its channels.
+
+    Parameters
+    ----------
+    observer : Observer
+    times : array (samples,)
+    states : Motion of arrays (samples, N + 1)
+    """
+
+    observer: Observer
+    times: np.ndarray
+    states: Motion
+
+    @cached_property
+    def samples(self) -> np.ndarray:
+        """Numbers of a few samples, at which functions are compared."""
+        return np.unique(np.linspace(0, len(self.times) - 1, _STATES).astype(int))
+
+    @cached_property
+    def readers(self) -> Observer | None:
+        """Channels of components of other packages."""
+        columns = [column for column, row in enumerate(self.observer.rows) if row.kind and _foreign(row.kind)]
+        channels = tuple(self.observer.channels[column] for column in columns)
+        return Observer(channels, tuple(self.observer.rows[column] for column in columns)) if columns else None
+
+
+def check_numbers(
+    builder: Callable[..., System], parameters: Parameters, vector: np.ndarray, thorough: bool = True
+) -> None:
     """Raise where a number of the model, or a function of time, loses the complex step of a parameter.
 
     Raises
@@ -32,10 +69,27 @@ def check_numbers(builder: Callable[..., System], parameters: Parameters, vector
     """
 
     def lowered(vector: np.ndarray) -> Lowered:
-        given = [value if value.imag else value.real for value in vector.tolist()]  # one of them is complex at most
-        return lower(builder(**dict(zip(parameters.names, given, strict=True))))
+        return lower(_built(builder, parameters, vector))
 
-    check_steps(parameters, vector, lambda at: _numbers(lowered(at)), lambda entry: _place(lowered(vector), entry))
+    def place(entry: int) -> str:
+        return _place(lowered(vector), entry)
+
+    with in_complex_numbers(strict=True):
+        check_steps(parameters, vector, lambda at: _numbers(lowered(at)), place, thorough=thorough)
+
+
+def _built(builder: Callable[..., System], parameters: Parameters, vector: np.ndarray) -> System:
+    """The system with functions of the user's as Python runs them, since compiling one takes a second."""
+    given = [value if value.imag else value.real for value in vector.tolist()]  # one of them is complex at most
+    system = copy(builder(**dict(zip(parameters.names, given, strict=True))))
+    system.loads = [
+        replace(load, function=_plain(load.function)) if isinstance(load, UserForce) else load for load in system.loads
+    ]
+    return system
+
+
+def _plain(function: Callable) -> Callable:
+    return getattr(function, "py_func", function)
 
 
 def _numbers(lowered: Lowered) -> np.ndarray:
@@ -60,14 +114,76 @@ def _place(lowered: Lowered, entry: int) -> str:
     raise IndexError(entry)
 
 
-def check_forces(lowered: Lowered, times: np.ndarray, states: Motion, scale: np.ndarray) -> None:
-    """Raise where a force of a user's function, or of a kind of another package, loses the complex step of the state.
+def check_closures(builder: Callable[..., System], parameters: Parameters, vector: np.ndarray, along: Along) -> None:
+    """Raise where a function of the user's, or a kind of another package, loses the complex step of a parameter.
+
+    Raises
+    ------
+    InputError
+        It names the parameter and the component.
+    """
+    answers = _Answers.of(_built(builder, parameters, vector), along)
+    if answers.parts:
+        with in_complex_numbers(strict=True):
+            check_steps(
+                parameters,
+                vector,
+                lambda at: _Answers.of(_built(builder, parameters, at), along).numbers,
+                answers.place,
+            )
+
+
+@dataclass(frozen=True)
+class _Answers:
+    """What functions return along a motion, each with its name."""
+
+    parts: tuple[tuple[str, np.ndarray], ...]
+
+    @classmethod
+    def of(cls, system: System, along: Along) -> "_Answers":
+        return cls((*_of_signals(system, along), *_of_components(lower(system), along)))
+
+    @property
+    def numbers(self) -> np.ndarray:
+        return np.concatenate([values for _, values in self.parts])
+
+    def place(self, entry: int) -> str:
+        """The name of what returned a number."""
+        ends = np.cumsum([len(values) for _, values in self.parts])
+        return self.parts[int(np.searchsorted(ends, entry, side="right"))][0]
+
+
+def _of_signals(system: System, along: Along) -> Iterator[tuple[str, np.ndarray]]:
+    """Values and rates of functions of time."""
+    for component in (*system.bodies, *system.joints, *system.loads):
+        for name, signal in vars(component).items():
+            if isinstance(signal, Custom):
+                for function in filter(None, (signal.function, signal.rate, signal.second)):
+                    values = [_plain(function)(float(t)) for t in along.times[along.samples]]
+                    yield f"the function of time {name!r} of {component.name!r}", np.array(values)
+
+
+def _of_components(lowered: Lowered, along: Along) -> Iterator[tuple[str, np.ndarray]]:
+    """Forces and channels of functions of the user's and of kinds of other packages, the state held."""
+    model = lowered.dual
+    states = [part[along.samples].astype(complex) for part in along.states[:3]]
+    for kind in filter(_foreign, lowered.data):
+        for t, x, v, a in zip(along.times[along.samples], *states, strict=True):
+            owners = ", ".join(map(repr, dict.fromkeys(lowered.parts[kind])))
+            yield f"a force of {owners} at t = {t:.6g} s", residual(lowered, model, x, v, a, float(t), kind)
+    if along.readers:
+        values = along.readers.read(lowered, model, *states)
+        for channel, column in zip(along.readers.channels, values.T, strict=True):
+            yield f"the channel {channel.name!r}", column
+
+
+def check_forces(lowered: Lowered, along: Along, scale: np.ndarray) -> None:
+    """Raise where a function of the user's, or a kind of another package, loses the complex step of the state.
 
     Parameters
     ----------
     lowered : Lowered
-    times : array (samples,)
-    states : Motion of arrays (samples, N + 1)
+    along : Along
     scale : array (N + 1,)
         Typical sizes of the coordinates.
 
@@ -76,10 +192,16 @@ def check_forces(lowered: Lowered, times: np.ndarray, states: Motion, scale: np.
     InputError
         It names the component.
     """
-    for kind in filter(_foreign, lowered.data):
-        for direction in _directions(lowered, states, scale):
-            for sample in np.unique(np.linspace(0, len(times) - 1, _STATES).astype(int)):
-                _check_force(lowered, kind, direction, float(times[sample]), [part[sample] for part in states[:3]])
+    kinds = [kind for kind in lowered.data if _foreign(kind)]
+    if kinds or along.readers:
+        with in_complex_numbers(strict=True):
+            for direction in _directions(lowered, along.states, scale):
+                for sample in along.samples:
+                    state = [part[sample] for part in along.states[:3]]
+                    for kind in kinds:
+                        _check_force(lowered, kind, direction, float(along.times[sample]), state)
+                    if along.readers:
+                        _check_channels(lowered, along.readers, direction, state)
 
 
 def _foreign(kind: Kind) -> bool:
@@ -104,12 +226,30 @@ def _check_force(lowered: Lowered, kind: Kind, direction: Sequence[np.ndarray], 
             return residual(lowered, lowered.upright, x + shift * dx, v + shift * dv, a.astype(complex), t, kind)
         return residual(lowered, lowered.real, x + shift * dx, v + shift * dv, a, t, kind)
 
-    lost = lost_step(force, 1.0)
+    lost = attempted(lambda: lost_step(force, 1.0))
     if lost:
         owners, rows = lowered.parts[kind], lowered.structure.index[kind]
         names = sorted({name for name, own in zip(owners, rows, strict=True) if lost.entry in own})
         raise InputError(
             f"a force of {', '.join(map(repr, names))} depends on the state, but its derivative is {lost.by_step:.6g} "
             f"by the complex step and {lost.by_differences:.6g} by differences, at t = {t:.6g} s. Its function drops "
+            f"the imaginary part, as {DROPPING} do. {REMEDY}"
+        )
+
+
+def _check_channels(lowered: Lowered, observer: Observer, direction: Sequence[np.ndarray], state: list) -> None:
+    x, v, a = state
+    dx, dv = direction
+
+    def read(shift: complex) -> np.ndarray:
+        model, kind = (lowered.upright, complex) if isinstance(shift, complex) else (lowered.real, float)
+        moved = (part[None].astype(kind) for part in (x + shift * dx, v + shift * dv, a))
+        return observer.read(lowered, model, *moved)[0]
+
+    lost = attempted(lambda: lost_step(read, 1.0))
+    if lost:
+        raise InputError(
+            f"the channel {observer.channels[lost.entry].name!r} depends on the state, but its derivative is "
+            f"{lost.by_step:.6g} by the complex step and {lost.by_differences:.6g} by differences. Its function drops "
             f"the imaginary part, as {DROPPING} do. {REMEDY}"
         )

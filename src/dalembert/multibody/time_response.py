@@ -10,11 +10,12 @@ import numpy as np
 from dalembert.errors import InputError, SolveError, told, unknown
 from dalembert.forward import Channel, Coordinate, Responses, ensemble
 from dalembert.forward.builders import cores, inexact, restructured
+from dalembert.forward.complex_steps import Compared
 from dalembert.forward.differences import COMPLEX_STEP, DERIVATIVES, central_differences
 from dalembert.kernels.preparation import prepare
 from dalembert.multibody.assemble import assembled, refuse_kinks, refuse_redundancy
 from dalembert.multibody.callbacks import in_complex_numbers
-from dalembert.multibody.complex_steps import check_forces, check_numbers
+from dalembert.multibody.complex_steps import Along, check_closures, check_forces, check_numbers
 from dalembert.multibody.fingerprint import fingerprint
 from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.problem import Problem
@@ -45,8 +46,9 @@ class TimeResponse:
     workers : int, optional
         Threads of an ensemble; as many as there are cores if not given.
     derivative : {"complex-step", "central-differences"}
-        The complex step is exact, and needs a builder that runs in complex numbers. When it is first used, it is
-        compared with differences of the model's numbers, and of the forces of the user's functions.
+        The complex step is exact, and needs a builder that runs in complex numbers. When it is first used, and when an
+        identification starts, it is compared with differences of the model's numbers, and of what functions of the
+        user's return.
 
     Examples
     --------
@@ -200,25 +202,40 @@ class TimeResponse:
             self.builder, self.parameters, self.channel_names, self.times[:samples], self.solver, self.workers,
             self.derivative,
         )  # fmt: skip
-        own._checked.extend(self._checked)
+        vars(own)["_compared"] = self._compared
         return own
 
     def system(self, vector: np.ndarray) -> System:
         """The mechanism at a parameter vector (parameters,)."""
         return self.builder(**self.parameters.mapping(vector))
 
+    def check_derivatives(self, vector: np.ndarray) -> None:
+        """Compare the complex step with differences of the model's numbers at a vector (parameters,).
+
+        Nothing is simulated. The forces of functions of the user's are compared by the next derivative, along its
+        motion.
+
+        Raises
+        ------
+        InputError
+            With the parameter, the component and its number, where the builder drops the imaginary part.
+        """
+        if self.derivative == COMPLEX_STEP:
+            self._compared.once(vector, lambda thorough: check_numbers(self.builder, self.parameters, vector, thorough))
+
     @cached_property
-    def _checked(self) -> list[bool]:
-        """Not empty once the complex step was compared with differences."""
-        return []
+    def _compared(self) -> Compared:
+        return Compared()
 
     def _check(self, vector: np.ndarray, lowered: Lowered, run: Run) -> None:
-        """Compare the complex step with differences, the first time that it is used."""
-        if not self._checked:
-            with in_complex_numbers(strict=True):
-                check_numbers(self.builder, self.parameters, vector)
-                check_forces(lowered, self.times, run.states, self._frame.problem.scale)
-            self._checked.append(True)
+        """Compare the complex step with differences, where that was not done."""
+        if not self._compared.vectors:
+            self.check_derivatives(vector)
+        if not self._compared.functions:
+            at = Along(self._frame.observer, self.times, run.states)
+            check_forces(lowered, at, self._frame.problem.scale)
+            check_closures(self.builder, self.parameters, vector, at)
+            self._compared.functions = True
 
     @cached_property
     def _frame(self) -> "_Frame":

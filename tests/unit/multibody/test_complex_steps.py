@@ -1,12 +1,18 @@
 """A mechanism whose builder, or whose forces, drop the imaginary part is refused; differences serve instead."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 import pytest
 from numba import njit
 
 import dalembert as da
+from dalembert.kernels.kernel import inner
+from dalembert.multibody import Kind, Load
+from dalembert.multibody.components.fields import Number, number
+from dalembert.multibody.components.planar import pairs
+from dalembert.multibody.components.points import Side
 
 TIMES = np.linspace(0.0, 0.5, 11)
 BOUNDS = {"length": (0.5, 2.0), "stiffness": (10.0, 20.0)}
@@ -115,3 +121,120 @@ def test_a_force_by_safe_functions_is_accepted() -> None:
     slopes = model.jacobian(np.array([1.0]))
     ahead, behind = model.evaluate(np.array([[1.0 + 1e-5], [1.0 - 1e-5]])).values
     np.testing.assert_allclose(slopes[:, :, 0], (ahead - behind) / 2e-5, atol=1e-7)
+
+
+def captured(force: Callable = lambda x: x, course: Callable = lambda x: x, compiled: bool = False) -> da.TimeResponse:
+    """A bar under a force and a function of time that close over a parameter."""
+
+    def build(size: float) -> da.System:
+        own = force(size)
+
+        def push(t, at, against):
+            return 0.3 * own, 0.0, -0.1 * own * at[5]
+
+        system = da.System(gravity=(0.0, 0.0))
+        bar = system.add(da.RigidBar("bar", 1.0, 1.0, angle=0.3, angular_velocity=1.0))
+        system.add(da.RevoluteJoint("pin", system.ground, bar.start))
+        system.add(da.UserForce("drag", bar.end, njit(push) if compiled else push))
+        system.add(da.Force("push", bar.end, x=da.Custom(lambda t: course(size) * np.sin(3 * t))))
+        return system
+
+    return da.TimeResponse(build, {"size": (0.5, 1.5)}, ["bar.end.x"], TIMES, da.GeneralizedAlpha(step=5e-3))
+
+
+@pytest.mark.parametrize("name", LOSING)
+def test_a_force_that_loses_the_step_of_a_captured_parameter_is_refused(name: str) -> None:
+    with pytest.raises(
+        da.InputError, match=r"derivative of a force of 'drag' at t = \S+ s by 'size' is \S+ by the comp"
+    ):
+        captured(force=LOSING[name]).jacobian(np.array([1.0]))
+
+
+def test_a_compiled_force_that_loses_a_captured_parameter_is_refused() -> None:
+    with pytest.raises(
+        da.InputError, match=r"derivative of a force of 'drag' at .* by 'size' is 0 by the complex step"
+    ):
+        captured(force=abs, compiled=True).jacobian(np.array([1.0]))
+
+
+@pytest.mark.parametrize("name", LOSING)
+def test_a_signal_that_loses_the_step_of_a_captured_parameter_is_refused(name: str) -> None:
+    with pytest.raises(da.InputError, match="derivative of the function of time 'x' of 'push' by 'size' is"):
+        captured(course=LOSING[name]).jacobian(np.array([1.0]))
+
+
+def test_functions_that_carry_captured_parameters_are_accepted() -> None:
+    model = captured(force=da.absolute, course=lambda x: da.hypot(x, 0.1))
+    slopes = model.jacobian(np.array([1.0]))
+    ahead, behind = model.evaluate(np.array([[1.0 + 1e-5], [1.0 - 1e-5]])).values
+    np.testing.assert_allclose(slopes[:, :, 0], (ahead - behind) / 2e-5, atol=1e-8)
+
+
+def test_a_builder_that_rounds_a_parameter_is_refused() -> None:
+    with pytest.raises(da.InputError, match="'stiffness' of 'coil' follows 'stiffness' in steps, as after rounding"):
+        response(arm(stiff=lambda x: np.round(x, 2))).jacobian(VALUES)
+
+
+def test_an_identification_compares_at_its_start_without_a_simulation() -> None:
+    model = response(arm(stiff=lambda x: x if x.real < 16.0 else abs(x)))
+    model.jacobian(VALUES)
+    with pytest.raises(da.InputError, match="derivative of 'stiffness' of 'coil' by 'stiffness' is 0 by the complex"):
+        model.check_derivatives(np.array([1.0, 18.0]))
+
+
+@inner
+def nothing(x, v, a, p, m, inputs, r):
+    r[0] = 0.0 * x[0]
+
+
+@inner
+def stretch(x, v, a, p, m, inputs, out):
+    dx, dy = pairs.separation(x, p, m)
+    out[0] = abs(p.gain) * (dx * dx + dy * dy)
+    out[1] = p.gain * abs(dx)
+
+
+GAUGE = Kind(
+    "gauge",
+    coordinates=pairs.COORDINATES,
+    numbers=(*pairs.NUMBERS, "gain"),
+    integers=pairs.INTEGERS,
+    residual=nothing,
+    outputs=(("square", "m^2"), ("side", "m")),
+    observe=stretch,
+)
+
+
+@dataclass(frozen=True)
+class Gauge(Load):
+    """A sensor between two points that drops imaginary parts."""
+
+    a: Side
+    b: Side
+    gain: Number = number("")
+
+    kind = GAUGE
+
+    def lower(self, lowering):
+        pair = lowering.pair(self.a, self.b, self.name)
+        lowering.add(GAUGE, pair.slots, [*pair.data, self.gain], pair.integers, self.name)
+
+
+@pytest.mark.parametrize(
+    ("channel", "told"),
+    [
+        ("gauge.square", "derivative of the channel 'gauge.square' by 'gain' is 0 by the complex step"),
+        ("gauge.side", "the channel 'gauge.side' depends on the state, but its derivative is 0 by the complex step"),
+    ],
+)
+def test_a_sensor_of_another_package_that_loses_the_step_is_refused(channel: str, told: str) -> None:
+    def build(gain: float) -> da.System:
+        system = da.System()
+        bar = system.add(da.RigidBar("bar", 1.0, 1.0, angle=0.3))
+        system.add(da.RevoluteJoint("pin", system.ground, bar.start))
+        system.add(Gauge("gauge", system.ground.point(0.0, 1.0), bar.end, gain))
+        return system
+
+    model = da.TimeResponse(build, {"gain": (0.5, 1.5)}, [channel], TIMES, da.GeneralizedAlpha(step=5e-3))
+    with pytest.raises(da.InputError, match=told):
+        model.jacobian(np.array([1.0]))

@@ -9,7 +9,7 @@ from scipy.special import chdtri, fdtri
 
 from dalembert.data import Measurements
 from dalembert.errors import InputError, unknown
-from dalembert.forward import Executor, ForwardModel, takes_executor
+from dalembert.forward import Executor, ForwardModel, check_derivatives, takes_executor
 from dalembert.forward.provenance import provenance
 from dalembert.inverse.confidence import check_level, freedom, noise_is_known, variance
 from dalembert.inverse.events import OnEvent
@@ -119,6 +119,7 @@ def profile(
             "profile: the noise of the data is not known, and the fit leaves no residuals to estimate it from; give "
             "the data's deviations"
         )
+    check_derivatives(problem.model, values)
     at = problem.linearise(values)
     best = float(np.sum(problem.residuals(values, at.response) ** 2))
     known = noise_is_known(fit)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from dalembert.errors import InputError, SolveError, StorageError, told, unknown
-from dalembert.forward import ForwardModel
+from dalembert.forward import ForwardModel, check_derivatives
 
 
 def noise_of(
@@ -51,10 +51,11 @@ def linearised(model: ForwardModel, vector: np.ndarray) -> tuple[np.ndarray, np.
     Raises
     ------
     InputError
-        For a model that cannot be differentiated at all.
+        For a model that cannot be differentiated at all, or that loses the complex step of a parameter.
     SolveError
         Where the simulation fails, or is not finite.
     """
+    check_derivatives(model, vector)
     at = ", ".join(f"{name} = {value:.6g}" for name, value in model.parameters.mapping(vector).items())
     try:
         response, jacobian = model.linearise(vector)

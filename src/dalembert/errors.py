@@ -7,6 +7,7 @@ from difflib import get_close_matches
 from pathlib import Path
 
 _OWN = str(Path(__file__).parent)
+_LONGEST = 60  # text of a value in a sentence
 _ROOM = "see that the disk has room and that the folder may be written to"
 _BEGUN = f"; what was written before is whole: {_ROOM}, and go on with the run by 'dalembert resume'"
 _NOT_BEGUN = f"; nothing has run yet: {_ROOM}, and run the study again"
@@ -92,6 +93,18 @@ def listed(words: Sequence[str]) -> str:
     ('a, b and c', 'a')
     """
     return " and ".join(filter(None, [", ".join(words[:-1]), words[-1]]))
+
+
+def shown(value: object) -> str:
+    """A value as a sentence can hold it: in one line, and not long.
+
+    >>> shown("2 kg"), shown(None), shown([1.0] * 1000)
+    ("'2 kg'", 'None', '[1.0, 1.0, 1.0, 1.0, 1.0, 1.0, ...')
+    """
+    text = " ".join(repr(value).split())
+    if text.startswith("<") or (len(text) > _LONGEST and not isinstance(value, str | list | tuple | dict)):
+        return f"a {type(value).__name__}"
+    return text if len(text) <= _LONGEST else f"{text[:30].rstrip()} ..."
 
 
 def told(error: BaseException) -> str:

@@ -4,10 +4,10 @@ What depends only on the kinds and connections of components is a `Structure`, f
 an ensemble; what depends on numbers is in `Lowered`.
 """
 
-from collections.abc import Mapping, Sequence, ValuesView
+from collections.abc import Callable, Mapping, Sequence, ValuesView
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -214,12 +214,8 @@ class Lowering:
         self._jumps.update(signal.jumps)
         return len(self._signals) - 1
 
-    def callback(self, function: object, owner: str) -> int:
+    def callback(self, function: Callable[..., Any], owner: str) -> int:
         """Number of a force function of the user's."""
-        if not callable(function):
-            raise ModelError(
-                f"user force {owner!r}: its function is {function!r}; expected something that can be called"
-            )
         self._callbacks.append(force_callback(function, owner, self._failures))
         return len(self._callbacks) - 1
 

@@ -3,7 +3,8 @@
 from collections.abc import Sequence
 from typing import Any, TypeVar
 
-from dalembert.errors import InputError, ModelError, unknown
+from dalembert.arguments import is_number, names_of
+from dalembert.errors import InputError, ModelError, shown, unknown
 from dalembert.multibody.components.fields import Number
 from dalembert.multibody.components.planar.body import Body
 from dalembert.multibody.components.planar.joint import Joint
@@ -36,8 +37,17 @@ class System:
     """
 
     def __init__(self, gravity: tuple[Number, Number] = (0.0, -9.81), driving: Sequence[str] = ()) -> None:
+        try:
+            usable = len(gravity) == 2 and all(map(is_number, gravity))
+        except TypeError:
+            usable = False
+        if not usable:
+            raise InputError(
+                f"System: gravity is {shown(gravity)}; expected two finite numbers in m/s^2, along x and y, such as "
+                "(0.0, -9.81)"
+            )
         self.gravity = gravity
-        self.driving = tuple(driving)
+        self.driving = names_of(driving, "System", "driving")
         self.ground = Ground()
         self.bodies: list[Body] = []
         self.joints: list[Joint] = []

@@ -180,6 +180,6 @@ def test_a_prescribed_motion_whose_function_raises_is_named() -> None:
 
 
 def test_what_is_not_a_function_is_refused() -> None:
-    sentence = "user force 'gust': its function is 3.0; expected something that can be called"
-    with pytest.raises(ModelError, match=says(sentence)):
-        mb.simulate(gust(3.0), 0.1)
+    sentence = "UserForce 'gust': function is 3.0; expected a function"
+    with pytest.raises(InputError, match=says(sentence)):
+        gust(3.0)

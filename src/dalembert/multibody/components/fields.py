@@ -30,25 +30,15 @@ def arguments(component: type) -> tuple[Field, ...]:
     return tuple(entry for entry in component.__dataclass_fields__.values() if entry.init)
 
 
-_LARGEST = 1e100  # a number of a mechanism; squares of larger ones soon leave the range of floating point
-
-
-def _require_small(owner: str, name: str, value: Number) -> None:
-    if np.isfinite(np.real(value)) and abs(np.real(value)) > _LARGEST:
-        raise InputError(f"{owner}: {name} is {np.real(value):g}; expected a number below {_LARGEST:g}")
-
-
 def require(owner: str, **values: Number) -> None:
-    """Refuse numbers that are not finite and positive, or too large to compute with."""
+    """Refuse numbers that are not positive."""
     for name, value in values.items():
-        _require_small(owner, name, value)
-        if not (np.isfinite(np.real(value)) and np.real(value) > 0):
+        if not np.real(value) > 0:
             raise InputError(f"{owner}: {name} is {np.real(value):g}; expected a positive number")
 
 
 def require_not_negative(owner: str, **values: Number) -> None:
-    """Refuse numbers that are not finite, negative, or too large to compute with."""
+    """Refuse numbers that are negative."""
     for name, value in values.items():
-        _require_small(owner, name, value)
-        if not (np.isfinite(np.real(value)) and np.real(value) >= 0):
+        if not np.real(value) >= 0:
             raise InputError(f"{owner}: {name} is {np.real(value):g}; expected zero or a positive number")

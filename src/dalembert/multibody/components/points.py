@@ -5,6 +5,7 @@ __all__ = ["Ground", "GroundPoint", "Point"]
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from dalembert.arguments import Checked
 from dalembert.errors import ModelError
 from dalembert.multibody.components.fields import Number
 
@@ -19,17 +20,21 @@ class Point:
     body: "Body"
     name: str
 
+    IN_WORDS = "a point of a body such as rod.end"
+
     def __str__(self) -> str:
         return f"{self.body.name}.{self.name}"
 
 
 @dataclass(frozen=True)
-class GroundPoint:
+class GroundPoint(Checked):
     """A fixed point, in m, with the angle of its axes, in rad."""
 
     x: Number
     y: Number
     angle: Number = 0.0
+
+    IN_WORDS = "a point of the ground such as system.ground.point(0.0, 0.0)"
 
     def __str__(self) -> str:
         return f"ground({self.x}, {self.y})"
@@ -38,6 +43,8 @@ class GroundPoint:
 @dataclass(frozen=True)
 class Ground:
     """What does not move. As a side of a joint: the place where the other side stands at first."""
+
+    IN_WORDS = "the ground"
 
     def point(self, x: Number, y: Number, angle: Number = 0.0) -> GroundPoint:
         """A fixed point at (x, y) in m, its axes turned by ``angle`` in rad."""

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.interpolate import CubicSpline
 
+from dalembert.arguments import Checked
 from dalembert.errors import InputError, unknown
 from dalembert.multibody.components.fields import Number
 from dalembert.multibody.kernels import signals as kinds
@@ -19,8 +20,10 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Signal:
+class Signal(Checked):
     """Base of all functions of time."""
+
+    IN_WORDS = "a function of time such as Harmonic(amplitude, angular_frequency)"
 
     @abstractmethod
     def lower(self, lowering: "Lowering") -> tuple[int, Sequence[Number], Sequence[float]]:
@@ -56,16 +59,15 @@ class Step(Signal):
     end: float = field(default=np.inf, metadata={"unit": "s"})
 
     def __post_init__(self) -> None:
-        _fixed("Step", start=self.start, end=self.end)
-        if not np.real(self.start) < np.real(self.end):
+        if not self.start < self.end:
             raise InputError(f"Step: start is {self.start} s and end is {self.end} s; expected start before end")
 
     def lower(self, lowering: "Lowering") -> tuple[int, Sequence[Number], Sequence[float]]:
-        return kinds.STEP, [self.value], [float(np.real(self.start)), float(np.real(self.end))]
+        return kinds.STEP, [self.value], [float(self.start), float(self.end)]
 
     @property
     def jumps(self) -> tuple[float, ...]:
-        return float(np.real(self.start)), float(np.real(self.end))
+        return float(self.start), float(self.end)
 
 
 @dataclass(frozen=True)
@@ -169,12 +171,3 @@ Course = Number | Signal
 def as_signal(value: Course) -> Signal:
     """Numbers become constants."""
     return value if isinstance(value, Signal) else Constant(value)
-
-
-def _fixed(owner: str, **times: Number) -> None:
-    for name, value in times.items():
-        if np.imag(value) != 0:
-            raise InputError(
-                f"{owner}: {name} depends on a parameter; the time of a jump has no exact sensitivity here, "
-                "so give it as a number"
-            )

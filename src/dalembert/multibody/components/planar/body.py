@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from dalembert.arguments import Checked
 from dalembert.errors import InputError, unknown
 from dalembert.multibody.components.fields import Number
 from dalembert.multibody.components.points import Place, Point
@@ -28,7 +29,7 @@ class Marker(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Body:
+class Body(Checked):
     """Base of all bodies: a name, a first placement and a first rigid motion."""
 
     name: str

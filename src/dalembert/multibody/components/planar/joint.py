@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
+from dalembert.arguments import Checked
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number
 from dalembert.multibody.components.planar.pairs import relative_angle, relative_spin
@@ -20,7 +21,7 @@ OUTPUTS = (("angle", "rad"), ("rate", "rad/s"), ("force_x", "N"), ("force_y", "N
 
 
 @dataclass(frozen=True)
-class Joint:
+class Joint(Checked):
     """Base of all joints: a name and two sides."""
 
     name: str

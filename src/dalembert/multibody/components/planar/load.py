@@ -6,6 +6,7 @@ from abc import abstractmethod
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
+from dalembert.arguments import Checked
 from dalembert.multibody.kernels.kind import Kind
 
 if TYPE_CHECKING:
@@ -13,7 +14,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Load:
+class Load(Checked):
     """Base of all that acts without a constraint."""
 
     name: str

@@ -1,0 +1,252 @@
+"""Arguments of dataclasses, checked by their annotations before anything is computed with them."""
+
+import types
+import typing
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import InitVar
+from functools import cache, wraps
+from typing import Any, NamedTuple, Union
+
+import numpy as np
+
+from dalembert.errors import InputError, shown
+
+LARGEST = 1e100  # of a number of a model; squares of larger ones soon leave the range of floating point
+_PLAIN = (float, int, complex, np.float64, np.complex128)
+
+
+class Checked:
+    """Base of dataclasses whose arguments are checked when they are made, those of subclasses included.
+
+    An annotation says what is accepted: ``float | complex`` a finite number of a model, which is complex while a
+    derivative is taken; ``float`` a real number; ``int``, ``bool``, ``str``, ``None`` and classes what they name;
+    tuples, sequences and mappings of these. Other annotations accept everything.
+
+    Raises
+    ------
+    InputError
+        It names the object, the argument, what was given and what is expected.
+
+    Examples
+    --------
+    >>> from dataclasses import dataclass, field
+    >>> @dataclass(frozen=True)
+    ... class Rod(Checked):
+    ...     name: str
+    ...     length: float | complex = field(metadata={"unit": "m"})
+    >>> Rod("AB", "2")
+    Traceback (most recent call last):
+    dalembert.errors.InputError: Rod 'AB': length is '2'; expected a number in m
+    """
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        own = cls.__dict__.get("__post_init__")
+        if own is not None:
+
+            @wraps(own)
+            def first_checked(self: Any, *given: Any) -> None:
+                _check(self, given)
+                own(self, *given)
+
+            cls.__post_init__ = first_checked  # type: ignore[attr-defined]
+
+    def __post_init__(self, *given: Any) -> None:
+        _check(self, given)
+
+
+class _Argument(NamedTuple):
+    """An argument: its name, tests one of which it must pass, and its place among those that are not kept."""
+
+    name: str
+    tests: tuple[Callable[[Any], bool], ...]
+    place: int | None
+    default: Any
+    kinds: tuple[Any, ...]
+    unit: str
+
+
+def _check(made: Any, passed_on: tuple[Any, ...]) -> None:
+    for argument in _arguments(type(made)):
+        name, tests, place, default, kinds, unit = argument
+        value = getattr(made, name) if place is None else passed_on[place]
+        if value is default:
+            continue
+        for test in tests:
+            if test(value):
+                break
+        else:
+            owner = getattr(made, "name", None)
+            named = f" {owner!r}" if isinstance(owner, str) and name != "name" else ""
+            raise InputError(refusal(type(made).__name__ + named, name, value, kinds, unit))
+
+
+@cache
+def _arguments(made: type) -> tuple[_Argument, ...]:
+    fields = [entry for entry in made.__dataclass_fields__.values() if entry.init]  # type: ignore[attr-defined]
+    try:
+        annotations = typing.get_type_hints(made)
+    except Exception:  # a name that only type checkers know
+        annotations = {}
+    found, passed_on = [], 0
+    for entry in fields:
+        annotation, place = annotations.get(entry.name, entry.type), None
+        if isinstance(annotation, InitVar):
+            annotation, place, passed_on = annotation.type, passed_on, passed_on + 1
+        kinds = kinds_of(annotation)
+        unit = entry.metadata.get("unit", "")
+        found.append(_Argument(entry.name, tuple(map(_test, kinds)), place, entry.default, kinds, unit))
+    return tuple(found)
+
+
+@cache
+def kinds_of(annotation: Any) -> tuple[Any, ...]:
+    """Alternatives of an annotation; ``complex`` alone for a number of a model.
+
+    >>> kinds_of(float | complex | None)
+    (<class 'complex'>, <class 'NoneType'>)
+    """
+    union = typing.get_origin(annotation) in (Union, types.UnionType)
+    kinds = typing.get_args(annotation) if union else (annotation,)
+    return tuple(kind for kind in kinds if kind is not float) if complex in kinds else kinds
+
+
+_TESTS: dict[Any, Callable[[Any], bool]] = {}
+
+
+@cache
+def _test(kind: Any) -> Callable[[Any], bool]:
+    """Whether a value is of a kind."""
+    if kind in _TESTS:
+        return _TESTS[kind]
+    origin = typing.get_origin(kind)
+    if origin is Callable:
+        return callable
+    inner = [_any_of(one) for one in typing.get_args(kind)]
+    if origin is tuple and Ellipsis not in typing.get_args(kind):
+        return lambda value: _is_row(value) and len(value) == len(inner) and all(map(_holds, inner, value))
+    if origin in (tuple, list, Sequence, Iterable):
+        of_text = typing.get_args(kind)[0] is str
+        return lambda value: (of_text and isinstance(value, str)) or (_is_row(value) and all(map(inner[0], value)))
+    if origin is Mapping:
+        return lambda value: isinstance(value, Mapping) and all(map(inner[1], value.values()))
+    return (lambda value: isinstance(value, kind)) if isinstance(kind, type) else lambda value: True
+
+
+def _any_of(annotation: Any) -> Callable[[Any], bool]:
+    tests = [_test(kind) for kind in kinds_of(annotation)]
+    return lambda value: any(test(value) for test in tests)
+
+
+def _holds(test: Callable[[Any], bool], value: Any) -> bool:
+    return test(value)
+
+
+def is_number(value: Any) -> bool:
+    """Whether a value is a finite number of a model, real or complex, and small enough to compute with.
+
+    >>> [is_number(value) for value in (2, 1 + 1j, np.float32(3), "2", None, True, np.nan, 1e200, np.ones(2))]
+    [True, True, True, False, False, False, False, False, False]
+    """
+    if type(value) not in _PLAIN:
+        if not _is_scalar(value):
+            return False
+        value = np.asarray(value).item()
+    return -LARGEST <= value.real <= LARGEST and -LARGEST <= value.imag <= LARGEST
+
+
+def _is_scalar(value: Any, kinds: str = "iufc") -> bool:
+    """Whether something is one number to NumPy."""
+    try:
+        array = np.asarray(value)
+    except Exception:  # whatever an object of the user's raises
+        return False
+    return array.shape == () and array.dtype.kind in kinds
+
+
+def is_whole(value: Any) -> bool:
+    """Whether a value is a whole number, and not just equal to one."""
+    return isinstance(value, int | np.integer) and not isinstance(value, bool)
+
+
+def _is_row(value: Any) -> bool:
+    """Whether a value is a list of something."""
+    if isinstance(value, np.ndarray):
+        return value.ndim > 0
+    return isinstance(value, Sequence) and not isinstance(value, str | bytes)
+
+
+_TESTS.update(
+    {
+        complex: is_number,
+        float: lambda value: _is_scalar(value, "iuf"),
+        int: is_whole,
+        bool: lambda value: isinstance(value, bool | np.bool_),
+        np.ndarray: lambda value: True,
+    }
+)
+
+
+def refusal(owner: str, name: str, value: Any, kinds: tuple[Any, ...], unit: str = "") -> str:
+    """Sentence for an argument that is of none of these kinds."""
+    given = [kind for kind in kinds if kind is not type(None)]
+    return f"{owner}: {name} is {shown(value)}; expected {' or '.join(_words(kind, value, unit) for kind in given)}"
+
+
+_COUNTS = {2: "two", 3: "three"}
+_WORDS = {float: "a number", int: "a whole number", bool: "True or False", str: "a text"}
+
+
+def _words(kind: Any, value: Any, unit: str) -> str:
+    """What is expected of a kind."""
+    of_unit = f" in {unit}" if unit else ""
+    if kind is float and _is_scalar(value, "c"):
+        return f"a real number{of_unit}, which depends on no parameter"
+    if kind is complex:
+        if not _is_scalar(value):
+            return f"a number{of_unit}"
+        return f"a number below {LARGEST:g} in size" if np.isfinite(value) else f"a finite number{of_unit}"
+    origin, inner = typing.get_origin(kind), typing.get_args(kind)
+    if origin is tuple and Ellipsis not in inner:
+        count, example = _COUNTS.get(len(inner), len(inner)), ", ".join(["0.0"] * len(inner))
+        return f"{count} finite numbers{of_unit}, such as ({example})"
+    if origin in (tuple, list, Sequence, Iterable):
+        return "a list of texts" if inner[0] is str else f"a list of finite numbers{of_unit}"
+    if origin is Mapping:
+        return f"a mapping from names to {_words(kinds_of(inner[1])[0], value, unit)}"
+    if origin is Callable:
+        return "a function"
+    return _WORDS.get(kind) or getattr(kind, "IN_WORDS", None) or f"a {kind.__name__}"
+
+
+def names_of(given: str | Iterable[str], owner: str, what: str) -> tuple[str, ...]:
+    """Names from a sequence of them, or from a single one.
+
+    Raises
+    ------
+    InputError
+        For anything else.
+
+    Examples
+    --------
+    >>> names_of("rod.end.x", "TimeResponse", "channels"), names_of(["a", "b"], "TimeResponse", "channels")
+    (('rod.end.x',), ('a', 'b'))
+    """
+    if isinstance(given, str):
+        return (str(given),)
+    names = tuple(given) if isinstance(given, Iterable) else ()
+    if not isinstance(given, Iterable) or not all(isinstance(name, str) for name in names):
+        wrong = next((name for name in names if not isinstance(name, str)), given)
+        raise InputError(f"{owner}: {what} is {shown(wrong)}; expected names, such as ['AB.end.x', 'AB.end.y']")
+    return tuple(map(str, names))
+
+
+def check_whole(owner: str, name: str, value: Any, least: int) -> None:
+    """Raise unless a value is a whole number of at least ``least``.
+
+    >>> check_whole("identify", "starts", 2.5, 1)
+    Traceback (most recent call last):
+    dalembert.errors.InputError: identify: starts is 2.5; expected a whole number, at least 1
+    """
+    if not is_whole(value) or value < least:
+        raise InputError(f"{owner}: {name} is {shown(value)}; expected a whole number, at least {least}")

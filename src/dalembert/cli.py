@@ -3,17 +3,20 @@
 Exit codes: 0 done, 1 the solver could not, 2 the input is wrong, 130 stopped by the user.
 """
 
+import os
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn, TextIO
 
 import typer
 
 from dalembert import __version__
 
 if TYPE_CHECKING:
+    from rich.console import Console
+
     from dalembert.study.folder import RunFolder
     from dalembert.study.tasks.task import Outcome
 
@@ -91,8 +94,6 @@ def run(
 ) -> None:
     """Do what a study says, in a run folder of its own."""
     with _exit_codes():
-        from rich.console import Console
-
         from dalembert.study import load, run_study
         from dalembert.study.progress import Watch
         from dalembert.study.runner import unknowns
@@ -102,7 +103,7 @@ def run(
         read = load(study)
         if seed is not None:
             read = read.with_seed(seed)
-        with Watch(Console(stderr=True, soft_wrap=True), unknowns(read)) as watch:
+        with Watch(_console(sys.stderr, soft_wrap=True), unknowns(read)) as watch:
             folder, outcome = run_study(read, out, force=force, listener=watch, executor=cluster)
         _ended(folder, outcome)
 
@@ -111,8 +112,6 @@ def run(
 def resume(run: Run, cluster: Cluster = None) -> None:
     """Go on with a run that was killed or stopped: it ends with the same bits as one that was not."""
     with _exit_codes():
-        from rich.console import Console
-
         from dalembert.study import resume_run
         from dalembert.study.progress import Watch
         from dalembert.study.runner import unknowns
@@ -120,26 +119,38 @@ def resume(run: Run, cluster: Cluster = None) -> None:
         _stop_on_terminate()
         _say_once(cluster)
         folder = _folder(run)
-        with Watch(Console(stderr=True, soft_wrap=True), unknowns(folder.kept())) as watch:
+        with Watch(_console(sys.stderr, soft_wrap=True), unknowns(folder.kept())) as watch:
             outcome = resume_run(folder, listener=watch, executor=cluster)
         _ended(folder, outcome)
 
 
 @app.command()
-def check(study: StudyFile) -> None:
+def check(
+    study: StudyFile,
+    limit: Annotated[float, typer.Option(min=0, metavar="SECONDS", help="Time for simulations.")] = 30.0,
+) -> None:
     """Check a study, and say what it would run, about how many simulations and how long."""
     with _exit_codes():
         from dalembert.errors import ModelError
         from dalembert.study import load, plan
-        from dalembert.study.runner import foreseen, takes
+        from dalembert.study.duration import spoken, within
+        from dalembert.study.runner import looked
         from dalembert.study.table import placed
 
         read = load(study)
         with placed(study.name), placed(study.name, ModelError):
             typer.echo(f"{study}: in order; it {plan(read)}")
-            typer.echo(takes(read))
-            for sentence in foreseen(read):
-                typer.echo(sentence)
+            try:
+                for sentence in within(limit, lambda: looked(read, limit)):
+                    typer.echo(sentence)
+            except TimeoutError:
+                typer.echo(f"The check ends at its time limit, {spoken(limit)}, during a simulation. Raise --limit.")
+                _leave(DONE)
+            except KeyboardInterrupt:
+                typer.echo("stopped", err=True)
+                _leave(STOPPED)
+            except BrokenPipeError:
+                _leave(DONE)
 
 
 @app.command("list")
@@ -148,15 +159,13 @@ def list_runs(
 ) -> None:
     """List the runs with their states and best values."""
     with _exit_codes():
-        from rich.console import Console
-
         from dalembert.study.listing import rows, table
 
         found = rows(runs)
         if not found:
             typer.echo(f"no runs in {runs}")
         else:
-            Console(width=None if sys.stdout.isatty() else 200).print(table(found))
+            _console(sys.stdout, width=None if sys.stdout.isatty() else 200).print(table(found))
 
 
 @app.command()
@@ -218,10 +227,25 @@ def schema() -> None:
         typer.echo(json.dumps(json_schema(), indent=2, ensure_ascii=False))
 
 
+def _console(stream: TextIO, **options: Any) -> "Console":
+    """A console that prints no more when the program that reads it has ended, and ends nothing."""
+    from rich.console import Console
+
+    class Unread(Console):
+        def on_broken_pipe(self) -> None:
+            self.quiet = True
+            _without_reader()
+
+    return Unread(file=stream, **options)
+
+
 def _ended(folder: "RunFolder", outcome: "Outcome") -> None:
     """Say what a run found, and where its report is."""
-    typer.echo(outcome.summary)
-    typer.echo(f"report: {folder.report}")
+    try:
+        typer.echo(outcome.summary)
+        typer.echo(f"report: {folder.report}")
+    except BrokenPipeError:
+        _without_reader()
     if not outcome.success:
         raise typer.Exit(SOLVER_COULD_NOT)
 
@@ -252,8 +276,28 @@ def _exit_codes() -> Iterator[None]:
         _complain(str(error), code)
     except KeyboardInterrupt as stop:
         _complain(f"stopped; go on by: dalembert resume {stop.args[0]}" if stop.args else "stopped", STOPPED)
+    except BrokenPipeError:
+        _without_reader()
+        raise typer.Exit(DONE) from None
     except OSError as error:
         _complain(f"{error.strerror or error}: {error.filename or 'a file of the run'}", SOLVER_COULD_NOT)
+
+
+def _without_reader() -> None:
+    """Write what follows to nowhere: the program that reads the output, such as head, has ended."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    for stream in (sys.stdout, sys.stderr):
+        try:
+            stream.flush()
+        except BrokenPipeError:
+            os.dup2(nowhere, stream.fileno())
+
+
+def _leave(code: int) -> NoReturn:
+    """End the process although a thread of it still simulates, which would be waited for."""
+    with suppress(BrokenPipeError):
+        sys.stdout.flush()
+    os._exit(code)
 
 
 def _complain(message: str, code: int) -> None:

@@ -7,6 +7,7 @@ import pytest
 
 from dalembert.errors import DalembertError
 from dalembert.study import load, plan, run_study
+from dalembert.study.runner import looked
 
 IDENTIFY = """
 [parameters.k]
@@ -140,19 +141,38 @@ def test_it_is_told_with_its_place(case: str, tmp_path: Path, monkeypatch: pytes
     Path("study.toml").write_text(study)
     times = np.linspace(0.0, 1.0, 5)
     Path("motion.csv").write_text("t,x\n" + "".join(f"{t},{t}\n" for t in times))
-    for step in (plan, run_study):
-        with pytest.raises(DalembertError) as error:
-            step(load("study.toml"))
-        assert sentence in str(error.value)
-    assert sentence in (Path("runs/study/state.json").read_text()).replace('\\"', '"')
+    with pytest.raises(DalembertError) as error:
+        run_study(load("study.toml"))
+    assert sentence in str(error.value)
+    if case.startswith("call "):  # it is called when the run simulates
+        assert sentence in (Path("runs/study/state.json").read_text()).replace('\\"', '"')
+        assert sentence in " ".join(looked(load("study.toml")))
+        return
+    assert not Path("runs").exists()
+    with pytest.raises(DalembertError) as error:
+        plan(load("study.toml"))
+    assert sentence in str(error.value)
+
+
+FAILING = """
+import pathlib
+import dalembert as da
+def model(k):
+    system = da.System()
+    bar = system.add(da.RigidBar("bar", mass=1.0, length=k))
+    system.add(da.RevoluteJoint("pin", system.ground, bar.start))
+    return helper(system) if pathlib.Path("runs").exists() else system
+def helper(system):
+    return 1 / 0
+"""
 
 
 def test_the_traceback_lies_in_the_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    Path("model.py").write_text("def model(k):\n    return helper(k)\ndef helper(k):\n    return k / 0\n")
+    Path("model.py").write_text(FAILING)
     Path("study.toml").write_text(SIMULATE)
     with pytest.raises(DalembertError):
         run_study(load("study.toml"))
     told = Path("runs/study/error.txt").read_text()
-    assert 'model.py", line 2, in model' in told
-    assert 'model.py", line 4, in helper' in told
+    assert 'model.py", line 8, in model' in told
+    assert 'model.py", line 10, in helper' in told

@@ -3,6 +3,7 @@
 import json
 import sqlite3
 from collections.abc import Callable, Sequence
+from contextlib import closing
 from pathlib import Path
 from threading import Lock
 from time import monotonic, perf_counter
@@ -132,3 +133,14 @@ class Checkpoint:
 
     def _lost(self, error: sqlite3.Error) -> StorageError:
         return unwritable(self.path, error)
+
+
+def holds_results(path: Path) -> bool:
+    """Return True if a checkpoint holds results, or if that cannot be known."""
+    if not path.is_file():
+        return False
+    try:
+        with closing(sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro", uri=True)) as file:
+            return file.execute("SELECT 1 FROM results LIMIT 1").fetchone() is not None
+    except sqlite3.Error:
+        return True

@@ -1,5 +1,7 @@
 """Motion of a system in time."""
 
+import os
+
 import numpy as np
 
 from dalembert.errors import InputError, SolveError, unknown
@@ -57,21 +59,51 @@ def simulate(
     >>> trajectory.channels(["bob.centre.x"])[-1].round(3)
     array([0.986])
     """
-    if not (np.isfinite(end) and end > 0):
-        raise InputError(f"simulate: end is {end}; expected a positive number of seconds")
-    solver = integrator(solver, end)
     with in_complex_numbers(strict=False):
-        lowered, solver = prepared(system, end, solver)
-        steps = solver.step_ends(end, lowered.jumps)
-        if steps is None:
-            steps = np.linspace(0.0, end, _ADAPTIVE_OUTPUTS)
-        times = steps if times is None else checked(times, end)
-        worked = _works(lowered) and len(steps) * len(lowered.x) < _ROOM
-        grid = np.union1d(times, steps if worked else 0.0)
+        lowered, solver, times, grid = posed(system, end, solver, times)
         (result,) = solver.integrate([lowered], (), make_problem(lowered, grid), end)
     if result.reason:
         raise SolveError(result.reason)
     return Trajectory(system, lowered, solver, result, np.searchsorted(grid, times))
+
+
+def posed(
+    system: System, end: float, solver: Integrator | str | None, times: np.ndarray | None
+) -> tuple[Lowered, Integrator, np.ndarray, np.ndarray]:
+    """Return what :func:`simulate` integrates, after all its checks.
+
+    The assembled mechanism, its integrator, the output times (samples,), and the times at which states are kept.
+    """
+    if not (np.isfinite(end) and end > 0):
+        raise InputError(f"simulate: end is {end}; expected a positive number of seconds")
+    lowered, chosen = prepared(system, end, integrator(solver, end))
+    count = _ADAPTIVE_OUTPUTS if chosen.fixed_step is None else end / chosen.fixed_step
+    worked = _works(lowered) and count * len(lowered.x) < _ROOM
+    if times is None:
+        _check_memory(chosen, end, 3 * len(lowered.x) * count)
+    steps = chosen.step_ends(end, lowered.jumps) if times is None or worked else np.zeros(1)
+    if steps is None:
+        steps = np.linspace(0.0, end, _ADAPTIVE_OUTPUTS)
+    times = steps if times is None else checked(times, end)
+    return lowered, chosen, times, np.union1d(times, steps if worked else 0.0)
+
+
+def _check_memory(solver: Integrator, end: float, numbers: float) -> None:
+    """Refuse numbers of all steps that the machine's memory cannot hold."""
+    needed, there = 8e-9 * numbers, 1e-9 * memory()
+    if needed > there:
+        raise InputError(
+            f"simulate: the states of all steps, {solver} until {end:g} s, need {needed:.3g} GB of memory; there are "
+            f"{there:.3g} GB. Use larger steps, a shorter motion, or output times"
+        )
+
+
+def memory() -> float:
+    """Return the size of the machine's memory in bytes; infinity where the system does not say it."""
+    try:
+        return float(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"))
+    except (AttributeError, ValueError, OSError):
+        return np.inf
 
 
 def prepared(system: System, end: float, solver: Integrator) -> tuple[Lowered, Integrator]:

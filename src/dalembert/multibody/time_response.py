@@ -205,6 +205,13 @@ class TimeResponse:
         vars(own)["_compared"] = self._compared
         return own
 
+    def part(self, share: float) -> "tuple[TimeResponse, float]":
+        """The same model until a share of its time, and that share; a simulation takes about this part of the time."""
+        end = share * self.times[-1]
+        times = np.concatenate([[0.0], self.times[(self.times > 0) & (self.times < end)], [end]])
+        own = TimeResponse(self.builder, self.parameters, self.channel_names, times, self.solver, self.workers)
+        return own, share
+
     def system(self, vector: np.ndarray) -> System:
         """The mechanism at a parameter vector (parameters,)."""
         return self.builder(**self.parameters.mapping(vector))

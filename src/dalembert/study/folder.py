@@ -12,6 +12,7 @@ from typing import Any
 
 from dalembert.errors import InputError, unwritable
 from dalembert.files import replacing, write_text
+from dalembert.forward.checkpoint import holds_results
 from dalembert.study.loader import load
 from dalembert.study.study import Study
 
@@ -76,6 +77,11 @@ class RunFolder:
         given = {"lock", "study.toml", "settings.json", "inputs", "inputs.json", "events.jsonl"}
         names = {entry.name for entry in self.path.iterdir() if not entry.name.startswith(".")}
         return "lock" in names <= given
+
+    @property
+    def is_refused(self) -> bool:
+        """Return True for a run with wrong input that computed nothing, so that it can be replaced without loss."""
+        return self.is_run and self.state()["state"] == INPUT and not holds_results(self.checkpoint)
 
     @property
     def _state(self) -> Path:
@@ -198,7 +204,8 @@ def new_folder(name: str, out: Path | None = None, *, force: bool = False) -> Ru
     """Folder for a new run, made empty.
 
     Without ``out`` it is ``runs/<name>``, or ``runs/<name>-2`` and so on while those are taken. With ``out`` or
-    ``force`` it is the one named, and what a run left there is removed only if ``force`` says so.
+    ``force`` it is the one named, and what a run left there is removed only if ``force`` says so. A run that was
+    refused before it computed anything takes no folder.
 
     Raises
     ------
@@ -208,7 +215,7 @@ def new_folder(name: str, out: Path | None = None, *, force: bool = False) -> Ru
     path = out or Path("runs") / name
     if out is None and not force:
         number = 2
-        while path.exists():
+        while path.exists() and not RunFolder(path).is_refused:
             path = Path("runs") / f"{name}-{number}"
             number += 1
     folder = RunFolder(path)
@@ -227,7 +234,7 @@ def _empty(folder: RunFolder, force: bool) -> None:
         raise InputError(f"{folder.path} is a file; expected a folder for the run")
     if not any(folder.path.iterdir()):
         return
-    if folder.is_remnant:
+    if folder.is_remnant or folder.is_refused:
         folder.clear()
         return
     if not folder.is_run:

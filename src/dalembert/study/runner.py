@@ -2,23 +2,25 @@
 
 import os
 import traceback
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import nullcontext, suppress
 from dataclasses import replace
+from math import inf
 from pathlib import Path
-from time import perf_counter
+from time import monotonic, perf_counter
 
 from dalembert import __version__
 from dalembert.errors import DalembertError, InputError, SolveError, StorageError, not_begun, users_place
 from dalembert.files import write_text
 from dalembert.forward import Checkpoint, Executor, connected
 from dalembert.kernels.preparation import observed
-from dalembert.study.duration import duration
+from dalembert.study.duration import StartFailed, duration, spoken, timed, too_long
 from dalembert.study.events import Event, EventLog
 from dalembert.study.folder import DAMAGED, FAILED, FINISHED, INPUT, INTERRUPTED, RUNNING, RunFolder, new_folder
 from dalembert.study.functions import users_code
 from dalembert.study.study import Study
 from dalembert.study.tasks import TASKS, Outcome
+from dalembert.study.validation import plan
 
 Listener = Callable[[Event], None]
 
@@ -56,15 +58,18 @@ def run_study(
     Raises
     ------
     DalembertError
-        What stopped the run; the folder's state says the same.
+        What is wrong with the study, before there is a folder; or what stopped the run, as the folder's state says.
     """
-    folder = new_folder(study.name, out, force=force)
-    try:
-        with folder.locked():
-            folder.keep(study)
-            return folder, _executed(replace(study, executor=executor), folder, "run-started", listener)
-    except StorageError as error:
-        raise error if folder.is_run else not_begun(error) from None
+    with observed(_compiling(listener)) if listener else nullcontext():
+        plan(study)
+    with connected(executor) as client:
+        folder = new_folder(study.name, out, force=force)
+        try:
+            with folder.locked():
+                folder.keep(study)
+                return folder, _executed(replace(study, executor=client), folder, "run-started", listener)
+        except StorageError as error:
+            raise error if folder.is_run else not_begun(error) from None
 
 
 def resume_run(folder: RunFolder, *, listener: Listener | None = None, executor: Executor = None) -> Outcome:
@@ -143,22 +148,62 @@ def _executed(study: Study, folder: RunFolder, beginning: str, listener: Listene
     return outcome
 
 
-def plan(study: Study) -> str:
-    """What a study would run, in a sentence; the model is built once, so that it is known to be well posed."""
-    with users_code():
-        return TASKS[study.task].plan(study)
+def _compiling(listener: Listener) -> Callable[[int, int, str], None]:
+    """Progress of compilation as events, for a run that has no log yet."""
+    return lambda done, total, _: listener({"event": "run-compiling", "done": done, "total": total})
 
 
 def takes(study: Study) -> str:
-    """About how long a study would take, from one timed evaluation, in a sentence."""
+    """About how long a study would take, from a timed part of a simulation, in a sentence."""
     with users_code():
-        return duration(TASKS[study.task].effort(study))
+        effort = TASKS[study.task].effort(study)
+        return duration(effort, timed(effort))
 
 
 def foreseen(study: Study) -> tuple[str, ...]:
     """Sentences on what a study would tell, from a look at its first guesses."""
     with users_code():
         return TASKS[study.task].foreseen(study)
+
+
+def looked(study: Study, limit: float = inf) -> Iterator[str]:
+    """Yield sentences on how long a study takes and what comes out, from few simulations.
+
+    Parameters
+    ----------
+    study : Study
+    limit : float
+        Seconds. What takes longer is left out, and a sentence says so.
+
+    Raises
+    ------
+    DalembertError
+        What the first simulations of a run would raise.
+    """
+    task, began = TASKS[study.task], monotonic()
+    with users_code():
+        effort = task.effort(study)
+        try:
+            timing = timed(effort)
+        except StartFailed as error:
+            yield f"Warning: the simulation at the first guesses fails: {error}. Check the model or change the start."
+            return
+        yield duration(effort, timing)
+        long = too_long(effort, timing)
+        if long is not None:
+            yield f"Warning: {long}"
+        trials, count = task.trials(study), task.foresight(study)
+        needed, left = (trials + count) * timing.each, limit - (monotonic() - began)
+        if needed > left:
+            yield (
+                f"The check ends before its time limit, {spoken(limit)}: what it would simulate next takes "
+                f"{spoken(needed)}. Raise --limit."
+            )
+            return
+        if trials:
+            plan(study, trials)
+        if count:
+            yield from task.foreseen(study)
 
 
 def unknowns(study: Study) -> tuple[str, ...]:

@@ -155,6 +155,11 @@ class FrequencyResponse:
             self.builder, self.parameters, self.channel_names, self.frequencies[:samples], self.method, self.workers
         )
 
+    def part(self, share: float) -> "tuple[FrequencyResponse, float]":
+        """The same model at about a share of its frequencies, the first ones, and that share."""
+        samples = int(np.ceil(share * len(self.frequencies))) or 1
+        return self.first(samples), samples / len(self.frequencies)
+
     def system(self, vector: np.ndarray) -> VibrationSystem:
         """The system at a parameter vector (parameters,)."""
         return self.builder(**self.parameters.mapping(vector))

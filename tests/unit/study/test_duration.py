@@ -2,11 +2,13 @@
 
 import re
 import time
+from dataclasses import dataclass
 
 import pytest
 
+from dalembert.errors import InputError
 from dalembert.study import load
-from dalembert.study.duration import Effort, duration
+from dalembert.study.duration import Effort, duration, timed, too_long, within
 from dalembert.study.runner import takes
 
 MODEL = """
@@ -70,8 +72,64 @@ def sentence(tmp_path):
     ],
 )
 def test_a_timed_part_is_scaled_to_the_whole(least, most, pattern):
-    effort = Effort(lambda: time.sleep(0.1), 2, least, most, "a part")
-    assert re.fullmatch(pattern.replace(r"\d+ ms", r"(?:\d+ ms|0\.\d+ s)"), duration(effort))
+    effort = Effort(lambda share: time.sleep(0.1) or 1.0, 2, least, most, "a part")
+    assert re.fullmatch(pattern.replace(r"\d+ ms", r"(?:\d+ ms|0\.\d+ s)"), duration(effort, timed(effort)))
+
+
+@dataclass
+class Clock:
+    """A simulation of some seconds with what happens at its beginning, on a clock of its own."""
+
+    seconds: float
+    begins: float = 0.5
+    now: float = 0.0
+    simulated: float = 0.0
+
+    def __call__(self):
+        return self.now
+
+    def part(self, share):
+        self.now += self.begins + share * self.seconds
+        self.simulated += self.begins + share * self.seconds
+        return share
+
+
+@pytest.mark.parametrize("seconds", [1e-3, 1.0, 1e3, 1e6, 1e12])
+def test_a_long_simulation_is_extrapolated_from_a_short_part(monkeypatch, seconds):
+    clock = Clock(seconds)
+    monkeypatch.setattr("dalembert.study.duration.perf_counter", clock)
+    effort = Effort(clock.part, 1, 10, 20, "one", shortest=min(1.0, 0.1 / seconds))
+    timing = timed(effort)
+    assert timing.each == pytest.approx(seconds + 0.5, rel=1e-6)
+    assert timing.share == 1 or timing.each > 0.8
+    assert clock.simulated < 100
+    finding = too_long(effort, timing)
+    assert (finding is not None) == (seconds > 4000)
+    if finding is not None:
+        assert (finding.code, finding.severity) == ("long-run", "warning")
+        assert finding.values["seconds"] == pytest.approx(20 * timing.each)
+    assert ("extrapolated from its first" in duration(effort, timing)) == (timing.share < 1)
+
+
+def test_sentences_come_until_the_time_is_over():
+    def sentences():
+        yield "one"
+        time.sleep(30)
+        yield "two"
+
+    heard, began = [], time.monotonic()
+    with pytest.raises(TimeoutError):
+        heard.extend(within(0.2, sentences))
+    assert heard == ["one"]
+    assert list(within(5.0, lambda: iter(["one", "two"]))) == ["one", "two"]
+    assert time.monotonic() - began < 10
+    with pytest.raises(InputError, match="wrong"):
+        list(within(5.0, failing))
+
+
+def failing():
+    yield "one"
+    raise InputError("wrong")
 
 
 @pytest.mark.parametrize(
@@ -87,7 +145,7 @@ def test_a_timed_part_is_scaled_to_the_whole(least, most, pattern):
         (HEAD + "[propagate]\n", "how many there will be shows on the way."),
         (HEAD + "[design]\ndeviations = 0.1\n", ": 2 simulations of"),
         (HEAD + '[sweep]\nat = 1.0\nchannels = ["x"]\nover = { rate = { count = 5 } }\n', ": 10 simulations of"),
-        (PENDULUM, "going by the first 0.1 s of the motion"),
+        (PENDULUM, "(the motion)."),
     ],
 )
 def test_each_task_says_how_many_simulations_it_expects(sentence, text, count):

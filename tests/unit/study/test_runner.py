@@ -9,6 +9,7 @@ import pytest
 import xarray as xr
 
 from dalembert.errors import InputError
+from dalembert.forward import Checkpoint
 from dalembert.study import RunFolder, load, report_run, run_study
 from dalembert.study.events import read_events
 from dalembert.study.folder import find_runs, new_folder
@@ -125,13 +126,36 @@ def test_a_failed_point_is_marked_and_the_rest_returns(study):
         assert np.isnan(curve["x"]).values.tolist() == [False, False, False, True]
 
 
-def test_what_is_wrong_while_running_is_in_the_state(study):
+def test_a_study_that_cannot_run_leaves_no_folder(study):
     study.write_text(SWEEP.replace("at = 0.5", "at = 0.51"))
-    with pytest.raises(InputError, match="no sample there"):
+    with pytest.raises(InputError, match=r"^\[sweep\], at: 0.51 was given.*no sample there"):
         run_study(load(study))
-    state = RunFolder(Path("runs/decay")).state()
-    assert state["state"] == "input"
-    assert state["message"].startswith("[sweep], at: 0.51 was given")
+    assert not Path("runs").exists()
+
+
+@pytest.mark.parametrize("out", [None, Path("mine")])
+def test_a_run_that_is_refused_late_does_not_block_the_next(study, out):
+    wrong = DECAY.replace("def response(rate, height):", "def response(rate, height):\n    return np.zeros((3, 3))")
+    Path("decay.py").write_text(wrong)
+    for _ in range(2):
+        with pytest.raises(InputError, match="returned an array of shape"):
+            run_study(load(study), out)
+        folder = RunFolder(out or Path("runs/decay"))
+        assert folder.state()["state"] == "input"
+        assert "returned an array of shape" in folder.state()["message"]
+    Path("decay.py").write_text(DECAY)
+    again, outcome = run_study(load(study), out)
+    assert (again.path, outcome.success) == (folder.path, True)
+
+
+def test_a_refused_run_with_results_is_kept(study):
+    folder = new_folder("decay")
+    folder.set_state("input", message="the study's Python code raised it", version="")
+    with Checkpoint(folder.checkpoint) as checkpoint:
+        checkpoint.keep(b"one", (np.zeros(2),))
+    with pytest.raises(InputError, match=r"^runs/decay holds a run \(input\)"):
+        run_study(load(study), folder.path)
+    assert run_study(load(study))[0].path == Path("runs/decay-2")
 
 
 def test_an_error_of_ours_leaves_its_traceback_in_the_folder(study, monkeypatch):

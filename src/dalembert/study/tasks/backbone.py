@@ -72,7 +72,7 @@ class BackboneTask(Task):
         return f"follows mode {table.mode} from {table.given[0]:g} to {table.given[-1]:g} m ({count}): 1 simulation"
 
     def effort(self, study: "Study") -> "Effort":
-        from dalembert.study.duration import Effort
+        from dalembert.study.duration import Effort, whole
         from dalembert.vibration import backbone
 
         table = study.table
@@ -81,8 +81,7 @@ class BackboneTask(Task):
         def once() -> None:
             backbone(study.system(), np.array(table.given[:1]), table.mode, study.balance, dof=table.dof)
 
-        once()  # what there is to compile is compiled
-        return Effort(once, 1, count, count, "the first amplitude")
+        return Effort(whole(once), 1, count, count, "the first amplitude")
 
     def run(self, study: "Study", emit: "Emit") -> Outcome:
         study.equations()

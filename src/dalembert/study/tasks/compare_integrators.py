@@ -9,9 +9,8 @@ from pydantic import Field, create_model, model_validator
 
 from dalembert.study.numbers import MOST, fixed
 from dalembert.study.solvers import solver
-from dalembert.study.table import Read, StudyTable, checked, problem
+from dalembert.study.table import Read, StudyTable, checked, placed, problem
 from dalembert.study.tasks.result import ResultOutcome
-from dalembert.study.tasks.simulate import PARTS
 from dalembert.study.tasks.task import Outcome, Task
 from dalembert.study.tasks.wrong import needs_mechanism
 
@@ -85,27 +84,32 @@ class CompareIntegrators(Task):
         return [*wrong, *needs_mechanism(file, "work_precision")]
 
     def plan(self, study: "Study") -> str:
-        study.system()
-        table = study.table
+        from dalembert.multibody import TimeResponse
+
+        table, ends = study.table, np.array([0.0, study.table.end])
+        for one in table.reference:
+            response = TimeResponse(study.builder, study.parameters, table.channels, ends, solver=one.settings())
+            with placed("[work_precision], channels"):
+                response.channels  # noqa: B018
         count = sum(len(series.integrators()) for series in table.series)
         told = f"compares {len(table.series)} integrators in {count} settings over {table.end:g} s"
         return f"{told}: {_simulations(table)} simulations"
 
     def effort(self, study: "Study") -> "Effort":
         from dalembert.multibody import simulate
-        from dalembert.study.duration import Effort
+        from dalembert.study.duration import Effort, shortest_of
 
-        table, part, system = study.table, study.table.end / PARTS, study.system()
+        table, end, system = study.table, study.table.end, study.system()
         solvers = [one.settings() for one in table.reference]
         solvers += [one for series in table.series for one in series.integrators()]
 
-        def once() -> None:
+        def part(share: float) -> float:
             for one in solvers:
-                simulate(system, part, one, np.array([part]))
+                simulate(system, share * end, one, np.array([share * end]))
+            return share
 
-        once()  # what there is to compile is compiled
-        count, source = _simulations(table), f"going by the first {part:.3g} s of the motion with each integrator"
-        return Effort(once, len(solvers) / PARTS, count, count, source)
+        count, shortest = _simulations(table), min(shortest_of(one, end) for one in solvers)
+        return Effort(part, len(solvers), count, count, "the motion with each integrator", shortest)
 
     def unknowns(self, study: "Study") -> tuple[str, ...]:
         return ()

@@ -58,7 +58,6 @@ class Design(Task):
 
     def plan(self, study: "Study") -> str:
         model = response(study)
-        model.evaluate(_at(study)[None]).only()
         names = [channel.name for channel in model.channels]
         return (
             f"ranks experiments that measure {', '.join(names)} by what they would tell of "

@@ -1,21 +1,22 @@
 """Frequency response: periodic responses of a structure over frequency, or a family of them over one parameter."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field, create_model, model_validator
 
-from dalembert.errors import InputError, unknown
+from dalembert.errors import DalembertError, InputError, unknown
 from dalembert.study.numbers import fixed, samples
 from dalembert.study.table import Read, StudyTable, placed, problem
 from dalembert.study.tasks import beside_curve
 from dalembert.study.tasks.backbone import BackboneTable
 from dalembert.study.tasks.beside_curve import beside, beside_family, compare_in_time_table
 from dalembert.study.tasks.sweep import Along, values_along
-from dalembert.study.tasks.task import Outcome, Task
+from dalembert.study.tasks.task import Outcome, Task, silent
 from dalembert.study.tasks.wrong import needs_structure, unnamed
 
 if TYPE_CHECKING:
@@ -196,7 +197,7 @@ class FrequencyResponseTask(Task):
         return f"{way} for {len(values)} values of {table.sweep.parameter}: {len(values)} simulations"
 
     def effort(self, study: "Study") -> "Effort":
-        from dalembert.study.duration import Effort
+        from dalembert.study.duration import Effort, whole
         from dalembert.vibration import frequency_response
 
         table, system = study.table, study.system()
@@ -205,21 +206,25 @@ class FrequencyResponseTask(Task):
         def once() -> None:
             frequency_response(system, ends, study.balance, observe=_observed(study))
 
-        once()  # what there is to compile is compiled
         curves = 1 if table.sweep is None else len(_values(study))
         count = None if table.between is not None else curves * len(table.frequencies)
-        return Effort(once, 2, count, count, "a point, going by both ends of the curve")
+        return Effort(whole(once), 2, count, count, "a point, going by both ends of the curve")
+
+    def parts(self, study: "Study") -> Iterable[Callable[[], object]]:
+        """The curve, or those of a family; and the nonlinear mode beside it."""
+        table = study.table
+        parts: list[Callable[[], object]] = [partial(self.run, study, silent)]
+        if table.sweep is not None:
+            parts.append(partial(_any_curve, study))
+        if table.backbone is not None:
+            parts.append(lambda: table.backbone.follow(study, study.system()))
+        return parts
 
     def run(self, study: "Study", emit: "Emit") -> Outcome:
         from dalembert.vibration import frequency_response, frequency_responses
 
         table = study.table
-        options: Any = {
-            "continuation": table.continuation,
-            "observe": _observed(study),
-            "stability": table.stability,
-            "checkpoint": study.checkpoint,
-        }
+        options = _options(study)
         if table.sweep is None:
             emit("following", begin=float(table.along[0]), end=float(table.along[-1]))
             study.equations()
@@ -257,6 +262,32 @@ class FrequencyResponseTask(Task):
 
         kind = FrequencyCurve if study.table.sweep is None else CurveFamily
         return Response(study, kind.load(path), beside_curve.load(path))
+
+
+def _options(study: "Study") -> dict[str, Any]:
+    """Settings of a curve, or of each curve of a family."""
+    table = study.table
+    return {
+        "continuation": table.continuation,
+        "observe": _observed(study),
+        "stability": table.stability,
+        "checkpoint": study.checkpoint,
+    }
+
+
+def _any_curve(study: "Study") -> None:
+    """Follow the first curve of a family that can be; a family fails only if all its curves do."""
+    from dalembert.vibration import frequency_response
+
+    build, errors = study.along(study.table.sweep.parameter), []
+    for value in _values(study).tolist():
+        try:
+            system = build(**{study.table.sweep.parameter: value})
+            frequency_response(system, study.table.along, study.balance, **_options(study))
+            return
+        except DalembertError as error:
+            errors.append(error)
+    raise errors[0]
 
 
 def _points_told(study: "Study", emit: "Emit") -> Callable[["FollowedPoint"], None]:

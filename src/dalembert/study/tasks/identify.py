@@ -225,7 +225,6 @@ class Identify(Task):
         table = study.table
         model, data = posed(study)
         whole = joint(model)[0] if isinstance(model, list) else model
-        whole.evaluate(whole.parameters.start[None]).only()
         cost = _cost(settings(table.method), table.starts, len(whole.parameters), table.shooting)
         return f"identifies {', '.join(whole.parameters.names)} from {_measured(model, data)} by {cost}"
 
@@ -238,6 +237,13 @@ class Identify(Task):
         method = settings(study.table.method)
         least, most = _expected(method, study.table.starts, len(whole.parameters), study.table.shooting)
         return evaluated(whole, whole.parameters.start, least, most, TOGETHER if isinstance(method, Swarm) else 1)
+
+    def foresight(self, study: "Study") -> int:
+        return 1 + len(unknown_names(study))
+
+    def trials(self, study: "Study") -> int:
+        """Two where segments must meet: whether a motion can begin anew in its midst."""
+        return 0 if study.table.shooting is None else 2
 
     def foreseen(self, study: "Study") -> tuple[str, ...]:
         return telling.foreseen(*posed(study))

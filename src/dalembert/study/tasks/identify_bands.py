@@ -62,7 +62,6 @@ class IdentifyBands(Task):
 
     def plan(self, study: "Study") -> str:
         bands, table, names = study.bands(), study.table, study.parameters.names
-        study.forward(bands.channels, bands.coordinate.values).evaluate(study.parameters.start[None]).only()
         wide = names if table.intervals is None else table.intervals
         fixed = [name for name in names if name not in wide]
         numbers = f" and the numbers {', '.join(fixed)}" if fixed else ""

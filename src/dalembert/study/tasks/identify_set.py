@@ -65,7 +65,6 @@ class IdentifySet(Task):
 
     def plan(self, study: "Study") -> str:
         data = study.data()
-        study.forward(data.channels, data.coordinate.values).evaluate(study.parameters.start[None]).only()
         return (
             f"paves the set of {', '.join(study.parameters.names)} that explain {len(data.coordinate.values)} samples "
             f"of {', '.join(data.channels)} within their errors, on a surrogate of as many simulations as it needs"

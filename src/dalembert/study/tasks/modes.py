@@ -1,5 +1,6 @@
 """Modes: free undamped vibrations of a structure, contacts and springs without memory left out."""
 
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -45,15 +46,18 @@ class Modes(Task):
         return f"finds the lowest {_count(study, structure)} of {structure.size} modes: 1 simulation"
 
     def effort(self, study: "Study") -> "Effort":
-        from dalembert.study.duration import Effort
+        from dalembert.study.duration import Effort, whole
 
-        return Effort(lambda: _shapes(study), 1, 1, 1, "these modes, found once")
+        return Effort(whole(lambda: _shapes(study)), 1, 1, 1, "these modes, found once")
 
     def unknowns(self, study: "Study") -> tuple[str, ...]:
         return ()
 
+    def parts(self, study: "Study") -> Iterable[Callable[[], object]]:
+        """None: the plan checks all."""
+        return ()
+
     def run(self, study: "Study", emit: "Emit") -> Outcome:
-        self.plan(study)
         return _outcome(study, _shapes(study))
 
     def load(self, study: "Study", path: Path) -> Outcome:

@@ -73,7 +73,6 @@ class Propagate(Task):
         from dalembert.uncertainty.runs import Runs
 
         model, box = response(study), _box(study)
-        model.evaluate(box.middle[None]).only()
         costs = []
         for method in _methods(study):
             most = method.most(Runs(model, box, label(method)))

@@ -1,5 +1,6 @@
 """Simulate: the motion of a mechanism at the first guesses of its parameters."""
 
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -16,10 +17,6 @@ if TYPE_CHECKING:
     from dalembert.study.duration import Effort
     from dalembert.study.events import Emit
     from dalembert.study.study import Study
-
-
-PARTS = 20
-"""A motion is timed over one of so many parts."""
 
 
 class SimulateTable(StudyTable):
@@ -116,14 +113,27 @@ class Simulate(Task):
         return f"simulates the motion to {study.table.last:g} s: 1 simulation"
 
     def effort(self, study: "Study") -> "Effort":
-        from dalembert.study.duration import Effort
+        from dalembert.study.duration import Effort, shortest_of
 
-        part = study.table.last / PARTS
-        study.motion(part)  # what there is to compile is compiled
-        return Effort(lambda: study.motion(part), 1 / PARTS, 1, 1, f"going by the first {part:.3g} s of the motion")
+        end, times = study.table.last, study.table.times
+
+        def part(share: float) -> float:
+            last = share * end
+            study.motion(last, times=None if times is None else np.unique([*(t for t in times if t < last), last]))
+            return share
+
+        return Effort(part, 1, 1, 1, "the motion", shortest_of(study.solver, end))
+
+    def parts(self, study: "Study") -> Iterable[Callable[[], object]]:
+        """The checks of the simulation, which has no checkpoint to end it."""
+        from dalembert.multibody.simulation import posed
+
+        times = study.table.times
+        return (
+            lambda: posed(study.system(), study.table.last, study.solver, None if times is None else np.array(times)),
+        )
 
     def run(self, study: "Study", emit: "Emit") -> Outcome:
-        self.plan(study)  # names that there are not are told before the motion is computed
         emit("simulating", end=study.table.last)
         times = study.table.times
         return Motion(study, study.motion(study.table.last, times=None if times is None else np.array(times)))

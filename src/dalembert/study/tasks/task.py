@@ -1,6 +1,8 @@
 """What a task of a study file is, and what it hands back."""
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
@@ -10,6 +12,10 @@ if TYPE_CHECKING:
     from dalembert.study.duration import Effort
     from dalembert.study.events import Emit
     from dalembert.study.study import Study
+
+
+def silent(kind: str, **details: Any) -> None:
+    """Take an event and do nothing: for parts of a run that nobody follows."""
 
 
 class Outcome(Protocol):
@@ -57,7 +63,11 @@ class Task(ABC):
 
     @abstractmethod
     def plan(self, study: "Study") -> str:
-        """What would run, and about how many simulations, in a sentence; raises what running would raise at once."""
+        """What would run, and about how many simulations, in a sentence; nothing is simulated for it."""
+
+    def parts(self, study: "Study") -> Iterable[Callable[[], object]]:
+        """Parts of the run, each of which checks its settings before its first simulation."""
+        return (partial(self.run, study, silent),)
 
     @abstractmethod
     def effort(self, study: "Study") -> "Effort":
@@ -67,9 +77,17 @@ class Task(ABC):
         """Names of the values that the events of a run tell."""
         return study.parameters.names
 
+    def foresight(self, study: "Study") -> int:
+        """About how many simulations :meth:`foreseen` takes the time of; none if it has nothing to say."""
+        return 0
+
     def foreseen(self, study: "Study") -> tuple[str, ...]:
         """Sentences on what would come out, from a look that costs little."""
         return ()
+
+    def trials(self, study: "Study") -> int:
+        """Number of simulations that the run checks the study by, before those that it computes its result from."""
+        return 0
 
     @abstractmethod
     def run(self, study: "Study", emit: "Emit") -> Outcome:

@@ -60,11 +60,11 @@ class TrackResonance(Task):
         )
 
     def effort(self, study: "Study") -> "Effort":
-        from dalembert.study.duration import Effort
+        from dalembert.study.duration import Effort, whole
 
         count = len(_values(study))
-        _track(study, _values(study)[:1])  # what there is to compile is compiled
-        return Effort(lambda: _track(study, _values(study)[:1]), 1, count, count, "the peak at the first value")
+        part = whole(lambda: _track(study, _values(study)[:1]))
+        return Effort(part, 1, count, count, "the peak at the first value")
 
     def run(self, study: "Study", emit: "Emit") -> Outcome:
         return _outcome(study, _track(study, _values(study)))

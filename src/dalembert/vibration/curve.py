@@ -183,7 +183,7 @@ class FrequencyCurve(Result):
         kept = np.append(True, np.diff(lengths) > 0)
         spline, place = CubicSpline(lengths[kept], near[kept]), lengths[top - rows.start]
         inner = lengths[top - rows.start - 1], lengths[top - rows.start + 1]
-        found = minimize_scalar(lambda s: -size.of(spline(s)[1:]), bounds=inner, method="bounded")
+        found: Any = minimize_scalar(lambda s: -size.of(spline(s)[1:]), bounds=inner, method="bounded")
         best = spline(found.x if -found.fun > amplitude[top] else place)
         return Peak(float(best[0]), float(size.of(best[1:])))
 

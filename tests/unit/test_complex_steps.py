@@ -46,6 +46,8 @@ SMOOTH_OR_KINKED: dict[str, Callable] = {
     "one choice": lambda x: np.where(np.real(x) > 1.25, 2.0, 1.0) + 0 * x,
     "high power": lambda x: x**-12,
     "pulse": lambda x: np.exp(-1e6 * (x - 1.2) ** 2),
+    "cancelled": lambda x: (3 * x - x) - 2 * x + (np.sin(x) ** 2 + np.cos(x) ** 2 - 1),
+    "nearly cancelled": lambda x: 1e-9 * x + (np.exp(x) * np.exp(-x) - 1),
     "zigzag": lambda x: np.where(np.real(x) * 50 % 2 < 1, 1.0, -1.0) * (50 * x - np.round(50 * np.real(x))),
 }
 
@@ -62,11 +64,11 @@ def test_a_lost_step_is_found(name: str) -> None:
     assert lost.by_step != pytest.approx(lost.by_differences)
 
 
-@pytest.mark.parametrize("name", CARRYING)
+@pytest.mark.parametrize("name", [*CARRYING, "cancelled", "nearly cancelled"])
 @pytest.mark.parametrize("scale", [0.1, 1.0, 10.0])
 @pytest.mark.filterwarnings("ignore:invalid value encountered in sqrt:RuntimeWarning")
 def test_a_function_that_carries_the_step_is_accepted(name: str, scale: float) -> None:
-    assert lost_step(numbers(CARRYING[name]), scale) is None
+    assert lost_step(numbers({**CARRYING, **SMOOTH_OR_KINKED}[name]), scale) is None
 
 
 def test_a_python_model_names_parameter_channel_and_sample() -> None:

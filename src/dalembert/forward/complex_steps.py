@@ -25,6 +25,8 @@ _WIDTH = 1e-2  # of the intervals that rounding is sought in, in scales
 _INTERVALS = 6  # side by side
 _MOST, _ALL_FLAT = 4, 2  # intervals with jumps, of any number, and of one that is constant between
 _DIFFERS = 1e-2  # relative, of an increment and the integral of the derivative
+_TINY = 1e-9  # shifts at which rounding is measured, in scales
+_NOISY = 16.0  # times the rounding that a difference must be
 _ENTRIES = 2  # that are halved at most
 _HALVINGS = 40  # until a steep function changes by less than _JUMP of the difference
 _JUMP = 1e-6
@@ -61,6 +63,8 @@ def lost_step(numbers: Callable[[complex], np.ndarray], scale: float) -> Lost | 
     slope, error = _differences(numbers, here, DIFFERENCE * scale)
     excess = np.abs(by_step - slope) - error - _AGREES * np.maximum(np.abs(by_step), np.abs(slope))
     excess[~np.isfinite(excess)] = 0.0
+    if np.any(excess > 0):
+        excess[excess * DIFFERENCE * scale < _NOISY * _noise(numbers, 0.0, scale)] = 0.0
     if np.max(excess, initial=0.0) <= 0:
         return None
     worst = int(np.argmax(excess / (np.abs(by_step) + np.abs(slope) + np.finfo(float).tiny)))
@@ -134,6 +138,10 @@ class _Intervals(NamedTuple):
     def steps(self, numbers: Callable[[complex], np.ndarray], least: int) -> Lost | None:
         """A number that jumps in at least so many intervals; in fewer than most, only one that is constant between."""
         count = np.where(self.flat | (least == _MOST), np.sum(self.differ, axis=0), 0)
+        if np.any(count >= least):
+            noise = _NOISY * _noise(numbers, self.ends[0], self.ends[-1] - self.ends[0])
+            clear = np.abs(self.increments - self.integrals) > noise
+            count = np.where(count > 0, np.sum(self.differ & clear, axis=0), 0)
         for entry in np.argsort(-count, kind="stable")[:_ENTRIES]:
             places = np.flatnonzero(self.differ[:, entry])[:least]
             if count[entry] >= least and all(self._jumps(numbers, entry, place) for place in places):
@@ -161,6 +169,16 @@ def _lifted(numbers: Callable[[complex], np.ndarray], shift: float, scale: float
     """Numbers, and their derivatives by the complex step."""
     lifted: Any = np.asarray(numbers(shift + 1j * STEP * scale), dtype=complex)
     return lifted.real, lifted.imag / (STEP * scale)
+
+
+def _noise(numbers: Callable[[complex], np.ndarray], shift: float, scale: float) -> np.ndarray:
+    """How much numbers vary by rounding alone, (numbers,): at shifts by which they hardly change else.
+
+    A number that nearly cancels varies by more than its size suggests.
+    """
+    here, slope = _lifted(numbers, shift, scale)
+    moves = scale * _TINY * np.sqrt(np.arange(1.0, 9.0))
+    return np.max([np.abs(np.real(numbers(shift + move)) - here - slope * move) for move in moves], axis=0)
 
 
 def _differences(

@@ -1,6 +1,8 @@
 """Reduction of a structure to some of its degrees of freedom and the modes between them."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -14,6 +16,36 @@ from dalembert.structure.structure import Matrix, Structure, block
 
 NEIGHBOURS = 0.01
 """Modes whose frequencies differ by less, relative, share their shapes when a reduction is judged."""
+
+
+class HeldBases:
+    """Bases of the reductions in a function that builds a system, kept from its first call for all later ones.
+
+    So differences of the reduced matrices leave out how the basis changes, as the complex step does.
+    """
+
+    def __init__(self) -> None:
+        self._bases: list[np.ndarray] = []
+        self._next = 0
+
+    @contextmanager
+    def call(self) -> Iterator[None]:
+        """One call of the function: its reductions get the bases in their order."""
+        self._next, before = 0, _held.set(self)
+        try:
+            yield
+        finally:
+            _held.reset(before)
+
+    def basis(self, make: Callable[[], np.ndarray]) -> np.ndarray:
+        """The basis of the next reduction."""
+        if self._next == len(self._bases):
+            self._bases.append(make())
+        self._next += 1
+        return self._bases[self._next - 1]
+
+
+_held: ContextVar[HeldBases | None] = ContextVar("held", default=None)
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,23 +176,11 @@ def craig_bampton(structure: Structure, masters: str | Sequence[str], modes: int
         raise InputError(f"craig_bampton: modes is {modes}; expected 0 or more")
     held = np.array(structure.rows(masters), dtype=int)
     inner = np.setdiff1d(np.arange(structure.size), held)
-    mass, stiffness = real_part(structure.mass), real_part(structure.stiffness)
     count = min(modes, len(inner))
-    basis = np.zeros((structure.size, len(held) + count))
-    basis[held, np.arange(len(held))] = 1.0
-    if len(inner):
-        own = block(stiffness, inner)
-        solve = factorise(own, "craig_bampton: the stiffness with the masters held", "; clamp it or add masters")
-        basis[inner, : len(held)] = -solve(_dense(block(stiffness, inner, held)))
-        own_mass = block(mass, inner)
-        if len(inner) <= max(DENSE, 2 * count):
-            shapes = all_modes(own_mass, own)[1][:, :count]
-        elif count:
-            squares, shapes = lanczos(csc_array(own_mass), csc_array(own), count, solve)
-            shapes = shapes[:, np.argsort(squares)]
-        else:
-            shapes = np.zeros((len(inner), 0))
-        basis[inner, len(held) :] = shapes
+    bases = _held.get()
+    basis = (
+        bases.basis(lambda: _basis(structure, held, inner, count)) if bases else _basis(structure, held, inner, count)
+    )
 
     def reduced(matrix: Matrix) -> np.ndarray:
         small = basis.T @ (matrix @ basis)
@@ -176,6 +196,27 @@ def craig_bampton(structure: Structure, masters: str | Sequence[str], modes: int
         basis=basis,
         full_dofs=structure.dofs,
     )
+
+
+def _basis(structure: Structure, held: np.ndarray, inner: np.ndarray, count: int) -> np.ndarray:
+    """Static shapes of the masters and the lowest modes with these held, (n, masters + modes)."""
+    mass, stiffness = real_part(structure.mass), real_part(structure.stiffness)
+    basis = np.zeros((structure.size, len(held) + count))
+    basis[held, np.arange(len(held))] = 1.0
+    if len(inner):
+        own = block(stiffness, inner)
+        solve = factorise(own, "craig_bampton: the stiffness with the masters held", "; clamp it or add masters")
+        basis[inner, : len(held)] = -solve(_dense(block(stiffness, inner, held)))
+        own_mass = block(mass, inner)
+        if len(inner) <= max(DENSE, 2 * count):
+            shapes = all_modes(own_mass, own)[1][:, :count]
+        elif count:
+            squares, shapes = lanczos(csc_array(own_mass), csc_array(own), count, solve)
+            shapes = shapes[:, np.argsort(squares)]
+        else:
+            shapes = np.zeros((len(inner), 0))
+        basis[inner, len(held) :] = shapes
+    return basis
 
 
 def _dense(matrix: Matrix) -> np.ndarray:

@@ -6,12 +6,15 @@ from functools import cached_property
 
 import numpy as np
 
-from dalembert.errors import InputError, SolveError, told
+from dalembert.errors import InputError, SolveError, told, unknown
 from dalembert.forward import Channel, Coordinate, Responses, ensemble
 from dalembert.forward.builders import cores, inexact, restructured
+from dalembert.forward.complex_steps import Compared
+from dalembert.forward.differences import COMPLEX_STEP, DERIVATIVES, central_differences
 from dalembert.parameters import Parameter, Parameters
 from dalembert.units import unit_of
 from dalembert.vibration.amplitudes import Amplitude
+from dalembert.vibration.complex_steps import check_laws, check_numbers
 from dalembert.vibration.continuation import at_frequencies
 from dalembert.vibration.curve import FrequencyCurve
 from dalembert.vibration.equations import Equations, equations
@@ -21,6 +24,7 @@ from dalembert.vibration.harmonic_balance import HarmonicBalance
 from dalembert.vibration.lowering import Lowered, lower
 from dalembert.vibration.newton import Solution
 from dalembert.vibration.sensitivity import STEP, sensitivities
+from dalembert.vibration.springs import UserElement
 from dalembert.vibration.system import VibrationSystem
 from dalembert.vibration.threads import one_thread
 
@@ -41,6 +45,10 @@ class FrequencyResponse:
     method : HarmonicBalance, optional
     workers : int, optional
         Threads of an ensemble; as many as there are cores if not given.
+    derivative : {"complex-step", "central-differences"}
+        The complex step is exact, and needs a builder that runs in complex numbers. When it is first used, and when an
+        identification starts, it is compared with differences of the system's numbers, and of what functions of the
+        user's return.
 
     Examples
     --------
@@ -64,6 +72,7 @@ class FrequencyResponse:
     frequencies: np.ndarray
     method: HarmonicBalance
     workers: int = field(default=1, compare=False)
+    derivative: str = COMPLEX_STEP
 
     def __init__(
         self,
@@ -73,7 +82,10 @@ class FrequencyResponse:
         frequencies: np.ndarray,
         method: HarmonicBalance | None = None,
         workers: int | None = None,
+        derivative: str = COMPLEX_STEP,
     ) -> None:
+        if derivative not in DERIVATIVES:
+            raise InputError(unknown("derivative", derivative, DERIVATIVES, "FrequencyResponse"))
         frequencies = np.asarray(frequencies, dtype=float)
         if frequencies.ndim != 1 or not len(frequencies) or not np.all(np.isfinite(frequencies) & (frequencies > 0)):
             raise InputError("FrequencyResponse: expected one or more frequencies, positive numbers in Hz")
@@ -86,6 +98,7 @@ class FrequencyResponse:
             ("frequencies", frequencies),
             ("method", method or HarmonicBalance()),
             ("workers", workers or cores()),
+            ("derivative", derivative),
         ):
             object.__setattr__(self, name, value)
 
@@ -106,9 +119,9 @@ class FrequencyResponse:
 
     @cached_property
     def _fingerprint(self) -> str:
-        return fingerprint(
-            lower(self.system(self.parameters.start)), self.method, self.parameters.names, self.channel_names
-        )
+        differences = [self.derivative] * (self.derivative != COMPLEX_STEP)
+        asked = self.parameters.names, self.channel_names, *differences
+        return fingerprint(lower(self.system(self.parameters.start)), self.method, *asked)
 
     def evaluate(self, vectors: np.ndarray) -> Responses:
         """Responses of a batch over all cores; ``vectors`` (batch, parameters), values (batch, samples, channels).
@@ -142,18 +155,37 @@ class FrequencyResponse:
         Raises
         ------
         InputError
-            Where the builder, or a law of the user's, cannot run in complex numbers.
+            Where the builder, or a law of the user's, cannot run in complex numbers, or loses the imaginary part.
         SolveError
             Where a point is not found.
         """
+        vector = self.parameters.vector(vector).astype(float)
+        if self.derivative != COMPLEX_STEP:
+            return central_differences(self, vector)
         with one_thread():
-            return self._linearise(self.parameters.vector(vector).astype(float))
+            return self._linearise(vector)
+
+    def check_derivatives(self, vector: np.ndarray) -> None:
+        """Compare the complex step with differences of the system's numbers at a vector (parameters,).
+
+        Nothing is solved. Laws of the user's are compared by the next derivative, at its first solution.
+
+        Raises
+        ------
+        InputError
+            With the parameter, the component and its number, where the builder drops the imaginary part.
+        """
+        if self.derivative == COMPLEX_STEP:
+            self._compared.once(vector, lambda thorough: check_numbers(self.builder, self.parameters, vector, thorough))
 
     def first(self, samples: int) -> "FrequencyResponse":
         """The same model, cut to its first ``samples`` frequencies."""
-        return FrequencyResponse(
-            self.builder, self.parameters, self.channel_names, self.frequencies[:samples], self.method, self.workers
-        )
+        own = FrequencyResponse(
+            self.builder, self.parameters, self.channel_names, self.frequencies[:samples], self.method, self.workers,
+            self.derivative,
+        )  # fmt: skip
+        vars(own)["_compared"] = self._compared
+        return own
 
     def part(self, share: float) -> "tuple[FrequencyResponse, float]":
         """The same model at about a share of its frequencies, the first ones, and that share."""
@@ -175,12 +207,32 @@ class FrequencyResponse:
         jacobian = np.empty((*values.shape, len(vector)))
         tilted = [self._tilted(vector, column, problem.lowered) for column in range(len(vector))]
         for number, solution in enumerate(self._solutions(problem)):
+            self._check(vector, problem, solution)
             response = response_of(problem, solution)
             slopes = sensitivities(problem, solution, tilted)
             for channel, (row, size) in enumerate(places):
                 values[number, channel] = size.of(response[row])
                 jacobian[number, channel] = slopes[:, row] @ size.slope(response[row])
         return values, jacobian / self.parameters.scale
+
+    @cached_property
+    def _compared(self) -> Compared:
+        return Compared()
+
+    def _check(self, vector: np.ndarray, problem: Equations, solution: Solution) -> None:
+        """Compare the complex step with differences, where that was not done."""
+        if not self._compared.vectors:
+            self.check_derivatives(vector)
+        if not self._compared.functions:
+            motion = problem.balance(solution.samples).displacements(solution.unknowns)
+            samples = motion @ problem.balance(solution.samples).series.synthesis.T
+            own = {
+                element.name: samples[rows]
+                for rows, element in problem.lowered.springs
+                if isinstance(element, UserElement)
+            }
+            check_laws(self.builder, self.parameters, vector, own)
+            self._compared.functions = True
 
     def _solutions(self, problem: Equations) -> Iterator[Solution]:
         """The solution at each frequency; one after the other, since each holds matrices."""

@@ -2,9 +2,12 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property, partial
 
 import numpy as np
 
+from dalembert.errors import InputError
+from dalembert.forward.complex_steps import DROPPING, attempted, lost_step
 from dalembert.vibration.contacts import Number, require_positive
 
 
@@ -111,6 +114,12 @@ class UserElement:
     function : callable
         ``function(u)`` of displacements (dofs, samples), m, returns the internal forces (dofs, samples), N, which stand
         beside the springs of the structure. Its derivative is taken by a complex step: it must run in complex numbers.
+        It is compared with differences at the first displacements.
+
+    Raises
+    ------
+    InputError
+        By :meth:`law`, for a function that drops the imaginary part of displacements, as ``abs`` does.
 
     Examples
     --------
@@ -128,12 +137,31 @@ class UserElement:
         values = np.asarray(self.function(u))
         if np.iscomplexobj(u):
             return values, np.zeros(0)
+        if not self._compared and np.any(u) and not np.iscomplexobj(values):  # where no parameter is moved
+            self._compare(u)
         slopes = np.empty((len(u), *u.shape))
         for column in range(len(u)):
             moved = u.astype(complex)
             moved[column] += 1e-30j
             slopes[:, column] = np.imag(self.function(moved)) / 1e-30
         return values, slopes
+
+    @cached_property
+    def _compared(self) -> list[bool]:
+        """Not empty once the complex step was compared with differences."""
+        return []
+
+    def _compare(self, u: np.ndarray) -> None:
+        move = np.random.default_rng(0).uniform(0.5, 1.0, (len(u), 1)) * np.max(np.abs(u))
+        lost = attempted(partial(lost_step, lambda shift: np.ravel(self.function(u + shift * move)), 1.0))
+        if lost:
+            raise InputError(
+                f"element {self.name!r}: the derivative of its force by the displacements is "
+                f"{lost.by_step / np.max(move):.6g} N/m by the complex step, but "
+                f"{lost.by_differences / np.max(move):.6g} N/m by differences. Its function drops the imaginary part, "
+                f"as {DROPPING} do. Use absolute, norm, hypot and atan2 of dalembert"
+            )
+        self._compared.append(True)
 
 
 Spring = CubicSpring | Gap | BilinearStop

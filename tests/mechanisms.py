@@ -10,10 +10,10 @@ import dalembert.multibody as mb
 SECTION = {"height": 0.1, "width": 0.05}
 
 
-def beam(name: str, law: str = "plane-stress", damping: float = 0.0, **placed) -> mb.AncfBeam:
+def beam(name: str, law: str = "plane-stress", damping: float = 0.0, **other) -> mb.AncfBeam:
     """A soft beam of two elements."""
     material = {"poisson_ratio": 0.3, "density": 900.0, "law": law, "damping": damping}
-    return mb.AncfBeam(name, 1.0, 2, 2e5, **material, **SECTION, **placed)
+    return mb.AncfBeam(name, 1.0, 2, 2e5, **material, **SECTION, **other)
 
 
 def cable(name: str, damping: float = 0.0, **placed) -> mb.AncfCable:
@@ -94,6 +94,8 @@ CONSERVATIVE = {
     "beam, plane stress": _bodies(beam("stress")),
     "beam, plane strain": _bodies(beam("strain", "plane-strain", angle=0.7)),
     "beam, uncoupled": _bodies(beam("plain", "uncoupled", angle=-0.7)),
+    "beam, continuum": _bodies(beam("published", formulation="continuum", angle=0.4)),
+    "beam, continuum, plane strain": _bodies(beam("published strain", "plane-strain", formulation="continuum")),
     "cable": _bodies(cable("rope")),
     "revolute": _between(mb.RevoluteJoint),
     "fixed": _between(mb.FixedJoint),
@@ -112,6 +114,7 @@ DISSIPATIVE = {
     "damped beam, plane stress": _bodies(beam("damped stress", damping=0.02)),
     "damped beam, plane strain": _bodies(beam("damped strain", "plane-strain", damping=0.02, angle=0.7)),
     "damped beam, uncoupled": _bodies(beam("damped plain", "uncoupled", damping=0.02, angle=-0.7)),
+    "damped beam, continuum": _bodies(beam("damped published", damping=0.02, formulation="continuum", angle=0.4)),
     "damped cable": _bodies(cable("damped rope", damping=0.03)),
     "pin friction": _between(
         lambda *sides: mb.RevoluteJoint(

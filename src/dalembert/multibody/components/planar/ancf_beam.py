@@ -11,20 +11,24 @@ from dalembert.errors import InputError, unknown
 from dalembert.multibody.components.fields import Number, number, pair, require, require_not_negative
 from dalembert.multibody.components.planar import markers
 from dalembert.multibody.components.planar.ancf import Ancf
-from dalembert.multibody.components.planar.beam_element import BEAM
 from dalembert.multibody.components.planar.body import Marker, with_points
+from dalembert.multibody.components.planar.continuum_beam import CONTINUUM
+from dalembert.multibody.components.planar.structural_beam import STRUCTURAL
 from dalembert.multibody.components.points import Place
 
 if TYPE_CHECKING:
     from dalembert.multibody.lowering import Lowering
 
 LAWS = ("plane-stress", "plane-strain", "uncoupled")
+FORMULATIONS = ("structural", "continuum")
 
 
 @with_points("start", "end")
 @dataclass(frozen=True)
 class AncfBeam(Ancf):
-    """A bar of fully parametrised planar ANCF elements (Omar and Shabana 2001): stretch, bending, shear, thickness.
+    """A bar of fully parametrised planar ANCF elements: stretch, bending, shear and thickness.
+
+    A node has a position r, the slope r_x of the line and the section vector r_y.
 
     Parameters
     ----------
@@ -51,6 +55,12 @@ class AncfBeam(Ancf):
         Retardation time of the Kelvin-Voigt material, s: stress = D (strain + damping x strain rate).
     law : {"plane-stress", "plane-strain", "uncoupled"}
         Saint-Venant-Kirchhoff material; ``"uncoupled"`` leaves the Poisson coupling out of the normal stresses.
+    formulation : {"structural", "continuum"}
+        ``"structural"`` has the strains of a beam: stretch, bending, shear with the shear factor
+        10 (1 + nu) / (12 + 11 nu) of a rectangle (Cowper 1966), thickness. It does not lock: one or two elements are
+        enough for thin and for thick beams. ``"continuum"`` is the published element (Omar and Shabana 2001), with
+        Green-Lagrange strains over the whole section. It locks in bending where its elements are thin, and its bending
+        stiffness is E I / (1 - nu^2); use it to repeat published results.
 
     Examples
     --------
@@ -70,6 +80,7 @@ class AncfBeam(Ancf):
     angular_velocity: Number = number("rad/s", 0.0)
     damping: Number = number("s", 0.0)
     law: str = "plane-stress"
+    formulation: str = "structural"
     origin: Place = field(init=False)
 
     def __post_init__(self, start: Place) -> None:
@@ -80,6 +91,8 @@ class AncfBeam(Ancf):
         require_not_negative(owner, damping=self.damping)
         if self.law not in LAWS:
             raise InputError(unknown("law", self.law, LAWS, owner))
+        if self.formulation not in FORMULATIONS:
+            raise InputError(unknown("formulation", self.formulation, FORMULATIONS, owner))
         if not -1 < np.real(self.poisson_ratio) < 0.5:
             raise InputError(
                 f"{owner}: poisson_ratio is {np.real(self.poisson_ratio):g}; expected a number in (-1, 0.5)"
@@ -106,11 +119,24 @@ class AncfBeam(Ancf):
         # The direction of a section is that of r_y, a quarter turn ahead of the axis.
         return Marker(markers.NODE, (k, k + 1, k + 4, k + 5), (0.0, 0.0, -np.pi / 2))
 
+    @property
+    def shear_factor(self) -> Number:
+        """Shear factor of a rectangle (Cowper 1966), for plane strain with the Poisson's ratio nu / (1 - nu)."""
+        nu = self.poisson_ratio
+        if self.law == "plane-strain":
+            nu = nu / (1 - nu)
+        return 10 * (1 + nu) / (12 + 11 * nu)
+
     def lower(self, lowering: "Lowering", first: int) -> None:
-        h = self.length / self.elements
-        line = self.density * self.height * self.width
-        data = [
-            h, self.height, self.width, line * h, line * h * self.height**2 / 12, *self.stiffnesses, self.damping,
-            *lowering.gravity,
-        ]  # fmt: skip
-        lowering.add_many(BEAM, self.element_index(first), data)
+        h, area = self.length / self.elements, self.height * self.width
+        mass, square = self.density * area * h, self.height**2 / 12
+        c11, c12, shear = self.stiffnesses
+        index = self.element_index(first)
+        if self.formulation == "continuum":
+            data = [h, self.height, self.width, mass, mass * square, c11, c12, shear]
+            lowering.add_many(CONTINUUM, index, [*data, self.damping, *lowering.gravity])
+            return
+        # without stress across the axis
+        modulus = c11 - c12**2 / c11
+        data = [h, mass, mass * square, c11 * area, c12 * area, self.shear_factor * shear * area]
+        lowering.add_many(STRUCTURAL, index, [*data, modulus * area * square, self.damping, *lowering.gravity])

@@ -1,7 +1,7 @@
 """The gradient-deficient planar ANCF cable element (Gerstmayr and Shabana 2006): an Euler-Bernoulli beam.
 
-Local coordinates: (r, r') at both nodes, 8 in all. Axial strain |r'| - 1 (five Gauss points), curvature
-(r' x r'')/|r'|^2 (three Gauss points).
+Local coordinates: (r, r') at both nodes, 8 in all. Axial strain |r'| - 1 at Lobatto's three points, where a bent
+element leaves it at zero, so that it does not lock; curvature (r' x r'')/|r'|^2 at Gauss' three points.
 
 Numbers: length h, axial stiffness EA, bending stiffness EI, mass, retardation time of the material damping, gravity.
 """
@@ -12,6 +12,7 @@ import numpy as np
 
 from dalembert.kernels.kernel import inlined, inner
 from dalembert.multibody.components.planar import hermite
+from dalembert.multibody.components.planar.line_bending import curvature, spread_stiffness
 from dalembert.multibody.kernels.dual import reciprocal, root
 from dalembert.multibody.kernels.kind import Kind
 
@@ -20,31 +21,22 @@ SLOTS = (0, 2, 6)  # of r1, r1' and r2'; forces on r2 are those on r1, their sig
 INNER = (0, 1, 2, 3, 6, 7)  # of all their components
 
 
-def _gauss(points: int) -> tuple[np.ndarray, ...]:
-    """Weights and derivatives of the Hermite functions, first (x h) and second (x h^2), at Gauss points of [0, 1]."""
-    xi, weights = np.polynomial.legendre.leggauss(points)
+def _points(xi: np.ndarray, weights: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Weights and derivatives of the Hermite functions, first (x h) and second (x h^2), at points of [-1, 1]."""
     xi = (xi + 1) / 2
     first = (6 * xi * (xi - 1), 1 - 4 * xi + 3 * xi**2, 3 * xi**2 - 2 * xi)
     second = (12 * xi - 6, 6 * xi - 4, 6 * xi - 2)
     return (weights / 2, *first, *second)
 
 
-AW, A1, A2, A5, _, _, _ = _gauss(5)
-BW, B1, B2, B5, C1, C2, C5 = _gauss(3)
+AW, A1, A2, A5, _, _, _ = _points(np.array([-1.0, 0.0, 1.0]), np.array([1.0, 4.0, 1.0]) / 3)
+BW, B1, B2, B5, C1, C2, C5 = _points(*np.polynomial.legendre.leggauss(3))
 
 
 @inlined
 def _line(s1, s2, s5, x):
     """s1 (r1 - r2) + s2 r1' + s5 r2', both components."""
     return s1 * (x[0] - x[4]) + s2 * x[2] + s5 * x[6], s1 * (x[1] - x[5]) + s2 * x[3] + s5 * x[7]
-
-
-@inlined
-def _curvature(tx, ty, cx, cy):
-    """Curvature, and its derivatives by r' = (tx, ty); those by r'' are (-ty, tx) over the square, the last value."""
-    square = reciprocal(tx * tx + ty * ty)
-    kappa = (tx * cy - ty * cx) * square
-    return kappa, (cy - 2 * kappa * tx) * square, -(cx + 2 * kappa * ty) * square, square
 
 
 @inlined
@@ -58,11 +50,11 @@ def residual(x, v, a, p, m, inputs, r):
     """M a + elastic and damping forces - weight."""
     h, axial, bending, mass, delay = p.length, p.axial, p.bending, p.mass, p.delay
     across = reciprocal(h)
-    # Sums over Gauss points of the force against r1 - r2, r1' and r2'; in local variables, which is twice as fast.
+    # Sums over points of the force against r1 - r2, r1' and r2'; in local variables, which is twice as fast.
     nothing = 0.0 * h
     fx, fy, gx, gy, kx, ky = nothing, nothing, nothing, nothing, nothing, nothing
     dx, dy, ax, ay, bx, by = x[0] - x[4], x[1] - x[5], x[2], x[3], x[6], x[7]
-    for g in range(5):
+    for g in range(3):
         s1, s2, s5 = A1[g] * across, A2[g], A5[g]
         tx, ty = s1 * dx + s2 * ax + s5 * bx, s1 * dy + s2 * ay + s5 * by
         inverse = reciprocal(root(tx * tx + ty * ty))
@@ -77,7 +69,7 @@ def residual(x, v, a, p, m, inputs, r):
         c1, c2, c5 = C1[g] * across * across, C2[g] * across, C5[g] * across
         tx, ty = s1 * dx + s2 * ax + s5 * bx, s1 * dy + s2 * ay + s5 * by
         cx, cy = c1 * dx + c2 * ax + c5 * bx, c1 * dy + c2 * ay + c5 * by
-        kappa, px, py, square = _curvature(tx, ty, cx, cy)
+        kappa, px, py, square = curvature(tx, ty, cx, cy)
         moment = kappa
         if delay != 0.0:
             ux, uy = _line(s1, s2, s5, v)
@@ -99,17 +91,14 @@ def residual(x, v, a, p, m, inputs, r):
 def tangent(x, p, m, by_x, by_a, matrix):
     """Fill the local ``matrix`` (8, 8) with by_x K + by_a M of an element without damping; real numbers.
 
-    Stretch: EA ((1 - 1/g) I + t t^T / g^3), t = r', g = |t|. Bending: EI (k_z k_z^T + k k_zz) for z = (t, c), c = r'',
-    with k = t x c / g^2, p = (c_y, -c_x), k_t = p / g^2 - 2 k t / g^2,
-    k_tt = -2 (p t^T + t p^T + k g^2 I) / g^4 + 8 k t t^T / g^4, k_c = (-t_y, t_x) / g^2 and
-    k_tc = [[0, 1], [-1, 0]] / g^2 - 2 t k_c^T / g^2.
+    Stretch: EA ((1 - 1/g) I + t t^T / g^3), t = r', g = |t|. Bending: see `spread_stiffness`.
     """
     for i in range(WIDTH):
         for j in range(WIDTH):
             matrix[i, j] = 0.0
     h, axial, bending, mass = p.length.real, p.axial.real, p.bending.real, p.mass.real
     across = 1.0 / h
-    for g in range(5):
+    for g in range(3):
         s = A1[g] * across, A2[g], A5[g]
         tx, ty = _line(s[0], s[1], s[2], x)
         inverse = 1.0 / math.sqrt(tx * tx + ty * ty)
@@ -124,33 +113,9 @@ def tangent(x, p, m, by_x, by_a, matrix):
         c = C1[g] * across * across, C2[g] * across, C5[g] * across
         tx, ty = _line(s[0], s[1], s[2], x)
         cx, cy = _line(c[0], c[1], c[2], x)
-        kappa, px, py, square = _curvature(tx, ty, cx, cy)
-        qx, qy = -ty * square, tx * square
-        two, eight = 2 * kappa * square, 8 * kappa * square * square
         w = by_x * BW[g] * h * bending
-        tt = (
-            w * (px * px + kappa * (-4 * cy * tx * square * square - two + eight * tx * tx)),
-            w * (px * py + kappa * (2 * (cx * tx - cy * ty) * square * square + eight * tx * ty)),
-            w * (px * py + kappa * (2 * (cx * tx - cy * ty) * square * square + eight * tx * ty)),
-            w * (py * py + kappa * (4 * cx * ty * square * square - two + eight * ty * ty)),
-        )
-        tc = (
-            w * (px * qx - two * tx * qx),
-            w * (px * qy + kappa * square - two * tx * qy),
-            w * (py * qx - kappa * square - two * ty * qx),
-            w * (py * qy - two * ty * qy),
-        )
-        cc = w * qx * qx, w * qx * qy, w * qx * qy, w * qy * qy
-        for i in range(3):
-            for j in range(i, 3):
-                a, b, d, f = s[i] * s[j], s[i] * c[j], c[i] * s[j], c[i] * c[j]
-                block = (
-                    a * tt[0] + (b + d) * tc[0] + f * cc[0],
-                    a * tt[1] + b * tc[1] + d * tc[2] + f * cc[1],
-                    a * tt[2] + b * tc[2] + d * tc[1] + f * cc[2],
-                    a * tt[3] + (b + d) * tc[3] + f * cc[3],
-                )
-                hermite.spread(matrix, SLOTS[i], SLOTS[j], 1.0, block)
+        moment = w * curvature(tx, ty, cx, cy)[0]
+        spread_stiffness(matrix, SLOTS, s, c, w, moment, tx, ty, cx, cy)
     hermite.mirror(matrix, INNER)
     hermite.oppose(matrix, 4, WIDTH)
     hermite.mass_matrix(mass, h, 0, 2, 4, 6, by_a, matrix)
@@ -167,7 +132,7 @@ def energy(x, v, p, m, inputs):
     )
     power = 0.0 * h
     across = 1.0 / h
-    for g in range(5):
+    for g in range(3):
         s1, s2, s5 = A1[g] * across, A2[g], A5[g]
         tx, ty = _line(s1, s2, s5, x)
         ux, uy = _line(s1, s2, s5, v)
@@ -182,7 +147,7 @@ def energy(x, v, p, m, inputs):
         ux, uy = _line(s1, s2, s5, v)
         cx, cy = _line(c1, c2, c5, x)
         wx, wy = _line(c1, c2, c5, v)
-        kappa, px, py, square = _curvature(tx, ty, cx, cy)
+        kappa, px, py, square = curvature(tx, ty, cx, cy)
         rate = px * ux + py * uy + (tx * wy - ty * wx) * square
         potential += 0.5 * BW[g] * h * bending * kappa * kappa
         power -= BW[g] * h * bending * delay * rate * rate

@@ -1,4 +1,4 @@
-"""The fully parametrised planar ANCF beam element (Omar and Shabana 2001).
+"""The fully parametrised planar ANCF beam element as a continuum (Omar and Shabana 2001). It locks where it is thin.
 
 Local coordinates: (r, r_x, r_y) at both nodes, two components each, 12 in all. With xi = x/h along the element and y
 across it, r_x = s1'(r1 - r2) + s2' r1_x + s5' r2_x + y d and r_y = (1 - xi) r1_y + xi r2_y, d = (r2_y - r1_y)/h.
@@ -12,22 +12,22 @@ import numpy as np
 
 from dalembert.kernels.kernel import inlined, inner
 from dalembert.multibody.components.planar import hermite
+from dalembert.multibody.components.planar.section_inertia import (
+    WIDTH,
+    inertia_and_weight,
+    kinetic_and_weight,
+    mass_matrix,
+    undamped,
+)
 from dalembert.multibody.kernels.dual import reciprocal
 from dalembert.multibody.kernels.kind import Kind
 
-WIDTH = 12
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(3)
 XI, W = (_POINTS + 1) / 2, _WEIGHTS / 2
 ACROSS = np.array([-0.5, 0.5]) / np.sqrt(3.0)
 AXIAL = (0, 2, 8)  # slots of r1, r1_x and r2_x; forces on r2 are those on r1, their sign turned
 INNER = (0, 1, 2, 3, 8, 9, 4, 5, 10, 11)  # slots of all but r2, in the order in which blocks are filled
 S1, S2, S5 = 6 * XI * (XI - 1), 1 - 4 * XI + 3 * XI**2, 3 * XI**2 - 2 * XI
-
-
-@inlined
-def undamped(p, m):
-    """Whether an element is without material damping, so that `tangent` holds for it."""
-    return p.delay == 0.0
 
 
 @inlined
@@ -74,14 +74,7 @@ def residual(x, v, a, p, m, inputs, r):
         r[9] += s5 * sy
         r[10] += xi * ux + tx
         r[11] += xi * uy + ty
-    mass, rotatory = p.mass, p.rotatory
-    hermite.inertia(mass, h, 0, 2, 6, 8, a, r)
-    hermite.inertia(mass, h, 1, 3, 7, 9, a, r)
-    hermite.weight(mass, h, p.gravity_x, 0, 2, 6, 8, r)
-    hermite.weight(mass, h, p.gravity_y, 1, 3, 7, 9, r)
-    for i in range(4, 6):
-        r[i] += rotatory * (a[i] / 3 + a[i + 6] / 6)
-        r[i + 6] += rotatory * (a[i] / 6 + a[i + 6] / 3)
+    inertia_and_weight(p, a, r)
 
 
 @inlined
@@ -163,27 +156,15 @@ def tangent(x, p, m, by_x, by_a, matrix):
                 hermite.spread(matrix, 4 + 6 * i, 4 + 6 * j, w, _add(block, lift_i * lift_j, r0))
     hermite.mirror(matrix, INNER)
     hermite.oppose(matrix, 6, WIDTH)
-    mass, rotatory = p.mass.real, by_a * p.rotatory.real
-    hermite.mass_matrix(mass, h, 0, 2, 6, 8, by_a, matrix)
-    hermite.mass_matrix(mass, h, 1, 3, 7, 9, by_a, matrix)
-    for i in range(4, 6):
-        matrix[i, i] += rotatory / 3
-        matrix[i + 6, i + 6] += rotatory / 3
-        matrix[i, i + 6] += rotatory / 6
-        matrix[i + 6, i] += rotatory / 6
+    mass_matrix(p, by_a, matrix)
 
 
 @inner
 def energy(x, v, p, m, inputs):
     """Kinetic energy, strain and gravity energy, power of the material damping."""
-    h, height, mass, rotatory = p.length, p.height, p.mass, p.rotatory
+    h, height = p.length, p.height
     c11, c12, shear, delay = p.c11, p.c12, p.shear, p.delay
-    kinetic = hermite.kinetic(mass, h, 0, 2, 6, 8, v) + hermite.kinetic(mass, h, 1, 3, 7, 9, v)
-    for i in range(4, 6):
-        kinetic += rotatory / 6 * (v[i] * v[i] + v[i] * v[i + 6] + v[i + 6] * v[i + 6])
-    potential = -mass * (
-        p.gravity_x * hermite.centre(h, 0, 2, 6, 8, x) + p.gravity_y * hermite.centre(h, 1, 3, 7, 9, x)
-    )
+    kinetic, potential = kinetic_and_weight(x, v, p)
     power = 0.0 * h
     across = 1.0 / h
     for g in range(3):
@@ -202,8 +183,8 @@ def energy(x, v, p, m, inputs):
     return kinetic, potential, power
 
 
-BEAM = Kind(
-    "ancf_beam",
+CONTINUUM = Kind(
+    "continuum_beam",
     coordinates=WIDTH,
     numbers=(
         "length", "height", "width", "mass", "rotatory", "c11", "c12", "shear", "delay", "gravity_x", "gravity_y",

@@ -19,6 +19,7 @@ from dalembert.multibody.observe import observer
 from dalembert.multibody.system import System
 
 _MOST_ITERATIONS = 30
+_LAST_ITERATIONS = 300  # where loads in steps lead nowhere, as a torque that rolls a beam up
 _SMALLEST_FRACTION = 1 / 1024
 
 
@@ -74,7 +75,7 @@ def equilibrium(system: System) -> Equilibrium:
     """State of rest under gravity and the loads at time 0, nearest to the first placement.
 
     Newton's method; where it does not converge at once, gravity, loads and springs are raised in steps from the
-    undeformed state.
+    undeformed state. Where these do not converge either, Newton's method under the whole load has more iterations.
 
     Parameters
     ----------
@@ -117,6 +118,9 @@ def equilibrium(system: System) -> Equilibrium:
         if found is None:
             fraction /= 2
             if fraction < _SMALLEST_FRACTION:
+                x, iterations = _newton(lowered, forces, np.real(lowered.x).astype(float), _LAST_ITERATIONS)
+                if x is not None:
+                    return Equilibrium(system, lowered, x, total + iterations)
                 raise SolveError(
                     f"no equilibrium was found: Newton's method stopped at {100 * reached:.3g} % of the loads. A "
                     "motion may be free of stiffness (add a joint or a spring), or the first placement is far from "
@@ -127,11 +131,13 @@ def equilibrium(system: System) -> Equilibrium:
     return Equilibrium(system, lowered, x, total)
 
 
-def _newton(lowered: Lowered, forces, x: np.ndarray) -> tuple[np.ndarray | None, int]:
+def _newton(
+    lowered: Lowered, forces, x: np.ndarray, most: int = _MOST_ITERATIONS
+) -> tuple[np.ndarray | None, int]:
     """Newton's method on coordinates and multipliers; None where it does not converge."""
     n, still, scale = lowered.structure.n, np.zeros_like(x), scales(lowered)[:-1]
     x = x.copy()
-    for iteration in range(1, _MOST_ITERATIONS + 1):
+    for iteration in range(1, most + 1):
         step = _solution(tangent(lowered, x, still, (1.0, 0.0, 0.0)), forces(x))
         if step is None:
             return None, iteration
@@ -141,7 +147,7 @@ def _newton(lowered: Lowered, forces, x: np.ndarray) -> tuple[np.ndarray | None,
         x[:-1] -= step * (0.5 / max(size, 0.5))  # at most half the scale at a time
         if size < 1e-11:
             return x, iteration
-    return None, _MOST_ITERATIONS
+    return None, most
 
 
 def _solution(matrix: csr_matrix, forces: np.ndarray) -> np.ndarray | None:

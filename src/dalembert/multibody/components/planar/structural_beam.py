@@ -9,9 +9,13 @@ f = r_x, n = r_y and the length h, the strains are sampled where a bent element 
 - bending kappa = (f x f')/(f . f) - (gamma_2 - gamma_1)/h at Gauss' three points: the change of the section's angle,
   which is that of the line less the shear angle.
 
-Strains are components of rigid-body invariant products, so the energy does not change with a rotation. Numbers: length
-h, mass, rotatory mass, stiffnesses C11 A and C12 A of stretch and thickness, k G A of shear and E I of bending,
-retardation time of the material damping, gravity.
+The section vector follows the line between the nodes: n(xi) = (1 - xi) n_1 + xi n_2 + 3 xi (1 - xi) J B, where
+B = 2 (r_2 - r_1)/h - f_1 - f_2 and J is a quarter turn. So the rotatory inertia is as accurate as the bending, and the
+mass matrix is constant.
+
+Strains and inertia are products that a rotation does not change. Numbers: length h, mass, rotatory mass, stiffnesses
+C11 A and C12 A of stretch and thickness, k G A of shear and E I of bending, retardation time of the material damping,
+gravity.
 """
 
 import math
@@ -30,6 +34,7 @@ from dalembert.multibody.kernels.dual import reciprocal
 from dalembert.multibody.kernels.kind import Kind
 
 LINE, SLOPE, SECTION = (0, 2, 8), (2, 8), (4, 10)  # slots of r1, r1_x and r2_x; of the slopes; of the section vectors
+VECTORS = (0, 2, 6, 8)  # slots of the vectors of the line
 INNER = (0, 1, 2, 3, 8, 9, 4, 5, 10, 11)  # slots of all but r2, in the order in which blocks are filled
 AT, WEIGHT = math.sqrt(0.15), (5 / 18, 8 / 18, 5 / 18)  # Gauss' three points: the middle -+ AT lengths, and weights
 PLACE = (-AT, 0.0, AT)
@@ -162,6 +167,42 @@ def residual(x, v, a, p, m, inputs, r):
     r[10] += s[4] * x[10] + s[6] * x[8]
     r[11] += s[4] * x[11] + s[6] * x[9]
     inertia_and_weight(p, a, r)
+    _add_bulge_inertia(p, a, across, r)
+
+
+@inlined
+def _add_bulge_inertia(p, a, across, r):
+    """Add to ``r`` the inertia of the part of the section vector along B; see the top of the file."""
+    _, _, _, _, bx, by = _line(a, across)
+    own, mixed = 0.3 * p.rotatory, 0.25 * p.rotatory
+    nx, ny = a[4] + a[10], a[5] + a[11]
+    fx, fy = own * bx + mixed * ny, own * by - mixed * nx
+    r[0] -= 2 * across * fx
+    r[1] -= 2 * across * fy
+    r[6] += 2 * across * fx
+    r[7] += 2 * across * fy
+    for i in (2, 8):
+        r[i] -= fx
+        r[i + 1] -= fy
+    for i in (4, 10):
+        r[i] -= mixed * by
+        r[i + 1] += mixed * bx
+
+
+@inlined
+def _add_bulge_mass(p, across, by_a, matrix):
+    """Add ``by_a`` times the mass matrix of `_add_bulge_inertia`."""
+    own, mixed = 0.3 * by_a * p.rotatory.real, 0.25 * by_a * p.rotatory.real
+    along = -2 * across, -1.0, 2 * across, -1.0
+    for i in range(4):
+        k = VECTORS[i]
+        for j in range(4):
+            _diagonal(matrix, k, VECTORS[j], own * along[i] * along[j])
+        for n in SECTION:
+            matrix[n, k + 1] -= mixed * along[i]
+            matrix[k + 1, n] -= mixed * along[i]
+            matrix[n + 1, k] += mixed * along[i]
+            matrix[k, n + 1] += mixed * along[i]
 
 
 @inlined
@@ -245,6 +286,7 @@ def tangent(x, p, m, by_x, by_a, matrix):
     hermite.mirror(matrix, INNER)
     hermite.oppose(matrix, 6, WIDTH)
     mass_matrix(p, by_a, matrix)
+    _add_bulge_mass(p, across, by_a, matrix)
 
 
 @inner
@@ -253,6 +295,9 @@ def energy(x, v, p, m, inputs):
     kinetic, potential = kinetic_and_weight(x, v, p)
     power = 0.0 * p.length
     across = reciprocal(p.length)
+    _, _, _, _, bx, by = _line(v, across)
+    turning = 0.3 * (bx * bx + by * by) + 0.5 * (bx * (v[5] + v[11]) - by * (v[4] + v[10]))
+    kinetic += 0.5 * p.rotatory * turning
     line = _line(x, across)
     first, middle, last = _bend(line, -AT), _bend(line, 0.0), _bend(line, AT)
     e, d = _strains(x, line, first, middle, last), _rates(x, v, line, first, middle, last, across)

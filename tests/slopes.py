@@ -8,7 +8,7 @@ import dalembert.multibody as mb
 def errors(model: mb.TimeResponse, relative: float = 1e-2) -> tuple[dict[str, float], dict[str, float]]:
     """Largest error of each parameter's derivative and its largest size, against the responses' sizes.
 
-    The differences are central ones of three steps, of which ``relative`` is the shortest, extrapolated to the sixth order.
+    The differences are central ones of three steps, extrapolated to the sixth order; the shortest is ``relative``.
     """
     vector = model.parameters.start
     h = relative * np.diag(np.abs(vector))

@@ -29,7 +29,10 @@ def flexible() -> tuple[da.System, list[str]]:
 
 @pytest.mark.parametrize(
     ("mechanism", "radius", "coarsest"),
-    [(rigid, 1.0, 8e-3), (rigid, 0.8, 8e-3), (rigid, 0.0, 2e-3)] + [(flexible, 1.0, 2e-4), (flexible, 0.8, 2e-4), (flexible, 0.0, 5e-5)],
+    [
+        *((rigid, 1.0, 8e-3), (rigid, 0.8, 8e-3), (rigid, 0.0, 2e-3)),
+        *((flexible, 1.0, 2e-4), (flexible, 0.8, 2e-4), (flexible, 0.0, 5e-5)),
+    ],
 )
 def test_second_order_in_position_and_velocity(record_evidence, mechanism, radius: float, coarsest: float) -> None:
     """Steps fine enough for the order and coarse enough for rounding not to show in it."""

@@ -11,7 +11,7 @@ from dalembert.forward.python_model import PythonModel
 from dalembert.forward.recorded import Recorded
 from dalembert.forward.responses import Responses
 from dalembert.forward.sensors import Sensor, Sensors
-from dalembert.forward.wrapped import clock
+from dalembert.forward.wrapped import clock, findings_at
 
 __all__ = [
     "Channel",
@@ -29,6 +29,7 @@ __all__ = [
     "clock",
     "connected",
     "ensemble",
+    "findings_at",
     "on_cluster",
     "prefetched",
     "takes_executor",

@@ -6,6 +6,7 @@ from typing import Self
 
 import numpy as np
 
+from dalembert.findings import Finding
 from dalembert.forward.complex_steps import check_derivatives
 from dalembert.forward.model import Channel, Coordinate, ForwardModel
 from dalembert.forward.responses import Responses
@@ -60,9 +61,19 @@ class Wrapped:
         """Compare the complex step of the model with differences at a vector (parameters,)."""
         check_derivatives(self.model, vector)
 
+    def findings(self, vector: np.ndarray) -> tuple[Finding, ...]:
+        """Findings on the other model at a parameter vector (parameters,)."""
+        return findings_at(self.model, vector)
+
     def first(self, samples: int) -> Self:
         """The same around the model cut to its first ``samples`` samples."""
         return replace(self, model=self.model.first(samples))
+
+
+def findings_at(model: ForwardModel, vector: np.ndarray) -> tuple[Finding, ...]:
+    """Findings on a model at a parameter vector (parameters,); none if it offers none."""
+    offered = getattr(model, "findings", None)
+    return () if offered is None else tuple(offered(vector))
 
 
 def clock(model: ForwardModel) -> float:

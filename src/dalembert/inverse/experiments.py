@@ -10,7 +10,17 @@ from numpy.typing import ArrayLike
 
 from dalembert.data import Measurements
 from dalembert.errors import DalembertError, InputError, unknown
-from dalembert.forward import Channel, Coordinate, Executor, ForwardModel, Responses, check_derivatives, on_cluster
+from dalembert.findings import Finding
+from dalembert.forward import (
+    Channel,
+    Coordinate,
+    Executor,
+    ForwardModel,
+    Responses,
+    check_derivatives,
+    findings_at,
+    on_cluster,
+)
 from dalembert.inverse.matching import check_finite, check_samples, columns_of, weights_of
 from dalembert.parameters import Parameter, Parameters
 
@@ -172,6 +182,13 @@ class JointModel:
         for part, model, _, wiring in self._simulated():
             with told_of(part.name):
                 check_derivatives(model, np.asarray(vector)[wiring])
+
+    def findings(self, vector: np.ndarray) -> tuple[Finding, ...]:
+        """Findings on the models of all experiments at a joint vector (parameters,), each once."""
+        found: list[Finding] = []
+        for model, wiring in zip(self.models, self.wiring, strict=True):
+            found += [finding for finding in findings_at(model, np.asarray(vector)[wiring]) if finding not in found]
+        return tuple(found)
 
     def first(self, samples: int) -> "JointModel":
         """The same experiments, each cut to its samples in the first rows."""

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from dalembert.data import Measurements
 from dalembert.errors import DalembertError, InputError, SolveError, StorageError, unknown
-from dalembert.forward import Executor, ForwardModel, check_derivatives, takes_executor
+from dalembert.forward import Executor, ForwardModel, check_derivatives, findings_at, takes_executor
 from dalembert.forward.provenance import provenance
 from dalembert.inverse.correlation import CorrelatedResiduals, correlation, correlation_findings
 from dalembert.inverse.estimate import Estimate, estimate, unknown_estimate
@@ -216,7 +216,7 @@ def identify(
         parts=parts,
         validation=parted.validation(whole),
         nodes=best.nodes,
-        findings=tuple(findings),
+        findings=(*findings, *findings_at(model, vector)),
         correlated=correlated,
     )
     journal.tell(Finished(fit.success, fit.status, fit.fitness, fit.values, fit.simulations))

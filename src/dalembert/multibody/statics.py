@@ -131,9 +131,7 @@ def equilibrium(system: System) -> Equilibrium:
     return Equilibrium(system, lowered, x, total)
 
 
-def _newton(
-    lowered: Lowered, forces, x: np.ndarray, most: int = _MOST_ITERATIONS
-) -> tuple[np.ndarray | None, int]:
+def _newton(lowered: Lowered, forces, x: np.ndarray, most: int = _MOST_ITERATIONS) -> tuple[np.ndarray | None, int]:
     """Newton's method on coordinates and multipliers; None where it does not converge."""
     n, still, scale = lowered.structure.n, np.zeros_like(x), scales(lowered)[:-1]
     x = x.copy()

@@ -5,6 +5,7 @@ from typing import Any, TypeVar
 
 from dalembert.arguments import is_number, names_of
 from dalembert.errors import InputError, ModelError, shown, unknown
+from dalembert.findings import Finding
 from dalembert.multibody.components.fields import Number
 from dalembert.multibody.components.planar.body import Body
 from dalembert.multibody.components.planar.joint import Joint
@@ -67,6 +68,11 @@ class System:
                 members.append(component)
                 return component
         raise InputError(f"{component!r} was added to a system; expected a body, a joint or a load")
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """What there is to say about the choice of bodies, such as elements that lock."""
+        return tuple(finding for body in self.bodies for finding in body.findings)
 
     def body(self, name: str) -> Body:
         """The body of this name."""

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from dalembert.errors import InputError, SolveError, told, unknown
+from dalembert.findings import Finding
 from dalembert.forward import Channel, Coordinate, Responses, ensemble
 from dalembert.forward.builders import cores, inexact, restructured
 from dalembert.forward.complex_steps import Compared
@@ -229,6 +230,10 @@ class TimeResponse:
         """
         if self.derivative == COMPLEX_STEP:
             self._compared.once(vector, lambda thorough: check_numbers(self.builder, self.parameters, vector, thorough))
+
+    def findings(self, vector: np.ndarray) -> tuple[Finding, ...]:
+        """Findings on the mechanism at a parameter vector (parameters,)."""
+        return self.system(vector).findings
 
     @cached_property
     def _compared(self) -> Compared:

@@ -10,6 +10,7 @@ import numpy as np
 
 from dalembert.contents import Contents
 from dalembert.files import write_contents
+from dalembert.findings import Finding
 from dalembert.kernels.preparation import prepare
 from dalembert.multibody.assemble import redundancy
 from dalembert.multibody.drawing import Drawing, draw
@@ -55,6 +56,11 @@ class Trajectory:
     def states(self) -> Motion:
         """Unknowns, velocities and accelerations at the output times, (samples, N + 1) each."""
         return Motion(*(array[self.rows] for array in self.run.states))
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """Those of the system."""
+        return self.system.findings
 
     @property
     def channel_names(self) -> tuple[str, ...]:
@@ -144,7 +150,7 @@ class Trajectory:
         write_contents(path, self.contents(names))
 
     def summary(self) -> str:
-        """A few lines: steps, Newton iterations, energy balance and constraint violations."""
+        """A few lines: steps, Newton iterations, energy balance and constraint violations, findings."""
         steps, iterations, factorisations, rejected = self.run.counts
         worst = {name: np.max(np.abs(value)) for name, value in self.violations.items()}
         kinetic = np.ptp(self.energies["kinetic"])
@@ -161,6 +167,7 @@ class Trajectory:
                 f"range of the kinetic energy {kinetic:.3g} J",
                 "constraints: largest violation " + ", ".join(f"{name} {value:.2g}" for name, value in worst.items()),
                 *([redundant] if constraints.joints else []),
+                *map(str, self.findings),
             ]
         )
 

@@ -161,9 +161,10 @@ def takes(study: Study) -> str:
 
 
 def foreseen(study: Study) -> tuple[str, ...]:
-    """Sentences on what a study would tell, from a look at its first guesses."""
+    """Sentences on what a study would tell, and findings on its mechanism, from a look at its first guesses."""
     with users_code():
-        return TASKS[study.task].foreseen(study)
+        findings = study.system().findings if study.has_system else ()
+        return (*map(str, findings), *TASKS[study.task].foreseen(study))
 
 
 def looked(study: Study, limit: float = inf) -> Iterator[str]:

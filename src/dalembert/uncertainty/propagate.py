@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 from dalembert.errors import InputError, unknown
-from dalembert.forward import Executor, ForwardModel, clock, on_cluster, takes_executor
+from dalembert.forward import Executor, ForwardModel, clock, findings_at, on_cluster, takes_executor
 from dalembert.forward.provenance import provenance
 from dalembert.intervals import Box, Interval
 from dalembert.uncertainty.events import Began, Ended, OnEvent
@@ -93,6 +93,7 @@ def propagate(
         provenance=provenance(
             model, chosen, seed=seed, intervals={name: [i.lower, i.upper] for name, i in box.items()}
         ),
+        findings=findings_at(model, (box.lower + box.upper) / 2),
     )
     runs.tell(Ended(runs.method, result.success, result.status, result.runs, result.seconds))
     return result

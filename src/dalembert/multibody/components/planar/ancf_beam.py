@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dalembert.errors import InputError, unknown
+from dalembert.findings import Finding
 from dalembert.multibody.components.fields import Number, number, pair, require, require_not_negative
 from dalembert.multibody.components.planar import markers
 from dalembert.multibody.components.planar.ancf import Ancf
 from dalembert.multibody.components.planar.body import Marker, with_points
 from dalembert.multibody.components.planar.continuum_beam import CONTINUUM
+from dalembert.multibody.components.planar.slenderness import continuum_findings
 from dalembert.multibody.components.planar.structural_beam import STRUCTURAL
 from dalembert.multibody.components.points import Place
 
@@ -118,6 +120,13 @@ class AncfBeam(Ancf):
         k = 6 * self._node(point)
         # The direction of a section is that of r_y, a quarter turn ahead of the axis.
         return Marker(markers.NODE, (k, k + 1, k + 4, k + 5), (0.0, 0.0, -np.pi / 2))
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        if self.formulation != "continuum":
+            return ()
+        length, height, c11, c12, shear = (float(np.real(n)) for n in (self.length, self.height, *self.stiffnesses))
+        return continuum_findings(self.name, length, height, self.elements, (c11, c12, shear))
 
     @property
     def shear_factor(self) -> Number:

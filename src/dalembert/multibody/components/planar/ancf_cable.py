@@ -5,11 +5,15 @@ __all__ = ["AncfCable"]
 from dataclasses import InitVar, dataclass, field
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from dalembert.findings import Finding
 from dalembert.multibody.components.fields import Number, number, pair, require, require_not_negative
 from dalembert.multibody.components.planar import markers
 from dalembert.multibody.components.planar.ancf import Ancf
 from dalembert.multibody.components.planar.body import Marker, with_points
 from dalembert.multibody.components.planar.cable_element import CABLE
+from dalembert.multibody.components.planar.slenderness import cable_findings
 from dalembert.multibody.components.points import Place
 
 if TYPE_CHECKING:
@@ -61,6 +65,10 @@ class AncfCable(Ancf):
     @property
     def vectors(self) -> int:
         return 2
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        return cable_findings(self.name, float(np.real(self.length)), float(np.real(self.height)))
 
     def marker(self, point: str) -> Marker:
         k = 4 * self._node(point)

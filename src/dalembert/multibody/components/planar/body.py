@@ -11,6 +11,7 @@ import numpy as np
 
 from dalembert.arguments import Checked
 from dalembert.errors import InputError, unknown
+from dalembert.findings import Finding
 from dalembert.multibody.components.fields import Number
 from dalembert.multibody.components.points import Place, Point
 
@@ -81,6 +82,11 @@ class Body(Checked):
     def turns(self) -> bool:
         """Whether the body has a direction."""
         return True
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """What there is to say about the choice of this body, such as that its elements lock."""
+        return ()
 
     @property
     def rigid(self) -> bool:

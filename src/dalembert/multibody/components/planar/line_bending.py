@@ -1,6 +1,6 @@
 """Curvature of a line r, and its part of a stiffness matrix: shared by the ANCF cable and the structural beam.
 
-With t = r' and c = r'', kappa = (t x c)/|t|^2. Both vectors are sums of an element's vectors, with factors ``s`` and ``c``.
+With t = r' and c = r'', kappa = (t x c)/|t|^2. Both are sums of an element's vectors, with factors ``s`` and ``c``.
 """
 
 from dalembert.kernels.kernel import inlined

@@ -42,7 +42,7 @@ PLACE = (-AT, 0.0, AT)
 
 @inlined
 def _line(x, across):
-    """Return r_x in the middle m, and D and B, of coordinates or velocities; z from the middle r_x = m + z D - 3 z^2 B."""
+    """Return m, D and B of coordinates or velocities: at z from the middle, r_x = m + z D - 3 z^2 B."""
     ux, uy = (x[6] - x[0]) * across, (x[7] - x[1]) * across
     sx, sy = x[2] + x[8], x[3] + x[9]
     return 1.5 * ux - 0.25 * sx, 1.5 * uy - 0.25 * sy, x[8] - x[2], x[9] - x[3], 2 * ux - sx, 2 * uy - sy
@@ -265,7 +265,7 @@ def tangent(x, p, m, by_x, by_a, matrix):
     _dyad(matrix, SLOPE[0], SLOPE[1], other, n[0], n[1])
     _dyad(matrix, SECTION[0], SECTION[1], other, t[0], t[1])
     _dyad(matrix, SECTION[0], SECTION[1], a, n[0], n[1])
-    # bending, first of the line alone, then what couples it with shear: ``mixed`` times the gradient of gamma_1 - gamma_2
+    # bending of the line alone, then what couples it with shear: ``mixed`` times the gradient of gamma_1 - gamma_2
     for g in range(3):
         z = PLACE[g]
         f = (6 * z * z - 1.5) * across, 3 * z * z - 0.25 - z, 3 * z * z - 0.25 + z

@@ -76,6 +76,22 @@ def test_a_parameter_on_its_bound_is_compared_inside() -> None:
     response(arm(safe=lambda x: da.hypot(x, 0.0))).jacobian(np.array([0.5, 20.0]))
 
 
+def test_terms_that_cancel_to_rounding_are_no_loss() -> None:
+    """The end of the second bar stays on the axis: its derivative is rounding, and the difference is zero."""
+
+    def build(length: float, stiffness: float) -> da.System:
+        system = da.System()
+        first = system.add(da.RigidBar("first", length, 1.0, angle=1.1))
+        tilt = -np.arcsin(length * np.sin(1.1) / 3.0)
+        second = system.add(da.RigidBar("second", 3.0, 1.0, start=first.end, angle=tilt))
+        bar = system.add(da.RigidBar("bar", 1.0, 1.0, start=second.end))
+        system.add(da.Spring("coil", system.ground.point(0.0, 1.0), bar.end, stiffness))
+        return system
+
+    for length in np.linspace(0.8, 1.4, 13):
+        assert np.all(np.isfinite(response(build).jacobian(np.array([length, 15.0]))))
+
+
 def test_a_builder_may_compare_parameters_with_each_other() -> None:
     def build(length: float, stiffness: float) -> da.System:
         return arm(stiff=lambda x: x if length.real > 0.1 else 2 * x)(length, stiffness)

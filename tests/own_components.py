@@ -87,7 +87,7 @@ class OwnDisc(Rigid):
     radius: Number = number("m")
     mass: Number = number("kg")
     position: Place = pair("m")
-    angular_velocity: Number = number("rad/s", 0.0)
+    angular_velocity: Number | None = number("rad/s", None)
 
     @property
     def place(self):

@@ -46,9 +46,21 @@ def redundant() -> mb.System:
 
 
 def contradictory() -> mb.System:
-    system = mb.System(driving=["bar.angle"])
-    own = system.add(bar(angular_velocity=1.0))
-    system.add(mb.FixedJoint("weld", system.ground, own.start))
+    """A wheel on a bar that turns, whose velocity is stated as that of a bar at rest."""
+    system = mb.System()
+    own = system.add(bar(angular_velocity=12.0))
+    wheel = system.add(mb.PointMass("wheel", 1.0, own.end, velocity=(0.0, 0.0)))
+    system.add(mb.RevoluteJoint("pin", system.ground, own.start))
+    system.add(mb.RevoluteJoint("axle", own.end, wheel.centre))
+    return system
+
+
+def driven_apart() -> mb.System:
+    system = mb.System()
+    own = system.add(bar())
+    for name, rate in (("slow", 1.0), ("fast", 2.0)):
+        course = mb.Polynomial([0.0, rate])
+        system.add(mb.PrescribedMotion(name, system.ground, own.start, "angle", course))
     return system
 
 
@@ -90,10 +102,16 @@ MECHANISMS = {
         "or start from a position that is not singular; RungeKutta4 and OdeSolver take redundant constraints as they "
         "are",
     ),
-    "a driving velocity against a joint": (
+    "velocities against a joint": (
         contradictory,
-        "no first velocities are consistent with the joints: at joint 'weld' 1 (m/s or rad/s) remain. Check the "
-        "velocities of the driving coordinates and of the prescribed motions",
+        "the stated initial velocities contradict joint 'axle', 'pin' by 6 (m/s or rad/s): bar.angular_velocity is "
+        "12 rad/s (nearest possible: 6), wheel.velocity is (0, 0) m/s (nearest possible: (0, 6)). Correct them, or "
+        "leave out those that follow from the joints",
+    ),
+    "prescribed motions of different velocities": (
+        driven_apart,
+        "no initial velocities satisfy joint 'slow': 0.5 (m/s or rad/s) remain. Check the prescribed motions at the "
+        "start",
     ),
     "a joint on a body that was not added": (
         not_added,

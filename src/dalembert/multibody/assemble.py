@@ -14,13 +14,14 @@ from scipy.linalg import qr
 
 from dalembert.errors import InputError, ModelError, unknown
 from dalembert.multibody.components.planar.body import Body
-from dalembert.multibody.evaluate import constraint_jacobian, constraint_rates, residual
+from dalembert.multibody.evaluate import constraint_jacobian, residual
+from dalembert.multibody.initial_velocities import initial_velocities
 from dalembert.multibody.kernels.dual import STEP
 from dalembert.multibody.kernels.model import Model
 from dalembert.multibody.lowering import Lowered, lower
+from dalembert.multibody.rigid_motions import CLOSED, coordinates_of, modes_of, size_of, smallest, spread, unknowns
 from dalembert.multibody.system import System
 
-_CLOSED = 1e-13  # violation against the scale that counts as none
 _MOST_ITERATIONS = 60
 _FRAME = {"x": 0, "y": 1, "angle": 2}
 
@@ -34,7 +35,7 @@ def assembled(system: System, tilted: bool = False, placed: Lowered | None = Non
     Raises
     ------
     ModelError
-        Where the mechanism cannot be assembled, or its driving coordinates contradict its joints.
+        Where the mechanism cannot be assembled, its driving coordinates contradict its joints, or stated velocities do.
     """
     lowered = placed or lower(system)
     if lowered.structure.size == lowered.structure.n:
@@ -47,8 +48,8 @@ def assembled(system: System, tilted: bool = False, placed: Lowered | None = Non
         )
     free = _free(system)
     frames = _close(system.bodies, lowered, model, free)
-    lowered = replace(lowered, frames=frames, x=_coordinates(system.bodies, lowered, frames))
-    return replace(lowered, v=_consistent(system.bodies, lowered, model, free))
+    lowered = replace(lowered, frames=frames, x=unknowns(lowered, coordinates_of(system.bodies, frames)))
+    return replace(lowered, v=initial_velocities(system.bodies, lowered, model))
 
 
 def scales(lowered: Lowered) -> np.ndarray:
@@ -134,103 +135,47 @@ def _free(system: System) -> np.ndarray:
     return free
 
 
-def _coordinates(bodies: Sequence[Body], lowered: Lowered, frames: np.ndarray) -> np.ndarray:
-    """Unknowns of undeformed bodies in their frames, (N + 1,)."""
-    own = [body.coordinates(*frame) for body, frame in zip(bodies, frames, strict=True)]
-    return np.concatenate([*own, np.zeros(lowered.structure.size + 1 - lowered.structure.n)])
-
-
-def _modes(bodies: Sequence[Body], lowered: Lowered, frames: np.ndarray) -> np.ndarray:
-    """Derivatives of the coordinates by the frames, (n, bodies, 3)."""
-    modes = np.zeros((lowered.structure.n, len(bodies), 3), dtype=lowered.x.dtype)
-    for number, (body, frame) in enumerate(zip(bodies, frames, strict=True)):
-        first = lowered.structure.first[body.name]
-        modes[first : first + body.size, number] = body.rigid_modes(body.coordinates(*frame), frame)
-    return modes
-
-
-def _size(values: np.ndarray) -> float:
-    """Largest entry, derivatives included."""
-    return max(np.abs(np.real(values)).max(initial=0.0), np.abs(np.imag(values)).max(initial=0.0) / STEP)
-
-
-def _smallest(lowered: Lowered, model: Model, x: np.ndarray, modes: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-    """Smallest change of frames (free,), with ``modes`` (n, free), that changes the constraints as ``wanted`` (m,).
-
-    With J the jacobian of the constraints by the frames it is J^T p, J J^T p = wanted. Both products are taken from the
-    kernels, so that in complex numbers the derivative of J counts, too; only the inverse is that of the real part.
-    """
-    n = lowered.structure.n
-    jacobian = constraint_jacobian(lowered, np.real(x)) @ np.real(modes)
-    inverse = np.linalg.pinv(jacobian, rcond=1e-10)
-    if not np.iscomplexobj(x):
-        return inverse @ wanted
-    still, pushed = np.zeros_like(x), x.copy()
-    at_rest, _ = constraint_rates(lowered, model, x, still, still)
-    unloaded = residual(lowered, model, x, still, still)[:n]
-    change = np.zeros(modes.shape[1], dtype=x.dtype)
-    for _ in range(3):  # linear: once for the value, once for its derivative, once for rounding
-        moving = np.concatenate([modes @ change, still[n:]])
-        lacking = wanted - constraint_rates(lowered, model, x, moving, still)[0] + at_rest
-        pushed[n:-1] += inverse.T @ (inverse @ lacking)
-        change = (residual(lowered, model, pushed, still, still)[:n] - unloaded) @ modes
-    return change
-
-
 def _close(bodies: Sequence[Body], lowered: Lowered, model: Model, free: np.ndarray) -> np.ndarray:
     """Frames at which all joints are closed."""
     frames = lowered.frames
     still = np.zeros_like(lowered.x)
-    tolerance = _CLOSED * scales(lowered).max()
+    extent = scales(lowered).max()
     for _ in range(_MOST_ITERATIONS):
-        x = _coordinates(bodies, lowered, frames)
+        coordinates = coordinates_of(bodies, frames)
+        x = unknowns(lowered, coordinates)
         gaps = residual(lowered, model, x, still, still)[lowered.structure.n :]
-        if _size(gaps) <= tolerance:
+        (gap, slope), moved = size_of(gaps), max(1.0, size_of(x)[1])
+        closed = max(gap, slope / moved) / extent  # derivatives are rounded in proportion to their size
+        if closed <= CLOSED:
             return frames
         if not np.all(np.isfinite(gaps)):
             break
-        step = _smallest(lowered, model, x, _modes(bodies, lowered, frames)[:, free], -gaps)
+        modes = spread(lowered, bodies, modes_of(bodies, coordinates, frames))
+        step = smallest(lowered, model, x, modes[:, free], -gaps)
         longest = np.abs(np.real(step)).max(initial=0.0)
         if not np.isfinite(longest):
             break
         frames = frames.copy()
-        frames[free] += step * min(1.0, 0.5 * scales(lowered).max() / (longest + 1e-300))
-        if longest <= 1e-15 and _size(gaps) <= 1e3 * tolerance:
+        frames[free] += step * min(1.0, 0.5 * extent / (longest + 1e-300))
+        if longest <= 1e-15 and closed <= 1e3 * CLOSED:
             return frames
     structure = lowered.structure
     for error in lowered.failures.inexact:
         raise error
     for error in lowered.failures.errors:
         raise ModelError(f"the joints cannot be placed at the start: {type(error).__name__}: {error}") from error
-    gaps = residual(lowered, model, _coordinates(bodies, lowered, frames), still, still)[structure.n :]
-    open_by = np.abs(np.real(gaps))
-    worst = int(np.argmax(open_by))
+    x = unknowns(lowered, coordinates_of(bodies, frames))
+    gaps = residual(lowered, model, x, still, still)[structure.n :]
+    wide, slope = np.abs(np.real(gaps)), np.abs(np.imag(gaps)) / STEP
+    if wide.max() <= CLOSED * extent:
+        raise ModelError(
+            f"joint {structure.owners[structure.n + int(np.argmax(slope))]!r} is closed, but not for other values of a "
+            "parameter, so there is no derivative: the position is singular, or the joint is redundant. Start from "
+            "another position, take the joint out, or let the placement depend on the parameter"
+        )
+    worst = int(np.argmax(wide))
     raise ModelError(
         f"the mechanism cannot be assembled: joint {structure.owners[structure.n + worst]!r} stays open by "
-        f"{open_by[worst]:.3g} (m or rad). Check lengths and places of the bodies that it connects; a first "
+        f"{wide[worst]:.3g} (m or rad). Check lengths and places of the bodies that it connects; a first "
         "placement nearer to the closed position may be needed, or fewer driving coordinates"
-    )
-
-
-def _consistent(bodies: Sequence[Body], lowered: Lowered, model: Model, free: np.ndarray) -> np.ndarray:
-    """Velocities of rigid motions that satisfy the joints, nearest to the given ones."""
-    n = lowered.structure.n
-    tail = np.zeros(lowered.structure.size + 1 - n)
-    modes = _modes(bodies, lowered, lowered.frames)
-    rates = lowered.rates.astype(lowered.x.dtype)
-    for _ in range(3):  # linear: once for the value, twice for rounding
-        v = np.concatenate([np.tensordot(modes, rates, 2), tail])
-        wrong, _ = constraint_rates(lowered, model, lowered.x, v, np.zeros_like(v))
-        speed = max(np.abs(np.real(v)).max(initial=0.0), np.abs(np.real(wrong)).max(initial=0.0), 1.0)
-        if _size(wrong) <= 10 * _CLOSED * speed:
-            return v
-        rates[free] += _smallest(lowered, model, lowered.x, modes[:, free], -wrong)
-    remains = np.abs(np.real(wrong))
-    worst = int(np.argmax(remains))
-    if remains[worst] <= 1e-9 * speed:
-        return v
-    raise ModelError(
-        f"no first velocities are consistent with the joints: at joint {lowered.structure.owners[n + worst]!r} "
-        f"{remains[worst]:.3g} (m/s or rad/s) remain. Check the velocities of the driving coordinates and of the "
-        "prescribed motions"
     )

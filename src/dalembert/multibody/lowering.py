@@ -14,6 +14,7 @@ import numpy as np
 from dalembert.errors import ModelError
 from dalembert.kernels.kernel import Compiled
 from dalembert.multibody.callbacks import Callback, Failures, force_callback, signal_callback
+from dalembert.multibody.carried_rates import carried_rates, stated
 from dalembert.multibody.components.fields import Number
 from dalembert.multibody.components.planar import markers
 from dalembert.multibody.components.planar.body import Body, Marker
@@ -56,7 +57,9 @@ class Lowered:
     signal_data, knots : array
     callbacks : tuple of Callback
     frames, rates : array, shape (bodies, 3)
-        Place (x, y) and angle of each body at first, and their rates.
+        Place (x, y) and angle of each body at first, and their stated rates, zero where none is.
+    stated : array of bool, shape (bodies, 3)
+        Which rates the bodies state.
     x, v : array, shape (N + 1,)
         First unknowns and velocities, as placed: joints may not be closed yet.
     jumps : tuple of float
@@ -77,6 +80,7 @@ class Lowered:
     callbacks: tuple[Callback, ...]
     frames: np.ndarray
     rates: np.ndarray
+    stated: np.ndarray
     x: np.ndarray
     v: np.ndarray
     jumps: tuple[float, ...]
@@ -288,7 +292,7 @@ class Lowering:
     def run(self) -> Lowered:
         """Place the bodies, let every component write its rows, and pack them."""
         system = self._system
-        frames, velocities, kinds = [], [], []
+        frames, kinds = [], []
         for body in system.bodies:
             x, y, _ = self._stand(body.place, body.name)
             self._bodies[body.name] = body
@@ -297,7 +301,6 @@ class Lowering:
             own = body.coordinates(x, y, body.turn)
             self._coordinates[body.name] = own
             frames.append(np.array([x, y, body.turn]))
-            velocities.append(body.rigid_modes(own, frames[-1]) @ np.array(body.motion))
             kinds += body.coordinate_kinds
         n = len(self._owners)
         if n == 0:
@@ -310,7 +313,12 @@ class Lowering:
             component.lower(self)
         size = len(self._owners)
         tail = np.zeros(size + 1 - n)
-        x = np.concatenate([*self._coordinates.values(), tail])
+        places = list(self._coordinates.values())
+        x = np.concatenate([*places, tail])
+        modes = [body.rigid_modes(*place) for body, *place in zip(system.bodies, places, frames, strict=True)]
+        chosen = np.array([[0.0 if value is None else value for value in body.motion] for body in system.bodies])
+        rates = carried_rates(system.bodies, places, modes, chosen[:, :, None])[:, :, 0]
+        velocities = [own @ rate for own, rate in zip(modes, rates, strict=True)]
         structure = Structure(
             n=n,
             size=size,
@@ -330,7 +338,8 @@ class Lowering:
             knots=np.array(self._knots),
             callbacks=tuple(self._callbacks),
             frames=np.array(frames),
-            rates=np.array([body.motion for body in system.bodies]),
+            rates=chosen,
+            stated=stated(system.bodies),
             x=x,
             v=np.concatenate([*velocities, tail]),
             jumps=tuple(sorted(time for time in self._jumps if np.isfinite(time))),

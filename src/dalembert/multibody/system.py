@@ -25,7 +25,7 @@ class System:
     driving : sequence of str
         Placement coordinates that are kept as given while a closed loop is assembled, ``"<body>.angle"``,
         ``"<body>.x"`` or ``"<body>.y"`` (of its placed point); the other bodies are moved, without deformation, until
-        the joints close. Their velocities are kept alike.
+        the joints close. Velocities that bodies state are kept in any case.
 
     Examples
     --------

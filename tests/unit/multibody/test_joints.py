@@ -29,24 +29,38 @@ class Mechanism(NamedTuple):
     sides: tuple[mb.Point | mb.GroundPoint, mb.Point | mb.GroundPoint]
 
 
-def side(system: mb.System, kind: str, name: str, place: tuple[float, float]) -> mb.Point | mb.GroundPoint:
+def first_motion(joint: str, kind: str, other: str, first: bool) -> dict:
+    """What a body states of its velocity: all where the other side is free to follow, else what the joint permits."""
+    spins = {"body": 1.3, "beam": 0.7, "cable": -0.8}
+    spin = {"angular_velocity": spins[kind]} if kind in spins else {}
+    if other != "ground":
+        velocity = {"body": (-0.1, 0.4), "mass": (0.3, -0.2)}
+        return spin | ({"velocity": velocity[kind]} if kind in velocity else {}) if first else {}
+    if joint == "prismatic":
+        return {"velocity": (0.2 * np.cos(LINE), 0.2 * np.sin(LINE))}
+    if joint == "angle":
+        return {"velocity": (-0.1, 0.4)}
+    return {} if joint == "fixed" else spin
+
+
+def side(
+    system: mb.System, kind: str, name: str, place: tuple[float, float], motion: dict
+) -> mb.Point | mb.GroundPoint:
     """A point of a moving body of a kind, or of the ground."""
     angle = ANGLES[kind]
     section = {"density": 900.0, "height": 0.1, "width": 0.05}
     if kind == "ground":
         return system.ground.point(*place, angle)
     if kind == "mass":
-        return system.add(mb.PointMass(name, 1.5, place, velocity=(0.3, -0.2))).centre
+        return system.add(mb.PointMass(name, 1.5, place, **motion)).centre
     if kind == "body":
-        body = mb.RigidBody(
-            name, 2.0, 0.3, place, angle, "grip", {"grip": (0.3, -0.2)}, velocity=(-0.1, 0.4), angular_velocity=1.3
-        )
+        body = mb.RigidBody(name, 2.0, 0.3, place, angle, "grip", {"grip": (0.3, -0.2)}, **motion)
         return system.add(body).point("grip")
     if kind == "cable":
-        cable = mb.AncfCable(name, 1.0, 2, 3e6, **section, angle=angle, start=place, angular_velocity=-0.8)
+        cable = mb.AncfCable(name, 1.0, 2, 3e6, **section, angle=angle, start=place, **motion)
         return system.add(cable).start
     start = place[0] - 0.5 * np.cos(angle), place[1] - 0.5 * np.sin(angle)
-    beam = mb.AncfBeam(name, 1.0, 2, 2e6, poisson_ratio=0.3, **section, angle=angle, start=start, angular_velocity=0.7)
+    beam = mb.AncfBeam(name, 1.0, 2, 2e6, poisson_ratio=0.3, **section, angle=angle, start=start, **motion)
     return system.add(beam).node(1)
 
 
@@ -68,8 +82,8 @@ def mechanism(kind: str, a: str, b: str) -> Mechanism:
     system = mb.System(gravity=(0.7, -9.81))
     apart = 0.0 if kind in ("revolute", "fixed") else 0.4
     sides = (
-        side(system, a, "a", (0.5, 0.3)),
-        side(system, b, "b", (0.5 + apart * np.cos(LINE), 0.3 + apart * np.sin(LINE))),
+        side(system, a, "a", (0.5, 0.3), first_motion(kind, a, b, True)),
+        side(system, b, "b", (0.5 + apart * np.cos(LINE), 0.3 + apart * np.sin(LINE)), first_motion(kind, b, a, False)),
     )
     system.add(joint(kind, *sides, ANGLES[a]))
     for number, point in enumerate(sides):

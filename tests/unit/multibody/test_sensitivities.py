@@ -76,7 +76,7 @@ def pinned(**fields) -> mb.System:
 def sliding(**fields) -> mb.System:
     system = mb.System()
     first = arm(system)
-    second = system.add(mb.RigidBar("part", 0.8, 1.5, start=first.end, angle=-0.5, velocity=(1.0, 0.4)))
+    second = system.add(mb.RigidBar("part", 0.8, 1.5, start=first.end, angle=-0.5))
     system.add(mb.RevoluteJoint("O", system.ground, first.start))
     system.add(mb.PrismaticJoint("joint", first.end, second.centre, **fields))
     return system

@@ -49,10 +49,11 @@ class AncfBeam(Ancf):
         At first, rad, from the x axis.
     start : (float, float) or Point
         Where the bar starts at first, m. The attributes ``start`` and ``end`` are the bar's points.
-    velocity : (float, float)
-        Of the start at first, m/s.
-    angular_velocity : float
-        At first, rad/s.
+    velocity : (float, float), optional
+        Of the start at first, m/s. If not given, that of the point that the body is placed at, or zero; the joints may
+        change it then.
+    angular_velocity : float, optional
+        At first, rad/s. If not given, zero; the joints may change it then.
     damping : float
         Retardation time of the Kelvin-Voigt material, s: stress = D (strain + damping x strain rate).
     law : {"plane-stress", "plane-strain", "uncoupled"}
@@ -78,8 +79,8 @@ class AncfBeam(Ancf):
     width: Number = number("m")
     angle: Number = number("rad", 0.0)
     start: InitVar[Place] = pair("m")
-    velocity: tuple[Number, Number] = pair("m/s")
-    angular_velocity: Number = number("rad/s", 0.0)
+    velocity: tuple[Number, Number] | None = pair("m/s", None)
+    angular_velocity: Number | None = number("rad/s", None)
     damping: Number = number("s", 0.0)
     law: str = "plane-stress"
     formulation: str = "structural"

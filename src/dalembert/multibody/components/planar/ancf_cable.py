@@ -51,8 +51,8 @@ class AncfCable(Ancf):
     width: Number = number("m")
     angle: Number = number("rad", 0.0)
     start: InitVar[Place] = pair("m")
-    velocity: tuple[Number, Number] = pair("m/s")
-    angular_velocity: Number = number("rad/s", 0.0)
+    velocity: tuple[Number, Number] | None = pair("m/s", None)
+    angular_velocity: Number | None = number("rad/s", None)
     damping: Number = number("s", 0.0)
     origin: Place = field(init=False)
 

@@ -47,10 +47,11 @@ class Body(Checked):
         return getattr(self, "angle", 0.0)
 
     @property
-    def motion(self) -> tuple[Number, Number, Number]:
-        """Velocity of the placed point and angular velocity at first."""
-        along, across = getattr(self, "velocity", (0.0, 0.0))
-        return along, across, getattr(self, "angular_velocity", 0.0)
+    def motion(self) -> tuple[Number | None, Number | None, Number | None]:
+        """Velocity of the placed point and angular velocity at first; None where they are not stated."""
+        velocity = getattr(self, "velocity", None)
+        along, across = (None, None) if velocity is None else velocity
+        return along, across, getattr(self, "angular_velocity", None)
 
     @property
     @abstractmethod

@@ -53,13 +53,14 @@ class PointMass(Body):
         kg.
     position : (float, float) or Point
         At first, m.
-    velocity : (float, float)
-        At first, m/s.
+    velocity : (float, float), optional
+        At first, m/s. If not given, that of the point that the mass is placed at, or zero; the joints may change it
+        then.
     """
 
     mass: Number = number("kg")
     position: Place = pair("m")
-    velocity: tuple[Number, Number] = pair("m/s")
+    velocity: tuple[Number, Number] | None = pair("m/s", None)
 
     def __post_init__(self) -> None:
         require(f"point mass {self.name!r}", mass=self.mass)

@@ -30,10 +30,11 @@ class RigidBar(Rigid):
         At first, rad, from the x axis.
     start : (float, float) or Point
         Where the bar starts at first, m. The attributes ``start``, ``end`` and ``centre`` are the bar's points.
-    velocity : (float, float)
-        Of the start at first, m/s.
-    angular_velocity : float
-        At first, rad/s.
+    velocity : (float, float), optional
+        Of the start at first, m/s. If not given, that of the point that the body is placed at, or zero; the joints may
+        change it then.
+    angular_velocity : float, optional
+        At first, rad/s. If not given, zero; the joints may change it then.
 
     Examples
     --------
@@ -48,8 +49,8 @@ class RigidBar(Rigid):
     centre: InitVar[Number] = number("", 0.5)
     angle: Number = number("rad", 0.0)
     start: InitVar[Place] = pair("m")
-    velocity: tuple[Number, Number] = pair("m/s")
-    angular_velocity: Number = number("rad/s", 0.0)
+    velocity: tuple[Number, Number] | None = pair("m/s", None)
+    angular_velocity: Number | None = number("rad/s", None)
     balance: Number = field(init=False)
     origin: Place = field(init=False)
 

@@ -32,10 +32,11 @@ class RigidBody(Rigid):
         The point that is placed: ``"centre"`` (of mass) or one of ``points``.
     points : mapping of str to (float, float)
         Points in the body's axes, from the centre of mass, m.
-    velocity : (float, float)
-        Of the anchor at first, m/s.
-    angular_velocity : float
-        At first, rad/s.
+    velocity : (float, float), optional
+        Of the anchor at first, m/s. If not given, that of the point that the body is placed at, or zero; the joints may
+        change it then.
+    angular_velocity : float, optional
+        At first, rad/s. If not given, zero; the joints may change it then.
 
     Examples
     --------
@@ -50,8 +51,8 @@ class RigidBody(Rigid):
     angle: Number = number("rad", 0.0)
     anchor: str = "centre"
     points: Mapping[str, tuple[Number, Number]] = field(default_factory=dict, metadata={"unit": "m"})
-    velocity: tuple[Number, Number] = pair("m/s")
-    angular_velocity: Number = number("rad/s", 0.0)
+    velocity: tuple[Number, Number] | None = pair("m/s", None)
+    angular_velocity: Number | None = number("rad/s", None)
 
     def __post_init__(self) -> None:
         require(f"rigid body {self.name!r}", mass=self.mass, inertia=self.inertia)

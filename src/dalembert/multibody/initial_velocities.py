@@ -1,0 +1,120 @@
+"""Initial velocities: those that are stated are kept, the others follow from the joints.
+
+The unknowns are the rates of the frames that no body states, those of placed bodies relative to the point that they are
+placed at; the change from rest is the smallest one. In complex numbers the derivatives follow from the same equations.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from dalembert.errors import ModelError
+from dalembert.multibody.carried_rates import carried_rates
+from dalembert.multibody.components.planar.body import Body
+from dalembert.multibody.evaluate import constraint_rates
+from dalembert.multibody.kernels.model import Model
+from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.rigid_motions import CLOSED, coordinates_of, modes_of, size_of, smallest, spread
+
+_ROUNDING = 1e-9  # of the largest velocity: what stated velocities may leave of a constraint's rate
+
+
+def initial_velocities(bodies: Sequence[Body], lowered: Lowered, model: Model) -> np.ndarray:
+    """Velocities of rigid motions that satisfy the joints, (N + 1,).
+
+    Raises
+    ------
+    ModelError
+        Where the stated velocities contradict a joint, with the velocities that are stated and the nearest possible
+        ones; where no velocities satisfy the joints.
+    """
+    turning = np.array([[True, True, body.turns] for body in bodies])
+    motion = _Motion(bodies, lowered, model)
+    chosen, left = motion.completed(np.where(lowered.stated, lowered.rates, 0.0), turning & ~lowered.stated)
+    v = motion.velocities(chosen)
+    wrong, wrong_slope = size_of(left)
+    speed, slope = motion.sizes(v)
+    if wrong > _ROUNDING * speed:
+        raise _contradiction(motion, turning, left)
+    if wrong_slope > _ROUNDING * slope:
+        row = int(np.argmax(np.abs(np.imag(left))))
+        raise ModelError(
+            f"the stated initial velocities satisfy joint {motion.owner(row)!r}, but not for other values of a "
+            "parameter that they or the positions depend on. Leave out velocities that follow from the joints"
+        )
+    return v
+
+
+class _Motion:
+    """The first rigid motion of a mechanism as a function of the chosen rates, (bodies, 3)."""
+
+    def __init__(self, bodies: Sequence[Body], lowered: Lowered, model: Model) -> None:
+        self.bodies, self.lowered, self.model = bodies, lowered, model
+        self._coordinates = coordinates_of(bodies, lowered.frames)
+        self._each = modes_of(bodies, self._coordinates, lowered.frames)
+        self._modes = spread(lowered, bodies, self._each)
+        self._tail = np.zeros(lowered.structure.size + 1 - lowered.structure.n)
+
+    def velocities(self, chosen: np.ndarray) -> np.ndarray:
+        """All velocities, (N + 1,)."""
+        rates = carried_rates(self.bodies, self._coordinates, self._each, chosen[:, :, None])[:, :, 0]
+        return np.concatenate([np.tensordot(self._modes, rates, 2), self._tail])
+
+    def owner(self, row: int) -> str:
+        """The joint of a constraint."""
+        return self.lowered.structure.owners[self.lowered.structure.n + row]
+
+    def sizes(self, v: np.ndarray) -> tuple[float, float]:
+        """Sizes against which constraint rates, and their derivatives, count as none."""
+        (speed, slope), (_, place) = size_of(v), size_of(self.lowered.x)
+        speed = max(speed, 1.0)
+        return speed, max(slope, speed * max(place, 1.0))
+
+    def completed(self, chosen: np.ndarray, free: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Chosen rates with the smallest change of the ``free`` ones, and the constraint rates that remain."""
+        lowered, chosen = self.lowered, chosen.astype(self.lowered.x.dtype)
+        units = None
+        for attempt in range(4):  # linear: once for the value, twice for rounding
+            v = self.velocities(chosen)
+            left, _ = constraint_rates(lowered, self.model, lowered.x, v, np.zeros_like(v))
+            (wrong, wrong_slope), (speed, slope) = size_of(left), self.sizes(v)
+            if attempt == 3 or not free.any() or (wrong <= 10 * CLOSED * speed and wrong_slope <= 10 * CLOSED * slope):
+                break
+            units = self._units(free) if units is None else units
+            chosen[free] += smallest(lowered, self.model, lowered.x, units, -left)
+        return chosen, left
+
+    def _units(self, free: np.ndarray) -> np.ndarray:
+        """Derivatives of the velocities by the free rates, (n, free)."""
+        count = int(np.sum(free))
+        unit = np.zeros((*free.shape, count))
+        unit[free] = np.eye(count)
+        rates = carried_rates(self.bodies, self._coordinates, self._each, unit)
+        return np.tensordot(self._modes, rates, 2)
+
+
+def _contradiction(motion: _Motion, turning: np.ndarray, left: np.ndarray) -> ModelError:
+    """Error for stated velocities that leave constraint rates."""
+    wide = np.abs(np.real(left))
+    joints = sorted({motion.owner(row) for row in np.flatnonzero(wide > 0.5 * wide.max()).tolist()})
+    lowered, given = motion.lowered, np.where(motion.lowered.stated, motion.lowered.rates, 0.0)
+    possible, remains = motion.completed(given, turning)
+    worst = int(np.argmax(np.abs(np.real(remains))))
+    if size_of(remains)[0] > _ROUNDING * motion.sizes(motion.velocities(possible))[0]:
+        return ModelError(
+            f"no initial velocities satisfy joint {motion.owner(worst)!r}: {np.abs(np.real(remains[worst])):.3g} "
+            "(m/s or rad/s) remain. Check the prescribed motions at the start"
+        )
+    parts = []
+    for body, own, near, mask in zip(motion.bodies, np.real(given), np.real(possible), lowered.stated, strict=True):
+        near = np.where(np.abs(near) < 1e-12 * np.abs(near).max(), 0.0, near)
+        changed = mask & (np.abs(near - own) > 1e-9 * max(1.0, np.abs(own).max()))
+        if changed[:2].any():
+            ours, theirs = (f"({x:.6g}, {y:.6g})" for x, y in (own[:2], near[:2]))
+            parts.append(f"{body.name}.velocity is {ours} m/s (nearest possible: {theirs})")
+        if changed[2]:
+            parts.append(f"{body.name}.angular_velocity is {own[2]:.6g} rad/s (nearest possible: {near[2]:.6g})")
+    return ModelError(
+        f"the stated initial velocities contradict joint {', '.join(map(repr, joints))} by {wide.max():.3g} (m/s or "
+        f"rad/s): {', '.join(parts)}. Correct them, or leave out those that follow from the joints"
+    )

@@ -21,6 +21,7 @@ STEP = 1e-30
 DIFFERENCE = 1e-5  # step of the differences, in scales
 _SAFETY = 2.0  # factor of the differences' error, which is six times what Taylor's series expects
 _AGREES = 1e-6  # relative
+_CANCELLED = 1e-14  # of the largest derivative: what may be the rounding of terms that cancel
 _WIDTH = 1e-2  # of the intervals that rounding is sought in, in scales
 _INTERVALS = 6  # side by side
 _MOST, _ALL_FLAT = 4, 2  # intervals with jumps, of any number, and of one that is constant between
@@ -61,7 +62,8 @@ def lost_step(numbers: Callable[[complex], np.ndarray], scale: float) -> Lost | 
     """
     here, by_step = _lifted(numbers, 0.0, scale)
     slope, error = _differences(numbers, here, DIFFERENCE * scale)
-    excess = np.abs(by_step - slope) - error - _AGREES * np.maximum(np.abs(by_step), np.abs(slope))
+    sizes = np.maximum(np.abs(by_step), np.abs(slope))
+    excess = np.abs(by_step - slope) - error - _AGREES * sizes - _CANCELLED * _largest(sizes)
     excess[~np.isfinite(excess)] = 0.0
     if np.any(excess > 0):
         excess[excess * DIFFERENCE * scale < _NOISY * _noise(numbers, 0.0, scale)] = 0.0
@@ -127,7 +129,9 @@ class _Intervals(NamedTuple):
         increments = np.diff(values[::2], axis=0)
         largest = np.max(np.abs(values), axis=0, initial=0.0)
         bound = 3 * np.abs(fine - coarse) + _DIFFERS * np.maximum(np.abs(increments), np.abs(fine))
-        excess = np.abs(increments - fine) - bound - 64 * np.finfo(float).eps * largest
+        terms = _largest(np.abs(slopes)) * scale  # size of terms that may cancel
+        rounding = 64 * np.finfo(float).eps * (largest + terms)
+        excess = np.abs(increments - fine) - bound - rounding
         return cls(points[::2], increments, fine, slopes, np.isfinite(excess) & (excess > 0))
 
     @property
@@ -163,6 +167,11 @@ class _Intervals(NamedTuple):
             else:
                 end, after = middle, between
         return bool(abs(after - before) > _JUMP * whole)
+
+
+def _largest(sizes: np.ndarray) -> float:
+    """Largest finite entry."""
+    return float(np.max(sizes, initial=0.0, where=np.isfinite(sizes)))
 
 
 def _lifted(numbers: Callable[[complex], np.ndarray], shift: float, scale: float) -> tuple[np.ndarray, np.ndarray]:

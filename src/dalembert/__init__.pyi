@@ -98,6 +98,7 @@ from dalembert.multibody import Projection as Projection
 from dalembert.multibody import RadauIIA as RadauIIA
 from dalembert.multibody import RevoluteJoint as RevoluteJoint
 from dalembert.multibody import RigidBar as RigidBar
+from dalembert.multibody import RigidBarBetween as RigidBarBetween
 from dalembert.multibody import RigidBody as RigidBody
 from dalembert.multibody import RungeKutta4 as RungeKutta4
 from dalembert.multibody import Spring as Spring

@@ -38,6 +38,7 @@ HOMES = {
     "RadauIIA": "integrators.radau_iia",
     "RevoluteJoint": "components.planar.revolute_joint",
     "RigidBar": "components.planar.rigid_bar",
+    "RigidBarBetween": "components.planar.rigid_bar_between",
     "RigidBody": "components.planar.rigid_body",
     "RungeKutta4": "integrators.runge_kutta",
     "Signal": "components.signals",
@@ -57,6 +58,7 @@ KINDS = {
         "AncfCable",
         "PointMass",
         "RigidBar",
+        "RigidBarBetween",
         "RigidBody",
     ),
     "Joint": (

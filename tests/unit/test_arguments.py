@@ -17,6 +17,7 @@ STIFFNESSES = {f"stiffness_{name}": 1.0 for name in ("x", "y", "angle")}
 COMPONENTS = {
     mb.PointMass: {"mass": 1.0},
     mb.RigidBar: {"length": 1.0, "mass": 1.0},
+    mb.RigidBarBetween: {"start": (0.0, 0.0), "end": (1.0, 0.0), "mass": 1.0},
     mb.RigidBody: {"mass": 1.0, "inertia": 1.0},
     mb.AncfCable: SECTION,
     mb.AncfBeam: {**SECTION, "poisson_ratio": 0.3},

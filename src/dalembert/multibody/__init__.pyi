@@ -16,6 +16,7 @@ from dalembert.multibody.components.planar.prescribed_motion import PrescribedMo
 from dalembert.multibody.components.planar.prismatic_joint import PrismaticJoint as PrismaticJoint
 from dalembert.multibody.components.planar.revolute_joint import RevoluteJoint as RevoluteJoint
 from dalembert.multibody.components.planar.rigid_bar import RigidBar as RigidBar
+from dalembert.multibody.components.planar.rigid_bar_between import RigidBarBetween as RigidBarBetween
 from dalembert.multibody.components.planar.rigid_body import RigidBody as RigidBody
 from dalembert.multibody.components.planar.spring import Spring as Spring
 from dalembert.multibody.components.planar.torque import Torque as Torque

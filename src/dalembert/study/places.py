@@ -16,6 +16,7 @@ from dalembert.study.table import checked
 
 _POINT = re.compile(r"([^\W\d][\w-]*)\.([^\W\d][\w-]*)")
 _GROUND = re.compile(r"ground\s*\((.*)\)")
+_COMMA = re.compile(r",(?![^()]*(?:\([^()]*\)[^()]*)*\))")  # none inside brackets, such as those of atan2(y, x)
 _WAYS = "'OA.end', 'ground(0.3, 0)' or [0.3, 0.0]"
 Position = tuple[float | Expression, ...]
 
@@ -54,7 +55,7 @@ def read_place(value: object, names: Iterable[str] | None = None, *, bare: bool 
         case "ground" if bare:
             return Place()
         case str() if found := _GROUND.fullmatch(value.strip()):
-            return _on_ground(found[1].split(","), value, names)
+            return _on_ground(_COMMA.split(found[1]), value, names)
         case str() if found := _POINT.fullmatch(value.strip()):
             return Place(found[1], found[2])
         case {"x": x, "y": y, **rest} if not rest:

@@ -158,6 +158,11 @@ SCENES: dict[type, tuple[Callable[..., mb.System], dict]] = {
         RIGID | {"position": (0.1, 0.2), "tip": (0.6, 0.1)},
     ),
     mb.RigidBar: (alone(mb.RigidBar), RIGID | {"length": 1.2, "centre": 0.3, "start": (0.1, 0.2)}),
+    mb.RigidBarBetween: (
+        alone(mb.RigidBarBetween),
+        {"start": (0.1, 0.2), "end": (1.1, 0.6), "mass": 2.0, "line_density": 0.5, "inertia": 0.3, "centre": 0.3}
+        | {"velocity": (0.3, -0.2), "angular_velocity": 0.8},
+    ),
     mb.PointMass: (mass, {"mass": 1.5, "position": (0.3, 0.4), "velocity": (0.5, -0.6)}),
     mb.RevoluteJoint: (pinned, RUBBING | {"pin_radius": 0.2, "slip_rate": 2.0}),
     mb.PrismaticJoint: (sliding, RUBBING | {"slip_velocity": 1.5, "angle": 0.7}),

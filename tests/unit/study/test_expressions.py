@@ -23,6 +23,13 @@ VALUES = {"L": 2.0, "theta1": 0.7}
         (" sqrt(L) ", math.sqrt(2)),
         ("L*cos(theta1) + sin(theta1)/tan(theta1)", 2 * math.cos(0.7) + math.cos(0.7)),
         ("7/2", 3.5),
+        ("atan2(L, -2)", 3 * math.pi / 4),
+        ("asin(-theta1)", -math.asin(0.7)),
+        ("acos(theta1)", math.acos(0.7)),
+        ("hypot(L, 1.5)", 2.5),
+        ("abs(-L) + abs(theta1)", 2.7),
+        ("exp(-theta1)", math.exp(-0.7)),
+        ("log(L)", math.log(2)),
     ],
 )
 def test_value(text, value):
@@ -32,7 +39,12 @@ def test_value(text, value):
 
 
 @pytest.mark.parametrize(
-    "text", ["L**2", "L**-1.5", "sqrt(L)/L", "sin(L)*cos(theta1)", "-L + 3", "tan(L*theta1)", "2**L"]
+    "text",
+    [
+        *("L**2", "L**-1.5", "sqrt(L)/L", "sin(L)*cos(theta1)", "-L + 3", "tan(L*theta1)", "2**L"),
+        *("atan2(L, -3)", "atan2(-1, -L)", "asin(L/3)", "acos(-L/3)", "hypot(-L, theta1)", "abs(theta1 - L)", "abs(L)"),
+        *("exp(-L*theta1)", "log(L/3)"),
+    ],
 )
 def test_complex_step_is_the_derivative(text):
     expression = Expression.of(text)
@@ -59,6 +71,10 @@ def test_complex_step_is_the_derivative(text):
         "L // 2",
         "L < 1",
         "sin(L, L)",
+        "atan2(L)",
+        "hypot(L, L, L)",
+        "log",
+        "hypot",
         "sin(x=L)",
         "(L := 3)",
         "f'{L}'",
@@ -84,6 +100,17 @@ def test_malformed_text_is_refused(text):
         ("1/(L - 2)", "'1/(L - 2)' has no value: float division by zero"),
         ("(-8)**(1/3)", "'(-8)**(1/3)' is not a finite real number"),
         ("sqrt(-L)", "'sqrt(-L)' is not a finite real number for L = 2.0"),
+        (
+            "log(L - 3)",
+            "'log(L - 3)' has no value for L = 2.0: a logarithm takes positive numbers, and got -1",
+        ),
+        ("log(0)", "'log(0)' has no value: a logarithm takes positive numbers, and got 0"),
+        ("asin(L)", "'asin(L)' has no value for L = 2.0: an arc sine or cosine takes numbers from -1 to 1, and got 2"),
+        (
+            "acos(-L)",
+            "'acos(-L)' has no value for L = 2.0: an arc sine or cosine takes numbers from -1 to 1, and got -2",
+        ),
+        ("exp(999*L)", "'exp(999*L)' is not a finite real number for L = 2.0"),
         ("1e308*10", "'1e308*10' is not a finite real number"),
         ("10.0**400", "'10.0**400' has no value: (34, 'Numerical result out of range')"),
         ("9**9**9**9", "'9**9**9**9' has no value: (34, 'Numerical result out of range')"),
@@ -98,4 +125,4 @@ def test_no_value(text, message):
 def test_an_unknown_function_names_the_near_one():
     with pytest.raises(InputError) as caught:
         Expression.of("sine(L)")
-    assert str(caught.value) == "unknown function 'sine'; did you mean 'sin'?"
+    assert str(caught.value) == "unknown function 'sine'; did you mean 'sin' or 'asin'?"

@@ -42,3 +42,8 @@ def test_a_start_on_the_ground_needs_a_position():
 def test_too_few_or_too_many_numbers(given):
     with pytest.raises(InputError, match=r"expected x and y|was given; expected a length"):
         read_place(given)
+
+
+def test_a_comma_inside_brackets_belongs_to_the_expression() -> None:
+    place = read_place("ground(hypot(3, 4), 2*(1 + hypot(0.3, (0.4))), atan2(1, -1))")
+    assert place.position == pytest.approx((5.0, 3.0, 0.75 * 3.141592653589793))

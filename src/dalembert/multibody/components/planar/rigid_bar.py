@@ -3,6 +3,7 @@
 __all__ = ["RigidBar"]
 
 from dataclasses import InitVar, dataclass, field
+from typing import Any
 
 from dalembert.multibody.components.fields import Number, number, pair, require
 from dalembert.multibody.components.planar.body import with_points
@@ -10,9 +11,33 @@ from dalembert.multibody.components.planar.rigid import Rigid
 from dalembert.multibody.components.points import Place
 
 
+class Bar(Rigid):
+    """What bars have in common. The centre of mass lies at the fraction ``balance`` of the length."""
+
+    origin: Place
+    length: Any
+    balance: Number
+
+    @property
+    def place(self) -> Place:
+        return self.origin
+
+    @property
+    def point_names(self) -> tuple[str, ...]:
+        return ("start", "end", "centre")
+
+    @property
+    def offset(self) -> tuple[Number, Number]:
+        return self.local("start")
+
+    def local(self, point: str) -> tuple[Number, Number]:
+        along = {"start": -self.balance, "centre": 0.0, "end": 1.0 - self.balance}[point]
+        return along * self.length, 0.0
+
+
 @with_points("start", "end", "centre")
 @dataclass(frozen=True)
-class RigidBar(Rigid):
+class RigidBar(Bar):
     """A rigid bar from its start to its end.
 
     Parameters
@@ -62,21 +87,5 @@ class RigidBar(Rigid):
         object.__setattr__(self, "origin", start)
 
     @property
-    def place(self) -> Place:
-        return self.origin
-
-    @property
-    def point_names(self) -> tuple[str, ...]:
-        return ("start", "end", "centre")
-
-    @property
-    def offset(self) -> tuple[Number, Number]:
-        return self.local("start")
-
-    @property
     def inertias(self) -> tuple[Number, Number]:
         return self.mass, self.mass * self.length**2 / 12 if self.inertia is None else self.inertia
-
-    def local(self, point: str) -> tuple[Number, Number]:
-        along = {"start": -self.balance, "centre": 0.0, "end": 1.0 - self.balance}[point]
-        return along * self.length, 0.0

@@ -315,7 +315,8 @@ horizon = "growin"
             ("theta = {", "'my theta' = { lower = 0, upper = 1 }\ntheta = {"),
             [
                 "study.toml: [parameters]: 'my theta' cannot be the name of a parameter or constant; expected letters, "
-                "digits and _, a letter first, and none of abs, acos, asin, atan2, cos, exp, hypot, log, pi, sin, sqrt, tan"
+                "digits and _, a letter first, and none of abs, acos, asin, atan2, cos, exp, hypot, log, "
+                "pi, sin, sqrt, tan"
             ],
         ),
         (

@@ -189,6 +189,27 @@ def test_a_name_with_a_script_is_refused_and_one_that_is_there_is_shown_as_text(
     assert tab.run("document.images.length") == 0
 
 
+def test_findings_are_in_the_list_and_beside_each_other(visit, known, root):
+    state = json.loads((root / "runs" / "first" / "state.json").read_text())
+    finding = {"code": "correlated-residuals", "severity": "warning", "message": "The residuals <b>are</b> correlated."}
+    note = {"code": "few-samples", "severity": "note", "message": "There are few samples."}
+    state["best"]["deviations"]["drag"] = None
+    doubtful = root / "runs" / "doubtful"
+    doubtful.mkdir()
+    (doubtful / "state.json").write_text(json.dumps({**state, "findings": [finding, note]}))
+    tab = visit("/")
+    tab.until(f"{TEXT}.includes('The residuals <b>are</b> correlated.') && {TEXT}.includes('1 warning')")
+    assert not tab.run(f"{TEXT}.includes('few samples')")
+    tab = visit("/compare?run=first&run=doubtful")
+    tab.until("document.querySelectorAll('tr').length > 3")
+    rows = tab.run("[...document.querySelectorAll('tr')].map((row) => row.innerText.split(/\\s*\\t\\s*/))")
+    (drag,) = [row for row in rows if row[0].strip() == "drag"]
+    assert re.fullmatch(r"[\d.]+ ± [\d.e-]+", drag[1].strip()), drag
+    assert re.fullmatch(r"[\d.]+", drag[2].strip()), drag
+    (findings,) = [row for row in rows if row[0].strip() == "findings"]
+    assert findings[2].strip() == finding["message"]
+
+
 def test_two_runs_side_by_side(visit, known, address):
     tab = visit("/")
     for name in ("first", "second"):

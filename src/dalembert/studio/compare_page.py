@@ -10,7 +10,7 @@ from dalembert.studio.frame import badge, frame
 from dalembert.studio.live import Live
 from dalembert.studio.workspace import Workspace
 from dalembert.study.folder import RunFolder
-from dalembert.study.listing import since
+from dalembert.study.listing import doubts, since
 
 MOST = 8  # runs side by side
 
@@ -46,15 +46,19 @@ def _read(folder: RunFolder) -> Live:
 def _table(folders: list[RunFolder], lives: dict[str, Live]) -> None:
     """A column a run: state, task, simulations, best fitness, best values."""
     states = [folder.state() for folder in folders]
-    values = [dict((state.get("best") or {}).get("values") or {}) for state in states]
+    values, deviations = ([_best(state, key) for state in states] for key in ("values", "deviations"))
     rows: list[tuple[str, list[str]]] = [
         ("task", [str(state.get("task", "")) for state in states]),
         ("since (UTC)", [since(state) for state in states]),
         ("best fitness", [_number((state.get("best") or {}).get("fitness")) for state in states]),
+        ("findings", ["\n".join(doubts(state)) for state in states]),
         ("events", [str(lives[folder.path.name].count) for folder in folders]),
     ]
     names = dict.fromkeys(key for own in values for key in own)
-    rows += [(name, [_number(own.get(name)) for own in values]) for name in names]
+    rows += [
+        (name, [_with_deviation(own.get(name), known.get(name)) for own, known in zip(values, deviations, strict=True)])
+        for name in names
+    ]
     with ui.element("div").classes("w-full overflow-x-auto"), ui.element("table").classes("text-sm"):
         with ui.element("tr"):
             ui.element("td")
@@ -67,8 +71,22 @@ def _table(folders: list[RunFolder], lives: dict[str, Live]) -> None:
                 with ui.element("th").classes("text-left p-2").props("scope=row"):
                     ui.label(label)
                 for text in cells:
-                    with ui.element("td").classes("p-2"):
-                        ui.label(text)
+                    with ui.element("td").classes("p-2 align-top"):
+                        ui.label(text).classes("whitespace-pre-wrap")
+
+
+def _best(state: dict, key: str) -> dict:
+    """Numbers of a run's state by the names of its unknowns; none of a run without them."""
+    return dict((state.get("best") or {}).get(key) or {})
+
+
+def _with_deviation(value: object, deviation: object) -> str:
+    """An identified value and its standard deviation, with two digits, if they are known.
+
+    >>> _with_deviation(0.7853981, 1.23e-4), _with_deviation(2.0, None), _with_deviation(None, None)
+    ('0.785398 ± 0.00012', '2', '')
+    """
+    return f"{_number(value)} ± {deviation:.2g}" if isinstance(deviation, (int, float)) else _number(value)
 
 
 def _number(value: object) -> str:

@@ -5,7 +5,7 @@ from collections.abc import Awaitable, Callable, MutableMapping
 from dataclasses import dataclass
 from http.cookies import SimpleCookie
 from typing import Any
-from urllib.parse import parse_qs, urlsplit
+from urllib.parse import parse_qs, quote, urlsplit
 
 COOKIE = "dalembert-studio"
 LOCAL = ("127.0.0.1", "localhost", "[::1]")
@@ -45,7 +45,8 @@ class Guard:
             await _answer(scope, send, *refusal)
         elif self.token and self._given(scope) and scope["type"] == "http":
             cookie = f"{COOKIE}={self.token}; HttpOnly; SameSite=Strict; Path=/"
-            await _answer(scope, send, 303, "", [("location", scope["path"]), ("set-cookie", cookie)])
+            path = "/" + quote(scope["path"].lstrip("/"))  # with two slashes it would be another site
+            await _answer(scope, send, 303, "", [("location", path), ("set-cookie", cookie)])
         else:
             await self.app(scope, receive, send)
 

@@ -56,14 +56,21 @@ def _newest(workspace: Workspace) -> list[dict[str, str]]:
 
 def _row(row: dict[str, str], chosen: dict[str, bool]) -> None:
     name = row["run"]
-    with ui.row().classes("w-full items-center gap-x-4 gap-y-1 border rounded p-2").props("role=group"):
+    with (
+        ui.column().classes("w-full gap-1 border rounded p-2").props("role=group"),
+        ui.row().classes("w-full items-center gap-x-4 gap-y-1"),
+    ):
         box = ui.checkbox(value=chosen.get(name, False)).props(f'aria-label="Choose {_attribute(name)}" dense')
         box.on_value_change(lambda event: chosen.update({name: bool(event.value)}))
         ui.link(name, f"/run/{quote(name)}").classes("font-bold break-all")
         badge(row["state"])
         ui.label(row["task"]).classes("text-sm")
         ui.label(row["best"]).classes("text-sm break-all grow")
+        if row["findings"]:
+            ui.badge(row["findings"], color="warning", text_color="black")
         ui.label(row["since"]).classes("text-sm opacity-70")
+        for message in row["messages"].splitlines():
+            ui.label(message).classes("w-full text-sm break-words pl-8")
 
 
 def _attribute(text: str) -> str:

@@ -11,7 +11,9 @@ HERE = {"host": "127.0.0.1:8080"}
 THERE = {"host": "lab.example:8080"}
 
 
-def asked(token: str = "", headers: dict | None = None, query: str = "", kind: str = "http") -> tuple[int | str, dict]:
+def asked(
+    token: str = "", headers: dict | None = None, query: str = "", kind: str = "http", path: str = "/run/a"
+) -> tuple[int | str, dict]:
     """Status of an answer, or "let through", and the answer's headers."""
     sent, through = [], []
 
@@ -23,7 +25,7 @@ def asked(token: str = "", headers: dict | None = None, query: str = "", kind: s
 
     scope = {
         "type": kind,
-        "path": "/run/a",
+        "path": path,
         "query_string": query.encode(),
         "headers": [(name.encode(), value.encode()) for name, value in (headers or HERE).items()],
     }
@@ -60,6 +62,22 @@ def test_beyond_this_machine_a_token_is_asked_for_once():
     assert asked(TOKEN, {**THERE, "cookie": f"{COOKIE}=wrong"})[0] == 401
     assert asked(TOKEN, THERE, kind="websocket")[0] == 1008
     assert asked(TOKEN, {**THERE, "cookie": f"{COOKIE}={TOKEN}"}, kind="websocket")[0] == "let through"
+
+
+@pytest.mark.parametrize(
+    ("path", "location"),
+    [
+        ("/run/π", "/run/%CF%80"),
+        ("/run/日本", "/run/%E6%97%A5%E6%9C%AC"),
+        ("/run/ü b", "/run/%C3%BC%20b"),
+        ("/run/a\r\nX: y", "/run/a%0D%0AX%3A%20y"),
+        ("//evil.example/a", "/evil.example/a"),
+        ("/", "/"),
+    ],
+)
+def test_the_way_on_from_an_address_with_a_token_is_that_page_of_this_site(path, location):
+    status, headers = asked(TOKEN, THERE, f"token={TOKEN}", path=path)
+    assert (status, headers["location"]) == (303, location)
 
 
 @pytest.mark.parametrize("length", [str(MOST_BYTES + 1), "-1", "many"])

@@ -63,6 +63,26 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
     _sync(path.parent)
 
 
+def set_aside(path: Path, *suffixes: str) -> Path:
+    """Rename a damaged file, and files with suffixes beside it, to ``NAME.damaged-1`` or the next free number.
+
+    Examples
+    --------
+    >>> folder = Path(tempfile.mkdtemp())
+    >>> _ = (folder / "a").write_text("garbage")
+    >>> set_aside(folder / "a").name, (folder / "a").exists()
+    ('a.damaged-1', False)
+    """
+    number = 1
+    while (aside := path.with_name(f"{path.name}.damaged-{number}")).exists():
+        number += 1
+    path.replace(aside)
+    for suffix in suffixes:
+        with suppress(FileNotFoundError):
+            path.with_name(path.name + suffix).replace(aside.with_name(aside.name + suffix))
+    return aside
+
+
 def write_text(path: str | os.PathLike[str], text: str) -> None:
     """Write a text file atomically."""
     with replacing(path) as temporary:

@@ -57,7 +57,8 @@ def test_run_list_report(dalembert, tmp_path):
     assert (again.returncode, again.stdout) == (0, ran.stdout)
     listed = dalembert("list")
     assert listed.returncode == 0
-    assert listed.stdout.split()[:8] == ["run", "task", "state", "since", "best", "decay", "sweep", "finished"]
+    assert listed.stdout.split()[:6] == ["run", "task", "state", "since", "best", "findings"]
+    assert listed.stdout.split()[6:9] == ["decay", "sweep", "finished"]
     made = dalembert("report", "decay")
     assert (made.returncode, made.stdout) == (0, "report: runs/decay/report.html\n")
     assert dalembert("report", "runs/decay").stdout == made.stdout

@@ -1,9 +1,13 @@
 """Results on disk as they come, by what they are results of, so that a run that was killed need not repeat them."""
 
+import hashlib
 import json
+import os
 import sqlite3
-from collections.abc import Callable, Sequence
-from contextlib import closing
+import struct
+import warnings
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import closing, suppress
 from pathlib import Path
 from threading import Lock
 from time import monotonic, perf_counter
@@ -12,14 +16,24 @@ from typing import Self
 
 import numpy as np
 
-from dalembert.errors import StorageError, unwritable
+from dalembert.errors import unwritable
+from dalembert.files import set_aside
 
 EVERY = 0.5
 """Seconds between two times at which what came is written to the disk for good."""
 
 Arrays = tuple[np.ndarray, ...]
 
-_TABLE = "CREATE TABLE IF NOT EXISTS results (key BLOB PRIMARY KEY, shapes TEXT, content BLOB, seconds REAL)"
+_COLUMNS = "key, shapes, content, seconds, digest"
+_TABLE = (
+    "CREATE TABLE IF NOT EXISTS results (key BLOB PRIMARY KEY, shapes BLOB, content BLOB, seconds REAL, digest BLOB)"
+)
+_INSERT = "INSERT OR REPLACE INTO results VALUES (?, ?, ?, ?, ?)"
+_NO_STORAGE = (
+    sqlite3.SQLITE_FULL, sqlite3.SQLITE_IOERR, sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_PERM, sqlite3.SQLITE_BUSY,
+    sqlite3.SQLITE_LOCKED, sqlite3.SQLITE_NOMEM, sqlite3.SQLITE_INTERRUPT, sqlite3.SQLITE_READONLY,
+)  # fmt: skip
+"""What SQLite says where the file itself is right; of anything else the file is the cause."""
 
 
 class Checkpoint:
@@ -29,6 +43,8 @@ class Checkpoint:
     ----------
     path : Path
         Made if it is not there.
+    on_damage : callable, optional
+        Called with a sentence where the file is damaged; the sentence is a warning if not given.
 
     Attributes
     ----------
@@ -38,13 +54,16 @@ class Checkpoint:
     Raises
     ------
     StorageError
-        Where the file cannot be written, or is no checkpoint.
+        Where the file cannot be written.
 
     Notes
     -----
     A transaction is written whole or not at all (SQLite's rollback journal, which unlike its write-ahead log works on
     shared file systems too), and what was written before stays. A computation that takes longer than half a second is
     on the disk before the next begins; of shorter ones at most half a second is lost.
+
+    Each result has a digest. A damaged file is kept as ``NAME.damaged-1`` and so on, and a new one takes the results
+    whose digests are right.
 
     Examples
     --------
@@ -57,18 +76,21 @@ class Checkpoint:
     ((array([1., 2.]),), None)
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, on_damage: Callable[[str], None] | None = None) -> None:
         self.path = path
+        self._tell = on_damage or (lambda sentence: warnings.warn(sentence, RuntimeWarning, stacklevel=2))
         self._lock = Lock()
         self._written = monotonic()
         self._counted: set[bytes] = set()
         self.spared = 0.0
         try:
-            self._file = sqlite3.connect(path, check_same_thread=False, isolation_level=None)
-            self._file.execute(_TABLE)
-            self._file.execute("BEGIN")
+            known = path.is_file()
+            self._open()
+            self._file.execute(f"SELECT {_COLUMNS} FROM results LIMIT 1").fetchone()
+            if known and self._file.execute("PRAGMA integrity_check(1)").fetchone() != ("ok",):
+                raise sqlite3.DatabaseError("the file is malformed")
         except sqlite3.Error as error:
-            raise self._lost(error) from None
+            self._replace(error)
 
     def __enter__(self) -> Self:
         return self
@@ -81,24 +103,28 @@ class Checkpoint:
     def recall(self, key: bytes) -> Arrays | None:
         """The arrays kept by a key, or None."""
         with self._lock:
-            found = self._ask("SELECT shapes, content, seconds FROM results WHERE key = ?", (key,)).fetchone()
+            found = self._ask(f"SELECT {_COLUMNS} FROM results WHERE key = ?", (key,))
+            if found is not None and not _is_right(found):
+                self._replace(None)
+                found = None
         if found is None:
             return None
+        _, shapes, content, seconds, _ = found
         if key not in self._counted:
-            self.spared += found[2]
+            self.spared += seconds
             self._counted.add(key)
         arrays, begin = [], 0
-        for kind, shape in json.loads(found[0]):
-            arrays.append(np.ndarray(tuple(shape), kind, found[1], begin).copy())
+        for kind, shape in json.loads(shapes):
+            arrays.append(np.ndarray(tuple(shape), kind, content, begin).copy())
             begin += arrays[-1].nbytes
         return tuple(arrays)
 
     def keep(self, key: bytes, arrays: Sequence[np.ndarray], seconds: float = 0.0) -> None:
         """Keep arrays of numbers, and how long it took to compute them."""
-        shapes = json.dumps([(array.dtype.str, array.shape) for array in arrays])
+        shapes = json.dumps([(array.dtype.str, array.shape) for array in arrays]).encode()
         content = b"".join(np.ascontiguousarray(array).tobytes() for array in arrays)
         with self._lock:
-            self._ask("INSERT OR REPLACE INTO results VALUES (?, ?, ?, ?)", (key, shapes, content, seconds))
+            self._ask(_INSERT, (key, shapes, content, seconds, _digest(key, shapes, content, seconds)))
             self._counted.add(key)
             if monotonic() - self._written >= EVERY:
                 self._write()
@@ -116,23 +142,91 @@ class Checkpoint:
         """Write what has come, and let go of the file."""
         with self._lock:
             try:
-                self._ask("COMMIT")
+                if self._file.in_transaction:  # a full disk ends it
+                    self._ask("COMMIT")
             finally:
                 self._file.close()
 
     def _write(self) -> None:
         self._ask("COMMIT")
-        self._ask("BEGIN")
+        if not self._file.in_transaction:  # a new file has begun one
+            self._ask("BEGIN")
         self._written = monotonic()
 
-    def _ask(self, text: str, values: tuple = ()) -> sqlite3.Cursor:
-        try:
-            return self._file.execute(text, values)
-        except sqlite3.Error as error:
-            raise self._lost(error) from None
+    def _open(self) -> None:
+        self._file = sqlite3.connect(self.path, check_same_thread=False, isolation_level=None)
+        self._file.execute(_TABLE)
+        self._file.execute("BEGIN")
 
-    def _lost(self, error: sqlite3.Error) -> StorageError:
-        return unwritable(self.path, error)
+    def _ask(self, text: str, values: tuple = ()) -> tuple | None:
+        """First row of an answer, None if there is none; from the new file where this one is damaged."""
+        try:
+            return self._file.execute(text, values).fetchone()
+        except sqlite3.Error as error:
+            self._replace(error)
+            return self._file.execute(text, values).fetchone() if values else None
+
+    def _replace(self, error: sqlite3.Error | None) -> None:
+        """Set a damaged file aside, and begin a new one with the results that can be read.
+
+        Raises
+        ------
+        StorageError
+            Where the error is not that of a damaged file.
+        """
+        if error is not None and not self._is_damage(error):
+            raise unwritable(self.path, error) from None
+        with suppress(sqlite3.Error, AttributeError):
+            self._file.execute("COMMIT")
+        with suppress(sqlite3.Error, AttributeError):
+            self._file.close()
+        try:
+            aside = set_aside(self.path, "-journal")
+            self._open()
+            readable = 0
+            for row in _readable(aside):
+                self._file.execute(_INSERT, row)
+                readable += 1
+            self._write()
+        except (sqlite3.Error, OSError) as reason:
+            raise unwritable(self.path, reason) from None
+        self._tell(
+            f"{self.path} is damaged and was kept as {aside.name}. {readable} results of it could be read; the others "
+            "are computed again."
+        )
+
+    def _is_damage(self, error: sqlite3.Error) -> bool:
+        code = getattr(error, "sqlite_errorcode", sqlite3.SQLITE_CORRUPT) & 0xFF
+        if code == sqlite3.SQLITE_READONLY:  # the file's header can say so, too
+            return os.access(self.path, os.W_OK) and os.access(self.path.parent, os.W_OK)
+        return code not in _NO_STORAGE
+
+
+def _digest(key: bytes, shapes: bytes, content: bytes, seconds: float) -> bytes:
+    digest = hashlib.blake2b(key, digest_size=16)
+    for part in (shapes, content, struct.pack("<dQ", seconds, len(shapes))):
+        digest.update(part)
+    return digest.digest()
+
+
+def _is_right(row: tuple) -> bool:
+    """Whether a result is as it was kept."""
+    *result, digest = row
+    try:
+        return _digest(*result) == digest
+    except (TypeError, struct.error):
+        return False
+
+
+def _readable(path: Path) -> Iterator[tuple]:
+    """Results of a damaged file that are as they were kept, from its beginning and from its end."""
+    with suppress(sqlite3.Error), closing(sqlite3.connect(path)) as file:
+        file.execute("PRAGMA writable_schema = ON")  # a file that was cut off is read all the same
+        for order in ("ASC", "DESC"):
+            with suppress(sqlite3.Error):
+                for row in file.execute(f"SELECT {_COLUMNS} FROM results ORDER BY rowid {order}"):
+                    if _is_right(row):
+                        yield row
 
 
 def holds_results(path: Path) -> bool:

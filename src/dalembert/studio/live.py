@@ -1,11 +1,10 @@
 """A run's events while it goes on: what came since the last look, and what all of them come to."""
 
-import json
 from collections import deque
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from dalembert.study.events import Event
+from dalembert.study.events import Event, event_of
 from dalembert.study.progress import Told
 
 SHOWN = 200
@@ -62,8 +61,10 @@ class Live:
             content = file.read()
         whole = content[: content.rfind(b"\n") + 1]
         self._place += len(whole)
-        for line in whole.splitlines():
-            self._take(json.loads(line))
+        for line in whole.splitlines(keepends=True):
+            event = event_of(line)
+            if event is not None:
+                self._take(event)
         return bool(whole)
 
     @property

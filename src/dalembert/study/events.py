@@ -13,9 +13,13 @@ from typing import Any, Self
 import numpy as np
 
 from dalembert.errors import unwritable
+from dalembert.files import set_aside
 
 Event = dict[str, Any]
 Emit = Callable[..., None]
+
+LOST = "run-damaged"
+"""Kind of the event that says which file of the run is damaged, and what was lost."""
 
 OF_THE_RUN = "run-"
 """How the kinds of events begin that tell of the run itself; the others tell of what it does."""
@@ -45,11 +49,19 @@ class EventLog:
 
     def __enter__(self) -> Self:
         try:
-            self.number = _repair(self.path)
+            aside = _repair(self.path)
             self._file = os.open(self.path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o644)
         except OSError as error:
             raise unwritable(self.path, error.strerror) from None
-        self.known = sum(not event["event"].startswith(OF_THE_RUN) for event in read_events(self.path))
+        events = list(read_events(self.path))
+        self.number = len(events)
+        self.known = sum(not event["event"].startswith(OF_THE_RUN) for event in events)
+        if aside is not None:
+            self.emit(
+                LOST,
+                message=f"{self.path} is damaged and was kept as {aside.name}. Its first {self.number} events could be "
+                "read; the others are written again.",
+            )
         return self
 
     def __exit__(
@@ -90,14 +102,23 @@ def teller(emit: Emit, as_record: Callable[[Any], dict[str, Any]]) -> Callable[[
 
 
 def read_events(path: Path) -> Iterator[Event]:
-    """Events of a run, one that may still be going on included: a last line that is not whole is left out."""
+    """Events of a run, one that may still be going on included; without lines that are not whole or damaged."""
     if not path.exists():
         return
-    with path.open(encoding="utf-8") as file:
+    with path.open("rb") as file:
         for line in file:
-            if not line.endswith("\n"):
-                return
-            yield json.loads(line)
+            event = event_of(line)
+            if event is not None:
+                yield event
+
+
+def event_of(line: bytes) -> Event | None:
+    """Return the event of a line; None for a line that is not whole, or damaged."""
+    try:
+        event = json.loads(line) if line.endswith(b"\n") else None
+    except (ValueError, RecursionError):
+        return None
+    return event if isinstance(event, dict) and isinstance(event.get("event"), str) else None
 
 
 def last_progress(path: Path, tail: int = 65536) -> Event | None:
@@ -106,25 +127,30 @@ def last_progress(path: Path, tail: int = 65536) -> Event | None:
         return None
     with path.open("rb") as file:
         file.seek(max(0, path.stat().st_size - tail))
-        lines = file.read().decode("utf-8", errors="replace").splitlines(keepends=True)
-    for line in reversed(lines):
-        if line.endswith("\n") and '"best"' in line:
-            try:
-                return json.loads(line)
-            except json.JSONDecodeError:
-                continue  # the tail began within this line
-    return None
+        lines = file.read().splitlines(keepends=True)
+    found = (event_of(line) for line in reversed(lines) if b'"best"' in line)
+    return next((event for event in found if event is not None and event.get("best") is not None), None)
 
 
-def _repair(path: Path) -> int:
-    """Number of whole lines of a file, after a last one that is not whole was cut off."""
+def _repair(path: Path) -> Path | None:
+    """Cut off a last line that is not whole; keep a damaged file aside, and its events before the damage.
+
+    Returns the file that was kept, None if there was no damage.
+    """
     if not path.exists():
-        return 0
-    content = path.read_bytes()
-    whole = content.rfind(b"\n") + 1
-    if whole < len(content):
-        os.truncate(path, whole)
-    return content.count(b"\n")
+        return None
+    content, whole = path.read_bytes(), 0
+    for line in content.split(b"\n"):
+        if event_of(line + b"\n") is None:
+            break
+        whole += len(line) + 1
+    if b"\n" not in content[whole:]:
+        if whole < len(content):
+            os.truncate(path, whole)
+        return None
+    aside = set_aside(path)
+    path.write_bytes(content[:whole])
+    return aside
 
 
 def _plain(value: Any) -> Any:

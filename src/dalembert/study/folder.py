@@ -13,6 +13,7 @@ from typing import Any
 from dalembert.errors import InputError, unwritable
 from dalembert.files import replacing, write_text
 from dalembert.forward.checkpoint import holds_results
+from dalembert.study.events import read_events
 from dalembert.study.loader import load
 from dalembert.study.study import Study
 
@@ -23,6 +24,7 @@ INPUT = "input"  # what was given cannot run
 INTERRUPTED = "interrupted"  # stopped by the user
 KILLED = "killed"  # never written: the process of a running run is gone
 DAMAGED = "damaged"  # never written: state.json holds no state
+WRITTEN = (RUNNING, FINISHED, FAILED, INPUT, INTERRUPTED)
 RESUMABLE = (KILLED, INTERRUPTED, FAILED)
 
 
@@ -99,18 +101,33 @@ class RunFolder:
             raise InputError(
                 f"{self.path} is no run folder: it has no state.json; name a run that 'dalembert list' shows"
             ) from None
-        except ValueError:  # no JSON, or no text at all
+        except (ValueError, RecursionError):  # no JSON, or no text at all
             state = None
-        if not isinstance(state, dict) or not isinstance(state.get("state"), str):
-            return {"state": DAMAGED}
+        if not isinstance(state, dict) or state.get("state") not in WRITTEN:
+            state = self._logged_state()
         if state["state"] == RUNNING and not self._is_locked():
             state["state"] = KILLED
         return state
 
+    def _logged_state(self) -> dict[str, Any]:
+        """The state that the events of a run say, where that in its own file is damaged."""
+        begun: dict[str, Any] = {}
+        last: dict[str, Any] = {}
+        for event in read_events(self.events):
+            if event["event"] in ("run-started", "run-resumed"):
+                begun, last = event, {**event, "state": RUNNING}
+            elif event["event"] == "run-ended":
+                last = event
+        if last.get("state") not in WRITTEN:
+            return {"state": DAMAGED}
+        found = {key: begun[key] for key in ("study", "title", "task", "version") if key in begun}
+        found |= {key: last[key] for key in ("state", "message", "digests") if key in last}
+        return found | {"since": str(last.get("at", ""))[:19]}
+
     def damaged(self, file: Path) -> InputError:
         """Error about a file of the run that is not there, or that was changed."""
         return InputError(
-            f"{self.path}: the run is damaged: {file.name} is missing, or cannot be read; run its study again, in "
+            f"{self.path}: the run is damaged: {file.name} is missing, or was changed; run its study again, in "
             "another folder"
         )
 
@@ -130,11 +147,25 @@ class RunFolder:
             copy = self.path / "inputs" / f"{number}-{path.name}"
             with replacing(copy) as temporary:
                 shutil.copyfile(path, temporary)
-            digest = hashlib.sha256(copy.read_bytes()).hexdigest()
-            copies[name] = {"copy": copy.relative_to(self.path).as_posix(), "sha256": digest}
+            copies[name] = {"copy": copy.relative_to(self.path).as_posix(), "sha256": sha256(copy)}
         seed = getattr(study.table, "seed", None)
         origin = str(study.path.parent.resolve())
-        _write_json(self.inputs, {"name": study.name, "folder": origin, "seed": seed, "files": copies})
+        about = {"name": study.name, "folder": origin, "seed": seed, "sha256": sha256(self.study)}
+        _write_json(self.inputs, {**about, "files": copies})
+
+    def digests(self) -> dict[str, str]:
+        """Hashes of the run's results, by the names of their files."""
+        return {path.name: sha256(path) for path in sorted(self.path.glob("*.nc"))}
+
+    def check(self, file: Path, digest: object) -> None:
+        """Refuse a file of the run that is not as it was written.
+
+        Raises
+        ------
+        InputError
+        """
+        if not file.is_file() or sha256(file) != digest:
+            raise self.damaged(file)
 
     def kept(self) -> Study:
         """The study as it ran, with the copies of its files.
@@ -148,8 +179,12 @@ class RunFolder:
         try:
             kept = json.loads(self.inputs.read_text(encoding="utf-8"))
             files = {name: self.path / entry["copy"] for name, entry in kept["files"].items()}
+            digests = {self.path / entry["copy"]: entry["sha256"] for entry in kept["files"].values()}
+            digests[self.study] = kept["sha256"]
         except (FileNotFoundError, ValueError, TypeError, AttributeError, KeyError):
             raise self.damaged(self.inputs) from None
+        for file, digest in digests.items():
+            self.check(file, digest)
         study = load(self.study, name=kept["name"], folder=Path(kept["folder"]), files=files)
         return study if kept["seed"] is None else study.with_seed(kept["seed"])
 
@@ -198,6 +233,12 @@ class RunFolder:
             return True
         except PermissionError:  # no run is going on where none may write
             return False
+
+
+def sha256(path: Path) -> str:
+    """Hash of a file's content."""
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def new_folder(name: str, out: Path | None = None, *, force: bool = False) -> RunFolder:

@@ -8,7 +8,7 @@ from rich.text import Text
 from dalembert.study.events import last_progress
 from dalembert.study.folder import RunFolder, find_runs
 
-COLUMNS = ("run", "task", "state", "since", "best")
+COLUMNS = ("run", "task", "state", "since", "best", "findings")
 _STYLES = {"finished": "green", "running": "cyan", "failed": "red", "input": "red", "killed": "red", "damaged": "red"}
 
 
@@ -35,7 +35,29 @@ def _row(folder: RunFolder) -> dict[str, str]:
         "state": str(state["state"]),
         "since": since(state),
         "best": best(folder, state),
+        "findings": counted(state),
+        "messages": "\n".join(doubts(state)),
     }
+
+
+def counted(state: dict) -> str:
+    """How many warnings and errors there are about a result, in words.
+
+    >>> counted({"findings": [{"severity": "warning"}, {"severity": "note"}, {"severity": "warning"}]})
+    '2 warnings'
+    """
+    given = [finding.get("severity") for finding in state.get("findings") or []]
+    counts = {severity: given.count(severity) for severity in ("error", "warning")}
+    return ", ".join(f"{count} {name}{'s' * (count > 1)}" for name, count in counts.items() if count)
+
+
+def doubts(state: dict) -> list[str]:
+    """Messages of the warnings and errors about a result."""
+    return [
+        str(finding.get("message", ""))
+        for finding in state.get("findings") or []
+        if finding.get("severity") in ("warning", "error")
+    ]
 
 
 def since(state: dict) -> str:
@@ -50,5 +72,5 @@ def best(folder: RunFolder, state: dict) -> str:
     if fitness is None:
         event = last_progress(folder.events)
         fitness = event["best"] if event else None
-    values = ", ".join(f"{name} = {value:.6g}" for name, value in found.get("values", {}).items())
+    values = ", ".join(f"{name} = {value:.6g}" for name, value in (found.get("values") or {}).items())
     return ", ".join(part for part in ("" if fitness is None else f"fitness {fitness:.4g}", values) if part)

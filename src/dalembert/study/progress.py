@@ -8,7 +8,7 @@ from typing import Self
 from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
-from dalembert.study.events import Event
+from dalembert.study.events import LOST, Event
 
 _EVERY = 2.0  # s between plain lines
 
@@ -111,6 +111,8 @@ class Watch:
             self._live.stop()
 
     def __call__(self, event: Event) -> None:
+        if event["event"] == LOST:
+            self.console.print(event["message"], markup=False, highlight=False)
         if not self._told.take(event):
             return
         text, done, total = self._told.last

@@ -15,7 +15,7 @@ from dalembert.files import write_text
 from dalembert.forward import Checkpoint, Executor, connected
 from dalembert.kernels.preparation import observed
 from dalembert.study.duration import StartFailed, duration, spoken, timed, too_long
-from dalembert.study.events import Event, EventLog
+from dalembert.study.events import LOST, Event, EventLog
 from dalembert.study.folder import DAMAGED, FAILED, FINISHED, INPUT, INTERRUPTED, RUNNING, RunFolder, new_folder
 from dalembert.study.functions import users_code
 from dalembert.study.study import Study
@@ -122,7 +122,7 @@ def _executed(study: Study, folder: RunFolder, beginning: str, listener: Listene
             log.emit(beginning, **about)
             with (
                 connected(study.executor) as client,
-                Checkpoint(folder.checkpoint) as checkpoint,
+                Checkpoint(folder.checkpoint, lambda sentence: log.emit(LOST, message=sentence)) as checkpoint,
                 users_code(),
                 observed(lambda done, total, _: log.emit("run-compiling", done=done, total=total)),
             ):
@@ -142,8 +142,10 @@ def _executed(study: Study, folder: RunFolder, beginning: str, listener: Listene
                 raise Stopped(folder.path) from None
             raise
         state = FINISHED if outcome.success else FAILED
-        log.emit("run-ended", state=state, message=outcome.status, seconds=round(perf_counter() - began, 3))
-        folder.set_state(state, message=outcome.status, best=outcome.best, **about)
+        ended = {"state": state, "message": outcome.status, "digests": folder.digests()}
+        log.emit("run-ended", **ended, seconds=round(perf_counter() - began, 3))
+        findings = [{"code": one.code, "severity": one.severity, "message": one.message} for one in outcome.findings]
+        folder.set_state(**ended, best=outcome.best, findings=findings, **about)
         folder.checkpoint.unlink(missing_ok=True)
     return outcome
 
@@ -220,10 +222,12 @@ def report_run(folder: RunFolder) -> Path:
     InputError
         If the folder is no run's, or the run has no result.
     """
-    state = folder.state()["state"]
+    state = folder.state()
     if not folder.result.is_file():
-        raise InputError(f"{folder.path} has no result: the run is {state}; run its study again")
+        raise InputError(f"{folder.path} has no result: the run is {state['state']}; run its study again")
     study = folder.kept()
+    for name, digest in (state.get("digests") or {}).items():
+        folder.check(folder.path / name, digest)
     with users_code():
         TASKS[study.task].load(study, folder.result).report(folder.report)
     return folder.report

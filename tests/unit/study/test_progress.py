@@ -31,6 +31,7 @@ def _printed(event: dict, names: tuple[str, ...] = ()) -> str:
             "3 boxes inside, 4 on the boundary, 5 to look at",
         ),
         ({"event": "simulating", "end": 2.0}, "simulating to 2 s"),
+        ({"event": "run-damaged", "message": "checkpoint is damaged"}, "checkpoint is damaged"),
         (
             {"event": "swept", "parameter": "a", "value": 0.5, "done": 3, "total": 9, "failure": None},
             "a = 0.5 · 3 of 9",

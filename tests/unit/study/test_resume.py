@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dalembert.errors import InputError, SolveError, StorageError
+from dalembert.errors import InputError, SolveError
 from dalembert.forward import Checkpoint, PythonModel, Recorded
 from dalembert.study import RunFolder, load, resume_run, run_study
 from dalembert.study.folder import new_folder
@@ -139,11 +139,14 @@ def test_failures_are_kept_too(tmp_path):
 
 def test_a_file_that_is_no_checkpoint(tmp_path):
     (tmp_path / "checkpoint").write_text("something else" * 100)
-    with pytest.raises(StorageError, match="cannot be written: file is not a database"):
-        Checkpoint(tmp_path / "checkpoint")
+    with pytest.warns(RuntimeWarning, match=r"checkpoint is damaged and was kept as checkpoint\.damaged-1\. 0 results"):
+        checkpoint = Checkpoint(tmp_path / "checkpoint")
+    with checkpoint:
+        assert checkpoint.recall(b"one") is None
+    assert (tmp_path / "checkpoint.damaged-1").read_text() == "something else" * 100
 
 
-DAMAGE = "runs/a: the run is damaged: {} is missing, or cannot be read; run its study again, in another folder"
+DAMAGE = "runs/a: the run is damaged: {} is missing, or was changed; run its study again, in another folder"
 
 
 @pytest.mark.parametrize("content", [b'{"state": "finis', b"\xff\xfe", b"[]", b"{}"])

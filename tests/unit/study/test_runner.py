@@ -3,17 +3,20 @@
 import hashlib
 import json
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import xarray as xr
 
 from dalembert.errors import InputError
+from dalembert.findings import Finding
 from dalembert.forward import Checkpoint
 from dalembert.study import RunFolder, load, report_run, run_study
 from dalembert.study.events import read_events
 from dalembert.study.folder import find_runs, new_folder
 from dalembert.study.listing import rows
+from dalembert.study.tasks.task import concluded
 from support import says
 
 DECAY = """
@@ -214,6 +217,55 @@ def test_a_folder_at_work_is_left_alone(study):
         ):
             run_study(load(study), folder.path, force=True)
     assert folder.state()["state"] == "killed"
+
+
+IDENTIFY = """
+[parameters]
+rate = { lower = 0.5, upper = 2.0 }
+height = { lower = 0.1, upper = 1.0 }
+spare = { lower = 0.1, upper = 1.0 }
+[model]
+forward = "decay.py:decay"
+[data]
+file = "x.csv"
+columns = { x = "x" }
+deviations = { x = 0.01 }
+[identify]
+"""
+
+
+def test_the_state_has_findings_and_deviations_so_that_a_list_loads_no_result(study):
+    Path("decay.py").write_text(DECAY.replace("(rate, height)", "(rate, height, spare)"))
+    times = np.linspace(0, 1, 11)
+    noisy = 0.4 * np.exp(-times) + 0.01 * np.random.default_rng(0).standard_normal(11)
+    np.savetxt("x.csv", np.column_stack([times, noisy]), delimiter=",", header="t,x", comments="")
+    study.write_text(IDENTIFY)
+    folder, outcome = run_study(load(study))
+    folder.result.unlink()
+    state = json.loads((folder.path / "state.json").read_text())
+    deviations = state["best"]["deviations"]
+    assert 0 < deviations["rate"] < 0.5
+    assert deviations["spare"] is None
+    findings = state["findings"]
+    assert all(finding.keys() == {"code", "severity", "message"} for finding in findings)
+    assert any(finding["severity"] == "warning" and "'spare'" in finding["message"] for finding in findings)
+    assert [finding["message"] for finding in findings] == [finding.message for finding in outcome.findings]
+    (row,) = rows(Path("runs"))
+    doubtful = [finding for finding in findings if finding["severity"] == "warning"]
+    assert row["findings"] == f"{len(doubtful)} warning{'s' * (len(doubtful) > 1)}"
+    assert "'spare'" in row["messages"]
+
+
+def test_findings_of_a_result_and_its_other_doubts_are_each_told_once():
+    one = Finding("one", "warning", {}, "One.", "Do something.")
+    note = Finding("note", "note", {}, "Note.")
+    result = SimpleNamespace(findings=(one, note), doubts=("Two.", "One."))
+    assert [(each.code, each.message) for each in concluded(result)] == [
+        ("one", "One."),
+        ("note", "Note."),
+        ("doubt", "Two."),
+    ]
+    assert concluded(object()) == ()
 
 
 def test_the_list_of_runs(study):

@@ -10,13 +10,14 @@ import numpy as np
 from pydantic import Field, create_model, model_validator
 
 from dalembert.errors import DalembertError, InputError, unknown
+from dalembert.findings import Finding
 from dalembert.study.numbers import fixed, samples
 from dalembert.study.table import Read, StudyTable, placed, problem
 from dalembert.study.tasks import beside_curve
 from dalembert.study.tasks.backbone import BackboneTable
 from dalembert.study.tasks.beside_curve import beside, beside_family, compare_in_time_table
 from dalembert.study.tasks.sweep import Along, values_along
-from dalembert.study.tasks.task import Outcome, Task, silent
+from dalembert.study.tasks.task import Outcome, Task, concluded, silent
 from dalembert.study.tasks.wrong import needs_structure, unnamed
 
 if TYPE_CHECKING:
@@ -130,6 +131,10 @@ class Response(Outcome):
             "reduction": float(part),
         }
         return {"values": {table.sweep.parameter: best, **found}}
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        return concluded(self.result)
 
     def save(self, path: Path) -> None:
         self.result.save(path)

@@ -9,6 +9,7 @@ import numpy as np
 from pydantic import AfterValidator, Discriminator, Field, Tag, create_model
 
 from dalembert.errors import InputError, unknown
+from dalembert.findings import Finding
 from dalembert.optimize import Minimiser, Squares, Swarm
 from dalembert.optimize.minimiser import NAMES as MINIMISERS
 from dalembert.study.catalogue import methods
@@ -19,7 +20,7 @@ from dalembert.study.numbers import fixed
 from dalembert.study.table import Read, StudyTable, checked
 from dalembert.study.tasks import telling
 from dalembert.study.tasks.shooting import ShootingTable
-from dalembert.study.tasks.task import Outcome, Task
+from dalembert.study.tasks.task import Outcome, Task, concluded
 from dalembert.study.tasks.wrong import needs_solver, unmatched, unnamed
 
 if TYPE_CHECKING:
@@ -160,7 +161,14 @@ class Identification(Outcome):
 
     @property
     def best(self) -> dict[str, Any]:
-        return {"fitness": self.fit.fitness, "values": self.fit.parameters.mapping(self.fit.values)}
+        names = self.fit.parameters.names
+        known = [one if np.isfinite(one) else None for one in self.fit.deviations.tolist()]
+        values = self.fit.parameters.mapping(self.fit.values)
+        return {"fitness": self.fit.fitness, "values": values, "deviations": dict(zip(names, known, strict=True))}
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        return concluded(self.fit)
 
     def save(self, path: Path) -> None:
         self.fit.save(path)

@@ -5,7 +5,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from dalembert.study.tasks.task import Outcome
+from dalembert.findings import Finding
+from dalembert.study.tasks.task import Outcome, concluded
 
 if TYPE_CHECKING:
     from dalembert.study.study import Study
@@ -45,6 +46,10 @@ class ResultOutcome(Outcome):
     @property
     def best(self) -> dict[str, Any]:
         return self.numbers
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        return concluded(self.result)
 
     def save(self, path: Path) -> None:
         self.result.save(path)

@@ -6,6 +6,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
+from dalembert.findings import Finding
 from dalembert.study.table import StudyTable
 
 if TYPE_CHECKING:
@@ -16,6 +17,14 @@ if TYPE_CHECKING:
 
 def silent(kind: str, **details: Any) -> None:
     """Take an event and do nothing: for parts of a run that nobody follows."""
+
+
+def concluded(result: Any) -> tuple[Finding, ...]:
+    """Findings of a result, and its other doubts as warnings."""
+    findings = tuple(getattr(result, "findings", ()))
+    known = {finding.message for finding in findings}
+    others = (doubt for doubt in getattr(result, "doubts", ()) if doubt not in known)
+    return (*findings, *(Finding("doubt", "warning", {}, doubt) for doubt in others))
 
 
 class Outcome(Protocol):
@@ -38,6 +47,11 @@ class Outcome(Protocol):
     def best(self) -> dict[str, Any]:
         """Few numbers for the list of runs."""
         ...
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """What is concluded about the result."""
+        return ()
 
     def save(self, path: Path) -> None:
         """Write the result as NetCDF, whole or not at all."""

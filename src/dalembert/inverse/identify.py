@@ -154,11 +154,12 @@ def identify(
     floor = noise_floor(problem)
 
     first = _origin(problem, model.parameters.start) if origin is None else origin
+    if shooting is not None:  # before anything is simulated
+        check_segments(model, data, shooting.states, shooting.segments, weighed=weights is not None)
+        check_restart(problem, shooting.states, shooting.segments, problem.search.vectors(first))
     if squares:
         check_derivatives(problem.model, problem.search.vectors(first))
     if shooting is not None and isinstance(method, Squares):
-        check_segments(model, data, shooting.states, shooting.segments, weighed=weights is not None)
-        check_restart(problem, shooting.states, shooting.segments, problem.search.vectors(first))
         ends = shots(problem, shooting, method, floor, starts=starts, seed=seed, spread=spread, start=first)
     elif isinstance(method, Squares):
         ends = multistart(problem, method, floor, starts=starts, seed=seed, horizon=horizon, spread=spread, start=first)

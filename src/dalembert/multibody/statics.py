@@ -12,10 +12,12 @@ from scipy.sparse.linalg import lsqr, splu
 from dalembert.errors import SolveError
 from dalembert.kernels.preparation import prepare
 from dalembert.multibody.assemble import assembled, refuse_redundancy, scales
+from dalembert.multibody.complex_steps import Along, check_forces
 from dalembert.multibody.drawing import Drawing, draw
 from dalembert.multibody.evaluate import residual, tangent
+from dalembert.multibody.kernels.motion import Motion
 from dalembert.multibody.lowering import Lowered, lower
-from dalembert.multibody.observe import observer
+from dalembert.multibody.observe import Observer, observer
 from dalembert.multibody.system import System
 
 _MOST_ITERATIONS = 30
@@ -175,6 +177,12 @@ def modes(state: System | Equilibrium, count: int | None = None) -> Modes:
     -------
     Modes
 
+    Raises
+    ------
+    InputError
+        Where the force of a function of the user's cannot run in complex numbers, or loses the imaginary part of the
+        state: its stiffness and damping would be wrong.
+
     Examples
     --------
     >>> from dalembert.multibody import PointMass, Spring, System, modes
@@ -188,6 +196,7 @@ def modes(state: System | Equilibrium, count: int | None = None) -> Modes:
     state = state if isinstance(state, Equilibrium) else equilibrium(state)
     lowered, x, n = state.lowered, state.x, state.lowered.structure.n
     still = np.zeros_like(x)
+    _check_tangents(lowered, x)
     stiffness = tangent(lowered, x, still, (1.0, 0.0, 0.0)).toarray()
     damping = tangent(lowered, x, still, (0.0, 1.0, 0.0)).toarray()[:n, :n]
     mass = tangent(lowered, x, still, (0.0, 0.0, 1.0)).toarray()[:n, :n]
@@ -203,6 +212,13 @@ def modes(state: System | Equilibrium, count: int | None = None) -> Modes:
     shapes /= shapes[np.argmax(np.abs(shapes), axis=0), np.arange(len(kept))]
     roots = roots[kept]
     return Modes(np.imag(roots) / (2 * np.pi), -np.real(roots) / np.abs(roots), shapes)
+
+
+def _check_tangents(lowered: Lowered, x: np.ndarray) -> None:
+    """Raise where stiffness or damping of a force would be wrong."""
+    at_rest = np.zeros((1, len(x)))
+    along = Along(Observer((), ()), np.zeros(1), Motion(x[None], at_rest, at_rest, at_rest))
+    check_forces(lowered, along, scales(lowered))
 
 
 def _undamped(k: np.ndarray, m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -254,3 +254,32 @@ def test_a_sensor_of_another_package_that_loses_the_step_is_refused(channel: str
     model = da.TimeResponse(build, {"gain": (0.5, 1.5)}, [channel], TIMES, da.GeneralizedAlpha(step=5e-3))
     with pytest.raises(da.InputError, match=told):
         model.jacobian(np.array([1.0]))
+
+
+def sprung(force: Callable) -> da.System:
+    """A mass on a spring and on a force of the user's."""
+    system = da.System(gravity=(0.0, 0.0))
+    bob = system.add(da.PointMass("bob", 1.0, (1.0, 0.0)))
+    system.add(da.Spring("rest", system.ground.point(0.0, 0.0), bob.centre, 100.0))
+    system.add(da.Spring("across", system.ground.point(1.0, 1.0), bob.centre, 100.0))
+    system.add(da.UserForce("own", bob.centre, force))
+    return system
+
+
+PULLS: dict[str, Callable] = {
+    "stiffness": lambda t, at, against: (-300.0 * (np.abs(at[0]) - 1.0), 0.0, 0.0),
+    "damping": lambda t, at, against: (-3.0 * at[2].real, 0.0, 0.0),
+    "no complex numbers": lambda t, at, against: (-300.0 * (float(at[0]) - 1.0), 0.0, 0.0),
+}
+
+
+@pytest.mark.parametrize("name", PULLS)
+def test_modes_with_a_force_that_loses_the_step_are_refused(name: str) -> None:
+    with pytest.raises(da.InputError, match="a force of 'own' depends on the state, but its derivative is 0 by the"):
+        da.modes(sprung(PULLS[name]))
+
+
+def test_modes_with_a_force_by_safe_functions_are_right() -> None:
+    force = lambda t, at, against: (-300.0 * (da.absolute(at[0]) - 1.0), 0.0, 0.0)  # noqa: E731
+    frequencies = da.modes(sprung(force)).frequencies
+    np.testing.assert_allclose(frequencies, np.sqrt([100.0, 400.0]) / (2 * np.pi), rtol=1e-9)

@@ -1,11 +1,13 @@
 """A function that drops the imaginary part of a parameter is found by differences."""
 
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from dalembert import InputError, Measurements, PythonModel, identify, predict
+from dalembert.forward import Checkpoint, Recorded
 from dalembert.forward.complex_steps import lost_step, stepped
 from dalembert.forward.wrapped import Wrapped
 
@@ -136,6 +138,24 @@ def test_a_model_is_compared_at_each_vector_once() -> None:
     assert len(calls) == 11
     model.check_derivatives(np.array([1.5]))
     assert len(calls) == 16
+
+
+def test_a_checkpoint_knows_that_a_model_was_compared(tmp_path: Path) -> None:
+    at = np.array([1.0])
+    for calls in (11, 0):
+        model, made = counted()
+        with Checkpoint(tmp_path / "checkpoint") as checkpoint:
+            Recorded(model, checkpoint).check_derivatives(at)
+        assert len(made) == calls
+
+
+def test_comparisons_do_not_change_the_count_of_simulations_nor_the_fit() -> None:
+    times = np.linspace(0.0, 1.0, 5)
+    data = Measurements.of(times, {"x": np.exp(-0.7 * times)})
+    model = PythonModel(lambda rate: np.exp(-rate * times), {"rate": (0.1, 2.0)}, ["x"], times)
+    first, second = (identify(model, data, starts=2, seed=1) for _ in range(2))
+    assert first.simulations == second.simulations
+    np.testing.assert_array_equal(first.values, second.values)
 
 
 def bent(rate: float) -> np.ndarray:

@@ -8,6 +8,7 @@ from benchmarks import page
 NAMES = (
     "steps",
     "chains",
+    "beams",
     "joints",
     "sensitivities",
     "batches",

@@ -81,6 +81,12 @@ class TwoLinkArm:
     integration: Integration = Integration(end=20.0, step=0.01, every=1)
 
 
+def strip(elements: int) -> tuple[Bar, Integration]:
+    """A thin steel strip, clamped level and straight, then released under its weight."""
+    bar = Bar(0.52, elements, 2e11, 0.0, density=7870.0, height=1e-3, width=0.08)
+    return bar, Integration(end=0.5, step=2.5e-4, every=40)
+
+
 PENDULUM = FlexiblePendulum()
 ARM = TwoLinkArm()
 

@@ -38,9 +38,11 @@ def beam_pendulum(
     length_ab=PENDULUM.ab.length,
     height=PENDULUM.oa.height,
     density=PENDULUM.oa.density,
+    formulation="structural",
 ) -> da.System:
-    """The published example: fully parametrised beams, with twice the coordinates of the cables."""
+    """Fully parametrised beams, with twice the coordinates of the cables; the published ones are a continuum."""
     section = {"height": height, "width": PENDULUM.oa.width, "density": density, "poisson_ratio": 0.3}
+    section |= {"formulation": formulation}
     system = da.System(gravity=(0.0, -GRAVITY))
     oa = system.add(da.AncfBeam("OA", length_oa, PENDULUM.oa.elements, youngs_oa, angle=-theta1, **section))
     ab = system.add(
@@ -67,11 +69,25 @@ def chain(bar: Bar) -> da.System:
     return system
 
 
-def response(builder, integration: Integration) -> Callable[[], np.ndarray]:
-    """Channels of joint and tip at the output times, (samples, channels), and no more: what the peer keeps, too."""
+def strip(bar: Bar, kind: str) -> da.System:
+    """Bar clamped at its start; ``kind``: ``"cable"``, or a formulation of beams."""
+    system = da.System(gravity=(0.0, -GRAVITY))
+    if kind == "cable":
+        body = system.add(_cable("C", bar, bar.youngs_modulus, bar.angle))
+    else:
+        section = {"height": bar.height, "width": bar.width, "density": bar.density, "poisson_ratio": 0.3}
+        body = system.add(
+            da.AncfBeam("C", bar.length, bar.elements, bar.youngs_modulus, formulation=kind, angle=bar.angle, **section)
+        )
+    system.add(da.FixedJoint("clamp", system.ground, body.start))
+    return system
+
+
+def response(builder, integration: Integration, channels=JOINT_AND_TIP) -> Callable[[], np.ndarray]:
+    """Channels (of joint and tip) at the output times, (samples, channels), and no more: what the peer keeps, too."""
     one = {"one": (0.0, 1.0)}  # a model needs a parameter; this one does nothing
     model = da.TimeResponse(
-        lambda one: builder(), one, JOINT_AND_TIP, integration.times, solver=solver(integration), workers=1
+        lambda one: builder(), one, channels, integration.times, solver=solver(integration), workers=1
     )
     return lambda: model.evaluate(np.zeros((1, 1))).only()[0]
 

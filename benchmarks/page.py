@@ -31,7 +31,8 @@ def section(kept: dict) -> str:
     packages = ", ".join(f"{name} {version}" for name, version in machine["packages"].items() if version != "absent")
     where = f"*{machine['processor']}, {machine['cores']} cores, Python {machine['python']}, {packages}.*"
     table = "\n".join(f"| {' | '.join(line)} |" for line in lines)
-    return f"## {kept['title']}\n\n{table}\n\n{where}\n"
+    figure = f"![{kept['title']}](pictures/{kept['figure']})\n\n" if "figure" in kept else ""
+    return f"## {kept['title']}\n\n{figure}{table}\n\n{where}\n"
 
 
 def write(names: Sequence[str]) -> None:

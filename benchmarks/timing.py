@@ -33,8 +33,11 @@ def interleaved(candidates: Mapping[str, Callable[[], object]], repeats: int = 7
     return {name: statistics.median(values) for name, values in times.items()}
 
 
-def report(name: str, title: str, rows: list[dict[str, object]]) -> None:
-    """Print the rows below each other, and keep them in results/<name>.json with what they were measured on."""
+def report(name: str, title: str, rows: list[dict[str, object]], figure: str = "") -> None:
+    """Print the rows below each other, and keep them in results/<name>.json with what they were measured on.
+
+    ``figure``: name of a file in docs/pictures that the page shows.
+    """
     print(f"\n{title}")
     names = list(rows[0])
     cells = [names, *([text(row.get(name, "")) for name in names] for row in rows)]
@@ -42,7 +45,7 @@ def report(name: str, title: str, rows: list[dict[str, object]]) -> None:
     for line in cells:
         print("  " + "  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip())
     RESULTS.mkdir(exist_ok=True)
-    kept = {"title": title, "machine": _machine(), "rows": rows}
+    kept = {"title": title, "machine": _machine(), "rows": rows, **({"figure": figure} if figure else {})}
     (RESULTS / f"{name}.json").write_text(json.dumps(kept, indent=1) + "\n")
 
 

@@ -16,6 +16,7 @@ from benchmarks.cases import ARM, GRAVITY, PENDULUM, Bar, FlexiblePendulum, Inte
 
 DENSE, SPARSE = "EXUdense", "EigenSparse"
 AS_IT_COMES, TUNED = 0.5, 0.1
+FULL, MIXED = 0, 2  # integration of a cable: Gauss order 9 and 5; Lobatto and Gauss
 WEIGHT = [0.0, -GRAVITY, 0.0]
 
 
@@ -85,6 +86,29 @@ def chain(bar: Bar, integration: Integration, solver: str = SPARSE, contractivit
     return _peer(container, system, [_sensor(system, nodes[-1])], settings, [(bar, elements)])
 
 
+def strip(bar: Bar, integration: Integration, kind: str, contractivity=TUNED) -> Peer:
+    """Bar clamped at its start. Channels: x and y of the free end.
+
+    ``kind``: cables with full (``"cable"``) or mixed (``"cable, Lobatto"``) integration, or geometrically exact beams with
+    shear (``"beam"``).
+    """
+    container, system = _system()
+    if kind == "beam":
+        nodes, elements = _beam(system, bar, np.zeros(2))
+        held = (0, 1, 2)
+    else:
+        nodes, elements = _cable(system, bar, np.zeros(2), MIXED if kind == "cable, Lobatto" else FULL)
+        held = (0, 1, 3)  # the place and the direction
+    ground = system.AddNode(eii.NodePointGround())
+    fixed = system.AddMarker(eii.MarkerNodeCoordinate(nodeNumber=ground, coordinate=0))
+    for coordinate in held:
+        marker = system.AddMarker(eii.MarkerNodeCoordinate(nodeNumber=nodes[0], coordinate=coordinate))
+        system.AddObject(eii.ObjectConnectorCoordinate(markerNumbers=[fixed, marker]))
+    settings = _settings(integration, DENSE if bar.elements < 16 else SPARSE, contractivity)
+    settings.timeIntegration.newton.relativeTolerance = 1e-6  # rounding in a thin strip is above the default of 1e-8
+    return _peer(container, system, [_sensor(system, nodes[-1])], settings, [(bar, elements)])
+
+
 def _system():
     container = exu.SystemContainer()
     return container, container.AddSystem()
@@ -118,8 +142,8 @@ def _sensor(system, node: int) -> int:
     )
 
 
-def _cable(system, bar: Bar, corner: np.ndarray) -> tuple[list[int], list[int]]:
-    """Nodes and elements of a straight bar; Gauss order 9 along for the axial force, 5 for the bending moment."""
+def _cable(system, bar: Bar, corner: np.ndarray, integration: int = MIXED) -> tuple[list[int], list[int]]:
+    """Nodes and elements of a straight bar; ``MIXED`` has Lobatto's points for the axial force, as ours."""
     direction = _direction(bar.angle)
     size = bar.length / bar.elements
     nodes = [
@@ -135,7 +159,35 @@ def _cable(system, bar: Bar, corner: np.ndarray) -> tuple[list[int], list[int]]:
                 bendingStiffness=bar.bending_stiffness,
                 axialStiffness=bar.axial_stiffness,
                 nodeNumbers=[left, right],
-                useReducedOrderIntegration=0,
+                useReducedOrderIntegration=integration,
+            )
+        )
+        mass = system.AddMarker(eii.MarkerBodyMass(bodyNumber=element))
+        system.AddLoad(eii.LoadMassProportional(markerNumber=mass, loadVector=WEIGHT))
+        elements.append(element)
+    return nodes, elements
+
+
+def _beam(system, bar: Bar, corner: np.ndarray) -> tuple[list[int], list[int]]:
+    """Nodes and elements of a straight bar of geometrically exact beams: linear, with shear."""
+    direction, size = _direction(bar.angle), bar.length / bar.elements
+    area = bar.height * bar.width
+    nodes = [
+        system.AddNode(eii.NodeRigidBody2D(referenceCoordinates=[*(corner + k * size * direction), bar.angle]))
+        for k in range(bar.elements + 1)
+    ]
+    elements = []
+    for left, right in pairwise(nodes):
+        element = system.AddObject(
+            eii.ObjectBeamGeometricallyExact2D(
+                nodeNumbers=[left, right],
+                length=size,
+                massPerLength=bar.mass_per_length,
+                crossSectionInertia=bar.mass_per_length * bar.height**2 / 12,
+                bendingStiffness=bar.bending_stiffness,
+                axialStiffness=bar.axial_stiffness,
+                shearStiffness=bar.youngs_modulus / 2.6 * 13 / 15.3 * area,
+                includeReferenceRotations=True,
             )
         )
         mass = system.AddMarker(eii.MarkerBodyMass(bodyNumber=element))

@@ -1,6 +1,7 @@
 """Flexible elements: error against time of a thin strip that swings, for ours and Exudyn's.
 
-All candidates have the same step, so that the error is that of the elements. The reference is our cable with 64 of them.
+All candidates have the same step, so that the error is that of the elements. The reference is our cable with 64
+elements.
 """
 
 import numpy as np

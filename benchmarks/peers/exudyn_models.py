@@ -89,8 +89,8 @@ def chain(bar: Bar, integration: Integration, solver: str = SPARSE, contractivit
 def strip(bar: Bar, integration: Integration, kind: str, contractivity=TUNED) -> Peer:
     """Bar clamped at its start. Channels: x and y of the free end.
 
-    ``kind``: cables with full (``"cable"``) or mixed (``"cable, Lobatto"``) integration, or geometrically exact beams with
-    shear (``"beam"``).
+    ``kind``: cables with full (``"cable"``) or mixed (``"cable, Lobatto"``) integration, or geometrically exact beams
+    with shear (``"beam"``).
     """
     container, system = _system()
     if kind == "beam":

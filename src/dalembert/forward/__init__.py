@@ -9,6 +9,7 @@ from dalembert.forward.model import Channel, Coordinate, ForwardModel
 from dalembert.forward.prefetch import prefetched
 from dalembert.forward.python_model import PythonModel
 from dalembert.forward.recorded import Recorded
+from dalembert.forward.refinement import Refinable, Refinement, error_factor, refined
 from dalembert.forward.responses import Responses
 from dalembert.forward.sensors import Sensor, Sensors
 from dalembert.forward.wrapped import clock, findings_at
@@ -22,6 +23,8 @@ __all__ = [
     "ForwardModel",
     "PythonModel",
     "Recorded",
+    "Refinable",
+    "Refinement",
     "Responses",
     "Sensor",
     "Sensors",
@@ -29,8 +32,10 @@ __all__ = [
     "clock",
     "connected",
     "ensemble",
+    "error_factor",
     "findings_at",
     "on_cluster",
     "prefetched",
+    "refined",
     "takes_executor",
 ]

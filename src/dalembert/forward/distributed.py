@@ -12,6 +12,7 @@ import numpy as np
 from dalembert.errors import DalembertError, InputError
 from dalembert.forward.cluster import RETRIES, Executor, asked_of, sent
 from dalembert.forward.model import ForwardModel
+from dalembert.forward.refinement import Refinement, refined
 from dalembert.forward.responses import Responses
 from dalembert.forward.wrapped import Wrapped
 
@@ -86,6 +87,11 @@ class Distributed(Wrapped):
         if isinstance(known, DalembertError):
             raise known
         return self.model.linearise(vector) if known is None else (known[0], known[1])
+
+    def refined(self) -> Refinement | None:
+        """Return the same around a more exact model, without the answers of this one, or None."""
+        finer = refined(self.model)
+        return None if finer is None else replace(finer, model=replace(self, model=finer.model, prefetched={}))
 
 
 def on_cluster(model: ForwardModel, client: Executor) -> ForwardModel:

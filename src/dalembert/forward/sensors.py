@@ -11,6 +11,7 @@ from scipy.interpolate import make_interp_spline
 from dalembert.errors import InputError, unknown
 from dalembert.forward.complex_steps import check_derivatives
 from dalembert.forward.model import Channel, Coordinate, ForwardModel
+from dalembert.forward.refinement import Refinement, refined
 from dalembert.forward.responses import Responses
 from dalembert.parameters import Parameter, Parameters
 
@@ -162,6 +163,13 @@ class Sensors:
         kept = min(len(own), needed + DEGREE)
         inner = self.model if kept == len(own) else self.model.first(kept)
         return Sensors(inner, self.sensors, stamps)
+
+    def refined(self) -> Refinement | None:
+        """Return the same readings of a more exact model, or None."""
+        finer = refined(self.model)
+        if finer is None:
+            return None
+        return replace(finer, model=Sensors(finer.model, self.sensors, self.coordinate.values))
 
     def _read(self, vector: np.ndarray, response: np.ndarray) -> np.ndarray:
         """Readings (samples, channels) of one response of the model."""

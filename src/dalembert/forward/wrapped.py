@@ -9,6 +9,7 @@ import numpy as np
 from dalembert.findings import Finding
 from dalembert.forward.complex_steps import check_derivatives
 from dalembert.forward.model import Channel, Coordinate, ForwardModel
+from dalembert.forward.refinement import Refinement, refined
 from dalembert.forward.responses import Responses
 from dalembert.parameters import Parameters
 
@@ -68,6 +69,11 @@ class Wrapped:
     def first(self, samples: int) -> Self:
         """The same around the model cut to its first ``samples`` samples."""
         return replace(self, model=self.model.first(samples))
+
+    def refined(self) -> Refinement | None:
+        """Return the same around a more exact model, or None."""
+        finer = refined(self.model)
+        return None if finer is None else replace(finer, model=replace(self, model=finer.model))
 
 
 def findings_at(model: ForwardModel, vector: np.ndarray) -> tuple[Finding, ...]:

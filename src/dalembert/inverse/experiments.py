@@ -16,10 +16,12 @@ from dalembert.forward import (
     Coordinate,
     Executor,
     ForwardModel,
+    Refinement,
     Responses,
     check_derivatives,
     findings_at,
     on_cluster,
+    refined,
 )
 from dalembert.inverse.matching import check_finite, check_samples, columns_of, weights_of
 from dalembert.parameters import Parameter, Parameters
@@ -199,6 +201,20 @@ class JointModel:
         )
         along = replace(self.coordinate, values=self.coordinate.values[:samples])
         return replace(self, models=models, parts=parts, coordinate=along)
+
+    def refined(self) -> Refinement | None:
+        """Return the same experiments, simulated more exactly as far as their models can be; None where none can."""
+        finer = [refined(model) if part.name in self.active else None for part, model in self._all()]
+        if not any(finer):
+            return None
+        factors = np.zeros(len(self.channels))
+        for part, found, picked in zip(self.parts, finer, self.picked, strict=True):
+            if found is not None:
+                factors[part.columns] = np.broadcast_to(found.factor, len(found.model.channels))[picked]
+        models = tuple(model if found is None else found.model for model, found in zip(self.models, finer, strict=True))
+        active = frozenset(part.name for part, found in zip(self.parts, finer, strict=True) if found)
+        how = " or ".join(dict.fromkeys(found.how for found in finer if found))
+        return Refinement(replace(self, models=models, active=active), factors, how)
 
     def only(self, names: Collection[str]) -> "JointModel":
         """The same, with only these experiments simulated."""

@@ -16,6 +16,7 @@ from dalembert.inverse.estimate import Estimate, Identifiability
 from dalembert.inverse.events import StartEnd, Step
 from dalembert.inverse.experiment_fit import ExperimentFit, experiment_fit
 from dalembert.inverse.experiments import Part
+from dalembert.inverse.integration import IntegrationBias
 from dalembert.inverse.nodes import Nodes
 from dalembert.inverse.sentences import sentences
 from dalembert.inverse.validation import Validation
@@ -68,6 +69,8 @@ class Fit(Result):
         What the method concludes about the result.
     correlated : CorrelatedResiduals, optional
         Noise processes of channels with correlated residuals; None where residuals are taken for independent.
+    integration : IntegrationBias, optional
+        How far the integrator's error moves the values; None for a model that cannot be simulated more exactly.
     """
 
     FORMAT: ClassVar[str] = "dalembert fit 1"
@@ -94,11 +97,17 @@ class Fit(Result):
     nodes: Nodes | None = None
     findings: tuple[Finding, ...] = ()
     correlated: CorrelatedResiduals | None = None
+    integration: IntegrationBias | None = None
 
     @property
     def plain_deviations(self) -> np.ndarray:
         """Standard deviations for independent residuals (parameters,), whether they are or not."""
         return self.deviations if self.correlated is None else self.correlated.deviations
+
+    @property
+    def integration_bias(self) -> np.ndarray:
+        """Error of the values that the integrator causes (parameters,), to first order; NaN where it is not known."""
+        return np.full(len(self.values), np.nan) if self.integration is None else self.integration.bias
 
     @property
     def experiments(self) -> tuple[ExperimentFit, ...]:

@@ -14,7 +14,9 @@ from dalembert.inverse.correlation import CorrelatedResiduals, correlation, corr
 from dalembert.inverse.estimate import Estimate, estimate, unknown_estimate
 from dalembert.inverse.events import Finished, OnEvent
 from dalembert.inverse.experiments import Experiment, JointModel, Part, joint, joint_weights, placed
+from dalembert.inverse.explained import explained_findings
 from dalembert.inverse.fit import Fit
+from dalembert.inverse.integration import integration_bias, integration_findings
 from dalembert.inverse.journal import Journal
 from dalembert.inverse.loss import loss_of
 from dalembert.inverse.multistart import HORIZONS, multistart
@@ -183,7 +185,15 @@ def identify(
     told, correlated = _told(problem, response, at, best.fitness, known=known, exact=exact)
     rounded = reached and floor.source == "rounding of the data"
     findings = correlation_findings(correlated, told.deviations, explained=rounded)
+    found = integration_bias(problem, at, 1 if best.nodes is None else best.nodes.segments)
+    biased = (
+        ()
+        if exact
+        else integration_findings(found, problem, told.deviations, best.fitness, known=known, white=correlated is None)
+    )
     whole = response if problem is posed else posed.responses(vector[None])[0]
+    predicted = parted.validation(whole)
+    unexplained = () if predicted is None else explained_findings(predicted.explained)
     fit = Fit(
         parameters=model.parameters,
         values=vector,
@@ -215,9 +225,10 @@ def identify(
             **_beyond(loss, posed, validation, shooting),
         ),
         parts=parts,
-        validation=parted.validation(whole),
+        validation=predicted,
         nodes=best.nodes,
-        findings=(*findings, *findings_at(model, vector)),
+        findings=(*findings, *biased, *unexplained, *findings_at(model, vector)),
+        integration=found,
         correlated=correlated,
     )
     journal.tell(Finished(fit.success, fit.status, fit.fitness, fit.values, fit.simulations))

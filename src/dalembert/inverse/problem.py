@@ -133,11 +133,15 @@ class Problem:
         Without ``unit`` (parameters,) with respect to the search coordinates.
         """
         unit = self.search.slope(at.vector) if unit is None else unit
+        rows = (self.weighted(at.jacobian, at.response) * unit).reshape(-1, len(at.vector))
+        return np.concatenate([rows, prior_slopes(self.model.parameters, unit)]) if self.priors else rows
+
+    def weighted(self, table: np.ndarray, response: np.ndarray) -> np.ndarray:
+        """Changes (samples, channels, ...) of a response (samples, channels) as changes of the residuals."""
         factor = np.sqrt(self.weights)
         if self.loss is not None:
-            factor = factor * self.loss.slope(factor * self.misfit(at.response))
-        rows = (factor[:, :, None] * at.jacobian * unit).reshape(-1, len(at.vector))
-        return np.concatenate([rows, prior_slopes(self.model.parameters, unit)]) if self.priors else rows
+            factor = factor * self.loss.slope(factor * self.misfit(response))
+        return factor.reshape(*factor.shape, *[1] * (table.ndim - 2)) * table
 
     def gradient(self, point: np.ndarray) -> np.ndarray:
         """Gradient of the fitness at a search point, both (parameters,); zero where the sample fails."""

@@ -1,12 +1,17 @@
 """A fit as a labelled dataset, and in a NetCDF file."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from dalembert.contents import Contents
+from dalembert.inverse.explained import Explained
 from dalembert.inverse.fit import Fit
 from dalembert.inverse.stored_correlated import correlated_of, stored_correlated, told_correlated
 from dalembert.inverse.stored_data import data_labels, data_of, stored_data
+from dalembert.inverse.stored_integration import integration_of, stored_integration
 from dalembert.inverse.stored_nodes import nodes_of, stored_nodes, told_nodes
 from dalembert.inverse.stored_parts import parts_of, stored_parts, told_parts
 from dalembert.inverse.stored_search import search_of, stored_ends, stored_search
@@ -37,6 +42,7 @@ def contents_of(fit: Fit) -> Contents:
         **stored_parts(fit.parts, len(fit.response)),
         **stored_nodes(fit.nodes),
         **stored_correlated(fit.correlated),
+        **stored_integration(fit.integration),
     }
     if fit.validation is not None:
         variables["validation_weights"] = (("sample", "channel"), fit.validation.weights)
@@ -52,9 +58,15 @@ def contents_of(fit: Fit) -> Contents:
         "parts": told_parts(fit.parts),
         "nodes": told_nodes(fit.nodes),
         "correlated": told_correlated(fit.correlated),
+        "integration": None if fit.integration is None else fit.integration.how,
         "validation": None
         if fit.validation is None
-        else {"what": fit.validation.what, "misfit": fit.validation.misfit, "fitted": fit.validation.fitted},
+        else {
+            "what": fit.validation.what,
+            "misfit": fit.validation.misfit,
+            "fitted": fit.validation.fitted,
+            "explained": [asdict(item) for item in fit.validation.explained],
+        },
     }
     return Contents(variables, coordinates, stored_facts(fit, FACTS, **told))
 
@@ -80,8 +92,15 @@ def from_xarray(dataset: "Dataset") -> Fit:
         starts=starts,
         provenance=told["provenance"],
         parts=parts_of(a, told["parts"]),
-        validation=None if validation is None else Validation(weights=a["validation_weights"], **validation),
+        validation=None if validation is None else _validation(a["validation_weights"], **validation),
         nodes=nodes_of(a, told.get("nodes")),
         findings=saved_findings(dataset),
         correlated=correlated_of(a, told.get("correlated")),
+        integration=integration_of(a, told.get("integration")),
     )
+
+
+def _validation(
+    weights: np.ndarray, what: str, misfit: float, fitted: float, explained: Sequence[Mapping[str, Any]] = ()
+) -> Validation:
+    return Validation(what, weights, misfit, fitted, tuple(Explained(**item) for item in explained))

@@ -16,11 +16,27 @@ def summary(fit: Fit) -> str:
         f"fitness      {fit.fitness:.6g} (weighted sum of squares of {int(fit.data.present.sum())} values)",
         f"simulations  {fit.simulations}",
         f"starts       {len(fit.starts)}",
+        *integration_facts(fit),
     ]
     experiments = experiments_table(fit)
     told = [fit.status, *([] if fit.validation is None else [str(fit.validation)]), *fit.identifiability().sentences]
     told += map(str, fit.findings)
     return "\n".join([*table(rows), "", *facts, "", *experiments, *told])
+
+
+def integration_facts(fit: Fit) -> list[str]:
+    """Lines on the bias by the integrator and on the misfit with converged steps; none without an estimate."""
+    found = fit.integration
+    if found is None or found.failed:
+        return []
+    biases = ", ".join(
+        f"{item.name} {f'{bias:.2g} {item.unit}'.rstrip()}"
+        for item, bias in zip(fit.parameters, found.bias, strict=True)
+    )
+    return [
+        f"integrator   bias of the values {biases} (by one simulation {found.how})",
+        f"             fitness with converged steps {found.fitness:.6g}, with corrected values {found.corrected:.6g}",
+    ]
 
 
 def experiments_table(fit: Fit) -> list[str]:

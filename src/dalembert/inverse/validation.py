@@ -7,10 +7,8 @@ import numpy as np
 
 from dalembert.errors import InputError, unknown
 from dalembert.inverse.experiments import JointModel
+from dalembert.inverse.explained import WORSE, Explained, explained, percentages
 from dalembert.inverse.problem import Problem
-
-WORSE = 1.5
-"""Ratio of residuals from which a prediction is said to be worse than the fit."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,14 +23,21 @@ class Validation:
         W of the values that were not fitted, 0 for the others.
     misfit, fitted : float
         Root mean square of W^½ (R − data) over the values that were not fitted, and over those that were.
+    explained : tuple of Explained
+        Share of the variation that the response explains, of each record and channel.
     """
 
     what: str
     weights: np.ndarray
     misfit: float
     fitted: float
+    explained: tuple[Explained, ...] = ()
 
     def __str__(self) -> str:
+        return " ".join(filter(None, [self._compared, percentages(self.explained)]))
+
+    @property
+    def _compared(self) -> str:
         told = f"Not fitted: {self.what}. There the weighted residuals are {self.misfit:.3g} in the root mean square"
         if self.fitted == 0:
             return f"{told}, those of the fit 0."
@@ -64,7 +69,8 @@ class Split:
         weights = np.where(self.fitted, 0.0, self.whole.weights)
         squares = self.whole.misfit(response) ** 2
         of_fit = self.whole.weights - weights
-        return Validation(self.what, weights, *(_rms(squares, own) for own in (weights, of_fit)))
+        misfit, fitted = (_rms(squares, own) for own in (weights, of_fit))
+        return Validation(self.what, weights, misfit, fitted, explained(self.whole, response, weights, fitted))
 
 
 def split(problem: Problem, validation: float | str | Sequence[str] | None) -> Split:

@@ -9,7 +9,7 @@ import numpy as np
 
 from dalembert.errors import InputError, SolveError, told, unknown
 from dalembert.findings import Finding
-from dalembert.forward import Channel, Coordinate, Responses, ensemble
+from dalembert.forward import Channel, Coordinate, Refinement, Responses, ensemble, error_factor
 from dalembert.forward.builders import cores, inexact, restructured
 from dalembert.forward.complex_steps import Compared
 from dalembert.forward.differences import COMPLEX_STEP, DERIVATIVES, central_differences
@@ -212,6 +212,18 @@ class TimeResponse:
         times = np.concatenate([[0.0], self.times[(self.times > 0) & (self.times < end)], [end]])
         own = TimeResponse(self.builder, self.parameters, self.channel_names, times, self.solver, self.workers)
         return own, share
+
+    def refined(self) -> Refinement | None:
+        """Return the same model at half the step, or at a tolerance 100 times tighter; None for an unknown order."""
+        finer = self.solver.refined()
+        if finer is None:
+            return None
+        solver, order = finer
+        model = TimeResponse(
+            self.builder, self.parameters, self.channel_names, self.times, solver, self.workers, self.derivative
+        )
+        how = "at a tolerance 100 times tighter" if order is None else "at half the step"
+        return Refinement(model, error_factor(order), how)
 
     def system(self, vector: np.ndarray) -> System:
         """The mechanism at a parameter vector (parameters,)."""

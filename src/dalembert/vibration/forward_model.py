@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from dalembert.errors import InputError, SolveError, told, unknown
-from dalembert.forward import Channel, Coordinate, Responses, ensemble
+from dalembert.forward import Channel, Coordinate, Refinement, Responses, ensemble, error_factor
 from dalembert.forward.builders import cores, inexact, restructured
 from dalembert.forward.complex_steps import Compared
 from dalembert.forward.differences import COMPLEX_STEP, DERIVATIVES, central_differences
@@ -191,6 +191,22 @@ class FrequencyResponse:
         """The same model at about a share of its frequencies, the first ones, and that share."""
         samples = int(np.ceil(share * len(self.frequencies))) or 1
         return self.first(samples), samples / len(self.frequencies)
+
+    def refined(self) -> Refinement | None:
+        """Return the same model with twice the harmonics and one more; None beyond the limits of the method."""
+        method = self.method.refined()
+        if method is None:
+            return None
+        model = FrequencyResponse(
+            self.builder,
+            self.parameters,
+            self.channel_names,
+            self.frequencies,
+            method,
+            self.workers,
+            self.derivative,
+        )
+        return Refinement(model, error_factor(None), f"with {method.harmonics} harmonics")
 
     def system(self, vector: np.ndarray) -> VibrationSystem:
         """The system at a parameter vector (parameters,)."""

@@ -1,6 +1,6 @@
 """Settings of harmonic balance."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from dalembert.errors import InputError
 from dalembert.settings import expect
@@ -77,6 +77,14 @@ class HarmonicBalance:
                 f"HarmonicBalance: {self.samples} samples of a period were asked for; expected at most {MOST_GIVEN}"
             )
         expect(self, "a number between 0 and 1", lambda given: 0 < given < 1, "sampling", "tolerance", "resolution")
+
+    def refined(self) -> "HarmonicBalance | None":
+        """Return the method with twice the harmonics and one more, and twice the samples; None beyond the limits."""
+        harmonics = 2 * self.harmonics + 1
+        samples = self.samples if isinstance(self.samples, str) else 2 * max(self.samples, harmonics + 1)
+        if harmonics > MOST_HARMONICS or (isinstance(samples, int) and samples > MOST_GIVEN):
+            return None
+        return replace(self, harmonics=harmonics, samples=samples)
 
     @property
     def orders(self) -> tuple[int, ...]:

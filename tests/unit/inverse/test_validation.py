@@ -7,7 +7,8 @@ from dalembert.data import Measurements
 from dalembert.errors import InputError
 from dalembert.forward import PythonModel
 from dalembert.inverse import Experiment, Fit, identify
-from small_models import DECAY, TIMES, measured
+from pages import read_page
+from small_models import DECAY, LINE, TIMES, measured
 from support import says
 
 
@@ -33,7 +34,7 @@ def test_a_model_that_lacks_something_predicts_worse_than_it_fits():
     fit = identify(DECAY, Measurements.of(TIMES, {"x": bent}, 0.01), validation=0.5)
     assert fit.validation.misfit > 3 * fit.validation.fitted
     ratio = fit.validation.misfit / fit.validation.fitted
-    assert str(fit.validation) == (
+    assert str(fit.validation).startswith(
         f"Not fitted: the last 20 of 41 samples. There the weighted residuals are {fit.validation.misfit:.3g} in the "
         f"root mean square, {ratio:.3g} times those of the fit; the model lacks something that shows there, or the "
         "data that were fitted tell too little."
@@ -67,6 +68,67 @@ def test_the_ends_of_all_experiments_are_predicted():
     fit = identify(experiments(), validation=0.25)
     assert fit.validation.what == "what comes after 75 % of each experiment's time"
     assert [int(np.count_nonzero(item.weights)) for item in fit.experiments] == [31, 31, 31]
+
+
+def shares(fit):
+    return {(item.record, item.channel): item.share for item in fit.validation.explained}
+
+
+def test_the_share_explained_is_that_of_the_held_out_values(tmp_path):
+    data = measured(LINE, [1.0, -0.5], 0.05, deviations=0.05)
+    fit = identify(LINE, data, validation=0.5)
+    later, response = data.values[21:], fit.response[21:]
+    expected = 1 - np.sum((response - later) ** 2, axis=0) / np.sum((later - later.mean(axis=0)) ** 2, axis=0)
+    assert list(shares(fit)) == [("", "x"), ("", "y")]
+    np.testing.assert_allclose(list(shares(fit).values()), expected, rtol=1e-9)
+    assert not fit.findings
+    total = 1 - np.sum((response - later) ** 2) / np.sum((later - later.mean(axis=0)) ** 2)
+    x, y = (f"{100 * share:.4g} %" for share in expected)
+    sentence = f"Explained there of the data's variation: {100 * total:.4g} % ('x' {x}, 'y' {y})."
+    assert sentence in fit.summary()
+    fit.save(tmp_path / "fit.nc")
+    back = Fit.load(tmp_path / "fit.nc")
+    assert back.validation.explained == fit.validation.explained
+    fit.report(tmp_path / "a.html")
+    assert sentence in read_page(tmp_path / "a.html").text
+
+
+def swing(rate, size):
+    return np.stack([size * np.sin(rate * TIMES), size * np.cos(rate * TIMES)], axis=1)
+
+
+def test_a_record_of_which_little_is_explained_is_a_finding_although_residuals_grow_little():
+    """Both records are fitted badly, so that the ratio of their residuals says nothing."""
+    model = PythonModel(swing, {"rate": (1.0, 3.0), "size": (0.5, 2.0)}, ["x", "y"], TIMES)
+    rng, items = np.random.default_rng(0), []
+    for name, other in (("a", 0.55), ("b", 0.75)):
+        values = swing(2.0, 1.0) + other * swing(5.3, 1.0) + 0.02 * rng.standard_normal((len(TIMES), 2))
+        items.append(Experiment(name, model, Measurements.of(TIMES, dict(zip("xy", values.T, strict=True)), 0.02)))
+    fit = identify(items, validation="b", start=[2.0, 1.0], starts=1)
+    assert fit.validation.misfit < 1.5 * fit.validation.fitted
+    finding = next(item for item in fit.findings if item.code == "validation-unexplained")
+    assert finding.doubtful
+    assert finding.values["record"] == "b"
+    assert 0.2 < finding.values["explained"] < 0.9
+    assert "held-out record 'b'" in finding.message
+    assert {record for record, _ in shares(fit)} == {"b"}
+
+
+def test_a_noisy_record_that_is_predicted_to_its_noise_is_no_finding():
+    items = [
+        Experiment(name, DECAY, measured(DECAY, [2.0, 0.8], 0.6, seed, deviations=0.6))
+        for seed, name in enumerate("abc")
+    ]
+    fit = identify(items, validation="c")
+    assert shares(fit)["c", "x"] < 0.8
+    assert "validation-unexplained" not in {item.code for item in fit.findings}
+
+
+def test_a_record_that_does_not_vary_has_no_share():
+    flat = Measurements.of(TIMES, {"x": np.where(TIMES < 2.05, 2 * np.exp(-0.8 * TIMES), 0.4)}, 0.02)
+    fit = identify(DECAY, flat, validation=0.4875)
+    assert np.isnan(shares(fit)["", "x"])
+    assert "undefined (constant data)" in fit.summary()
 
 
 @pytest.mark.parametrize(

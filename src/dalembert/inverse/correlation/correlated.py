@@ -26,8 +26,8 @@ class NoiseProcess:
     variance : float
         Of a weighted residual.
     time : float
-        Correlation time: that in which the slowest part of the process's autocorrelation decays by e, in the
-        coordinate's unit.
+        Correlation time: that in which the slowest part of the process's autocorrelation decays by e, at most the
+        length of the record, in the coordinate's unit.
     period : float
         Of the response, 2π times its deviation over that of its rate, at most a third of the record, in the
         coordinate's unit.

@@ -154,7 +154,7 @@ def _summary(own: Series, process: Process, p_value: float, response: np.ndarray
         order=process.order,
         even=own.grid is not None,
         variance=process.variance,
-        time=float(process.decay(own.step)),
+        time=float(min(process.decay(own.step), own.length)),
         period=float(min(period, own.length / 3)),
         unit=own.unit,
     )

@@ -3,7 +3,7 @@
 __all__ = ["Automatic"]
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from dalembert.multibody.assemble import redundancy
 from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha
@@ -56,6 +56,10 @@ class Automatic(Integrator):
         if known.rank < known.count:
             return OdeSolver("DOP853", self.tolerance, self.tolerance, Partitioning())
         return RadauIIA(tolerance=self.tolerance)
+
+    def refined(self) -> tuple[Integrator, int | None]:
+        """Return the same choice at a tolerance 100 times tighter."""
+        return replace(self, tolerance=self.tolerance / 100), None
 
     def integrate(
         self,

@@ -104,6 +104,11 @@ class Collocation(Integrator):
                 "another minimiser of dalembert.optimize"
             )
 
+    @property
+    def convergence(self) -> int:
+        """Order in the step."""
+        return 2 * (self.degree - 1) if self.gauss_points == self.degree - 1 else self.degree
+
     def kernels(self, structure: Structure, derivatives: bool) -> list[Compiled]:
         """The loop, or the parts that a search calls, with what differentiates a state by the unknown accelerations."""
         own = [march] if isinstance(self.minimiser, GaussNewton) else [begin, measure, squares, finish]

@@ -3,7 +3,7 @@
 __all__ = ["GeneralizedAlpha"]
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -90,6 +90,15 @@ class GeneralizedAlpha(Integrator):
         for name in ("tolerance", "newton_tolerance"):
             if not getattr(self, name) > 0:
                 raise InputError(f"GeneralizedAlpha: {name} is {getattr(self, name)}; expected a positive number")
+
+    @property
+    def convergence(self) -> int:
+        """Order in the step: 2; 1 without accelerations at the start."""
+        return 2 if self.initial_acceleration == "consistent" else 1
+
+    def refined(self) -> tuple[Integrator, int | None] | None:
+        """Return the method at half the step, or at a tolerance 100 times tighter where it is adaptive."""
+        return (replace(self, tolerance=self.tolerance / 100), None) if self.adaptive else super().refined()
 
     @property
     def fixed_step(self) -> float | None:

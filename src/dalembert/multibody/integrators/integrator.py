@@ -4,7 +4,7 @@ __all__ = ["Integrator"]
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from dataclasses import fields
+from dataclasses import fields, replace
 from itertools import pairwise
 from typing import Any, cast
 
@@ -25,6 +25,7 @@ class Integrator(ABC):
     """
 
     takes_redundancy = False  #: whether constraints may follow from others
+    convergence: int | None = None  #: order of coordinates and velocities at fixed steps; None if not known
 
     @abstractmethod
     def integrate(
@@ -64,6 +65,15 @@ class Integrator(ABC):
     def suiting(self, lowered: Lowered, end: float) -> "Integrator":
         """The integrator for a mechanism's motion until ``end`` (s): itself, but for one that chooses."""
         return self
+
+    def refined(self) -> "tuple[Integrator, int | None] | None":
+        """Return the same method at half the step, and its order; None where these are not known.
+
+        Methods that choose their step: at a tolerance 100 times tighter, and None for the order.
+        """
+        if self.fixed_step is None or self.convergence is None:
+            return None
+        return replace(cast(Any, self), step=self.fixed_step / 2), self.convergence
 
     @property
     def fixed_step(self) -> float | None:

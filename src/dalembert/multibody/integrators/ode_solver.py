@@ -3,7 +3,7 @@
 __all__ = ["OdeSolver"]
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 import numpy as np
@@ -84,6 +84,13 @@ class OdeSolver(Integrator):
                 "stabilisation=Partitioning(), or take BDF"
             )
         self.stabilisation.gains(None)
+
+    def refined(self) -> tuple[Integrator, int | None] | None:
+        """Return the method at tolerances up to 100 times tighter; None where they are the tightest."""
+        tolerance = max(self.relative_tolerance / 100, _FINEST)
+        if tolerance >= self.relative_tolerance:
+            return None
+        return replace(self, relative_tolerance=tolerance, absolute_tolerance=self.absolute_tolerance / 100), None
 
     def kernels(self, structure: Structure, derivatives: bool) -> list[Compiled]:
         """What completes states, with its linear systems; an implicit method needs derivatives in any case."""

@@ -3,7 +3,7 @@
 __all__ = ["RadauIIA"]
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -84,6 +84,14 @@ class RadauIIA(Integrator):
     def order(self) -> int:
         """Order of coordinates and velocities in the step."""
         return 2 * self.stages - 1
+
+    @property
+    def convergence(self) -> int:
+        return self.order
+
+    def refined(self) -> tuple[Integrator, int | None] | None:
+        """Return the method at half the step, or at a tolerance 100 times tighter where it chooses the step."""
+        return (replace(self, tolerance=self.tolerance / 100), None) if self.step is None else super().refined()
 
     def kernels(self, structure: Structure, derivatives: bool) -> list[Compiled]:
         """The loop with its linear systems, and what differentiates a step and an output."""

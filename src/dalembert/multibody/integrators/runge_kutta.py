@@ -54,6 +54,7 @@ class RungeKutta4(Integrator):
     step: float = field(metadata={"unit": "s"})
     stabilisation: Stabilisation = field(default_factory=Projection)
     takes_redundancy = True
+    convergence = 4
 
     def __post_init__(self) -> None:
         if not (np.isfinite(self.step) and self.step > 0):

@@ -57,6 +57,7 @@ class Variational(Integrator):
 
     step: float = field(metadata={"unit": "s"})
     newton_tolerance: float = field(default=1e-14, metadata={"unit": ""})
+    convergence = 2
 
     def __post_init__(self) -> None:
         expect(self, "a positive number of seconds", lambda given: 0 < given < np.inf, "step")

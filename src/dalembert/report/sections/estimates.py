@@ -3,12 +3,14 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
+import numpy as np
+
 from dalembert.report import charts
 from dalembert.report.charts.parameters import on_bound
 from dalembert.report.needs import FitLike
 from dalembert.report.plot import Plot
 from dalembert.report.sections.section import Section
-from dalembert.report.table import Table, cell, noted
+from dalembert.report.table import Cell, Table, cell, noted
 
 
 @dataclass(frozen=True)
@@ -22,24 +24,33 @@ class Estimates(Section):
     @property
     def table(self) -> Table:
         fit = self.fit
-        rows = [
-            (
-                cell(item.name),
-                cell(float(value), deviation, mark=bool(stuck)),
-                cell(float(deviation), digits=2),
-                cell(item.unit),
-                cell(float(item.lower)),
-                cell(float(item.upper)),
-                cell("on its bound" if stuck else "", mark=bool(stuck)),
-            )
-            for item, value, deviation, stuck in zip(
-                fit.parameters, fit.values, fit.deviations, on_bound(fit), strict=True
-            )
-        ]
-        columns = ("parameter", "value", "standard deviation", "unit", "lower bound", "upper bound", "note")
-        return noted(Table("parameters", "Identified values", columns, rows))
+        stuck = on_bound(fit)
+        columns: dict[str, list[Cell]] = {
+            "parameter": [cell(item.name) for item in fit.parameters],
+            "value": [
+                cell(float(value), deviation, mark=bool(mark))
+                for value, deviation, mark in zip(fit.values, fit.deviations, stuck, strict=True)
+            ],
+            "standard deviation": _short(fit.deviations),
+        }
+        if not np.array_equal(fit.plain_deviations, fit.deviations, equal_nan=True):
+            columns["for independent residuals"] = _short(fit.plain_deviations)
+        if np.all(np.isfinite(fit.integration_bias)):
+            columns["bias by the integrator"] = _short(fit.integration_bias)
+        columns |= {
+            "unit": [cell(item.unit) for item in fit.parameters],
+            "lower bound": [cell(float(item.lower)) for item in fit.parameters],
+            "upper bound": [cell(float(item.upper)) for item in fit.parameters],
+            "note": [cell("on its bound" if mark else "", mark=bool(mark)) for mark in stuck],
+        }
+        rows = list(zip(*columns.values(), strict=True))
+        return noted(Table("parameters", "Identified values", tuple(columns), rows))
 
     @property
     def plots(self) -> tuple[Plot, ...]:
         caption = "Each value where it lies between its bounds; bars are two standard deviations."
         return (Plot("parameters", charts.parameters(self.fit), caption),)
+
+
+def _short(numbers: np.ndarray) -> list[Cell]:
+    return [cell(float(number), digits=2) for number in numbers]

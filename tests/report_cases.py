@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 import dalembert as da
+from correlated_noise import autoregressive
 from dalembert.data import Bands, Measurements
 from dalembert.forward import PythonModel
 from dalembert.inverse import Experiment, GlobalSurrogate, design, identifiability, predict, profile
@@ -20,6 +21,8 @@ from dalembert.uncertainty import Chebyshev, LatinHypercube, MonteCarlo, Optimis
 from frequency_cases import FREQUENCY_CASES
 from report_case import Case
 from small_models import DECAY, LINE, TIMES, banded, measured
+from stepped_models import TIMES as STEPPED_TIMES
+from stepped_models import Stepped, decay_in_steps, exact, failing, slow_in_steps
 
 NOW = np.zeros(1)
 DISC = PythonModel(lambda x, y: np.array([x**2 + y**2]), {"x": (-2.0, 2.0), "y": (-2.0, 2.0)}, ["r"], NOW)
@@ -48,6 +51,11 @@ def _integrators(fine: float, **early: int) -> Any:
 
 def _exact(model: PythonModel, values: list[float], **options: Any) -> Measurements:
     return measured(model, values, **options)
+
+
+def _of_the_same_steps() -> Measurements:
+    noise = 1e-3 * np.random.default_rng(1).standard_normal(101)
+    return Measurements.of(STEPPED_TIMES, {"x": decay_in_steps(0.8, 2.0, 0.8) + noise}, 1e-3)
 
 
 def _experiments(noise: float = 0.02, names: str = "ab") -> list[Experiment]:
@@ -255,6 +263,12 @@ CASES: dict[str, Case] = {
             "They are not noise: the model lacks something.",
         ),
     ),
+    "correlated noise": Case(
+        lambda: da.identify(
+            DECAY, Measurements.of(TIMES, {"x": DECAY.function(2.0, 0.8) + 0.02 * autoregressive(0, 41, 0.6)}, 0.02)
+        ),
+        ("Check the model structure and the bounds, or increase `starts`.", "for independent residuals"),
+    ),
     "two minima": Case(
         lambda: da.identify(
             _model(lambda a: a**2 * TIMES, a=(-3.0, 2.0)),
@@ -357,6 +371,28 @@ CASES: dict[str, Case] = {
         lambda: _unsimulated(ParticleSwarm(1, 1), 1.9, 6), ("all 1 iterations done", "every sample of the swarm failed")
     ),
     "a minimiser of SciPy": Case(lambda: _unsimulated(Minimiser("Nelder-Mead"), 1.9, 6), ("every sample failed",)),
+    # ── identification: the integrator ──────────────────────────────────────────────────────────────────────────────
+    "coarse steps": Case(
+        lambda: da.identify(Stepped(method=slow_in_steps), exact(1e-3, 1e-3), starts=1),
+        ("The integrator biases", "with corrected values", "bias by the integrator", "leave residuals"),
+    ),
+    "data of the same steps": Case(
+        lambda: da.identify(Stepped(), _of_the_same_steps(), starts=1),
+        ("The data contain the same error, as data simulated with the same steps do.",),
+    ),
+    "a finer simulation that fails": Case(
+        lambda: da.identify(Stepped(finer=failing), exact(1e-3, 1e-3), starts=1),
+        ("The error of the integrator was not estimated: the simulation at half the step failed",),
+    ),
+    "segments that did not merge, of a model with steps": Case(
+        lambda: da.identify(
+            Stepped(),
+            exact(deviations=1e-3),
+            shooting=da.MultipleShooting({"size": da.State("x", 0.01, 4.0)}, segments=2),
+            starts=1,
+        ),
+        ("the response is that of 2 segments, which one simulation does not follow",),
+    ),
     # ── identification: what was kept for validation, and several experiments ───────────────────────────────────────
     "a share of the samples": Case(
         lambda: da.identify(DECAY, _exact(DECAY, [2.0, 0.8], noise=0.02), validation=0.5),
@@ -371,6 +407,21 @@ CASES: dict[str, Case] = {
             validation=0.5,
         ),
         ("; the model lacks something that shows there, or the data that were fitted tell too little",),
+    ),
+    "a share that does not vary": Case(
+        lambda: da.identify(
+            DECAY,
+            Measurements.of(TIMES, {"x": np.where(TIMES < 2.05, DECAY.function(2.0, 0.8), 0.4)}, 0.02),
+            validation=0.4875,
+        ),
+        ("undefined (constant data)",),
+    ),
+    "an experiment that is predicted badly": Case(
+        lambda: da.identify(
+            [_experiments()[0], Experiment("b", DECAY, measured(DECAY, [3.0, 0.2], 0.02, 1, deviations=0.02))],
+            validation="b",
+        ),
+        ("of the variation of the held-out record 'b'",),
     ),
     "a share beside a perfect fit": Case(
         lambda: da.identify(SLOPE, _exact(SLOPE, [0.5]), starts=1, validation=0.5), ("those of the fit 0.",)

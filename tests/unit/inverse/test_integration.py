@@ -1,50 +1,13 @@
 """The bias that the integrator's error causes: closed forms, findings, models of several parts, and failures."""
 
-from dataclasses import dataclass, replace
-
 import numpy as np
 import pytest
 
 from dalembert.data import Measurements
-from dalembert.errors import SolveError
-from dalembert.forward import Checkpoint, PythonModel, Recorded, Refinement, Sensor, Sensors, error_factor
+from dalembert.forward import Checkpoint, PythonModel, Recorded, Sensor, Sensors
 from dalembert.inverse import Experiment, Fit, MultipleShooting, State, identify
 from dalembert.parameters import Parameter
-
-TIMES = np.linspace(0, 4, 101)
-BOX = {"rate": (0.1, 3.0), "size": (0.5, 4.0)}
-TRUTH = np.array([0.8, 2.0])
-
-
-def decay(rate, size, step, times=TIMES):
-    """A decay with an error of second order in the step."""
-    return size * np.exp(-rate * times) + 0.02 * step**2 * rate * np.sin(3 * times)
-
-
-@dataclass(frozen=True)
-class Stepped(PythonModel):
-    """A decay with a step; ``finer`` tells what is made of the refined model."""
-
-    def __init__(self, step=0.8, box=None, finer=lambda model: model, times=TIMES):
-        super().__init__(lambda rate, size: decay(rate, size, step, times), box or BOX, ["x"], times)
-        object.__setattr__(self, "step", step)
-        object.__setattr__(self, "finer", finer)
-
-    @property
-    def fingerprint(self):
-        return f"{super().fingerprint} {self.step}"
-
-    def first(self, samples):
-        return Stepped(self.step, self.parameters, self.finer, self.coordinate.values[:samples])
-
-    def refined(self):
-        finer = Stepped(self.step / 2, self.parameters, times=self.coordinate.values)
-        return Refinement(self.finer(finer), error_factor(2), "at half the step")
-
-
-def exact(noise=0.0, deviations=None, seed=0):
-    values = 2.0 * np.exp(-0.8 * TIMES) + noise * np.random.default_rng(seed).standard_normal(101)
-    return Measurements.of(TIMES, {"x": values}, deviations)
+from stepped_models import STEPPED_BOX, TIMES, TRUTH, Stepped, decay_in_steps, exact, failing, marked
 
 
 def codes(fit):
@@ -83,7 +46,7 @@ def test_the_misfit_with_converged_steps():
 
 
 def test_it_is_one_simulation():
-    plain = PythonModel(lambda rate, size: decay(rate, size, 0.8), BOX, ["x"], TIMES)
+    plain = PythonModel(lambda rate, size: decay_in_steps(rate, size, 0.8), STEPPED_BOX, ["x"], TIMES)
     fit, without = (identify(model, exact(1e-3, 1e-3), starts=1) for model in (Stepped(), plain))
     assert fit.simulations == without.simulations + 1
     np.testing.assert_array_equal(fit.values, without.values)
@@ -92,32 +55,12 @@ def test_it_is_one_simulation():
 
 
 def test_data_of_the_same_steps_are_recognised():
-    noisy = decay(*TRUTH, 0.8) + 1e-3 * np.random.default_rng(1).standard_normal(101)
+    noisy = decay_in_steps(*TRUTH, 0.8) + 1e-3 * np.random.default_rng(1).standard_normal(101)
     fit = identify(Stepped(), Measurements.of(TIMES, {"x": noisy}, 1e-3), starts=1)
     (finding,) = fit.findings
     assert (finding.code, finding.severity) == ("integration-bias", "note")
     assert "simulated with the same steps" in finding.message
-    assert not identify(Stepped(), Measurements.of(TIMES, {"x": decay(*TRUTH, 0.8)}), starts=1).findings
-
-
-def failing(model):
-    return replace_evaluate(model, lambda vectors: (_ for _ in ()).throw(SolveError("too stiff")))
-
-
-def marked(model):
-    def evaluate(vectors):
-        found = PythonModel.evaluate(model, vectors)
-        return replace(found, values=found.values * np.nan, failures=("too stiff",))
-
-    return replace_evaluate(model, evaluate)
-
-
-def replace_evaluate(model, evaluate):
-    class Other(Stepped):
-        def evaluate(self, vectors):
-            return evaluate(vectors)
-
-    return Other(model.step)
+    assert not identify(Stepped(), Measurements.of(TIMES, {"x": decay_in_steps(*TRUTH, 0.8)}), starts=1).findings
 
 
 @pytest.mark.parametrize("finer", [failing, marked])
@@ -133,7 +76,7 @@ def test_a_finer_simulation_that_fails_is_said_and_the_fit_stays(finer):
 
 
 def test_only_experiments_that_can_be_refined_are():
-    plain = PythonModel(lambda rate, size: size * np.exp(-rate * TIMES), BOX, ["x"], TIMES)
+    plain = PythonModel(lambda rate, size: size * np.exp(-rate * TIMES), STEPPED_BOX, ["x"], TIMES)
     data = exact(deviations=1e-3)
     both = [Experiment("a", Stepped(), data, own=("size",)), Experiment("b", plain, data, own=("size",))]
     fit = identify(both, starts=1)
@@ -147,7 +90,7 @@ def test_only_experiments_that_can_be_refined_are():
 
 
 def test_a_prior_and_a_robust_loss():
-    known = {"rate": BOX["rate"], "size": Parameter("size", 0.5, 4.0, start=2.0, deviation=1e-6)}
+    known = {"rate": STEPPED_BOX["rate"], "size": Parameter("size", 0.5, 4.0, start=2.0, deviation=1e-6)}
     fit = identify(Stepped(box=known), exact(deviations=1e-3), starts=1)
     np.testing.assert_allclose(fit.integration.bias, fit.values - TRUTH, rtol=0.02, atol=1e-7)
     assert abs(fit.integration.bias[1]) < 1e-6

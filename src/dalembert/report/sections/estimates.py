@@ -33,10 +33,12 @@ class Estimates(Section):
             ],
             "standard deviation": _short(fit.deviations),
         }
-        if not np.array_equal(fit.plain_deviations, fit.deviations, equal_nan=True):
-            columns["for independent residuals"] = _short(fit.plain_deviations)
-        if np.all(np.isfinite(fit.integration_bias)):
-            columns["bias by the integrator"] = _short(fit.integration_bias)
+        plain = getattr(fit, "plain_deviations", fit.deviations)
+        if not np.array_equal(plain, fit.deviations, equal_nan=True):
+            columns["for independent residuals"] = _short(plain)
+        bias = getattr(fit, "integration_bias", None)
+        if bias is not None and np.all(np.isfinite(bias)):
+            columns["bias by the integrator"] = _short(bias)
         columns |= {
             "unit": [cell(item.unit) for item in fit.parameters],
             "lower bound": [cell(float(item.lower)) for item in fit.parameters],

@@ -23,7 +23,7 @@ makes."""
 ROUNDS = 6
 """Of multipliers, at most: each makes the gaps some orders of magnitude smaller."""
 
-LEADING = LeastSquares(trials=15, tolerance=1e-8, gain=1e-3)
+LEADING = LeastSquares(trials=15, tolerance=1e-8, gain=1e-5)
 """Of one rung of the ladder."""
 
 

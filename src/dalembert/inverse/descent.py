@@ -15,7 +15,8 @@ from dalembert.optimize import Progress, Squares
 class End:
     """Where a start ended: a search point (parameters,), its fitness over all samples, and how it was reached.
 
-    At a ``stationary`` end a finer descent would change nothing. Multiple shooting adds the ``nodes`` of its segments.
+    At a ``stationary`` end a finer descent would change nothing; at a ``rough`` one the response is not smooth enough for
+    it. Multiple shooting adds the ``nodes`` of its segments.
     """
 
     point: np.ndarray
@@ -25,6 +26,7 @@ class End:
     stationary: bool = False
     linearisation: Linearisation | None = None
     nodes: Nodes | None = None
+    rough: bool = False
 
 
 class Memo:
@@ -34,12 +36,14 @@ class Memo:
     accepted too; after a rejected one without.
     """
 
-    def __init__(self, problem: Problem) -> None:
+    def __init__(self, problem: Problem, at: Linearisation | None = None) -> None:
         self.problem, self.hopeful = problem, True
-        self.at: Linearisation | None = None
+        self.at = at
 
     def residual(self, point: np.ndarray) -> np.ndarray:
         vector, hopeful = self.problem.search.vectors(point), self.hopeful
+        if self.at is not None and np.array_equal(self.at.vector, vector):
+            return self.problem.residuals(vector, self.at.response)
         self.hopeful = False
         if not hopeful:
             return self.problem.residuals(vector, self.problem.responses(vector[None])[0])
@@ -58,18 +62,31 @@ class Memo:
         return self.problem.slopes(self.at)
 
 
-def descend(ladder: Sequence[Problem], method: Squares, point: np.ndarray) -> End:
+def descend(ladder: Sequence[Problem], method: Squares, point: np.ndarray, fitness: float | None = None) -> End:
     """Least squares from a search point on each problem of a ladder, the last one the whole problem.
 
-    The shorter horizons only lead the way and are left early.
+    The shorter horizons only lead the way and are left early. Where they lead to a larger ``fitness`` of the whole
+    problem than that of the point, simulated if not given, they are of no use: the descent begins at the point.
     """
+    led = point
     for problem in ladder[:-1]:
-        point = _local(problem, replace(method, trials=10, tolerance=1e-3, gain=1e-2), point).point
-    return _local(ladder[-1], method, point)
+        led = _local(Memo(problem), replace(method, trials=10, tolerance=1e-3, gain=1e-2), led).point
+    memo = Memo(ladder[-1])
+    if not np.array_equal(led, point):
+        residual = memo.residual(led)
+        before = ladder[-1].fitness(point[None])[0] if fitness is None else fitness
+        if residual @ residual <= before or not np.isfinite(before):
+            point = led
+    return _local(memo, method, point)
 
 
-def _local(problem: Problem, method: Squares, point: np.ndarray) -> End:
-    memo, journal, search = Memo(problem), problem.journal, problem.search
+def refine(problem: Problem, method: Squares, end: End) -> End:
+    """Least squares from where a descent ended; what was simulated there is not simulated again."""
+    return _local(Memo(problem, end.linearisation), method, end.point)
+
+
+def _local(memo: Memo, method: Squares, point: np.ndarray) -> End:
+    problem, journal, search = memo.problem, memo.problem.journal, memo.problem.search
     best = End(point, np.inf, False, "")
 
     def progress(now: Progress) -> None:
@@ -85,4 +102,4 @@ def _local(problem: Problem, method: Squares, point: np.ndarray) -> End:
     message = ": ".join([found.message, *reasons])
     at = memo.at
     kept = at if at is not None and np.array_equal(at.vector, search.vectors(found.x)) else None
-    return End(found.x, found.fitness, found.success, message, found.stationary, kept)
+    return End(found.x, found.fitness, found.success, message, found.stationary, kept, rough=found.rough)

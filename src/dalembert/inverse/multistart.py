@@ -17,8 +17,9 @@ from dalembert.inverse.search import Search
 from dalembert.inverse.spread import spread_points
 from dalembert.optimize import Squares
 
-Attempt: TypeAlias = tuple[np.ndarray, int]
-"""A search point (parameters,) to start from, and the rung of the ladder of horizons to begin on."""
+Attempt: TypeAlias = tuple[np.ndarray, int, float | None]
+"""A search point (parameters,) to start from, the rung of the ladder of horizons to begin on, and the point's fitness
+over all samples if it is known."""
 
 HORIZONS = ("growing", None)
 
@@ -27,6 +28,9 @@ SCREENED = 8
 
 BESIDE = 2
 """Descents from beside the best end, the most promising ones."""
+
+DIRECT = 4
+"""Starts from which on the last one is the given one again, over all samples at once: short horizons may lead astray."""
 
 APART = 0.05
 """Chosen points keep this part of the box's width from each other."""
@@ -53,8 +57,8 @@ def multistart(
     ladder = [problem.first(samples) for samples in sizes]
     hasty = method if starts == 1 else replace(method, gain=max(1e-3, method.gain))
     ends: list[End] = []
-    for point, rung in _attempts(ladder, partial(_ahead, sizes, hasty), starts, seed, spread, start):
-        ends.append(_descent(ladder[rung:], hasty, point))
+    for point, rung, fitness in _attempts(ladder, partial(_ahead, sizes, hasty), starts, seed, spread, start):
+        ends.append(_descent(ladder[rung:], hasty, point, fitness))
         if floor.conclusive and ends[-1].fitness <= floor.fitness:
             return ends
         if len(ends) == starts or (len(ends) >= 3 and _reproduced(problem, ends)):
@@ -62,20 +66,20 @@ def multistart(
     return ends if starts == 1 else ends + _beside(problem, hasty, min(ends, key=lambda end: end.fitness), starts)
 
 
-def _descent(ladder: list[Problem], method: Squares, point: np.ndarray) -> End:
+def _descent(ladder: list[Problem], method: Squares, point: np.ndarray, fitness: float | None = None) -> End:
     """End of a descent, told to the journal."""
     journal, search = ladder[-1].journal, ladder[-1].search
     values = search.vectors(point)
     journal.began(values)
-    end = descend(ladder, method, point)
+    end = descend(ladder, method, point, fitness)
     journal.ended(values, search.vectors(end.point), end.fitness, end.success, end.message)
     return end
 
 
-def _ahead(sizes: Sequence[int], method: Squares, problem: Problem, attempt: tuple[np.ndarray, int]) -> None:
+def _ahead(sizes: Sequence[int], method: Squares, problem: Problem, attempt: Attempt) -> None:
     """The same descent on a worker of a cluster."""
-    point, rung = attempt
-    descend([problem.first(samples) for samples in sizes[rung:]], method, point)
+    point, rung, fitness = attempt
+    descend([problem.first(samples) for samples in sizes[rung:]], method, point, fitness)
 
 
 def _beside(problem: Problem, method: Squares, best: End, most: int) -> list[End]:
@@ -84,7 +88,7 @@ def _beside(problem: Problem, method: Squares, best: End, most: int) -> list[End
     ahead = partial(_ahead, [problem.samples], method)
     while True:
         points = neighbours(problem, best)[: min(BESIDE, most - len(ends))]
-        for point, _ in prefetched(problem, ahead, [(point, 0) for point in points]):
+        for point, *_ in prefetched(problem, ahead, [(point, 0, None) for point in points]):
             ends.append(_descent([problem], method, point))
             if ends[-1].fitness < (1 - method.gain) * best.fitness:
                 best = ends[-1]
@@ -111,9 +115,11 @@ def _attempts(
     The given start comes first, its horizon growing from the shortest. Then points spread over the box are simulated in
     one batch to choose the others from, which a cluster works on at once.
     """
-    yield first, 0
+    yield first, 0, None
     points, scores = _screen(ladder, SCREENED * starts * len(first), seed, spread)
-    others = list(islice(_chosen(ladder[-1].search, points, scores), starts - 1))
+    whole = len(ladder) - 1
+    again = [(first, whole, None)] if whole and starts >= DIRECT else []
+    others = [*islice(_chosen(ladder[-1].search, points, scores), starts - 1 - len(again)), *again]
     yield from prefetched(ladder[-1], ahead, others)
 
 
@@ -131,7 +137,7 @@ def _chosen(search: Search, points: np.ndarray, scores: np.ndarray) -> Iterator[
         rung = longest - turn % (longest + 1)
         chosen = int(np.argmin(np.where(free, scores[rung], np.inf)))
         free &= np.max(np.abs(points - points[chosen]) / (search.upper - search.lower), axis=1) > APART
-        yield points[chosen], rung
+        yield points[chosen], rung, float(scores[-1, chosen])
 
 
 def _screen(ladder: list[Problem], number: int, seed: int, spread: str) -> tuple[np.ndarray, np.ndarray]:

@@ -6,7 +6,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dalembert.inverse.descent import End, descend
+from dalembert.inverse.descent import End, refine
 from dalembert.inverse.noise import NoiseFloor
 from dalembert.inverse.prefetch import prefetched
 from dalembert.inverse.problem import Problem
@@ -66,7 +66,7 @@ def polished(problem: Problem, method: Squares, best: End) -> End:
     """Where least squares ends from ``best``, as a start of its own; ``best`` if it comes no further."""
     journal, vector = problem.journal, problem.search.vectors(best.point)
     journal.began(vector)
-    end = descend([problem], method, best.point)
+    end = refine(problem, method, best)
     journal.ended(vector, problem.search.vectors(end.point), end.fitness, end.success, f"polished: {end.message}")
     return end if end.fitness <= best.fitness else best
 

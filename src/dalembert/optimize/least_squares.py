@@ -8,7 +8,14 @@ from numpy.typing import ArrayLike
 from scipy.optimize import least_squares
 
 from dalembert.optimize.minimum import Minimum, OnIteration, Progress, box, expect_reachable
-from dalembert.settings import expect_at_least
+from dalembert.optimize.stopping import WINDOW, Stopped, Stopping
+from dalembert.settings import expect
+
+LEAST_GAIN = 1e-12
+"""Fraction of the sum of squares. A step that gains less ends a descent, whatever is foreseen."""
+
+TRIALS = 100
+"""Residuals at most, for each parameter and one more. Descents without progress stop long before."""
 
 
 @dataclass(frozen=True)
@@ -17,17 +24,23 @@ class LeastSquares:
 
     Parameters
     ----------
-    trials : int
-        Most residuals to compute.
+    trials : int, optional
+        Most residuals to compute; 100 (1 + parameters) if not given.
     tolerance : float
         Ends when a step is shorter than this, relative to one unit a parameter.
     gain : float
-        Ends when a step, going as foreseen, lowers the sum of squares by less than this fraction.
+        Ends when the linear model within the bounds foresees a fall of the sum of squares by less than this fraction,
+        or when a step that goes as foreseen lowers it by less than the smaller of this and 1e-12.
 
     Notes
     -----
-    The solver works in u = 1 + (x − start)/scale. Its first trust radius is the length of its first point, so every
-    parameter may move by about one ``scale`` at first, wherever the origin of x lies.
+    The solver works in u = 1 + (x − start)/scale, with a trust region in the shape of the jacobian's columns: a
+    parameter may move the farther, the less the residuals depend on it. The first trust radius is that of the first
+    point, so every parameter may move by about one ``scale`` at first, wherever the origin of x lies.
+
+    A descent also ends when 20 trial points lowered the sum of squares by less than 0.1 %, and the foreseen fall did
+    not shrink tenfold either: the residuals are rough then, or the jacobian is wrong. If the foreseen fall is below
+    0.01 %, the minimum is reached up to the roughness, otherwise the descent has not converged.
 
     Examples
     --------
@@ -38,12 +51,12 @@ class LeastSquares:
     [1.0, 1.0]
     """
 
-    trials: int = 50
+    trials: int | None = None
     tolerance: float = 1e-10
-    gain: float = 1e-8
+    gain: float = 1e-12
 
     def __post_init__(self) -> None:
-        expect_at_least(self, 1, "trials")
+        expect(self, "at least 1", lambda given: given is None or given >= 1, "trials")
         expect_reachable(self, "tolerance", "gain")
 
     def minimise(
@@ -71,35 +84,35 @@ class LeastSquares:
         """
         low, high = box(lower, upper)
         origin = np.clip(np.asarray(start, dtype=float), low, high)
-        path = _Path(residual, jacobian, low, high, origin, np.broadcast_to(scale, origin.shape), on_iteration)
+        stopping = Stopping(self.gain, max(WINDOW, 10 * len(origin)))
+        path = _Path(residual, jacobian, low, high, origin, np.broadcast_to(scale, origin.shape), on_iteration, stopping)
+        trials = TRIALS * (1 + len(origin)) if self.trials is None else self.trials
         try:
             if not np.all(np.isfinite(path.residual(path.one))):
-                return path.minimum(False, "the first point could not be simulated", False)
+                return path.minimum(False, "the first point could not be simulated")
             result = least_squares(
                 path.residual,
                 path.one,
                 path.jacobian,  # pyright: ignore[reportArgumentType]
                 bounds=(1 + (low - origin) / path.unit, 1 + (high - origin) / path.unit),
                 method="trf",
-                ftol=self.gain,
+                x_scale="jac",
+                # A larger one would end a descent along a curved valley, where steps are short.
+                ftol=min(LEAST_GAIN, self.gain),
                 xtol=self.tolerance,
                 # An absolute threshold on the gradient would depend on the units of the data.
                 gtol=None,  # pyright: ignore[reportArgumentType]
-                max_nfev=self.trials,
+                max_nfev=trials,
             )
-        except _Settled as settled:
-            return path.minimum(True, str(settled), True)
+        except Stopped as stopped:
+            return path.minimum(stopped.success, str(stopped), stopped.stationary, stopped.rough)
         message = {
-            0: f"stopped after {self.trials} trial points, not converged; allow more with LeastSquares(trials=...)",
+            0: f"stopped after {trials} trial points, not converged; allow more with LeastSquares(trials=...)",
             2: "converged: the sum of squares falls no more",
             3: "converged: the parameters move no more",
             4: "converged: neither parameters nor sum of squares move any more",
         }[result.status]
         return path.minimum(result.status > 0, message, result.status in (3, 4))
-
-
-class _Settled(Exception):
-    """Nothing is left to minimise, where SciPy would divide zero by zero; the message says why."""
 
 
 class _Path:
@@ -114,18 +127,20 @@ class _Path:
         origin: np.ndarray,
         unit: np.ndarray,
         on_iteration: OnIteration | None,
+        stopping: Stopping,
     ) -> None:
         self._residual, self._jacobian, self.on_iteration = residual, jacobian, on_iteration
+        self.stopping = stopping
         self.low, self.high, self.origin, self.unit = low, high, origin, unit
         self.one = np.ones_like(origin)
         self.best, self.x, self.evaluations, self.iterations = np.inf, origin, 0, 0
-        self.last: tuple[np.ndarray, np.ndarray] | None = None
+        self.last = (np.full_like(origin, np.nan), origin)
 
     def place(self, u: np.ndarray) -> np.ndarray:
         return np.clip(self.origin + (u - 1) * self.unit, self.low, self.high)
 
     def residual(self, u: np.ndarray) -> np.ndarray:
-        if self.last is not None and np.array_equal(self.last[0], u):  # SciPy asks again for the first point
+        if np.array_equal(self.last[0], u):  # SciPy asks again for the first point
             return self.last[1]
         value = self._residual(self.place(u))
         self.evaluations += 1
@@ -135,14 +150,17 @@ class _Path:
             self.best, self.x = squares, self.place(u)
         if squares == 0:
             self.tell()
-            raise _Settled("converged: the fit is perfect")
+            raise Stopped("converged: the fit is perfect", stationary=True)
+        self.stopping.tried(self.best)
         return value
 
     def jacobian(self, u: np.ndarray) -> np.ndarray:
         self.tell()
-        slopes = self._jacobian(self.place(u)) * self.unit
+        x = self.place(u)
+        slopes = self._jacobian(x) * self.unit
         if not slopes.any():
-            raise _Settled("converged: the residual does not change with the parameters")
+            raise Stopped("converged: the residual does not change with the parameters", stationary=True)
+        self.stopping.at(self.last[1], slopes, (self.low - x) / self.unit, (self.high - x) / self.unit)
         return slopes
 
     def tell(self) -> None:
@@ -150,6 +168,6 @@ class _Path:
             self.on_iteration(Progress(self.iterations, self.evaluations, self.best, self.x))
         self.iterations += 1
 
-    def minimum(self, success: bool, message: str, stationary: bool) -> Minimum:
+    def minimum(self, success: bool, message: str, stationary: bool = False, rough: bool = False) -> Minimum:
         iterations = max(0, self.iterations - 1)
-        return Minimum(self.x, self.best, success, message, iterations, self.evaluations, stationary)
+        return Minimum(self.x, self.best, success, message, iterations, self.evaluations, stationary, rough)

@@ -84,6 +84,8 @@ class Minimum:
     iterations, evaluations : int
     stationary : bool
         Whether it stopped because x moves no more; going on with finer settings would change nothing.
+    rough : bool
+        Whether it stopped because the fitness is rough: it does not fall where its derivatives foresee a fall.
     """
 
     x: np.ndarray
@@ -93,6 +95,7 @@ class Minimum:
     iterations: int
     evaluations: int
     stationary: bool = False
+    rough: bool = False
 
 
 def fitness_of(objective: Objective, points: np.ndarray) -> np.ndarray:

@@ -1,0 +1,84 @@
+"""When a descent of least squares stops: the linear model foresees nothing, or trial points bring nothing."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from dalembert.optimize.linear_model import LinearModel
+
+WINDOW = 20
+"""Trial points after which progress is judged, at least; ten for each parameter."""
+
+PROGRESS = 1e-3
+"""Least progress over a window: a fall of the sum of squares by this fraction."""
+
+ROUGH = 1e-4
+"""Fraction of the sum of squares. A minimum where the linear model foresees a smaller fall is reached, up to the roughness
+of the residuals."""
+
+
+class Stopped(Exception):
+    """The descent stops; the message says why."""
+
+    def __init__(self, message: str, *, success: bool = True, stationary: bool = False, rough: bool = False) -> None:
+        super().__init__(message)
+        self.success, self.stationary, self.rough = success, stationary, rough
+
+
+@dataclass
+class Stopping:
+    """Judge of a descent's progress.
+
+    Parameters
+    ----------
+    gain : float
+        The descent has converged when the linear model foresees a fall of the sum of squares by less than this
+        fraction. This is the square of the relative offset of Bates & Watts, up to a factor of the degrees of freedom.
+        Source: Bates & Watts, A relative offset orthogonality convergence criterion for nonlinear least squares,
+        Technometrics 23 (1981).
+    window : int
+        Trial points after which progress is judged.
+    """
+
+    gain: float
+    window: int
+    foreseen: float = np.inf
+    _trials: list[tuple[float, float]] = field(default_factory=list)
+
+    def at(self, residual: np.ndarray, slopes: np.ndarray, down: np.ndarray, up: np.ndarray) -> None:
+        """Judge an accepted point by its linear model, the arguments of :class:`LinearModel`.
+
+        Raises
+        ------
+        Stopped
+            If the descent has converged.
+        """
+        size = np.linalg.norm(slopes, axis=0)
+        size[size == 0] = 1.0
+        model = LinearModel(residual, slopes / size, down * size, up * size)
+        self.foreseen = model.foreseen(model.step(0.0)) / float(residual @ residual)
+        if self.foreseen < self.gain:
+            raise Stopped("converged: the sum of squares falls no more")
+
+    def tried(self, least: float) -> None:
+        """Judge the progress after a trial point; ``least`` is the smallest sum of squares so far.
+
+        Raises
+        ------
+        Stopped
+            If neither the sum of squares nor what the linear model foresees fell during the last trial points.
+        """
+        self._trials.append((least, self.foreseen))
+        if len(self._trials) <= self.window:
+            return
+        before, foreseen = self._trials[-1 - self.window]
+        fall = 1 - least / before
+        if not fall < PROGRESS or self.foreseen < foreseen / 10:
+            return
+        if self.foreseen < ROUGH:
+            raise Stopped("converged: the sum of squares falls no more, as far as its roughness shows", rough=True)
+        raise Stopped(
+            f"stopped, not converged: the last {self.window} trial points lowered the sum of squares by "
+            f"{100 * fall:.2g} %, and the sensitivities foresee {100 * self.foreseen:.2g} %",
+            success=False,
+        )

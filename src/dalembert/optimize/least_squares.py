@@ -11,7 +11,7 @@ from dalembert.optimize.minimum import Minimum, OnIteration, Progress, box, expe
 from dalembert.optimize.stopping import WINDOW, Stopped, Stopping
 from dalembert.settings import expect
 
-LEAST_GAIN = 1e-12
+LEAST_GAIN = 1e-13
 """Fraction of the sum of squares. A step that gains less ends a descent, whatever is foreseen."""
 
 TRIALS = 100
@@ -30,7 +30,7 @@ class LeastSquares:
         Ends when a step is shorter than this, relative to one unit a parameter.
     gain : float
         Ends when the linear model within the bounds foresees a fall of the sum of squares by less than this fraction,
-        or when a step that goes as foreseen lowers it by less than the smaller of this and 1e-12.
+        or when a step that goes as foreseen lowers it by less than the smaller of this and 1e-13.
 
     Notes
     -----
@@ -53,7 +53,7 @@ class LeastSquares:
 
     trials: int | None = None
     tolerance: float = 1e-10
-    gain: float = 1e-12
+    gain: float = 1e-13
 
     def __post_init__(self) -> None:
         expect(self, "at least 1", lambda given: given is None or given >= 1, "trials")

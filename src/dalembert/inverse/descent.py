@@ -16,7 +16,8 @@ class End:
     """Where a start ended: a search point (parameters,), its fitness over all samples, and how it was reached.
 
     At a ``stationary`` end a finer descent would change nothing; at a ``rough`` one the response is not smooth enough for
-    it. Multiple shooting adds the ``nodes`` of its segments.
+    it. Multiple shooting adds the ``nodes`` of its segments. ``begun`` is the fitness where the descent over all samples
+    began.
     """
 
     point: np.ndarray
@@ -27,6 +28,7 @@ class End:
     linearisation: Linearisation | None = None
     nodes: Nodes | None = None
     rough: bool = False
+    begun: float = np.inf
 
 
 class Memo:
@@ -65,19 +67,17 @@ class Memo:
 def descend(ladder: Sequence[Problem], method: Squares, point: np.ndarray, fitness: float | None = None) -> End:
     """Least squares from a search point on each problem of a ladder, the last one the whole problem.
 
-    The shorter horizons only lead the way and are left early. Where they lead to a larger ``fitness`` of the whole
-    problem than that of the point, simulated if not given, they are of no use: the descent begins at the point.
+    The shorter horizons only lead the way and are left early. Where they lead to a larger fitness of the whole problem
+    than the point's ``fitness``, if that is known, the descent over the whole begins at the point.
     """
     led = point
     for problem in ladder[:-1]:
         led = _local(Memo(problem), replace(method, trials=10, tolerance=1e-3, gain=1e-2), led).point
     memo = Memo(ladder[-1])
-    if not np.array_equal(led, point):
+    if fitness is not None and len(ladder) > 1:
         residual = memo.residual(led)
-        before = ladder[-1].fitness(point[None])[0] if fitness is None else fitness
-        if residual @ residual <= before or not np.isfinite(before):
-            point = led
-    return _local(memo, method, point)
+        led = led if residual @ residual <= fitness else point
+    return _local(memo, method, led)
 
 
 def refine(problem: Problem, method: Squares, end: End) -> End:
@@ -87,10 +87,11 @@ def refine(problem: Problem, method: Squares, end: End) -> End:
 
 def _local(memo: Memo, method: Squares, point: np.ndarray) -> End:
     problem, journal, search = memo.problem, memo.problem.journal, memo.problem.search
-    best = End(point, np.inf, False, "")
+    best, begun = End(point, np.inf, False, ""), np.inf
 
     def progress(now: Progress) -> None:
-        nonlocal best
+        nonlocal best, begun
+        begun = now.best if now.iteration == 0 else begun
         best = End(now.x, now.best, False, "")
         journal.step(now.best, search.vectors(now.x), problem.samples, now.regularised)
 
@@ -102,4 +103,4 @@ def _local(memo: Memo, method: Squares, point: np.ndarray) -> End:
     message = ": ".join([found.message, *reasons])
     at = memo.at
     kept = at if at is not None and np.array_equal(at.vector, search.vectors(found.x)) else None
-    return End(found.x, found.fitness, found.success, message, found.stationary, kept, rough=found.rough)
+    return End(found.x, found.fitness, found.success, message, found.stationary, kept, rough=found.rough, begun=begun)

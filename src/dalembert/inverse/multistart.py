@@ -57,7 +57,7 @@ def multistart(
     ladder = [problem.first(samples) for samples in sizes]
     hasty = method if starts == 1 else replace(method, gain=max(1e-3, method.gain))
     ends: list[End] = []
-    for point, rung, fitness in _attempts(ladder, partial(_ahead, sizes, hasty), starts, seed, spread, start):
+    for point, rung, fitness in _attempts(ladder, partial(_ahead, sizes, hasty), starts, seed, spread, start, ends):
         ends.append(_descent(ladder[rung:], hasty, point, fitness))
         if floor.conclusive and ends[-1].fitness <= floor.fitness:
             return ends
@@ -108,17 +108,27 @@ def horizons(problem: Problem, horizon: str | None) -> list[int]:
 
 
 def _attempts(
-    ladder: list[Problem], ahead: Work[Attempt], starts: int, seed: int, spread: str, first: np.ndarray
+    ladder: list[Problem],
+    ahead: Work[Attempt],
+    starts: int,
+    seed: int,
+    spread: str,
+    first: np.ndarray,
+    ends: Sequence[End],
 ) -> Iterator[Attempt]:
     """Up to ``starts`` search points to start from, each with the rung of the ladder to begin on.
 
-    The given start comes first, its horizon growing from the shortest. Then points spread over the box are simulated in
-    one batch to choose the others from, which a cluster works on at once.
+    The given start comes first, its horizon growing from the shortest. If that led to a larger misfit, it is followed by
+    the same start over all samples at once, which is the last one otherwise. Then points spread over the box are
+    simulated in one batch to choose the others from, which a cluster works on at once.
     """
     yield first, 0, None
-    points, scores = _screen(ladder, SCREENED * starts * len(first), seed, spread)
     whole = len(ladder) - 1
-    again = [(first, whole, None)] if whole and starts >= DIRECT else []
+    again: list[Attempt] = [(first, whole, None)] if whole and starts >= DIRECT else []
+    if again and not ends[0].begun <= ladder[whole].fitness(first[None])[0]:
+        yield again.pop()
+        starts -= 1
+    points, scores = _screen(ladder, SCREENED * starts * len(first), seed, spread)
     others = [*islice(_chosen(ladder[-1].search, points, scores), starts - 1 - len(again)), *again]
     yield from prefetched(ladder[-1], ahead, others)
 

@@ -11,8 +11,11 @@ from dalembert.optimize.minimum import Minimum, OnIteration, Progress, box, expe
 from dalembert.optimize.stopping import WINDOW, Stopped, Stopping
 from dalembert.settings import expect
 
-LEAST_GAIN = 1e-13
+LEAST_GAIN = 1e-14
 """Fraction of the sum of squares. A step that gains less ends a descent, whatever is foreseen."""
+
+ROUNDING = 1e-14
+"""Columns of the jacobian below this part of the largest are rounding."""
 
 TRIALS = 100
 """Residuals at most, for each parameter and one more. Descents without progress stop long before."""
@@ -30,7 +33,7 @@ class LeastSquares:
         Ends when a step is shorter than this, relative to one unit a parameter.
     gain : float
         Ends when the linear model within the bounds foresees a fall of the sum of squares by less than this fraction,
-        or when a step that goes as foreseen lowers it by less than the smaller of this and 1e-13.
+        or when a step that goes as foreseen lowers it by less than the smaller of this and 1e-14.
 
     Notes
     -----
@@ -53,7 +56,7 @@ class LeastSquares:
 
     trials: int | None = None
     tolerance: float = 1e-10
-    gain: float = 1e-13
+    gain: float = 1e-14
 
     def __post_init__(self) -> None:
         expect(self, "at least 1", lambda given: given is None or given >= 1, "trials")
@@ -160,6 +163,8 @@ class _Path:
         slopes = self._jacobian(x) * self.unit
         if not slopes.any():
             raise Stopped("converged: the residual does not change with the parameters", stationary=True)
+        size = np.linalg.norm(slopes, axis=0)
+        slopes[:, size < ROUNDING * size.max()] = 0.0  # in such units a parameter would move far for nothing
         self.stopping.at(self.last[1], slopes, (self.low - x) / self.unit, (self.high - x) / self.unit)
         return slopes
 

@@ -23,8 +23,15 @@ makes."""
 ROUNDS = 6
 """Of multipliers, at most: each makes the gaps some orders of magnitude smaller."""
 
-LEADING = LeastSquares(trials=15, tolerance=1e-8, gain=1e-5)
+LEADING = LeastSquares(trials=15, tolerance=1e-8, gain=1e-8)
 """Of one rung of the ladder."""
+
+LEFT = 1e-3
+"""Fall of the sum of squares, as a fraction, by a step after which a rung is left."""
+
+
+class _Led(Exception):
+    """A rung of the ladder led as far as it is worth."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,7 +134,7 @@ class Chain:
         """Least F² + ((c + shift)/tightness)² from a search point on."""
         search, journal, inner = self.inner.search, self.problem.journal, self.inner
         best = Found(point, np.inf, np.inf)
-        least, hopeful = np.inf, True
+        least, before, hopeful = np.inf, np.inf, True
 
         def residual(now: np.ndarray) -> np.ndarray:
             nonlocal best, least, hopeful
@@ -152,12 +159,16 @@ class Chain:
             return np.concatenate([inner.slopes(at), gaps / tightness])
 
         def progress(_: Progress) -> None:
+            nonlocal before
             values = search.vectors(best.point)[: len(self.problem.model.parameters)]
             journal.step(best.misfit, values, self.problem.samples, gap=best.gap)
+            if least > (1 - LEFT) * before:
+                raise _Led
+            before = least
 
         try:
             LEADING.minimise(residual, jacobian, search.lower, search.upper, point, on_iteration=progress)
-        except SolveError:
+        except (SolveError, _Led):
             return best
         return best
 

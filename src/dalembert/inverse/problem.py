@@ -86,13 +86,15 @@ class Problem:
         prior = np.sum(prior_residual(self.model.parameters, vectors) ** 2, axis=1)
         if self.loss is not None:
             return np.sum(self.squares(responses), axis=(1, 2)) + prior
-        return np.einsum("sc,bsc->b", self.weights, self.misfit(responses) ** 2) + prior
+        with np.errstate(over="ignore"):
+            return np.einsum("sc,bsc->b", self.weights, self.misfit(responses) ** 2) + prior
 
     def squares(self, responses: np.ndarray) -> np.ndarray:
         """What each value adds to the fitness, both (..., samples, channels)."""
-        if self.loss is not None:
-            return self.loss.residual(np.sqrt(self.weights) * self.misfit(responses)) ** 2
-        return self.weights * self.misfit(responses) ** 2
+        with np.errstate(over="ignore"):  # infinite squares are a failed sample's
+            if self.loss is not None:
+                return self.loss.residual(np.sqrt(self.weights) * self.misfit(responses)) ** 2
+            return self.weights * self.misfit(responses) ** 2
 
     def misfit(self, response: np.ndarray) -> np.ndarray:
         """R − data, both (..., samples, channels); 0 where a value is missing, NaN elsewhere if a sample failed."""

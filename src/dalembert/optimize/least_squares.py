@@ -17,6 +17,9 @@ LEAST_GAIN = 1e-14
 ROUNDING = 1e-14
 """Columns of the jacobian below this part of the largest are rounding."""
 
+LARGEST = 1e150
+"""A sample with larger residuals has failed: their squares overflow."""
+
 TRIALS = 100
 """Residuals at most, for each parameter and one more. Descents without progress stop long before."""
 
@@ -88,7 +91,9 @@ class LeastSquares:
         low, high = box(lower, upper)
         origin = np.clip(np.asarray(start, dtype=float), low, high)
         stopping = Stopping(self.gain, max(WINDOW, 10 * len(origin)))
-        path = _Path(residual, jacobian, low, high, origin, np.broadcast_to(scale, origin.shape), on_iteration, stopping)
+        path = _Path(
+            residual, jacobian, low, high, origin, np.broadcast_to(scale, origin.shape), on_iteration, stopping
+        )
         trials = TRIALS * (1 + len(origin)) if self.trials is None else self.trials
         try:
             if not np.all(np.isfinite(path.residual(path.one))):
@@ -147,6 +152,8 @@ class _Path:
             return self.last[1]
         value = self._residual(self.place(u))
         self.evaluations += 1
+        if not np.all(np.abs(value) < LARGEST):
+            value = np.full_like(value, np.nan)
         self.last = (u.copy(), value)
         squares = float(value @ value)
         if squares < self.best:

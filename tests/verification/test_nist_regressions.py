@@ -116,7 +116,9 @@ def fitted(problem, number):
     fit = problem.fit(problem.starts[number])
     values, order = problem.as_certified(fit.values)
     assert fit.success
-    return values / problem.values, fit.deviations[order] / np.array(problem.given["deviations"])
+    # Those that NIST certifies are for independent residuals.
+    deviations = fit.deviations if fit.correlated is None else fit.correlated.deviations
+    return values / problem.values, deviations[order] / np.array(problem.given["deviations"])
 
 
 def digits(ratios):

@@ -15,9 +15,9 @@ from dalembert.optimize import Progress, Squares
 class End:
     """Where a start ended: a search point (parameters,), its fitness over all samples, and how it was reached.
 
-    At a ``stationary`` end a finer descent would change nothing; at a ``rough`` one the response is not smooth enough for
-    it. Multiple shooting adds the ``nodes`` of its segments. ``begun`` is the fitness where the descent over all samples
-    began.
+    At a ``stationary`` end a finer descent would change nothing; at a ``rough`` one the response is not smooth enough
+    for it. Multiple shooting adds the ``nodes`` of its segments. ``begun`` is the fitness where the descent over all
+    samples began.
     """
 
     point: np.ndarray

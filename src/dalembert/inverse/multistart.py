@@ -30,7 +30,7 @@ BESIDE = 2
 """Descents from beside the best end, the most promising ones."""
 
 DIRECT = 4
-"""Starts from which on the last one is the given one again, over all samples at once: short horizons may lead astray."""
+"""Starts from which on the last one is the given one again, over all samples: short horizons may lead astray."""
 
 APART = 0.05
 """Chosen points keep this part of the box's width from each other."""
@@ -118,8 +118,8 @@ def _attempts(
 ) -> Iterator[Attempt]:
     """Up to ``starts`` search points to start from, each with the rung of the ladder to begin on.
 
-    The given start comes first, its horizon growing from the shortest. If that led to a larger misfit, it is followed by
-    the same start over all samples at once, which is the last one otherwise. Then points spread over the box are
+    The given start comes first, its horizon growing from the shortest. If that led to a larger misfit, it is followed
+    by the same start over all samples at once, which is the last one otherwise. Then points spread over the box are
     simulated in one batch to choose the others from, which a cluster works on at once.
     """
     yield first, 0, None

@@ -13,8 +13,8 @@ PROGRESS = 1e-3
 """Least progress over a window: a fall of the sum of squares by this fraction."""
 
 ROUGH = 1e-4
-"""Fraction of the sum of squares. A minimum where the linear model foresees a smaller fall is reached, up to the roughness
-of the residuals."""
+"""Fraction of the sum of squares. A minimum where the linear model foresees a smaller fall is reached, up to the
+roughness of the residuals."""
 
 
 class Stopped(Exception):

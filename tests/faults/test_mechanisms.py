@@ -263,6 +263,10 @@ INPUTS = {
         lambda: mb.AncfBeam("bar", 1.0, 1, 1e6, poisson_ratio=0.3, **SECTION, law="plane stress"),
         "beam 'bar': unknown law 'plane stress'; did you mean 'plane-stress' or 'plane-strain'?",
     ),
+    "a formulation that is not there": (
+        lambda: mb.AncfBeam("bar", 1.0, 1, 1e6, poisson_ratio=0.3, **SECTION, formulation="continua"),
+        "beam 'bar': unknown formulation 'continua'; did you mean 'continuum'?",
+    ),
     "damping that is negative": (
         lambda: mb.AncfCable("rope", 1.0, 1, 1e6, **SECTION, damping=-1e-3),
         "beam 'rope': damping is -0.001; expected zero or a positive number",

@@ -103,7 +103,8 @@ def shown(value: object) -> str:
     """
     text = " ".join(repr(value).split())
     if text.startswith("<") or (len(text) > _LONGEST and not isinstance(value, str | list | tuple | dict)):
-        return f"a {type(value).__name__}"
+        kind = type(value).__name__
+        return f"the class {value.__name__}" if isinstance(value, type) else f"a{'n' * (kind[0] in 'AEIO')} {kind}"
     return text if len(text) <= _LONGEST else f"{text[:30].rstrip()} ..."
 
 

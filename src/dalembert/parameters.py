@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dalembert.errors import InputError, unknown
+from dalembert.errors import InputError, shown, unknown
 
 
 @dataclass(frozen=True)
@@ -149,14 +149,52 @@ class Parameters:
                 raise InputError(
                     f"no value given for parameter {missing[0]!r}; expected all of {', '.join(self.names)}"
                 )
-            return np.array([values[name] for name in self.names])
-        vector = np.asarray(values)
+            vector = np.array([values[name] for name in self.names])
+        else:
+            vector = np.asarray(values)
         if vector.shape != (len(self),):
             raise InputError(
                 f"a parameter vector of shape {vector.shape} was given; "
                 f"expected ({len(self)},) for {', '.join(self.names)}"
             )
+        if vector.dtype.kind not in "iufc":
+            for name, value in zip(self.names, vector.tolist(), strict=True):
+                if isinstance(value, bool) or not isinstance(value, int | float | complex):
+                    raise InputError(f"parameter {name!r} is {shown(value)}; expected a number")
         return vector
+
+    def real_vector(self, values: Mapping[str, float] | ArrayLike) -> np.ndarray:
+        """Vector of real numbers, as :meth:`vector`.
+
+        Raises
+        ------
+        InputError
+            For a complex number.
+        """
+        vector = self.vector(values)
+        if np.iscomplexobj(vector):
+            raise InputError(f"parameters are {shown(vector.tolist())}; expected real numbers")
+        return vector.astype(float)
+
+    def batch(self, vectors: ArrayLike) -> np.ndarray:
+        """Vectors of shape (batch, parameters) from as many, or from one of them.
+
+        Raises
+        ------
+        InputError
+            For another number of parameters, or what is no real number.
+        """
+        try:
+            batch = np.atleast_2d(np.array(vectors, dtype=object)).astype(float)
+        except (TypeError, ValueError):
+            raise InputError(f"parameter vectors are {shown(vectors)}; expected real numbers, {self._rows}") from None
+        if batch.ndim != 2 or batch.shape[1] != len(self):
+            raise InputError(f"parameter vectors of shape {np.shape(vectors)} were given; expected {self._rows}")
+        return batch
+
+    @property
+    def _rows(self) -> str:
+        return f"an array (batch, {len(self)}) with one column each for {', '.join(self.names) or 'no parameter'}"
 
     def mapping(self, vector: ArrayLike) -> dict[str, float]:
         """Mapping from names to the entries of a vector of shape (parameters,)."""

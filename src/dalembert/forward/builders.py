@@ -1,8 +1,63 @@
 """What models made by a builder, a function from parameters to a system, have in common."""
 
+import inspect
 import os
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, TypeVar
 
-from dalembert.errors import InputError
+from dalembert.errors import DalembertError, InputError, ModelError, shown, told, users_place
+
+Built = TypeVar("Built")
+
+
+def check_function(owner: str, function: Any, names: Sequence[str]) -> None:
+    """Raise unless a model's function can be called with these parameters by name.
+
+    Raises
+    ------
+    InputError
+    """
+    if not callable(function):
+        raise InputError(f"{owner}: {shown(function)} was given as the model's function; expected a function")
+    try:
+        inspect.signature(function).bind(**dict.fromkeys(names))
+    except TypeError as error:
+        raise InputError(
+            f"{owner}: {named(function)} cannot be called with {', '.join(names) or 'no parameters'}: {error}. "
+            "Name its arguments as the parameters"
+        ) from None
+    except ValueError:  # a function that does not say what it takes
+        pass
+
+
+def built(builder: Callable[..., Any], arguments: Mapping[str, Any], kind: type[Built]) -> Built:
+    """The system that a builder makes of arguments by name.
+
+    Raises
+    ------
+    InputError
+        Where it returns something else.
+    ModelError
+        Where it raises an error that is none of the package's, with its file and line.
+    """
+    try:
+        system = builder(**arguments)
+    except DalembertError:
+        raise
+    except (Exception, SystemExit) as error:
+        raise ModelError(told(error) if users_place(error) else f"{named(builder)} raised {told(error)}") from error
+    if not isinstance(system, kind):
+        raise InputError(f"{named(builder)} returned {shown(system)}; expected a {kind.__name__}: end it with 'return'")
+    return system
+
+
+def named(function: Any) -> str:
+    """A model's function in a sentence, with its file and line."""
+    code = getattr(inspect.unwrap(function) if callable(function) else function, "__code__", None)
+    if code is None:
+        return "the model's function"
+    return f"the model's function ({Path(code.co_filename).name}, line {code.co_firstlineno})"
 
 
 def cores() -> int:

@@ -5,11 +5,11 @@ import inspect
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from pathlib import Path
 
 import numpy as np
 
 from dalembert.errors import DalembertError, InputError, SolveError, told, unknown, users_place
+from dalembert.forward.builders import named
 from dalembert.forward.complex_steps import STEP, Compared, check_steps
 from dalembert.forward.differences import COMPLEX_STEP, DERIVATIVES, RELATIVE_STEP
 from dalembert.forward.model import Channel, Coordinate, ForwardModel
@@ -67,10 +67,12 @@ class PythonModel:
     ) -> None:
         if derivative not in DERIVATIVES:
             raise InputError(unknown("derivative", derivative, DERIVATIVES))
+        parameters = Parameters.of(parameters)
+        channels = [channels] if isinstance(channels, str) else channels
         given = tuple(Channel(entry) if isinstance(entry, str) else entry for entry in channels)
         for name, value in (
             ("function", function),
-            ("parameters", Parameters.of(parameters)),
+            ("parameters", parameters),
             ("channels", given),
             ("coordinate", Coordinate(coordinate, unit, np.asarray(samples, dtype=float)[:kept])),
             ("derivative", derivative),
@@ -90,7 +92,7 @@ class PythonModel:
 
     def evaluate(self, vectors: np.ndarray) -> Responses:
         """Responses of a batch, one call of the function after another."""
-        vectors = np.atleast_2d(vectors)
+        vectors = self.parameters.batch(vectors)
         values = np.full((len(vectors), *self._shape), np.nan)
         failures: list[str | None] = []
         for row, vector in enumerate(vectors):
@@ -103,7 +105,7 @@ class PythonModel:
 
     def jacobian(self, vector: np.ndarray) -> np.ndarray:
         """Derivative of the response, shape (samples, channels, parameters)."""
-        vector = np.asarray(vector, dtype=float)
+        vector = self.parameters.real_vector(vector)
         jacobian = np.empty((*self._shape, len(vector)))
         for column, scale in enumerate(self.parameters.scale):
             jacobian[:, :, column] = (
@@ -128,7 +130,7 @@ class PythonModel:
 
     def linearise(self, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Response (samples, channels) and its jacobian (samples, channels, parameters)."""
-        return self._call(np.asarray(vector, dtype=float)), self.jacobian(vector)
+        return self._call(self.parameters.real_vector(vector)), self.jacobian(vector)
 
     def first(self, samples: int) -> ForwardModel:
         """The same model, cut to its first ``samples`` samples."""
@@ -179,9 +181,7 @@ class PythonModel:
     @property
     def _named(self) -> str:
         """The function with its place, in a sentence."""
-        code = getattr(self.function, "__code__", None)
-        place = f" ({Path(code.co_filename).name}, line {code.co_firstlineno})" if code else ""
-        return f"the model's function{place}"
+        return named(self.function)
 
     @cached_property
     def _compared(self) -> Compared:

@@ -257,7 +257,7 @@ def _starts(given: int | None, usual: int) -> int:
 def _origin(problem: Problem, start: Mapping[str, float] | ArrayLike) -> np.ndarray:
     """Search point of a first guess."""
     parameters = problem.model.parameters
-    vector = parameters.vector(start)
+    vector = parameters.real_vector(start)
     for item, value in zip(parameters, vector, strict=True):
         if not item.lower <= value <= item.upper:
             raise InputError(

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from dalembert.errors import ModelError
+from dalembert.errors import InputError, ModelError, shown
 from dalembert.kernels.kernel import Compiled
 from dalembert.multibody.callbacks import Callback, Failures, force_callback, signal_callback
 from dalembert.multibody.carried_rates import carried_rates, stated
@@ -353,7 +353,16 @@ class Lowering:
 
 
 def lower(system: System) -> Lowered:
-    """Arrays of a system, with its bodies as placed."""
+    """Arrays of a system, with its bodies as placed.
+
+    Raises
+    ------
+    InputError
+        For what is no System.
+    """
+    if not isinstance(system, System):
+        own = "; give its system, in which the bodies are placed as they begin" if hasattr(system, "system") else ""
+        raise InputError(f"{shown(system)} was given as the mechanism; expected a System{own}")
     return Lowering(system).run()
 
 

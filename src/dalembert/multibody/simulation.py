@@ -3,8 +3,10 @@
 import os
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from dalembert.errors import InputError, SolveError, unknown
+from dalembert.arguments import is_number
+from dalembert.errors import InputError, SolveError, shown, unknown
 from dalembert.kernels.preparation import prepare
 from dalembert.multibody.assemble import assembled, refuse_kinks, refuse_redundancy
 from dalembert.multibody.callbacks import in_complex_numbers
@@ -74,8 +76,8 @@ def posed(
 
     The assembled mechanism, its integrator, the output times (samples,), and the times at which states are kept.
     """
-    if not (np.isfinite(end) and end > 0):
-        raise InputError(f"simulate: end is {end}; expected a positive number of seconds")
+    if not (is_number(end) and not np.iscomplexobj(end) and end > 0):
+        raise InputError(f"simulate: end is {shown(end)}; expected a positive number of seconds")
     lowered, chosen = prepared(system, end, integrator(solver, end))
     count = _ADAPTIVE_OUTPUTS if chosen.fixed_step is None else end / chosen.fixed_step
     worked = _works(lowered) and count * len(lowered.x) < _ROOM
@@ -134,12 +136,20 @@ def integrator(given: Integrator | str | None, end: float) -> Integrator:
         from dalembert.multibody.integrators.automatic import Automatic  # with all integrators that it may choose
 
         return Automatic()
+    if not isinstance(given, Integrator):
+        hint = f"; write {given.__name__}(...)" if isinstance(given, type) and issubclass(given, Integrator) else ""
+        raise InputError(
+            f"solver is {shown(given)}; expected 'auto' or an integrator, such as GeneralizedAlpha(step=1e-3){hint}"
+        )
     return given
 
 
-def checked(times: np.ndarray, end: float) -> np.ndarray:
+def checked(times: ArrayLike, end: float = np.inf) -> np.ndarray:
     """Output times as an array, refused where they cannot be meant."""
-    times = np.asarray(times, dtype=float)
+    try:
+        times = np.array(times, dtype=object).astype(float)
+    except (TypeError, ValueError):
+        raise InputError(f"times is {shown(times)}; expected a list of increasing numbers of seconds") from None
     if times.ndim != 1 or len(times) == 0 or not np.all(np.diff(times) > 0):
         raise InputError("times: expected a list of increasing numbers of seconds")
     if times[0] < 0 or times[-1] > end * (1 + 1e-12):

@@ -9,6 +9,7 @@ from scipy.linalg import eig, eigh, null_space
 from scipy.sparse import csr_matrix
 from scipy.sparse.linalg import lsqr, splu
 
+from dalembert.arguments import names_of
 from dalembert.errors import SolveError
 from dalembert.kernels.preparation import prepare
 from dalembert.multibody.assemble import assembled, refuse_redundancy, scales
@@ -47,7 +48,7 @@ class Equilibrium:
     def channels(self, names: Sequence[str]) -> np.ndarray:
         """Values of channels, (channels,)."""
         still = np.zeros((1, len(self.x)))
-        own = observer(self.system, self.lowered, tuple(names))
+        own = observer(self.system, self.lowered, names_of(names, "Equilibrium", "channels"))
         return own.read(self.lowered, self.lowered.real, self.x[None], still, still)[0]
 
     def drawing(self, points: int = 8) -> Drawing:

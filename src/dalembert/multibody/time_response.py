@@ -7,10 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from dalembert.errors import InputError, SolveError, told, unknown
+from dalembert.arguments import names_of
+from dalembert.errors import InputError, ModelError, SolveError, told, unknown
 from dalembert.findings import Finding
 from dalembert.forward import Channel, Coordinate, Refinement, Responses, ensemble, error_factor
-from dalembert.forward.builders import cores, inexact, restructured
+from dalembert.forward.builders import built, check_function, cores, inexact, restructured
 from dalembert.forward.complex_steps import Compared
 from dalembert.forward.differences import COMPLEX_STEP, DERIVATIVES, central_differences
 from dalembert.kernels.preparation import prepare
@@ -87,16 +88,18 @@ class TimeResponse:
     ) -> None:
         if derivative not in DERIVATIVES:
             raise InputError(unknown("derivative", derivative, DERIVATIVES, "TimeResponse"))
-        times = np.asarray(times, dtype=float)
-        times = checked(times, times[-1] if times.ndim == 1 and len(times) else 0.0)
+        times = checked(times)
         if times[-1] <= 0:
             raise InputError("TimeResponse: the last of the times is 0 s; expected a motion of some duration")
+        channels = names_of(channels, "TimeResponse", "channels")
         if not channels:
             raise InputError("TimeResponse: no channels were given; name at least one, such as 'AB.end.x'")
+        parameters = Parameters.of(parameters)
+        check_function("TimeResponse", builder, parameters.names)
         for name, value in (
             ("builder", builder),
-            ("parameters", Parameters.of(parameters)),
-            ("channel_names", tuple(channels)),
+            ("parameters", parameters),
+            ("channel_names", channels),
             ("times", times),
             ("solver", integrator(solver, float(times[-1]))),
             ("workers", workers or cores()),
@@ -134,7 +137,7 @@ class TimeResponse:
 
         A sample that fails is marked with its reason, and its values are NaN.
         """
-        vectors = np.atleast_2d(np.asarray(vectors, dtype=float))
+        vectors = self.parameters.batch(vectors)
         values = np.full((len(vectors), len(self.times), len(self.channel_names)), np.nan)
         failures: list[str | None] = [None] * len(vectors)
         frame = self._frame
@@ -173,7 +176,7 @@ class TimeResponse:
         SolveError
             Where the solver could not go on.
         """
-        vector = self.parameters.vector(vector).astype(float)
+        vector = self.parameters.real_vector(vector)
         if self.derivative != COMPLEX_STEP:
             return central_differences(self, vector)
         frame = self._frame
@@ -227,7 +230,7 @@ class TimeResponse:
 
     def system(self, vector: np.ndarray) -> System:
         """The mechanism at a parameter vector (parameters,)."""
-        return self.builder(**self.parameters.mapping(vector))
+        return built(self.builder, self.parameters.mapping(vector), System)
 
     def check_derivatives(self, vector: np.ndarray) -> None:
         """Compare the complex step with differences of the model's numbers at a vector (parameters,).
@@ -263,7 +266,7 @@ class TimeResponse:
 
     @cached_property
     def _frame(self) -> "_Frame":
-        system = self.builder(**self.parameters.mapping(self.parameters.start))
+        system = self.system(self.parameters.start)
         placed = lower(system)
         self._prepare(placed, observer(system, placed, self.channel_names), derivatives=False)
         lowered = assembled(system, placed=placed)
@@ -285,17 +288,20 @@ class TimeResponse:
 
     def _lower(self, vector: np.ndarray) -> Lowered:
         """Arrays of one sample, in the structure of the first."""
-        return self._fit(assembled(self.builder(**dict(zip(self.parameters.names, vector.tolist(), strict=True)))))
+        return self._fit(assembled(self.system(vector)))
 
     def _tilt(self, vector: np.ndarray, column: int) -> Lowered:
         """Arrays of the model along one parameter, moved by a complex step of its scale."""
         tilted = vector.astype(complex)
         tilted[column] += 1j * STEP * self.parameters.scale[column]
-        given = dict(zip(self.parameters.names, vector.tolist(), strict=True))
+        given: dict[str, complex] = dict(self.parameters.mapping(vector))
         given[self.parameters.names[column]] = complex(tilted[column])
         try:
-            return self._fit(assembled(self.builder(**given), tilted=True))
-        except (TypeError, np.exceptions.ComplexWarning) as error:
+            return self._fit(assembled(built(self.builder, given, System), tilted=True))
+        except (TypeError, ModelError, np.exceptions.ComplexWarning) as error:
+            error = error.__cause__ if isinstance(error, ModelError) else error
+            if not isinstance(error, TypeError | np.exceptions.ComplexWarning):
+                raise
             raise inexact(self.parameters.names[column], error) from error
 
     def _fit(self, lowered: Lowered) -> Lowered:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from dalembert.arguments import names_of
 from dalembert.contents import Contents
 from dalembert.files import write_contents
 from dalembert.findings import Finding
@@ -75,7 +76,7 @@ class Trajectory:
         InputError
             For an unknown name, with the nearest ones.
         """
-        states, own = self.states, observer(self.system, self.lowered, tuple(names))
+        states, own = self.states, observer(self.system, self.lowered, names_of(names, "Trajectory", "channels"))
         prepare(own.kernels(self.lowered, False))
         return own.read(self.lowered, self.lowered.real, states.x, states.v, states.a)
 

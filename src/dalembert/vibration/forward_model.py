@@ -6,9 +6,10 @@ from functools import cached_property
 
 import numpy as np
 
-from dalembert.errors import InputError, SolveError, told, unknown
+from dalembert.arguments import names_of
+from dalembert.errors import InputError, ModelError, SolveError, told, unknown
 from dalembert.forward import Channel, Coordinate, Refinement, Responses, ensemble, error_factor
-from dalembert.forward.builders import cores, inexact, restructured
+from dalembert.forward.builders import built, check_function, cores, inexact, restructured
 from dalembert.forward.complex_steps import Compared
 from dalembert.forward.differences import COMPLEX_STEP, DERIVATIVES, central_differences
 from dalembert.parameters import Parameter, Parameters
@@ -89,12 +90,15 @@ class FrequencyResponse:
         frequencies = np.asarray(frequencies, dtype=float)
         if frequencies.ndim != 1 or not len(frequencies) or not np.all(np.isfinite(frequencies) & (frequencies > 0)):
             raise InputError("FrequencyResponse: expected one or more frequencies, positive numbers in Hz")
+        channels = names_of(channels, "FrequencyResponse", "channels")
         if not channels:
             raise InputError("FrequencyResponse: no channels were given; name at least one, such as 'm2 peak'")
+        parameters = Parameters.of(parameters)
+        check_function("FrequencyResponse", builder, parameters.names)
         for name, value in (
             ("builder", builder),
-            ("parameters", Parameters.of(parameters)),
-            ("channel_names", tuple(channels)),
+            ("parameters", parameters),
+            ("channel_names", channels),
             ("frequencies", frequencies),
             ("method", method or HarmonicBalance()),
             ("workers", workers or cores()),
@@ -128,7 +132,7 @@ class FrequencyResponse:
 
         A sample one of whose points is not found is marked with the reason, and its values are NaN.
         """
-        vectors = np.atleast_2d(np.asarray(vectors, dtype=float))
+        vectors = self.parameters.batch(vectors)
         values = np.full((len(vectors), len(self.frequencies), len(self.channel_names)), np.nan)
         failures: list[str | None] = [None] * len(vectors)
 
@@ -159,7 +163,7 @@ class FrequencyResponse:
         SolveError
             Where a point is not found.
         """
-        vector = self.parameters.vector(vector).astype(float)
+        vector = self.parameters.real_vector(vector)
         if self.derivative != COMPLEX_STEP:
             return central_differences(self, vector)
         with one_thread():
@@ -210,7 +214,7 @@ class FrequencyResponse:
 
     def system(self, vector: np.ndarray) -> VibrationSystem:
         """The system at a parameter vector (parameters,)."""
-        return self.builder(**self.parameters.mapping(vector))
+        return built(self.builder, self.parameters.mapping(vector), VibrationSystem)
 
     def curve(self, vector: np.ndarray) -> FrequencyCurve:
         """The whole result at a parameter vector (parameters,)."""
@@ -276,11 +280,14 @@ class FrequencyResponse:
     def _tilted(self, vector: np.ndarray, column: int, real: Lowered) -> Lowered:
         """The system along one parameter, moved by a complex step of its scale."""
         name = self.parameters.names[column]
-        given: dict = dict(zip(self.parameters.names, vector.tolist(), strict=True))
+        given: dict[str, complex] = dict(self.parameters.mapping(vector))
         given[name] = complex(vector[column], STEP * self.parameters.scale[column])
         try:
-            tilted = lower(self.builder(**given))
-        except (TypeError, np.exceptions.ComplexWarning) as error:
+            tilted = lower(built(self.builder, given, VibrationSystem))
+        except (TypeError, ModelError, np.exceptions.ComplexWarning) as error:
+            error = error.__cause__ if isinstance(error, ModelError) else error
+            if not isinstance(error, TypeError | np.exceptions.ComplexWarning):
+                raise
             raise inexact(name, error) from error
         if tilted.row_names != real.row_names or tilted.structure.dofs.names != real.structure.dofs.names:
             raise restructured()

@@ -52,7 +52,7 @@ TABLES = {
 }
 """Where the page tells of a table that is not one kind of several."""
 
-BODIES = {"AncfBeam", "AncfCable", "RigidBar", "RigidBody", "PointMass"}
+BODIES = {"AncfBeam", "AncfCable", "RigidBar", "RigidBarBetween", "RigidBody", "PointMass"}
 JOINTS = {"RevoluteJoint", "PrismaticJoint", "FixedJoint", "DistanceJoint", "PrescribedMotion", "GearJoint"}
 LOADS = {"Force", "Torque", "Spring", "TorsionSpring", "UserForce", "Bushing"}
 EVERYWHERE = {kind: {"name"} for kind in BODIES | LOADS} | {kind: {"name", "a", "b"} for kind in JOINTS}

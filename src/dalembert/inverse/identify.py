@@ -22,6 +22,7 @@ from dalembert.inverse.loss import loss_of
 from dalembert.inverse.multistart import HORIZONS, multistart
 from dalembert.inverse.noise import noise_floor
 from dalembert.inverse.problem import Linearisation, Problem, pose
+from dalembert.inverse.repeated import repeated
 from dalembert.inverse.restarts import check_restart, check_segments
 from dalembert.inverse.runs import Method, polished, runs
 from dalembert.inverse.shooting import MultipleShooting, shots
@@ -191,6 +192,7 @@ def identify(
         if exact
         else integration_findings(found, problem, told.deviations, best.fitness, known=known, white=correlated is None)
     )
+    undetermined = repeated(problem, vector, response) if best.nodes is None else ()
     whole = response if problem is posed else posed.responses(vector[None])[0]
     predicted = parted.validation(whole)
     unexplained = () if predicted is None else explained_findings(predicted.explained)
@@ -207,7 +209,7 @@ def identify(
         weights=np.where(parted.fitted, posed.weights, 0.0),
         history=tuple(journal.history),
         starts=tuple(journal.starts),
-        success=best.success,
+        success=best.success and not undetermined,
         status=status(problem, best, response, floor, correlated is not None),
         method=method.name if isinstance(method, Minimiser) else type(method).__name__,
         simulations=journal.simulations,
@@ -227,7 +229,7 @@ def identify(
         parts=parts,
         validation=predicted,
         nodes=best.nodes,
-        findings=(*findings, *biased, *unexplained, *findings_at(model, vector)),
+        findings=(*undetermined, *findings, *biased, *unexplained, *findings_at(model, vector)),
         integration=found,
         correlated=correlated,
     )

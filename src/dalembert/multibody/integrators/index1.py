@@ -6,7 +6,13 @@ import numpy as np
 
 from dalembert.kernels.kernel import inner, kernel
 from dalembert.kernels.words import Address, Complexes2, Integers, Reals
-from dalembert.multibody.integrators.least_squares import Surplus, invert_on_range, surplus_room, turn_range
+from dalembert.multibody.integrators.least_squares import (
+    Surplus,
+    invert_on_range,
+    keep_in_range,
+    surplus_room,
+    turn_range,
+)
 from dalembert.multibody.integrators.lifting import lift
 from dalembert.multibody.integrators.partitioning import Partition, room
 from dalembert.multibody.integrators.problem import Problem
@@ -122,6 +128,8 @@ def demand(
     for iteration in range(_MOST_ITERATIONS if nonlinear else 2):  # linear: once more for rounding
         if (iteration == 0 or nonlinear) and not factorise_motion(problem, terms, dual, state, tools):
             return False
+        if iteration == 0 and terms.redundant:
+            keep_in_range(problem, tools.surplus, state)
         _fill_gap(model, n, terms, state.x, state.v, state.a, tools.work, tools.gap, tools.answer, tools.second)
         solve_linear(problem.exact_layout, tools.exact, tools.gap, tools.answer)
         subtract(n, tools.answer, state)

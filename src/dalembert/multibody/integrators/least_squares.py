@@ -1,4 +1,9 @@
-"""Redundant constraints: accelerations as without the surplus, and of all possible multipliers the smallest ones."""
+"""Redundant constraints: accelerations as without the surplus, and of all possible multipliers the smallest ones.
+
+Multipliers are measured by their scales s in ``problem.scale``: the smallest ones, which have the least sum of
+(multiplier / s)^2, lie in the range of S^2 J, with S the diagonal matrix of the scales. So the basis B of that range is
+orthonormal in the product x^T S^-2 y.
+"""
 
 from typing import NamedTuple
 
@@ -18,12 +23,14 @@ from dalembert.multibody.kernels.motion import Motion, clear
 class Surplus(NamedTuple):
     """Work for redundant constraints.
 
-    ``partition``: that of the constraints, whose Jacobian's range has the ``basis`` (m, m) in its first columns.
+    ``partition``: that of the constraints. The first columns of ``basis`` (m, m) span the range of the multipliers,
+    whose ``scale`` (m,) is that of the problem.
     ``product`` (N, N), by columns, and ``small``: work for the matrix on the range; ``across`` (3, m) for derivatives.
     ``invert``, ``turn``: addresses of the kernels, 0 if no constraint is redundant, ``turn`` 0 without derivatives.
     """
 
     partition: Partition
+    scale: Reals
     basis: Reals2
     product: Reals2
     small: Factors
@@ -38,7 +45,7 @@ def surplus_room(problem: Problem, redundant: bool, directions: int) -> Surplus:
     m = layout.size - problem.n if redundant else 0
     size = layout.size if redundant else 0
     return Surplus(
-        room(problem, 0), np.zeros((m, m)), np.zeros((size, size)), storage(resized(layout, size)), np.zeros((3, m)),
+        room(problem, 0), problem.scale[problem.n : problem.n + m].copy(), np.zeros((m, m)), np.zeros((size, size)), storage(resized(layout, size)), np.zeros((3, m)),
         invert_on_range.address if redundant else 0, turn_range.address if redundant and directions else 0,
     )  # fmt: skip
 
@@ -57,40 +64,59 @@ def _add(factor, source, target):
 
 
 @inlined
-def _product(basis, j, k):
-    """Scalar product of two columns."""
+def _product(basis, scale, j, k):
+    """Scalar product of two columns in units of the scales."""
     total = 0.0
     for i in range(len(basis)):
-        total += basis[i, j] * basis[i, k]
+        total += basis[i, j] * basis[i, k] / (scale[i] * scale[i])
     return total
 
 
 @inlined
-def _share(basis, k, vector):
-    """Scalar product of a column with a vector."""
+def _share(basis, scale, k, vector):
+    """Scalar product of a column with a vector in units of the scales."""
     total = 0.0
     for i in range(len(basis)):
-        total += basis[i, k] * vector[i]
+        total += basis[i, k] * vector[i] / (scale[i] * scale[i])
     return total
 
 
 @inner
 def _find_range(problem, surplus):
-    """Orthonormal basis of what the Jacobian in ``surplus.partition.matrix`` reaches, with the rank decided anew."""
-    partition, basis = surplus.partition, surplus.basis
+    """Basis of the multipliers' range, by the Jacobian in ``surplus.partition.matrix``, with the rank decided anew."""
+    partition, basis, scale = surplus.partition, surplus.basis, surplus.scale
     choose(problem, partition)
     for k in range(partition.rank[0]):
         own = partition.columns[k] * problem.exact_layout.lead + problem.n
         for i in range(len(basis)):
-            basis[i, k] = partition.matrix[own + i]
+            basis[i, k] = scale[i] * scale[i] * partition.matrix[own + i]
         for _ in range(2):  # twice is enough to be orthogonal to rounding
             for j in range(k):
-                share = _product(basis, j, k)
+                share = _product(basis, scale, j, k)
                 for i in range(len(basis)):
                     basis[i, k] -= share * basis[i, j]
-        length = np.sqrt(_product(basis, k, k))
+        length = np.sqrt(_product(basis, scale, k, k))
         for i in range(len(basis)):
             basis[i, k] /= length
+
+
+@inner
+def keep_in_range(problem, surplus, state):
+    """Take off the multipliers what is across their range: a self-stress that an earlier position left."""
+    n, m, kept = problem.n, len(surplus.basis), surplus.across[2]
+    _project(surplus, state.x[n : n + m], kept)
+    for i in range(m):
+        state.x[n + i] = kept[i]
+
+
+@inner
+def _project(surplus, vector, kept):
+    """The part of multipliers in their range."""
+    clear(kept)
+    for k in range(surplus.partition.rank[0]):
+        share = _share(surplus.basis, surplus.scale, k, vector)
+        for i in range(len(vector)):
+            kept[i] += share * surplus.basis[i, k]
 
 
 @inner
@@ -155,15 +181,16 @@ def turn_range(
 ) -> None:  # fmt: skip
     """Give the multipliers' derivative the part across the range that keeps the multipliers in it.
 
-    With the multipliers J w, w fixed, this is the part of the derivative of J, times w, across the range of J. The rest
-    of the derivative follows from the equations of motion.
+    With the multipliers S^2 J w, w fixed, this is the part of the derivative of S^2 J, times w, across the range. The
+    rest of the derivative follows from the equations of motion.
     """
-    partition, basis, across = surplus.partition, surplus.basis, surplus.across
+    partition, basis, scale, across = surplus.partition, surplus.basis, surplus.scale, surplus.across
     n, m, rank = problem.n, len(basis), partition.rank[0]
     if not invert(problem, partition):
         return
     for i in range(rank):
-        partition.gap[i] = state.x[n + partition.rows[i]]
+        own = partition.rows[i]
+        partition.gap[i] = state.x[n + own] / (scale[own] * scale[own])
     solve(resized(problem.exact_layout, rank), partition.dependent, partition.gap, partition.change)
     for part in range(2):  # the rates are linear in the velocities, but for the motion that is prescribed
         lift(n, state, dstate, lifted)
@@ -174,17 +201,11 @@ def turn_range(
                 lifted[1, partition.columns[i]] = partition.change[i]
         constraint_rates(tilted, n, lifted[0], lifted[1], lifted[2], dual_work, lifted[3], lifted[4])
         for i in range(m):
-            across[part, i] = lifted[3, n + i].imag / STEP
+            across[part, i] = scale[i] * scale[i] * lifted[3, n + i].imag / STEP
     turned, kept = across[0], across[2]
-    clear(kept)
     _add(-1.0, across[1], turned)
-    for k in range(rank):
-        share = _share(basis, k, turned)
-        for i in range(m):
-            turned[i] -= share * basis[i, k]
-    for k in range(rank):
-        share = _share(basis, k, dstate.x[n : n + m])
-        for i in range(m):
-            kept[i] += share * basis[i, k]
+    _project(surplus, turned, kept)
+    _add(-1.0, kept, turned)
+    _project(surplus, dstate.x[n : n + m], kept)
     for i in range(m):
         dstate.x[n + i] = kept[i] + turned[i]

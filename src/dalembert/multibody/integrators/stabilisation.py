@@ -9,6 +9,7 @@ import numpy as np
 
 from dalembert.errors import InputError
 from dalembert.multibody.assemble import redundancy
+from dalembert.multibody.evaluate import constraint_jacobian
 from dalembert.multibody.integrators.index1 import AS_THEY_COME, PARTITIONED, PROJECTED, Terms
 from dalembert.multibody.integrators.problem import Problem
 from dalembert.multibody.lowering import Lowered
@@ -139,6 +140,8 @@ def posed(
     Partitions and least squares need dense matrices.
     """
     redundant = any(redundancy(lowered).rank < redundancy(lowered).count for lowered in samples)
+    if redundant:
+        problem = problem._replace(scale=_weighed(problem, samples[0]))
     if redundant or stabilisation.way == PARTITIONED:
         slots, layout = samples[0].structure.dense
         problem = problem._replace(exact_slots=slots, exact_layout=layout)
@@ -146,3 +149,18 @@ def posed(
     limit = float(getattr(stabilisation, "limit", 0.0))
     nonlinear = any(kind.takes_reactions for kind in samples[0].data)
     return problem, Terms(float(alpha), float(beta), redundant, stabilisation.way, limit, nonlinear)
+
+
+def _weighed(problem: Problem, lowered: Lowered) -> np.ndarray:
+    """Scales with those of the multipliers: one for forces, a lever for torques, (N + 1,).
+
+    The lever is the power of ten of metres next to the mechanism's extent, so that it is the same for all parameters
+    of a model. A multiplier is a torque where its constraint depends on no position.
+    """
+    n, scale = problem.n, problem.scale.copy()
+    positions = np.array(lowered.structure.kinds) == "position"
+    lever = 10.0 ** np.round(np.log10(scale[:n][positions].max(initial=1e-300))) if positions.any() else 1.0
+    jacobian = abs(constraint_jacobian(lowered, np.real(lowered.x)))
+    held = np.asarray(jacobian[:, np.flatnonzero(positions)].sum(axis=1)).ravel() > 0
+    scale[n:-1] = np.where(held, 1.0, lever)
+    return scale

@@ -65,7 +65,7 @@ def test_dense_output_keeps_the_order(reference, record_evidence) -> None:
     ("solver", "name"),
     [
         (da.RungeKutta4(2e-3), "Runge–Kutta 4, projection"),
-        # At one of five tolerances tried, 1e-10, a step ends in a singular position, and the run stays there.
+        # At one of five tolerances tried, 1e-10, a step ends in a singular position; see below.
         (da.OdeSolver("DOP853", 1e-9, 1e-11, da.Partitioning()), "DOP853, partitioning"),
     ],
     ids=["RK4", "DOP853"],
@@ -85,6 +85,43 @@ def test_four_bar_through_its_singular_positions(reference, record_evidence, sol
         source=data["source"],
     )
     assert all(np.max(level) < 1e-12 for level in trajectory.violations.values())
+
+
+@pytest.mark.parametrize("tolerance", [1e-6, 1e-8])
+def test_auto_passes_the_flat_four_bar(reference, record_evidence, tolerance: float) -> None:
+    """Radau IIA stops in the singular position; the method that passes it runs the motion again."""
+    data = reference("n_four_bar")
+    time = data["values"]["time"]
+    times = np.array([0.0, time])
+    system, model = n_four_bar(data["model"], 1), {**data["model"]}
+    trajectory = da.simulate(system, time, da.Automatic(tolerance), times)
+    assert isinstance(trajectory.solver, da.OdeSolver)
+    names = ["U0.end.x", "U0.end.y"]
+    ours = trajectory.channels(names)[-1]
+    record_evidence(
+        f"four-bar mechanism (A02), x and y of B0 at 10 s, auto with a tolerance of {tolerance:g}",
+        data["values"]["position"][0],
+        ours,
+        unit="m",
+        tolerance=100 * tolerance,
+        topic=TOPIC,
+        source=data["source"],
+    )
+    response = da.TimeResponse(
+        lambda gravity: n_four_bar({**model, "gravity": gravity}, 1), {"gravity": (9.0, 10.0)}, names, times,
+        da.Automatic(tolerance),
+    )  # fmt: skip
+    np.testing.assert_array_equal(response.evaluate(np.array([[model["gravity"]]])).only()[0, -1], ours)
+
+
+def test_a_run_that_stays_in_a_singular_position_ends(reference) -> None:
+    """One step ends there to rounding: the accelerations cannot be resolved, and the steps become rounding."""
+    system = n_four_bar(reference("n_four_bar")["model"], 1)
+    solver = da.OdeSolver("DOP853", 1e-10, 1e-12, da.Partitioning())
+    with pytest.raises(
+        da.SolveError, match=r"^singular position: the joints 'foot0', .* lose independence at t = 8\.40"
+    ):
+        da.simulate(system, 10.0, solver, np.array([0.0, 10.0]))
 
 
 PUBLISHED = "Zhang & Ding, Firefly algorithm for solving multibody dynamics differential-algebraic equations (2021)"

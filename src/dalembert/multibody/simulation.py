@@ -62,11 +62,15 @@ def simulate(
     array([0.986])
     """
     with in_complex_numbers(strict=False):
-        lowered, solver, times, grid = posed(system, end, solver, times)
-        (result,) = solver.integrate([lowered], (), make_problem(lowered, grid), end)
+        lowered, chosen, times, grid = posed(system, end, solver, times)
+        problem = make_problem(lowered, grid)
+        (result,) = chosen.integrate([lowered], (), problem, end)
+        if other := integrator(solver, end).instead(result.reason, end):
+            (second,) = other.integrate([lowered], (), problem, end)
+            chosen, result = (chosen, result) if second.reason else (other, second)
     if result.reason:
         raise SolveError(result.reason)
-    return Trajectory(system, lowered, solver, result, np.searchsorted(grid, times))
+    return Trajectory(system, lowered, chosen, result, np.searchsorted(grid, times))
 
 
 def posed(

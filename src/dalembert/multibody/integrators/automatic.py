@@ -14,9 +14,11 @@ from dalembert.multibody.integrators.radau_iia import RadauIIA
 from dalembert.multibody.integrators.run import Run
 from dalembert.multibody.integrators.stabilisation import Partitioning
 from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.singular_positions import SINGULAR_POSITION
 from dalembert.settings import expect_positive
 
 _FIRST = 1e-3  # of the motion: the first step of an adaptive one
+_MOST_STEPS = 20_000  # of an explicit method past a singular position
 
 
 @dataclass(frozen=True)
@@ -26,7 +28,8 @@ class Automatic(Integrator):
     Where all bodies are rigid nothing oscillates faster than the motion, and a high order takes long steps:
     :class:`RadauIIA`; with redundant constraints :class:`OdeSolver`, which finds multipliers for them. Beams and cables
     bring frequencies that nobody wants to follow: :class:`GeneralizedAlpha` damps them, and its step, adaptive here,
-    costs little. The page "Which integrator" has the measurements behind this rule.
+    costs little. Where a singular position (a flat four-bar) stops :class:`RadauIIA`, :class:`OdeSolver` runs the
+    motion again, if it can pass. The page "Which integrator" has the measurements behind this rule.
 
     Parameters
     ----------
@@ -54,12 +57,21 @@ class Automatic(Integrator):
             return GeneralizedAlpha(step=_FIRST * end, adaptive=True, tolerance=self.tolerance)
         known = redundancy(lowered)
         if known.rank < known.count:
-            return OdeSolver("DOP853", self.tolerance, self.tolerance, Partitioning())
+            return self._redundant()
         return RadauIIA(tolerance=self.tolerance)
 
     def refined(self) -> tuple[Integrator, int | None]:
         """Return the same choice at a tolerance 100 times tighter."""
         return replace(self, tolerance=self.tolerance / 100), None
+
+    def instead(self, reason: str | None, end: float) -> Integrator | None:
+        """The method for redundant constraints where a singular position stopped the run."""
+        if not (reason and reason.startswith(SINGULAR_POSITION)):
+            return None
+        return replace(self._redundant(), most_steps=_MOST_STEPS)
+
+    def _redundant(self) -> OdeSolver:
+        return OdeSolver("DOP853", self.tolerance, self.tolerance, Partitioning())
 
     def integrate(
         self,
@@ -70,5 +82,10 @@ class Automatic(Integrator):
         *,
         logged: bool = True,
     ) -> list[Run]:
-        """Runs by the integrator that suits the first sample; all samples have its structure."""
-        return self.suiting(samples[0], end).integrate(samples, tilted, problem, end, logged=logged)
+        """Runs by the integrator that suits the first sample; samples that it cannot finish run by another one."""
+        runs = self.suiting(samples[0], end).integrate(samples, tilted, problem, end, logged=logged)
+        for number, run in enumerate(runs):
+            if other := self.instead(run.reason, end):
+                (second,) = other.integrate([samples[number]], tilted, problem, end, logged=logged)
+                runs[number] = run if second.reason else second
+        return runs

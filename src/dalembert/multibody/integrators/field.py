@@ -83,6 +83,11 @@ class Field:
         self._state.x[: self.n], self._state.v[: self.n] = parts[0]
         self._dstates.x[:, : self.n], self._dstates.v[:, : self.n] = parts[1:, 0], parts[1:, 1]
 
+    @property
+    def unknowns(self) -> np.ndarray:
+        """Unknowns of the present state, (N + 1,)."""
+        return self._state.x
+
     def gathered(self) -> np.ndarray:
         """The vector of the present state."""
         return self._joined(self._state.x, self._state.v, self._dstates.x, self._dstates.v)

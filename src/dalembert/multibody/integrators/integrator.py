@@ -75,6 +75,10 @@ class Integrator(ABC):
             return None
         return replace(cast(Any, self), step=self.fixed_step / 2), self.convergence
 
+    def instead(self, reason: str | None, end: float) -> "Integrator | None":
+        """The integrator to try where the suiting one stopped for a ``reason``; None but for one that chooses."""
+        return None
+
     @property
     def fixed_step(self) -> float | None:
         """The step in s, None if the method chooses it."""

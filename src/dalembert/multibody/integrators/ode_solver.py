@@ -22,10 +22,12 @@ from dalembert.multibody.integrators.stabilisation import Projection, Stabilisat
 from dalembert.multibody.kernels.model import addresses
 from dalembert.multibody.kernels.motion import Motion, resting, row
 from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.singular_positions import named
 from dalembert.multibody.structure import Structure
 from dalembert.settings import expect, expect_positive
 
 EXPLICIT, IMPLICIT = ("RK45", "DOP853"), ("Radau", "BDF", "LSODA")
+_SHORT, _STUCK = 1e-9, 100  # part of a stretch below which a step is short, and how many in turn do not advance
 _FINEST = 1e-12  # relative tolerance; SciPy takes none below 100 roundings, which derivatives divide further
 
 
@@ -143,7 +145,7 @@ class OdeSolver(Integrator):
         self, own: Field, begin: float, end: float, out: Motion, dout: Motion, due: int, ends: list[float]
     ) -> tuple[str | None, int]:
         """One smooth stretch: why it ended early, and the number of the next output."""
-        times, solver = own.problem.times, self._solver(own, begin, end)
+        times, solver, short = own.problem.times, self._solver(own, begin, end), 0
         while solver.status == "running":
             if len(ends) >= self.most_steps:
                 return explain(own.lowered, TOO_MANY_STEPS, solver.t, 0, "", self.most_steps), due
@@ -152,6 +154,9 @@ class OdeSolver(Integrator):
             if solver.status == "failed":
                 return self._explain(own, solver.t, message), due
             reached = min(solver.t, end)
+            short = short + 1 if solver.step_size < _SHORT * (end - begin) else 0
+            if short == _STUCK and (singular := named(own.lowered, own.unknowns, reached)):
+                return singular, due
             last = due
             while last < len(times) and times[last] <= reached * (1 + 1e-14):
                 last += 1
@@ -205,6 +210,8 @@ class OdeSolver(Integrator):
     def _explain(self, own: Field, time: float, message: str | None) -> str:
         if own.lowered.failures.errors:
             return explain(own.lowered, DONE, time, 0, "")
+        if singular := named(own.lowered, own.unknowns, time):
+            return singular
         why = f"{message[0].lower()}{message[1:].rstrip('.')}" if message else "no reason was given"
         return (
             f"OdeSolver: {self.method} could not go on at t = {time:.6g} s ({why}); if the model is stiff take an "

@@ -21,6 +21,7 @@ from dalembert.multibody.integrators.run import Run, cut, explain, starts
 from dalembert.multibody.kernels.model import addresses
 from dalembert.multibody.kernels.motion import Motion, resting
 from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.singular_positions import named
 from dalembert.multibody.structure import Structure
 from dalembert.settings import expect, expect_positive
 
@@ -59,7 +60,7 @@ class RadauIIA(Integrator):
     "Automatic integration of Euler-Lagrange equations with constraints" (1985); stages, error estimate and the split of
     Newton's matrix by E. Hairer and G. Wanner, "Solving Ordinary Differential Equations II" (1996), IV.8, and "Stiff
     differential equations solved by Radau methods" (1999). The estimate is that of q and v alone. Where the constraints
-    lose rank (a flat four-bar), their rates cannot be met and as a rule the run ends with the time;
+    lose rank (a flat four-bar), their rates cannot be met and as a rule the run ends with the time and the joints;
     :class:`GeneralizedAlpha` passes such positions.
 
     Examples
@@ -126,7 +127,7 @@ class RadauIIA(Integrator):
             own, start = resting(*shape), Motion(*(array[number] for array in states))
             model, dual = lowered.real.need("rates").address, lowered.dual.address
             status, time, unknown = run(edges, self._settings(lowered), model, dual, start, own, log)
-            reason = None if status == DONE else self._explain(lowered, status, time, unknown)
+            reason = None if status == DONE else self._explain(lowered, status, time, unknown, spare.new.x)
             taken = min(int(log.counts[0]), room)
             runs.append(Run(reason, problem.times, own, dout, log.counts, log.iterations[:taken], log.ends[:taken]))
         return runs
@@ -140,8 +141,8 @@ class RadauIIA(Integrator):
             lowered.dissipates,
         )
 
-    def _explain(self, lowered: Lowered, status: int, time: float, unknown: int) -> str:
+    def _explain(self, lowered: Lowered, status: int, time: float, unknown: int, x: np.ndarray) -> str:
         cut_down = "the step was cut down for it"
         if self.step is not None:
             cut_down = f"the step of {self.step:g} s was cut down to 1/256 for it"
-        return explain(lowered, status, time, unknown, cut_down, self.most_steps)
+        return named(lowered, x, time) or explain(lowered, status, time, unknown, cut_down, self.most_steps)

@@ -45,9 +45,15 @@ def surplus_room(problem: Problem, redundant: bool, directions: int) -> Surplus:
     m = layout.size - problem.n if redundant else 0
     size = layout.size if redundant else 0
     return Surplus(
-        room(problem, 0), problem.scale[problem.n : problem.n + m].copy(), np.zeros((m, m)), np.zeros((size, size)), storage(resized(layout, size)), np.zeros((3, m)),
-        invert_on_range.address if redundant else 0, turn_range.address if redundant and directions else 0,
-    )  # fmt: skip
+        room(problem, 0),
+        problem.scale[problem.n : problem.n + m].copy(),
+        np.zeros((m, m)),
+        np.zeros((size, size)),
+        storage(resized(layout, size)),
+        np.zeros((3, m)),
+        invert_on_range.address if redundant else 0,
+        turn_range.address if redundant and directions else 0,
+    )
 
 
 @inlined

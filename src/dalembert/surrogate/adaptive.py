@@ -1,22 +1,27 @@
 """A surrogate that chooses its own terms, on nested points, until its error is small enough."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 
 from dalembert.errors import InputError, unknown
 from dalembert.settings import expect_at_least, expect_positive
-from dalembert.surrogate.decay import by_direction, by_total_degree
+from dalembert.surrogate.decay import by_direction, by_total_degree, slow_tail
 from dalembert.surrogate.growth import Growth
+from dalembert.surrogate.held_out import SHARE, HeldOut
 from dalembert.surrogate.runs import Runs
-from dalembert.surrogate.scheme import Doubt, Fitted
+from dalembert.surrogate.scheme import Fitted
 
-SHARE = 0.3
-"""Part of the tolerance that the held-out runs may use up: they are few, and do not lie where the error is largest."""
 UNSEEN = 0.1
 """Where less than this part of the error of the held-out runs is expected, its terms are looked for elsewhere."""
+RECHECK = 1.05
+"""Growth of the number of terms after which the decay of the coefficients is looked at again."""
+AGREED = 3
+"""Times that the decay must agree once it did not: by chance the last terms of a kink are small now and then."""
+KEPT = 6
+"""Arrays of a number for each run and output that are kept: runs, surpluses, candidates and their copies."""
 BASES = ("sparse", "total-degree", "tensor")
 
 
@@ -31,6 +36,10 @@ class Adaptive:
         output of its group; see :func:`dalembert.surrogate.fit`.
     most_runs : int
         Where it ends at the latest, held-out runs included; what it then has is returned with its error.
+    most_order : int
+        Degree in one direction at which it ends. Functions with a kink or a step need thousands.
+    memory : float
+        Bytes for runs and terms; a run takes 8 bytes an output, six times.
     basis : str
         Which terms there may be. "sparse": any, each judged by itself, so that parameters which matter little or do
         not act together cost few runs. "total-degree": degree after degree. "tensor": all up to an order in each
@@ -61,29 +70,57 @@ class Adaptive:
 
     tolerance: float = 1e-6
     most_runs: int = 2000
+    most_order: int = 256
+    memory: float = 1e9
     basis: Literal["sparse", "total-degree", "tensor"] = "sparse"
 
     def __post_init__(self) -> None:
         expect_positive(self, "tolerance")
-        expect_at_least(self, 1, "most_runs")
+        expect_at_least(self, 1, "most_runs", "most_order")
+        expect_positive(self, "memory")
         if self.basis not in BASES:
             raise InputError(unknown("basis", self.basis, BASES, "Adaptive"))
 
-    def fitted(self, runs: Runs, seed: int, held_out: Doubt, scale: Callable[[], np.ndarray]) -> Fitted:
+    def fitted(self, runs: Runs, seed: int, held_out: HeldOut, scale: Callable[[], np.ndarray]) -> Fitted:
         growth = Growth(runs.directions, self.basis)
-        stalled = False
+        stalled, next_check, doubted = 0, 0, []
         while True:
-            batch = growth.batch(scale() if growth.terms else None, max(1, self.most_runs - runs.count), stalled)
+            most, limit = self._most(runs)
+            batch = growth.batch(scale() if growth.terms else None, max(1, most - runs.count), stalled)
+            highest = max(map(max, batch))
+            if highest > self.most_order:
+                return self._fitted(growth, f"raise Adaptive(most_order=...), now {self.most_order}")
             growth.add(batch, runs(growth.points(batch)), runs)
+            full = runs.count >= most
             tail, wanted = growth.tail(), self.tolerance * scale()
-            stalled = False
-            if np.all(tail <= wanted) or runs.count >= self.most_runs:
-                exponents, coefficients = growth.polynomial()
-                excess = held_out(exponents, coefficients) - SHARE * wanted
-                if np.all(excess <= 0) or runs.count >= self.most_runs:
-                    return Fitted(exponents, coefficients, tail)
+            excess = held_out.difference_of(growth) - SHARE * wanted
+            if full:
+                return self._fitted(growth, limit)
+            if np.any(tail > wanted):
+                stalled = 0
+            elif np.any(excess > 0):
                 worst = int(np.argmax(excess / wanted))
-                stalled = bool(tail[worst] < UNSEEN * excess[worst])
+                stalled = stalled + 1 if tail[worst] < UNSEEN * excess[worst] else 0
+            elif len(growth.terms) >= next_check:
+                fitted = self._fitted(growth, "")
+                doubted.append(fitted.tail)
+                latest = np.max(doubted[-AGREED:], axis=0)
+                if np.all(latest <= wanted):
+                    return replace(fitted, tail=latest)
+                stalled, next_check = 0, len(growth.terms) * RECHECK
+
+    def _most(self, runs: Runs) -> tuple[int, str]:
+        """Return the number of runs that the limits allow, and how to raise the one that counts."""
+        outputs = 1 if runs.range is None else runs.range.shape[1]
+        affordable = int(self.memory / (KEPT * 8 * outputs))
+        if affordable < self.most_runs:
+            return affordable, f"raise Adaptive(memory=...), now {self.memory:.3g} bytes"
+        return self.most_runs, f"allow more runs by Adaptive(most_runs=...), now {self.most_runs}"
+
+    def _fitted(self, growth: Growth, ended: str) -> Fitted:
+        exponents, coefficients = growth.polynomial()
+        slow = np.sum([slow_tail(shells) for shells in by_direction(exponents, coefficients)], axis=0)
+        return Fitted(exponents, coefficients, np.maximum(growth.tail(), slow), ended)
 
     def shells(self, exponents: np.ndarray, coefficients: np.ndarray) -> list[np.ndarray]:
         by_degree = by_total_degree if self.basis == "total-degree" else by_direction

@@ -5,6 +5,17 @@ import numpy as np
 SLOWEST = 0.9
 """Ratio above which coefficients do not decay: what is left out is then taken as ten times the last of them."""
 
+SHORT = 6
+"""Degrees below which no power of the decay is computed."""
+SMOOTH = 5.0
+"""Powers of the degree up to which coefficients decay as those of a function that is not smooth."""
+STEEPEST = 2.0
+"""Largest power that such a decay is continued with."""
+CAUTION = 3.0
+"""Factor on what such coefficients would add: they oscillate, and interpolation adds an error of the same size."""
+FLATTEST = 0.1
+"""Smallest p − 1 in the sum of a power series."""
+
 
 def by_total_degree(exponents: np.ndarray, coefficients: np.ndarray) -> list[np.ndarray]:
     """Sums of |coefficients| over the terms of each total degree: one array of shape (order + 1, outputs)."""
@@ -35,6 +46,43 @@ def tail(shells: np.ndarray) -> np.ndarray:
     """
     decay = _ratio(shells, len(shells) - 1)
     return _pair(shells, len(shells) - 1) * decay**2 / (1 - decay**2)
+
+
+def power(shells: np.ndarray) -> np.ndarray:
+    """Return p of a decay as degree^−p over the upper half of the degrees, shape (outputs,); infinite below ``SHORT``.
+
+    From the largest shells of the third and the last quarter. A kink |x| has p = 2, a step p = 1, noise and waves that
+    are not resolved p = 0, smooth functions a p that grows with the degree.
+    """
+    order = len(shells) - 1
+    if order < SHORT:
+        return np.full(shells.shape[1], np.inf)
+    half, last = (order + 1) // 2, (3 * order + 3) // 4
+    early, late = (part.max(axis=0) for part in (shells[half:last], shells[last:]))
+    ratio = np.divide(early, late, out=np.full(shells.shape[1], np.inf), where=late > 0)
+    return np.log(np.maximum(ratio, 1.0)) / np.log((last + order) / (half + last - 1))
+
+
+def slow_tail(shells: np.ndarray) -> np.ndarray:
+    """Estimate what the degrees above the last one would add to a function with a kink or a step, shape (outputs,).
+
+    The shells are taken to continue as s (m/n)^−p, whose sum is s n/(p − 1): s is the largest of the upper half, moved
+    to the last degree n. The coefficients of a kink oscillate, so that p may be too large: no more than ``STEEPEST`` is
+    taken. Zero where p is above ``SMOOTH``: :func:`tail` holds there.
+
+    Examples
+    --------
+    >>> kink = np.append(1.0, np.arange(1.0, 41.0) ** -2)[:, None]
+    >>> slow_tail(kink / CAUTION).round(3).tolist()  # the sum from degree 41 on is 0.0247
+    [0.025]
+    """
+    order, p = len(shells) - 1, power(shells)
+    if order < SHORT:
+        return np.zeros(shells.shape[1])
+    degrees = np.arange((order + 1) // 2, order + 1)
+    taken = np.minimum(p, STEEPEST)
+    last = np.max(shells[degrees] * (degrees[:, None] / order) ** taken, axis=0)
+    return np.where(p <= SMOOTH, CAUTION * last * order / np.maximum(taken - 1, FLATTEST), 0.0)
 
 
 def needed_order(shells: np.ndarray, tolerance: np.ndarray) -> tuple[int, bool]:

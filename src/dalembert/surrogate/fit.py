@@ -6,8 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from dalembert.errors import InputError, SolveError
-from dalembert.latin_hypercube import latin_hypercube
-from dalembert.surrogate.basis import chebyshev, products
+from dalembert.surrogate.held_out import held_out_runs
 from dalembert.surrogate.polynomial import ChebyshevPolynomial
 from dalembert.surrogate.runs import Function, Runs, failed
 from dalembert.surrogate.scheme import Fitted, Scheme
@@ -21,7 +20,7 @@ def fit(
     scheme: Scheme,
     *,
     seed: int = 0,
-    held_out: int = 8,
+    held_out: int | None = None,
     groups: ArrayLike | None = None,
     on_runs: Callable[[int], None] | None = None,
 ) -> Surrogate:
@@ -36,9 +35,10 @@ def fit(
     scheme : TotalDegree, Tensor or Adaptive
     seed : int
         Of the held-out points.
-    held_out : int
-        Runs that the polynomial is tested by and not made from: a Latin hypercube in arccos η, so that they lie denser
-        towards the sides, where surrogates err most.
+    held_out : int, optional
+        Runs that the polynomial is tested by and not made from: a Latin hypercube in arccos η, so that they are denser
+        near the sides, where surrogates are worst. Ten, or two for each direction with a width if that is more, if it
+        is not given.
     groups : array of int, shape (outputs,), optional
         Outputs with one number share one scale: the largest variation over the runs of an output of the group. One
         group of all if not given.
@@ -62,35 +62,24 @@ def fit(
     >>> from dalembert.surrogate import Tensor, fit
     >>> wave = fit(lambda x: np.sin(x[:, :1] + x[:, 1:] ** 2), [0.0, 0.0], [1.0, 1.0], Tensor(8))
     >>> wave.runs, bool(wave.error[0] < 1e-5), bool(abs(wave([[0.5, 0.2]]) - np.sin(0.54)) < wave.error)
-    (89, True, True)
+    (91, True, True)
     """
     low, high = _box(lower, upper)
     runs = Runs(function, low, high, on_runs)
-    test = _held_out(runs, held_out if runs.directions else 0, seed)
-    truth = runs(test) if len(test) else np.empty((0, 0))
-    kept = ~failed(truth)
-
-    def difference(exponents: np.ndarray, coefficients: np.ndarray) -> np.ndarray:
-        if not kept.any():
-            return np.zeros(coefficients.shape[1])
-        basis = products(chebyshev(test[kept], exponents.max(axis=0, initial=0)), exponents)
-        return np.max(np.abs(basis @ coefficients - truth[kept]), axis=0)
-
-    fitted = (
-        scheme.fitted(runs, seed, difference, lambda: _scale(runs.values, groups))
-        if runs.directions
-        else _constant(runs)
-    )
+    test = held_out_runs(runs, held_out, seed)
+    fitted = scheme.fitted(runs, seed, test, lambda: _scale(runs, groups)) if runs.directions else _constant(runs)
     ok = ~failed(runs.values)
     return Surrogate(
         _embedded(runs, fitted),
         scheme,
         fitted.tail,
-        difference(fitted.exponents, fitted.coefficients),
+        test.difference(fitted.exponents, fitted.coefficients),
         runs.points[ok],
         runs.values[ok],
-        _scale(runs.values, groups),
+        _scale(runs, groups),
         int(np.sum(~ok)),
+        len(test.eta),
+        fitted.ended,
     )
 
 
@@ -104,26 +93,17 @@ def _box(lower: ArrayLike, upper: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     return low, high
 
 
-def _held_out(runs: Runs, number: int, seed: int) -> np.ndarray:
-    """Coordinates of the held-out runs, shape (number, f)."""
-    if number < 0:
-        raise InputError(f"held_out is {number}; expected zero or more runs")
-    if number == 0:
-        return np.empty((0, runs.directions))
-    return -np.cos(np.pi * latin_hypercube(runs.directions, number, np.random.default_rng((seed, 3))))
-
-
-def _scale(values: np.ndarray, groups: ArrayLike | None) -> np.ndarray:
+def _scale(runs: Runs, groups: ArrayLike | None) -> np.ndarray:
     """Largest variation of an output of each group over the runs, shape (outputs,); never below rounding."""
-    values = values[~failed(values)]
-    if not len(values):
+    if runs.range is None:
         raise SolveError("all runs of a surrogate failed; keep the box away from where the model fails")
-    group = np.zeros(values.shape[1], dtype=int) if groups is None else np.unique(groups, return_inverse=True)[1]
-    if group.shape != values.shape[1:]:
-        raise InputError(f"groups of shape {group.shape} were given; expected {values.shape[1:]}, one number an output")
+    low, high = runs.range
+    group = np.zeros(len(low), dtype=int) if groups is None else np.unique(groups, return_inverse=True)[1]
+    if group.shape != low.shape:
+        raise InputError(f"groups of shape {group.shape} were given; expected {low.shape}, one number an output")
     largest = np.zeros((2, group.max(initial=0) + 1))
-    np.maximum.at(largest[0], group, np.ptp(values, axis=0))
-    np.maximum.at(largest[1], group, np.max(np.abs(values), axis=0))
+    np.maximum.at(largest[0], group, high - low)
+    np.maximum.at(largest[1], group, np.maximum(np.abs(low), np.abs(high)))
     return np.maximum(largest[0], 100 * np.finfo(float).eps * largest[1])[group]
 
 

@@ -27,20 +27,26 @@ class Growth:
     def __init__(self, directions: int, basis: str) -> None:
         self.directions, self.basis = directions, basis
         self.terms: list[Term] = []
+        self._exponents = np.empty((0, directions), dtype=int)
+        self._surpluses = np.empty((0, 0))
         self._surplus: dict[Term, np.ndarray] = {}
         self._candidates: dict[Term, np.ndarray | None] = {(0,) * directions: None}
         self._orders = np.zeros(directions, dtype=int)
         self._ratio = 1.0
 
-    def batch(self, scale: np.ndarray | None, most: int, stalled: bool) -> list[Term]:
-        """The next terms, at most ``most``, the ones expected to be largest relative to ``scale`` (outputs,) first.
+    def batch(self, scale: np.ndarray | None, most: int, stalled: int) -> list[Term]:
+        """Return the next terms, at most ``most``, the ones expected to be largest relative to ``scale`` first.
 
-        ``stalled`` says that the held-out runs show an error where nothing large is expected any more: a symmetry
-        hides it, as that of e^{xy} does, which has no terms but (k, k). Then any large surplus nearby counts.
+        ``stalled`` counts the batches since the held-out runs show an error where nothing large is expected any more.
+        A symmetry hides it, as that of e^{xy} does, which has no terms but (k, k): then any large surplus nearby
+        counts, and in every other batch the lowest degrees, as sin² 3x vanishes at all of the first points.
         """
         if scale is None:
             return self._start()[:most]
         candidates = sorted(self._candidates)
+        if stalled and stalled % 2 == 0:
+            lowest = min(map(sum, candidates))
+            return [term for term in candidates if sum(term) == lowest][:most]
         sizes = map(self._nearby if stalled else self._expected, candidates)
         expected = np.array([np.max(size / np.where(scale > 0, scale, 1)) for size in sizes])
         chosen = self._chosen(candidates, expected)
@@ -89,8 +95,8 @@ class Growth:
         # A term is foretold by terms below it alone, so the order within a batch is that of degrees.
         for term, value in sorted(zip(batch, values, strict=True), key=lambda pair: sum(pair[0])):
             expected = self._candidates.pop(term, None)
-            self._surplus[term] = surplus = value - self._foretold(term, len(value))
-            self.terms.append(term)
+            surplus = value - self._foretold(term, len(value))
+            self._append(term, surplus)
             if expected is not None and expected.any():
                 sizes.append((float(np.sum(np.abs(surplus))), float(np.sum(expected))))
             self._admit(term)
@@ -98,15 +104,32 @@ class Growth:
             found, foreseen = np.sum(sizes, axis=0)
             self._ratio = min(found / foreseen, 1.0)
 
+    def _append(self, term: Term, surplus: np.ndarray) -> None:
+        """Store a term; the arrays double when they are full."""
+        known = len(self.terms)
+        if known == len(self._exponents):
+            room = max(64, 2 * known)
+            exponents, surpluses = np.zeros((room, self.directions), dtype=int), np.zeros((room, len(surplus)))
+            if known:
+                exponents[:known], surpluses[:known] = self._exponents, self._surpluses
+            self._exponents, self._surpluses = exponents, surpluses
+        self._exponents[known], self._surpluses[known] = term, surplus
+        self._surplus[term] = surplus
+        self.terms.append(term)
+
     def _foretold(self, term: Term, outputs: int) -> np.ndarray:
         """Value at the point of a term of the polynomial so far, shape (outputs,)."""
         if not self.terms:
             return np.zeros(outputs)
-        exponents = np.array(self.terms)
+        exponents = self._exponents[: len(self.terms)]
         table = hierarchical(int(max(exponents.max(), *term)) + 1)[0]
         weights = np.prod(table[exponents, np.array(term)], axis=1)
         below = np.flatnonzero(weights)
-        return weights[below] @ np.array([self._surplus[self.terms[i]] for i in below])
+        return weights[below] @ self._surpluses[below]
+
+    def since(self, first: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return exponents (terms, directions) and surpluses (terms, outputs) of the terms from number ``first`` on."""
+        return self._exponents[first : len(self.terms)], self._surpluses[first : len(self.terms)]
 
     def _admit(self, term: Term) -> None:
         """Makes candidates of the terms above one, where nothing is missing below them."""
@@ -143,12 +166,14 @@ class Growth:
 
     def polynomial(self) -> tuple[np.ndarray, np.ndarray]:
         """Exponents (terms, directions) and Chebyshev coefficients (terms, outputs)."""
-        exponents = np.array(sorted(self.terms))
+        exponents, surpluses = self.since(0)
+        order = np.lexsort(exponents.T[::-1])
+        exponents, surpluses = exponents[order], surpluses[order]
         series = hierarchical(int(exponents.max()) + 1)[1]
         matrix = np.ones((len(exponents), len(exponents)))
         for k in range(self.directions):
             matrix *= series[exponents[:, None, k], exponents[None, :, k]]
-        return exponents, matrix.T @ np.array([self._surplus[term] for term in map(tuple, exponents.tolist())])
+        return exponents, matrix.T @ surpluses
 
 
 def _raised(term: Term, direction: int, by: int) -> Term:

@@ -30,6 +30,7 @@ class Runs:
         self.free = np.flatnonzero(upper > lower)
         self._points: list[np.ndarray] = []
         self._values: list[np.ndarray] = []
+        self._range: np.ndarray | None = None
 
     @property
     def directions(self) -> int:
@@ -51,6 +52,11 @@ class Runs:
         """Outputs of all runs so far, shape (runs, outputs)."""
         return np.concatenate(self._values)
 
+    @property
+    def range(self) -> np.ndarray | None:
+        """Least and largest outputs of the runs that succeeded, shape (2, outputs); None before the first of them."""
+        return self._range
+
     def place(self, eta: np.ndarray) -> np.ndarray:
         """Points (n, d) of coordinates (n, f)."""
         points = np.tile(self.lower, (len(eta), 1))
@@ -69,9 +75,17 @@ class Runs:
             )
         self._points.append(points)
         self._values.append(values)
+        kept = values[~failed(values)]
+        if len(kept):
+            now = np.array([kept.min(axis=0), kept.max(axis=0)])
+            self._range = now if self._range is None else _joined(self._range, now)
         if self._on_runs is not None:
             self._on_runs(self.count)
         return values
+
+
+def _joined(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    return np.array([np.minimum(a[0], b[0]), np.maximum(a[1], b[1])])
 
 
 def failed(values: np.ndarray) -> np.ndarray:

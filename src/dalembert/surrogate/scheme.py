@@ -6,6 +6,7 @@ from typing import Protocol
 
 import numpy as np
 
+from dalembert.surrogate.held_out import HeldOut
 from dalembert.surrogate.runs import Runs
 
 
@@ -19,29 +20,28 @@ class Fitted:
     coefficients : array, shape (terms, outputs)
     tail : array, shape (outputs,)
         Estimate of what the terms left out would add.
+    ended : str
+        Which limit ended the growth and how to raise it; empty if none did.
     """
 
     exponents: np.ndarray
     coefficients: np.ndarray
     tail: np.ndarray
-
-
-Doubt = Callable[[np.ndarray, np.ndarray], np.ndarray]
-"""Largest difference to the held-out runs (outputs,) of a polynomial of these exponents and coefficients."""
+    ended: str = ""
 
 
 class Scheme(Protocol):
     """Settings of a way to choose terms and runs."""
 
-    def fitted(self, runs: Runs, seed: int, held_out: Doubt, scale: Callable[[], np.ndarray]) -> Fitted:
+    def fitted(self, runs: Runs, seed: int, held_out: HeldOut, scale: Callable[[], np.ndarray]) -> Fitted:
         """The polynomial, from runs that it asks for.
 
         Parameters
         ----------
         runs : Runs
         seed : int
-        held_out : callable
-            Largest difference to the held-out runs, for a scheme that goes on until it is small enough.
+        held_out : HeldOut
+            For a scheme that adds terms until they agree.
         scale : callable
             The sizes (outputs,) to which a tolerance is relative, from all runs so far.
         """

@@ -1,6 +1,6 @@
 """A polynomial in place of a costly function, with the runs that it comes from and an estimate of its error."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from dalembert.errors import SolveError
-from dalembert.surrogate.decay import needed_order
+from dalembert.surrogate.decay import by_direction, needed_order, slow_tail
+from dalembert.surrogate.held_out import SHARE
 from dalembert.surrogate.polynomial import ChebyshevPolynomial
 from dalembert.surrogate.scheme import Scheme
 
@@ -32,6 +33,10 @@ class Surrogate:
         Variation to which a relative tolerance refers; see :func:`fit`.
     failures : int
         Number of runs that failed.
+    tested : int
+        Number of held-out runs that succeeded.
+    ended : str
+        Which limit ended the growth and how to raise it; empty if none did.
     """
 
     polynomial: ChebyshevPolynomial
@@ -42,6 +47,8 @@ class Surrogate:
     values: np.ndarray
     scale: np.ndarray
     failures: int = 0
+    tested: int = 0
+    ended: str = ""
 
     def __call__(self, points: ArrayLike) -> np.ndarray:
         """Values of the polynomial at points (n, d), shape (n, outputs)."""
@@ -54,8 +61,11 @@ class Surrogate:
 
     @property
     def error(self) -> np.ndarray:
-        """Estimate of the largest error over the box, shape (outputs,): the larger one of ``tail`` and ``held_out``."""
-        return np.maximum(self.tail, self.held_out)
+        """Estimate of the largest error over the box, shape (outputs,): the larger of ``tail`` and ``held_out``/0.2.
+
+        The held-out runs are few and do not lie where the error is largest.
+        """
+        return np.maximum(self.tail, self.held_out / SHARE)
 
     @cached_property
     def order(self) -> int:
@@ -78,29 +88,63 @@ class Surrogate:
         """The order that would do, and whether it is more than the next one to try."""
         if np.all(self.error <= wanted):
             return self.order, True
-        trust = np.divide(self.tail, self.error, out=np.ones_like(self.tail), where=self.error > 0)
+        seen = np.maximum(self.tail, self.held_out)
+        trust = np.divide(self.tail, seen, out=np.ones_like(self.tail), where=seen > 0)
         share = wanted * np.maximum(trust, 1e-3) / max(len(self._shells), 1)
         orders, seen = zip(*(needed_order(shells, share) for shells in self._shells), strict=True)
         return max(self.order + 1, *orders), all(seen)
 
-    def demand(self, tolerance: ArrayLike, name: Callable[[int], str] = "output {}".format) -> None:
-        """Refuses a surrogate whose error is above the tolerance, a number or (outputs,).
+    def slow_directions(self, tolerance: np.ndarray) -> list[int]:
+        """Return the directions in which the coefficients decay as those of a function with a kink or a step.
 
-        ``name`` is how the error calls an output, given its number.
+        Only those in which so slow a decay leaves out more than ``tolerance`` (outputs,).
+        """
+        shells = by_direction(self.polynomial.exponents, self.polynomial.coefficients)
+        return [k for k, own in enumerate(shells) if np.any(slow_tail(own) > tolerance)]
+
+    def demand(
+        self,
+        tolerance: ArrayLike,
+        name: Callable[[int], str] = "output {}".format,
+        parameters: Sequence[str] = (),
+        instead: str = "",
+    ) -> None:
+        """Refuse a surrogate whose error is above the tolerance, a number or (outputs,).
+
+        Parameters
+        ----------
+        tolerance : float or array, shape (outputs,)
+        name : callable
+            How the error calls an output, from its number.
+        parameters : sequence of str, of length d
+            Names of the directions; their numbers if not given.
+        instead : str
+            What to use for a function that is not smooth.
 
         Raises
         ------
         SolveError
-            With the error, the order, and the order that would do.
+            With the error, the order, the runs, the directions in which the coefficients do not decay, and the order
+            that would do.
         """
         wanted = np.broadcast_to(np.asarray(tolerance, dtype=float), self.error.shape)
         if np.all(self.error <= wanted):
             return
         worst = int(np.argmax(self.error / np.maximum(wanted, np.finfo(float).tiny)))
+        start = (
+            f"the surrogate of order {self.order} is wrong by about {self.error[worst]:.2g} at {name(worst)}, "
+            f"more than the tolerance of {wanted[worst]:.2g}"
+        )
+        slow = self.slow_directions(wanted)
+        if slow:
+            where = ", ".join(repr(parameters[k]) if len(parameters) else f"direction {k}" for k in slow)
+            advice = [instead] * bool(instead) + [self.ended or self.scheme.more(2 * self.order)]
+            raise SolveError(
+                f"{start}, after {self.runs} runs; the coefficients do not decay along {where}, as at a kink, a step "
+                f"or a fast oscillation: {', '.join(advice)}, raise the tolerance, or make the box smaller"
+            )
         order, seen = self._needed(wanted)
         advice = f"about order {order} " + ("would do" if seen else "is to be tried next, as no decay shows yet")
         raise SolveError(
-            f"the surrogate of order {self.order} is wrong by about {self.error[worst]:.2g} at {name(worst)}, "
-            f"more than the tolerance of {wanted[worst]:.2g}; {advice}: "
-            f"{self.scheme.more(order)}, raise the tolerance, or make the box smaller"
+            f"{start}; {advice}: {self.ended or self.scheme.more(order)}, raise the tolerance, or make the box smaller"
         )

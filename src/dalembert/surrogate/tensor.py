@@ -8,8 +8,9 @@ import numpy as np
 from dalembert.errors import InputError, SolveError
 from dalembert.surrogate.basis import chebyshev, full_tensor, products, roots
 from dalembert.surrogate.decay import by_direction, tail
+from dalembert.surrogate.held_out import HeldOut
 from dalembert.surrogate.runs import Runs, failed
-from dalembert.surrogate.scheme import Doubt, Fitted
+from dalembert.surrogate.scheme import Fitted
 
 
 @dataclass(frozen=True)
@@ -62,7 +63,7 @@ class Tensor:
         """Number of runs that it takes."""
         return int(np.prod([order + 1 for order in self.orders(directions)]))
 
-    def fitted(self, runs: Runs, seed: int, held_out: Doubt, scale: Callable[[], np.ndarray]) -> Fitted:
+    def fitted(self, runs: Runs, seed: int, held_out: HeldOut, scale: Callable[[], np.ndarray]) -> Fitted:
         orders = self.orders(runs.directions)
         exponents = full_tensor(orders)
         eta = np.array([roots(order + 1)[exponents[:, k]] for k, order in enumerate(orders)]).T.reshape(exponents.shape)

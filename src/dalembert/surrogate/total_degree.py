@@ -10,8 +10,9 @@ from dalembert.errors import SolveError
 from dalembert.settings import expect, expect_at_least
 from dalembert.surrogate.basis import chebyshev, products, roots, terms_of, total_degree
 from dalembert.surrogate.decay import by_total_degree, tail
+from dalembert.surrogate.held_out import HeldOut
 from dalembert.surrogate.runs import Runs, failed
-from dalembert.surrogate.scheme import Doubt, Fitted
+from dalembert.surrogate.scheme import Fitted
 
 MOST_CANDIDATES = 20
 """Points of the root grid among which those of the runs are chosen, a run: of a larger grid, a random part."""
@@ -57,7 +58,7 @@ class TotalDegree:
         """Number M of runs that it takes."""
         return int(np.ceil(self.oversampling * terms_of(directions, self.order)))
 
-    def fitted(self, runs: Runs, seed: int, held_out: Doubt, scale: Callable[[], np.ndarray]) -> Fitted:
+    def fitted(self, runs: Runs, seed: int, held_out: HeldOut, scale: Callable[[], np.ndarray]) -> Fitted:
         exponents = total_degree(runs.directions, self.order)
         eta = self.points(runs.directions, seed)
         values = runs(eta)

@@ -6,10 +6,12 @@ from typing import ClassVar, Literal
 import numpy as np
 
 from dalembert.errors import InputError, unknown
+from dalembert.findings import Finding
 from dalembert.settings import expect, expect_positive
 from dalembert.surrogate import Adaptive, Surrogate, bounds, fit
 from dalembert.surrogate.bounds import METHODS
 from dalembert.surrogate.scheme import Scheme
+from dalembert.surrogate.unseen import unseen
 from dalembert.uncertainty.found import Found
 from dalembert.uncertainty.runs import Runs
 
@@ -33,15 +35,18 @@ class Chebyshev:
         Largest estimated error of the polynomial, as a part of the largest variation of a sample of the channel over
         the box. A worse polynomial is refused, with the order that would do.
     bounds : {"optimise", "scan", "bernstein"}
-        How the polynomial is bounded: by optimisation, by a scan (too narrow by its spacing), or by a guaranteed
-        enclosure in Bernstein form, to which the estimated error of the polynomial is added.
-    held_out : int
-        Runs that only test the polynomial.
+        How the polynomial is bounded: by optimisation, by a scan (too narrow by its spacing), or by an enclosure of
+        the polynomial in Bernstein form, to which the estimated error of the polynomial is added. It encloses the
+        model as far as this estimate holds.
+    held_out : int, optional
+        Runs that only test the polynomial; ten, or two for each interval with a width if that is more, if not given.
 
     Notes
     -----
     The estimated error is the larger one of what the decay of the coefficients says and of the largest difference to
-    the held-out runs. In time a polynomial needs an order of about Δω·T + 8, Δω half the range of a frequency over the
+    the held-out runs. The error of an enclosure also has its overestimation: by how much it is wider than the extremes
+    of the polynomial, which are optimised for this. What lies between the runs unseen is the finding
+    "unseen-features". In time a polynomial needs an order of about Δω·T + 8, Δω half the range of a frequency over the
     box in rad/s, T the length of the motion.
 
     References
@@ -55,13 +60,13 @@ class Chebyshev:
     scheme: Scheme = Adaptive()
     tolerance: float = 1e-4
     bounds: Literal["optimise", "scan", "bernstein"] = "optimise"
-    held_out: int = 8
+    held_out: int | None = None
 
     def __post_init__(self) -> None:
         if self.bounds not in METHODS:
             raise InputError(unknown("way to bound a polynomial", self.bounds, METHODS, "Chebyshev, bounds"))
         expect_positive(self, "tolerance")
-        expect(self, "zero or more", lambda given: given >= 0, "held_out")
+        expect(self, "zero or more", lambda given: given is None or given >= 0, "held_out")
 
     def most(self, runs: Runs) -> int | None:
         return None
@@ -78,23 +83,53 @@ class Chebyshev:
             held_out=self.held_out,
             groups=np.tile(np.arange(channels), samples),
         )
-        surrogate.demand(self.tolerance * surrogate.scale, runs.place)
-        fine = {"points": _scanned(surrogate), "starts": STARTS} if self.bounds == "optimise" else {}
-        found = bounds(surrogate.polynomial, box.lower, box.upper, self.bounds, **fine)
-        margin = surrogate.error if self.bounds == "bernstein" else 0.0
-        at_lower, at_upper = (
-            None if part is None else part.reshape(*shape, len(box)) for part in (found.at_lower, found.at_upper)
-        )
+        surrogate.demand(self.tolerance * surrogate.scale, runs.place, box.names, "use method 'optimise'")
+        method, fine = self._search(surrogate)
+        searched = bounds(surrogate.polynomial, box.lower, box.upper, method, **fine)
+        lower, upper, error = searched.lower, searched.upper, surrogate.error
+        at = (searched.at_lower, searched.at_upper)
+        findings = [unseen(surrogate, box.names)]
+        if self.bounds == "bernstein":
+            enclosed = bounds(surrogate.polynomial, box.lower, box.upper, "bernstein")
+            excess = np.maximum(lower - enclosed.lower, enclosed.upper - upper)
+            lower, upper, at = enclosed.lower - error, enclosed.upper + error, (None, None)
+            error = 2 * error + np.maximum(excess, 0.0)
+            findings += _overestimation(excess, surrogate.scale, self.tolerance)
+        at_lower, at_upper = (None if part is None else part.reshape(*shape, len(box)) for part in at)
         return Found(
-            "enclosure" if self.bounds == "bernstein" else "estimate",
-            (found.lower - margin).reshape(shape),
-            (found.upper + margin).reshape(shape),
+            "enclosure of the surrogate" if self.bounds == "bernstein" else "estimate",
+            lower.reshape(shape),
+            upper.reshape(shape),
             at_lower,
             at_upper,
-            surrogate.error.reshape(shape),
+            error.reshape(shape),
             f"The bounds of a polynomial of order {surrogate.order} in place of the model, {_worth(self.bounds)}.",
             not runs.failures,
+            tuple(findings),
         )
+
+    def _search(self, surrogate: Surrogate) -> tuple[Literal["optimise", "scan"], dict[str, int]]:
+        """Return how the extremes of the polynomial are searched, for enclosures too."""
+        if self.bounds == "scan":
+            return "scan", {}
+        return "optimise", {"points": _scanned(surrogate), "starts": STARTS}
+
+
+def _overestimation(excess: np.ndarray, scale: np.ndarray, tolerance: float) -> list[Finding]:
+    """Return a warning if the enclosure is much wider than the polynomial."""
+    parts = np.divide(excess, scale, out=np.zeros_like(excess), where=scale > 0)
+    if np.all(parts <= tolerance):
+        return []
+    worst = float(parts.max())
+    return [
+        Finding(
+            "wide-enclosure",
+            "warning",
+            {"overestimation": worst},
+            f"The Bernstein form overestimates the surrogate by up to {worst:.2g} of the response's variation.",
+            'Use bounds="optimise" or a smaller box.',
+        )
+    ]
 
 
 def _scanned(surrogate: Surrogate) -> int:
@@ -108,5 +143,5 @@ def _worth(way: str) -> str:
     return {
         "optimise": "right within its estimated error",
         "scan": "right within its estimated error but for peaks between the points of the scan",
-        "bernstein": "enclosed, and widened by its estimated error",
+        "bernstein": "an enclosure of the surrogate, widened by its estimated error",
     }[way]

@@ -5,9 +5,10 @@ from typing import ClassVar, Protocol, Self
 
 import numpy as np
 
+from dalembert.findings import Finding
 from dalembert.uncertainty.runs import Runs
 
-KINDS = ("inner bound", "estimate", "enclosure")
+KINDS = ("inner bound", "estimate", "enclosure of the surrogate")
 
 
 @dataclass(frozen=True, eq=False)
@@ -15,6 +16,7 @@ class Found:
     """Bounds (samples, channels), where they are taken (samples, channels, parameters), and their estimated error.
 
     ``kind`` is one of ``KINDS``; ``advice`` says in a sentence what the bounds are worth and what would be better.
+    An error is None where it is unknown; a finding then has the reason.
     """
 
     kind: str
@@ -25,6 +27,7 @@ class Found:
     error: np.ndarray | None
     advice: str
     success: bool = True
+    findings: tuple[Finding, ...] = ()
 
 
 class Method(Protocol):

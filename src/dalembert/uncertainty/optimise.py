@@ -6,10 +6,12 @@ from typing import ClassVar
 import numpy as np
 import scipy
 
+from dalembert.findings import Finding
 from dalembert.settings import expect
 from dalembert.uncertainty.found import Found
 from dalembert.uncertainty.runs import Runs
 from dalembert.uncertainty.search import Search
+from dalembert.uncertainty.unknown_error import share_of, unknown_error
 
 
 @dataclass(frozen=True)
@@ -61,7 +63,7 @@ class Optimise:
             gains, points = search.proposals()
         found, done = search.extremes, not len(points)
         ended = (
-            "no run lets expect more"
+            "the runs let expect no more"
             if done
             else f"the search ended at most_runs = {self.most_runs} before it had found all; raise it"
         )
@@ -71,10 +73,20 @@ class Optimise:
             found.upper,
             found.at_lower,
             found.at_upper,
-            gains,
+            None,
             f"Every bound is taken by a run of the model, and {ended}.",
             done and not runs.failures,
+            (self._unknown(runs, search, gains),),
         )
+
+    def _unknown(self, runs: Runs, search: Search, gains: np.ndarray) -> Finding:
+        """Return why the error is unknown: expansions around the runs see no more than these do."""
+        found = search.extremes
+        gain = share_of(gains, found.lower, found.upper)
+        reason = f"Expansions around the runs let expect {'no more' if gain == 0 else f'{gain:.2g} of the width more'}."
+        points = runs.box.middle + np.zeros((len(search.tried), len(runs.box)))
+        points[:, runs.free] += np.array(search.tried).reshape(len(points), -1) * runs.box.radius[runs.free]
+        return unknown_error(runs, points, reason, {"expected gain": gain}, "Increase start to see narrower ones.")
 
     def _design(self, runs: Runs, seed: int) -> np.ndarray:
         """First points η, shape (points, free intervals)."""

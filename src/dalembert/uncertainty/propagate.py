@@ -93,7 +93,7 @@ def propagate(
         provenance=provenance(
             model, chosen, seed=seed, intervals={name: [i.lower, i.upper] for name, i in box.items()}
         ),
-        findings=findings_at(model, (box.lower + box.upper) / 2),
+        findings=(*found.findings, *findings_at(model, (box.lower + box.upper) / 2)),
     )
     runs.tell(Ended(runs.method, result.success, result.status, result.runs, result.seconds))
     return result

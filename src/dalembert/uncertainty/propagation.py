@@ -27,13 +27,15 @@ class Propagation(Bands, Result):
         An interval for each parameter, in the model's order.
     method : str
         Its name, and the settings that are not the usual ones.
-    kind : {"inner bound", "estimate", "enclosure"}
-        An inner bound is taken by runs of the model, and the true bounds can only be wider; an estimate may lie on
-        either side; an enclosure holds the true bounds if its estimated error holds.
+    kind : {"inner bound", "estimate", "enclosure of the surrogate"}
+        An inner bound is taken by runs of the model, and the true bounds can only be wider. An estimate may lie on
+        either side. An enclosure of the surrogate holds all values of the polynomial, widened by the estimated error of
+        the polynomial; it encloses the model as far as this estimate holds.
     runs : int
         Runs of the model; a response with its sensitivities counts as 1 + parameters.
     error : array, shape (samples, channels), or None
-        Estimated error of the worse of both bounds, not guaranteed; None where the method has no estimate.
+        Estimated error of the worse of both bounds, not guaranteed. None where it is unknown; the finding
+        "unknown-error" has the reason.
     at_lower, at_upper : array, shape (samples, channels, parameters), or None
         Where in the box the bounds are taken; None where the method does not know.
     failures : tuple of str

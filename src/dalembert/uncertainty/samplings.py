@@ -8,15 +8,17 @@ from typing import ClassVar
 import numpy as np
 
 from dalembert.errors import InputError
+from dalembert.findings import Finding
 from dalembert.intervals import Box
 from dalembert.latin_hypercube import latin_hypercube
 from dalembert.settings import expect, expect_at_least
 from dalembert.uncertainty.found import Extremes, Found
 from dalembert.uncertainty.runs import Runs
+from dalembert.uncertainty.unknown_error import share_of, unknown_error
 
 
 class Sampling(ABC):
-    """Extremes over chosen points; what the later part of the points still widened is the estimated error."""
+    """Extremes over chosen points. Their error is unknown; what the later part of them still widened is a finding."""
 
     name: ClassVar[str]
     advice: ClassVar[str]
@@ -27,7 +29,7 @@ class Sampling(ABC):
 
     @abstractmethod
     def points(self, box: Box, seed: int) -> tuple[np.ndarray, np.ndarray]:
-        """Points (n, parameters) in two parts; the first may be empty, and the error is then not estimated."""
+        """Points (n, parameters) in two parts; the first may be empty."""
 
     def most(self, runs: Runs) -> int:
         return self.size(runs.box)
@@ -38,17 +40,24 @@ class Sampling(ABC):
         extremes = _extremes(runs, rest, halfway)
         if not extremes:
             raise runs.none_succeeded()
-        error = extremes.beyond(halfway) if halfway else None
         return Found(
             "inner bound",
             extremes.lower,
             extremes.upper,
             extremes.at_lower,
             extremes.at_upper,
-            error,
+            None,
             self.advice,
             not runs.failures,
+            (self._unknown(runs, np.concatenate([first, rest]), extremes, halfway),),
         )
+
+    def _unknown(self, runs: Runs, points: np.ndarray, extremes: Extremes, halfway: Extremes) -> Finding:
+        if not halfway:
+            return unknown_error(runs, points, "No other runs test them.", {})
+        widened = share_of(extremes.beyond(halfway), extremes.lower, extremes.upper)
+        reason = f"The later part of the runs widened them by up to {widened:.2g} of the width."
+        return unknown_error(runs, points, reason, {"widened": widened})
 
 
 def _extremes(runs: Runs, points: np.ndarray, extremes: Extremes) -> Extremes:
@@ -90,8 +99,8 @@ class Scan(Sampling):
     Parameters
     ----------
     points_each : int
-        Points a parameter, at least 2. For an odd number the estimated error is the difference from the grid of every
-        other point.
+        Points a parameter, at least 2. For an odd number, the difference from the grid of every other point is a
+        finding.
     most_runs : int
         More grid points are refused.
     """
@@ -121,7 +130,7 @@ class Scan(Sampling):
 
 @dataclass(frozen=True)
 class Drawn(Sampling):
-    """Runs at points drawn by chance, in halves: what the second half still widened is the estimated error."""
+    """Runs at points drawn by chance, in halves: what the second half still widened is a finding."""
 
     runs: int
 
@@ -147,7 +156,7 @@ class MonteCarlo(Drawn):
     Parameters
     ----------
     runs : int
-        At least 2; by how much their second half still widened the bounds is the estimated error.
+        At least 2; by how much their second half still widened the bounds is a finding.
     """
 
     name: ClassVar[str] = "monte-carlo"
@@ -168,7 +177,7 @@ class LatinHypercube(Drawn):
     Parameters
     ----------
     runs : int
-        At least 2; by how much their second half still widened the bounds is the estimated error.
+        At least 2; by how much their second half still widened the bounds is a finding.
     """
 
     name: ClassVar[str] = "latin-hypercube"

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 
 FACTS = ("method", "kind", "runs", "success", "status", "seconds")
+FORMER_KINDS = {"enclosure": "enclosure of the surrogate"}
+"""Names of kinds in files of former versions."""
 
 
 def contents_of(result: Propagation) -> Contents:
@@ -44,7 +46,7 @@ def contents_of(result: Propagation) -> Contents:
 
 def from_xarray(dataset: "Dataset") -> Propagation:
     """The propagation that is in a dataset."""
-    told = told_of(dataset)
+    told, facts = told_of(dataset), facts_of(Propagation, dataset, FACTS)
     a = {str(name): variable.values for name, variable in dataset.variables.items()}
     return Propagation(
         coordinate=coordinate_of(dataset["coordinate"]),
@@ -53,7 +55,7 @@ def from_xarray(dataset: "Dataset") -> Propagation:
         upper=a["upper"],
         units=tuple(map(str, a["unit"])),
         box=Box(tuple(map(str, a["parameter"])), a["box_lower"], a["box_upper"]),
-        **facts_of(Propagation, dataset, FACTS),
+        **{**facts, "kind": FORMER_KINDS.get(facts["kind"], facts["kind"])},
         error=a.get("error"),
         at_lower=a.get("at_lower"),
         at_upper=a.get("at_upper"),

@@ -5,9 +5,14 @@ from typing import ClassVar
 
 import numpy as np
 
+from dalembert.findings import Finding
 from dalembert.settings import expect
 from dalembert.uncertainty.found import Found
 from dalembert.uncertainty.runs import Runs
+from dalembert.uncertainty.unknown_error import share_of
+
+CURVED = 0.1
+"""Difference at the corners, as a part of the width, from which it is a reason to doubt."""
 
 
 @dataclass(frozen=True)
@@ -17,8 +22,8 @@ class Taylor:
     Parameters
     ----------
     held_out : int
-        Runs at random corners of the box; how far the linear response is from them at most is the estimated error.
-        None is estimated without them.
+        Runs at random corners of the box; how far the linear response is from them at most is a finding. It is no
+        estimate of the error, as a response may be curved between its corners.
     """
 
     name: ClassVar[str] = "taylor"
@@ -44,13 +49,28 @@ class Taylor:
             response + reach,
             box.points(-up),
             box.points(up),
-            self._error(runs, seed, response, slopes),
+            None,
             "The response is taken as linear over the box, which is good for small boxes only; "
             "'optimise' or 'chebyshev' sees its curvature.",
             not runs.failures,
+            self._findings(runs, seed, response, slopes),
         )
 
-    def _error(self, runs: Runs, seed: int, response: np.ndarray, slopes: np.ndarray) -> np.ndarray | None:
+    def _findings(self, runs: Runs, seed: int, response: np.ndarray, slopes: np.ndarray) -> tuple[Finding, ...]:
+        apart = self._apart(runs, seed, response, slopes)
+        message = "The error of the bounds is unknown: one linearised run does not show the curvature of the response."
+        if apart is None:
+            return (Finding("unknown-error", "note", {}, message),)
+        reach = np.sum(np.abs(slopes), axis=2)
+        share = share_of(apart, -reach, reach)
+        message += (
+            f" At {self.held_out} corners the response differs from the linear one by up to {share:.2g} of the width."
+        )
+        severity = "warning" if share > CURVED else "note"
+        advice = "Use method 'optimise' or 'chebyshev'." if share > CURVED else ""
+        return (Finding("unknown-error", severity, {"difference at corners": share}, message, advice),)
+
+    def _apart(self, runs: Runs, seed: int, response: np.ndarray, slopes: np.ndarray) -> np.ndarray | None:
         if not (self.held_out and len(runs.free)):
             return None
         eta = np.random.default_rng(seed).choice([-1.0, 1.0], (self.held_out, len(runs.box)))

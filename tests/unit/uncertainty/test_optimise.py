@@ -26,8 +26,11 @@ def test_extremes_inside_on_an_edge_and_at_corners():
     np.testing.assert_allclose(bands.at_lower[2, 0], [0.1, -1.0], atol=1e-3)
     assert bands.kind == "inner bound"
     assert bands.success
-    assert bands.status == "Every bound is taken by a run of the model, and no run lets expect more."
-    assert np.max(bands.error) <= 1e-6 * np.max(bands.width)
+    assert bands.status == "Every bound is taken by a run of the model, and the runs let expect no more."
+    (finding,) = bands.findings
+    assert (bands.error, finding.code) == (None, "unknown-error")
+    assert finding.values["expected gain"] <= 1e-6
+    assert "cannot exclude a bump, pit or step narrower than" in str(finding)
 
 
 def test_every_bound_is_taken_where_it_says():
@@ -65,7 +68,7 @@ def test_the_search_ends_at_the_most_runs_and_says_so():
         "Every bound is taken by a run of the model, and the search ended at most_runs = 40 before it had found all; "
         "raise it."
     )
-    assert np.max(bands.error) > 1e-6
+    assert bands.findings[0].values["expected gain"] > 1e-6
 
 
 def test_the_same_seed_gives_the_same_bits():

@@ -74,7 +74,7 @@ def test_every_method_bounds_a_linear_response(name):
         assert np.all((bands.lower >= lower - 1e-12) & (bands.upper <= upper + 1e-12))
     assert bands.channels == ("x", "y")
     assert bands.coordinate is LINE.coordinate
-    assert bands.kind in ("inner bound", "estimate", "enclosure")
+    assert bands.kind in ("inner bound", "estimate", "enclosure of the surrogate")
     assert bands.success
     assert bands.failures == ()
     assert bands.runs > 0
@@ -137,4 +137,4 @@ def test_the_summary_tells_widths_intervals_kind_runs_and_status():
     assert ["rate", "0.5", "1"] in lines
     assert ["kind", "inner", "bound"] in lines
     assert ["runs", "4"] in lines
-    assert text.endswith("'optimise' finds extremes inside.")
+    assert "'optimise' finds extremes inside.\nThe error of the bounds is unknown." in text

@@ -31,12 +31,17 @@ def test_the_vertices_miss_a_hill_and_a_grid_finds_its_top():
     assert grid.runs == 25
 
 
-def test_the_error_of_a_grid_is_the_difference_from_every_other_point():
+def test_the_error_of_a_grid_is_unknown_and_the_difference_from_every_other_point_a_finding():
     peak = PythonModel(lambda x: np.array([np.exp(-((x - 0.25) ** 2))]), {"x": (-2.0, 2.0)}, ["z"], np.zeros(1))
     grid = propagate(peak, {"x": (-1.0, 1.0)}, Scan(9))
     assert grid.upper.item() == 1.0
-    assert grid.error.item() == pytest.approx(1 - np.exp(-0.0625))
-    assert propagate(peak, {"x": (-1.0, 1.0)}, Scan(4)).error is None
+    assert grid.error is None
+    (finding,) = grid.findings
+    assert (finding.code, finding.severity) == ("unknown-error", "note")
+    assert finding.values["widened"] == pytest.approx((1 - np.exp(-0.0625)) / grid.width.item())
+    assert finding.values["gap"] == pytest.approx(1 / 8)
+    assert str(finding).endswith("9 runs cannot exclude a bump, pit or step narrower than 12 % of the interval of 'x'.")
+    assert "widened" not in propagate(peak, {"x": (-1.0, 1.0)}, Scan(4)).findings[0].values
 
 
 @pytest.mark.parametrize("method", [MonteCarlo(400), LatinHypercube(400)], ids=["monte-carlo", "latin-hypercube"])
@@ -48,7 +53,9 @@ def test_random_points_stay_inside_and_tell_what_their_second_half_widened(metho
     assert 1.4 < bands.upper.item() <= 1.5
     first, rest = method.points(Box.of(BOX), 4)
     half, whole = (HILL.evaluate(points).only()[:, 0, 0] for points in (first, np.concatenate([first, rest])))
-    assert bands.error.item() == max(half.min() - whole.min(), whole.max() - half.max())
+    widened = max(half.min() - whole.min(), whole.max() - half.max())
+    assert bands.error is None
+    assert bands.findings[0].values["widened"] == pytest.approx(widened / bands.width.item())
 
 
 @pytest.mark.parametrize("method", ["monte-carlo", "latin-hypercube"])

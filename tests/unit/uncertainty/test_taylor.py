@@ -14,7 +14,9 @@ def test_a_linear_response_is_bounded_exactly():
     np.testing.assert_allclose(bands.lower[:, 0], -1 + TIMES, atol=1e-12)
     np.testing.assert_allclose(bands.upper[:, 0], 2 + 3 * TIMES, atol=1e-12)
     np.testing.assert_allclose(bands.lower[:, 1], TIMES**2 - 2, atol=1e-12)
-    assert np.max(bands.error) < 1e-12
+    assert bands.error is None
+    assert bands.findings[0].severity == "note"
+    assert bands.findings[0].values["difference at corners"] < 1e-12
     assert (bands.kind, bands.runs) == ("estimate", 1 + 2 + 4)
 
 
@@ -30,8 +32,11 @@ def test_held_out_corners_show_what_the_curvature_does():
     bands = propagate(DECAY, box, Taylor(held_out=20))
     linear = 2 * np.exp(-TIMES) * (1 - TIMES * np.array([[-0.5], [0.5]]))
     apart = np.abs(2 * np.exp(-TIMES * np.array([[0.5], [1.5]])) - linear).max(axis=0)
-    np.testing.assert_allclose(bands.error[:, 0], apart, atol=1e-14)
-    assert propagate(DECAY, box, Taylor(held_out=0)).error is None
+    (finding,) = bands.findings
+    assert (bands.error, finding.code, finding.severity) == (None, "unknown-error", "warning")
+    assert finding.values["difference at corners"] == pytest.approx(apart.max() / bands.width.max())
+    assert "At 20 corners the response differs from the linear one" in str(finding)
+    assert propagate(DECAY, box, Taylor(held_out=0)).findings[0].values == {}
 
 
 def test_numbers_all_known_exactly_need_no_held_out_runs():

@@ -13,7 +13,7 @@ from dalembert.report.thin import thin
 KINDS = {
     "inner bound": (LIGHT.series[0], "circle"),
     "estimate": (LIGHT.series[1], "square"),
-    "enclosure": (LIGHT.series[2], "diamond"),
+    "enclosure of the surrogate": (LIGHT.series[2], "diamond"),
 }
 
 

@@ -17,7 +17,8 @@ from dalembert.report.table import Cell, Table, cell, noted
 MEANING = {
     "inner bound": "Runs of the model within the box reach both sides of the band; the true one may be wider",
     "estimate": "Whatever the parameters are within their intervals, the response lies about in the band",
-    "enclosure": "Whatever the parameters are within their intervals, the response lies in the band",
+    "enclosure of the surrogate": "Whatever the parameters are within their intervals, the surrogate lies in the band, "
+    "and the response as far as the estimated error of the surrogate holds",
 }
 
 

@@ -31,6 +31,7 @@ SUM = PythonModel(lambda a, b: (a + b) * TIMES, {"a": (0.0, 2.0), "b": (0.0, 2.0
 SLOPE = PythonModel(lambda a: a * TIMES, {"a": Parameter("a", 0.0, 2.0, start=0.5)}, ["x"], TIMES)
 GHOST = PythonModel(lambda a, ghost: a * TIMES + 0 * ghost, {"a": (0.0, 2.0), "ghost": (0.0, 1.0)}, ["x"], TIMES)
 WAVE = PythonModel(lambda rate: np.cos(rate * TIMES), {"rate": (1.0, 20.0)}, ["x"], TIMES)
+NEAR_POLE = PythonModel(lambda a: np.array([1 / (1.02 - a)]), {"a": (-1.0, 1.0)}, ["x"], np.zeros(1))
 BANDS = banded(DECAY, [1.8, 0.7], [2.2, 0.9], points=2)
 
 
@@ -644,7 +645,7 @@ CASES: dict[str, Case] = {
     ),
     "an empty set": Case(
         lambda: da.identify_set(DISC, Measurements.of(NOW, {"r": [10.0]}), error=0.5),
-        ("The set is empty:", "The nearest run, at x = 2, y = 2, differs by 4 times the error in channel 'r'"),
+        ("No consistent parameters:", "The nearest run, at x = 2, y = 2, differs by 4 times the error in channel 'r'"),
     ),
     "a thin set": Case(
         lambda: da.identify_set(DISC, Measurements.of(NOW, {"r": [1.0]}), error=1e-3),
@@ -673,12 +674,20 @@ CASES: dict[str, Case] = {
     # ── bounds ──────────────────────────────────────────────────────────────────────────────────────────────────────
     "bounds by optimisation": Case(
         lambda: da.propagate(DECAY, {"size": (1.8, 2.2), "rate": (0.7, 0.9)}, Optimise()),
-        ("Every bound is taken by a run of the model, and no run lets expect more.",),
+        ("Every bound is taken by a run of the model, and the runs let expect no more.",),
         ("bands-1",),
     ),
     "bounds by too few runs": Case(
         lambda: da.propagate(WAVE, {"rate": (1.0, 20.0)}, Optimise(most_runs=20)),
         ("the search ended at most_runs = 20 before it had found all; raise it.",),
+    ),
+    "bounds of a wave by its slope": Case(
+        lambda: da.propagate(WAVE, {"rate": (1.0, 20.0)}, Taylor()),
+        ("The error of the bounds is unknown: one linearised run", "Use method 'optimise' or 'chebyshev'."),
+    ),
+    "an enclosure that is wide": Case(
+        lambda: da.propagate(NEAR_POLE, {"a": (-1.0, 1.0)}, Chebyshev(bounds="bernstein")),
+        ("The Bernstein form overestimates the surrogate by up to", 'Use bounds="optimise" or a smaller box.'),
     ),
     "bounds where runs fail": Case(
         lambda: da.propagate(FRAGILE, {"a": (0.0, 1.0)}, Scan(11)), ("runs failed and were left out, the first:",)
@@ -696,7 +705,7 @@ CASES: dict[str, Case] = {
                 (Taylor(), "The response is taken as linear over the box,"),
                 (Chebyshev(), "in place of the model, right within its estimated error."),
                 (Chebyshev(bounds="scan"), "right within its estimated error but for peaks between the points"),
-                (Chebyshev(bounds="bernstein"), "enclosed, and widened by its estimated error."),
+                (Chebyshev(bounds="bernstein"), "an enclosure of the surrogate, widened by its estimated error."),
             ]
         )
     },

@@ -178,7 +178,7 @@ def comparison() -> SimpleNamespace:
         propagation(),
         propagation("vertex", "inner bound", 3e-3, 4),
         propagation("scan", "inner bound", 4e-4, 441),
-        propagation("bernstein", "enclosure", -2e-5, 81),
+        propagation("bernstein", "enclosure of the surrogate", -2e-5, 81),
     )
     rows = tuple(
         SimpleNamespace(

@@ -152,7 +152,7 @@ def test_a_long_motion_is_refused_at_a_low_order() -> None:
     with pytest.raises(da.SolveError) as error:
         da.propagate(tip(BOUNDS, end=6.0), LONG, da.Chebyshev(TotalDegree(4)))
     told = str(error.value)
-    assert told.startswith("the surrogate of order 4 is wrong by about 0.00")
+    assert told.startswith("the surrogate of order 4 is wrong by about 0.0")
     assert " at channel 'AB.end.y', time 5." in told
     assert "more than the tolerance of 1.8e-05" in told
     assert told.endswith(

@@ -19,7 +19,7 @@ def surrogate_of(
     *,
     shape: tuple[int, int],
     seed: int,
-    held_out: int = 8,
+    held_out: int | None = None,
 ) -> Surrogate:
     """Surrogate of (samples, channels) = ``shape`` outputs, each channel with a scale of its own, told to the journal.
 

@@ -40,6 +40,9 @@ class Adaptive:
         Degree in one direction at which it ends. Functions with a kink or a step need thousands.
     memory : float
         Bytes for runs and terms; a run takes 8 bytes an output, six times.
+    cautious : bool
+        Whether the decay of the coefficients by degree must agree before it stops. Not needed where true runs check
+        the answer.
     basis : str
         Which terms there may be. "sparse": any, each judged by itself, so that parameters which matter little or do
         not act together cost few runs. "total-degree": degree after degree. "tensor": all up to an order in each
@@ -72,6 +75,7 @@ class Adaptive:
     most_runs: int = 2000
     most_order: int = 256
     memory: float = 1e9
+    cautious: bool = True
     basis: Literal["sparse", "total-degree", "tensor"] = "sparse"
 
     def __post_init__(self) -> None:
@@ -103,6 +107,8 @@ class Adaptive:
                 stalled = stalled + 1 if tail[worst] < UNSEEN * excess[worst] else 0
             elif len(growth.terms) >= next_check:
                 fitted = self._fitted(growth, "")
+                if not self.cautious:
+                    return fitted
                 doubted.append(fitted.tail)
                 latest = np.max(doubted[-AGREED:], axis=0)
                 if np.all(latest <= wanted):
@@ -119,6 +125,8 @@ class Adaptive:
 
     def _fitted(self, growth: Growth, ended: str) -> Fitted:
         exponents, coefficients = growth.polynomial()
+        if not self.cautious:
+            return Fitted(exponents, coefficients, growth.tail(), ended)
         slow = np.sum([slow_tail(shells) for shells in by_direction(exponents, coefficients)], axis=0)
         return Fitted(exponents, coefficients, np.maximum(growth.tail(), slow), ended)
 

@@ -119,7 +119,7 @@ class Surrogate:
         parameters : sequence of str, of length d
             Names of the directions; their numbers if not given.
         instead : str
-            What to use for a function that is not smooth.
+            Name of a method for functions that are not smooth.
 
         Raises
         ------
@@ -138,7 +138,7 @@ class Surrogate:
         slow = self.slow_directions(wanted)
         if slow:
             where = ", ".join(repr(parameters[k]) if len(parameters) else f"direction {k}" for k in slow)
-            advice = [instead] * bool(instead) + [self.ended or self.scheme.more(2 * self.order)]
+            advice = [f"use method {instead!r}"] * bool(instead) + [self.ended or self.scheme.more(2 * self.order)]
             raise SolveError(
                 f"{start}, after {self.runs} runs; the coefficients do not decay along {where}, as at a kink, a step "
                 f"or a fast oscillation: {', '.join(advice)}, raise the tolerance, or make the box smaller"

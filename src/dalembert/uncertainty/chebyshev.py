@@ -83,7 +83,7 @@ class Chebyshev:
             held_out=self.held_out,
             groups=np.tile(np.arange(channels), samples),
         )
-        surrogate.demand(self.tolerance * surrogate.scale, runs.place, box.names, "use method 'optimise'")
+        surrogate.demand(self.tolerance * surrogate.scale, runs.place, box.names, "optimise")
         method, fine = self._search(surrogate)
         searched = bounds(surrogate.polynomial, box.lower, box.upper, method, **fine)
         lower, upper, error = searched.lower, searched.upper, surrogate.error

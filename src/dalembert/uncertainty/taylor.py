@@ -68,7 +68,7 @@ class Taylor:
         )
         severity = "warning" if share > CURVED else "note"
         advice = "Use method 'optimise' or 'chebyshev'." if share > CURVED else ""
-        return (Finding("unknown-error", severity, {"difference at corners": share}, message, advice),)
+        return (Finding("unknown-error", severity, {"difference": share}, message, advice),)
 
     def _apart(self, runs: Runs, seed: int, response: np.ndarray, slopes: np.ndarray) -> np.ndarray | None:
         if not (self.held_out and len(runs.free)):

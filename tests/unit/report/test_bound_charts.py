@@ -93,7 +93,7 @@ def test_methods_stand_at_their_error_and_their_runs():
     traces = _named(charts.methods(comparison()))
     np.testing.assert_array_equal(traces["inner bound"].x, [4, 441])
     np.testing.assert_allclose(traces["inner bound"].y, [3e-3, 4e-4])
-    np.testing.assert_allclose(traces["enclosure"].y, [2e-5])
+    np.testing.assert_allclose(traces["enclosure of the surrogate"].y, [2e-5])
     assert traces["inner bound"].text == ("vertex", "scan")
     assert len(traces["estimate"].x) == 0
 

@@ -24,6 +24,8 @@ class Found:
     check : Check or None
     success : bool
     message : str
+    reached : int or None
+        Number of descents that ended there; None for a method without descents.
     """
 
     polynomial: ChebyshevPolynomial
@@ -32,6 +34,7 @@ class Found:
     check: Check | None
     success: bool
     message: str
+    reached: int | None = None
 
 
 class Method(Protocol):

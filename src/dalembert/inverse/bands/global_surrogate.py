@@ -17,6 +17,7 @@ from dalembert.inverse.surrogates import surrogate_of
 from dalembert.optimize import LeastSquares, Minimum
 from dalembert.settings import expect, expect_at_least
 from dalembert.surrogate import Adaptive, Surrogate
+from dalembert.surrogate.held_out import SHARE
 from dalembert.surrogate.scheme import Scheme
 
 SCREENED = 100
@@ -30,6 +31,12 @@ NEGLIGIBLE = 0.1
 
 COARSE = 1e-4
 """A surrogate that is wrong by more than this part of a channel's range is made anew around the answer."""
+
+MOST_STARTS = 32
+"""Most descents until the best end is reached twice; they make no runs of the model."""
+
+SAME = 1e-3
+"""Ends of descents are the same within this part of the unknowns' widths."""
 
 MARGIN = (0.5, 0.02)
 """How far around: parts of the answer's radius and of the search box's width."""
@@ -46,7 +53,8 @@ class GlobalSurrogate:
     local : Adaptive, Tensor or TotalDegree
         Of another one around the answer, which is made where the first one is far off there.
     starts : int
-        Descents, from the best of many scattered boxes.
+        Fewest descents, from the best of many scattered boxes. Up to 32 are made until two reach the best end, unless
+        ``starts`` is 1; they make no runs of the model.
     checks : int
         Most times that true runs are made where the surrogate has its bounds on the answer. After each but the last the
         surrogate is corrected by them, or where it is far off made anew around the answer, and the descent goes on.
@@ -68,8 +76,8 @@ class GlobalSurrogate:
     theorem), so the jacobian is exact. A few true runs check all bounds, since most are taken at the same corners.
     """
 
-    scheme: Scheme = field(default_factory=lambda: Adaptive(tolerance=1e-2))
-    local: Scheme = field(default_factory=lambda: Adaptive(tolerance=2e-4))
+    scheme: Scheme = field(default_factory=lambda: Adaptive(tolerance=1e-2, cautious=False))
+    local: Scheme = field(default_factory=lambda: Adaptive(tolerance=2e-4, cautious=False))
     starts: int = 4
     checks: int = 4
     tolerance: float = 1e-3
@@ -96,14 +104,28 @@ class GlobalSurrogate:
         allowed = self.tolerance * scale(problem)
         if self.checks == 0:
             surrogate.demand(allowed, partial(place, problem.bands))
-        origins = screened(problem, surrogate.polynomial, SCREENED * len(problem.unknowns.lower), self.starts, seed)
-        ends = [descend(problem, surrogate.polynomial, LeastSquares(), origin) for origin in origins]
-        best = min(ends, key=lambda end: end.fitness)
+        best, times = self._descended(problem, surrogate, seed)
         found, surrogate = self._refined(problem, surrogate, best, seed)
         if found.check is not None:
-            told = replace(surrogate, tail=np.minimum(surrogate.tail, found.error), held_out=found.error)
-            told.demand(allowed, partial(place, problem.bands))
-        return found
+            told = replace(surrogate, tail=np.minimum(surrogate.tail, found.error), held_out=SHARE * found.error)
+            # A surrogate that is better than the misfit of the bands does not limit the answer.
+            if np.any(told.error > np.maximum(allowed, _misfit(problem, found.candidate))):
+                told.demand(allowed, partial(place, problem.bands), problem.model.parameters.names)
+        return replace(found, reached=times)
+
+    def _descended(self, problem: BandProblem, surrogate: Surrogate, seed: int) -> tuple[Minimum, int]:
+        """Return the best of the descents, and how many of them reached it: more of them until two did."""
+        number = SCREENED * len(problem.unknowns.lower)
+        origins = screened(problem, surrogate.polynomial, number, max(self.starts, MOST_STARTS), seed)
+        ends: list[Minimum] = []
+        for origin in origins:
+            ends.append(descend(problem, surrogate.polynomial, LeastSquares(), origin))
+            best = min(ends, key=lambda end: end.fitness)
+            width = problem.unknowns.upper - problem.unknowns.lower
+            times = sum(bool(np.all(np.abs(end.x - best.x) <= SAME * width)) for end in ends)
+            if len(ends) >= self.starts and (times > 1 or self.starts == 1):
+                break
+        return best, times
 
     def _surrogate(self, problem: BandProblem, scheme: Scheme, seed: int) -> Surrogate:
         low, high = problem.unknowns.bounds

@@ -13,6 +13,7 @@ from dalembert.intervals import Box
 from dalembert.inverse.bands.band_fit import BandFit
 from dalembert.inverse.bands.band_problem import BandProblem, pose
 from dalembert.inverse.bands.candidate import slopes
+from dalembert.inverse.bands.conclusions import conclusions
 from dalembert.inverse.bands.found import Found, Method
 from dalembert.inverse.bands.global_surrogate import GlobalSurrogate
 from dalembert.inverse.bands.nested import Nested
@@ -99,6 +100,8 @@ def identify_bands(
     problem = pose(model, bands, weights, unknowns, journal)
     found = chosen.search(problem, seed)
     at, checked = found.candidate, found.check
+    text = status(problem, found)
+    findings = conclusions(found, text)
     told = _told(problem, found)
     d = len(model.parameters)
     radius_deviations = np.zeros(d)
@@ -124,8 +127,8 @@ def identify_bands(
         checked_fitness=None if checked is None else float(problem.fitness(checked.lower, checked.upper)),
         history=tuple(journal.history),
         starts=tuple(journal.starts),
-        success=found.success,
-        status=status(problem, found),
+        success=found.success and not any(finding.severity == "error" for finding in findings),
+        status=text,
         method=chosen.name,
         simulations=journal.simulations,
         seconds=clock(model) - began,
@@ -137,6 +140,7 @@ def identify_bands(
             intervals=unknowns.intervals,
             weights="given" if weights is not None else "one",
         ),
+        findings=findings,
     )
     values = np.concatenate([fit.middle, fit.radius[unknowns.chosen]])
     journal.tell(Finished(fit.success, fit.status, fit.fitness, values, fit.simulations))

@@ -14,6 +14,7 @@ from dalembert.inverse.events import Finished, OnEvent
 from dalembert.inverse.journal import Journal
 from dalembert.inverse.matching import check_finite, check_samples, columns_of
 from dalembert.inverse.search import Search
+from dalembert.inverse.sets.conclusions import conclusions
 from dalembert.inverse.sets.inner_box import inner_box
 from dalembert.inverse.sets.inversion import Inversion
 from dalembert.inverse.sets.parameter_set import ParameterSet
@@ -24,6 +25,9 @@ from dalembert.surrogate.scheme import Scheme
 
 RESOLUTIONS = {1: 1 / 256, 2: 1 / 64, 3: 1 / 32}
 """Resolution by the number of parameters, if none is given; a sixteenth for more."""
+
+MOST_ORDER = 64
+"""Order of the usual surrogates: enclosures of higher orders take long, and a smaller box needs a lower order."""
 
 
 @takes_executor
@@ -50,7 +54,7 @@ def identify_set(
     error : number, mapping by channel, or array of shape (channels,) or (samples, channels)
         Largest error that a value may have, in its channel's unit.
     scheme : Adaptive, Tensor or TotalDegree, optional
-        Of the surrogates; ``Adaptive(tolerance=1e-2)`` if not given.
+        Of the surrogates; ``Adaptive(tolerance=1e-2, most_order=64)`` if not given.
     resolution : float, optional
         Sides of the smallest boxes, as a part of the box around the set: 1/256, 1/64, 1/32 for one, two, three
         parameters, else 1/16.
@@ -81,7 +85,8 @@ def identify_set(
     Set inversion by branch and prune on Chebyshev surrogates, enclosed by their Bernstein coefficients: a box is left
     out, or inside, only if that is so with the surrogate's estimated error taken into account. The first surrogate is
     made on the whole search box, the next ones on the box that the one before leaves. The set is as certain as the
-    estimate of the surrogate's error is.
+    estimate of the surrogate's error is. What lies between the runs of the first surrogate unseen is the finding
+    "unseen-features": a set that is empty, or has one component, may have another one as narrow as that.
 
     Source: Jaulin & Walter, Set inversion via interval analysis for nonlinear bounded-error estimation, 1993.
 
@@ -105,7 +110,7 @@ def identify_set(
     resolution = _resolution(resolution, len(model.parameters))
     if most_boxes < 1:
         raise InputError(f"most_boxes is {most_boxes}; expected at least 1")
-    chosen = Adaptive(tolerance=1e-2) if scheme is None else scheme
+    chosen = Adaptive(tolerance=1e-2, most_order=MOST_ORDER) if scheme is None else scheme
     journal, search = Journal(len(data.coordinate.values), on_event), Search(model.parameters)
 
     def run(points: np.ndarray) -> np.ndarray:
@@ -119,7 +124,9 @@ def identify_set(
         paving = inversion.paved(surrogate, resolution)
     inner = inner_box(paving.inside)
     believed = inner is None or inversion.consistent(inner)
-    nearest, names = inversion.nearest, model.parameters.names
+    left_out = inversion.outside(paving)
+    findings = conclusions(inversion, surrogate, paving, left_out, names := model.parameters.names)
+    nearest = inversion.nearest
     found = ParameterSet(
         parameters=model.parameters,
         data=data,
@@ -132,7 +139,7 @@ def identify_set(
         resolution=resolution,
         runs=journal.simulations,
         seconds=clock(model) - began,
-        success=paving.finished and believed,
+        success=paving.finished and believed and not len(left_out),
         status=status(
             data,
             float(np.max(surrogate.error / errors.ravel())),
@@ -151,6 +158,7 @@ def identify_set(
             resolution=resolution,
             most_boxes=most_boxes,
         ),
+        findings=findings,
     )
     middle = np.full(len(names), np.nan) if found.outer is None else found.outer.middle
     journal.tell(Finished(found.success, found.status, np.nan, middle, found.runs))

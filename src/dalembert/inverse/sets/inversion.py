@@ -23,6 +23,9 @@ ZOOMS = 8
 SHRINKS = 0.7
 """Another one is made where a side of that box shrinks below this part."""
 
+SLACK = 1e-9
+"""Part of the paving's extent by which a point may lie outside of a box for rounding."""
+
 CORNERS = 6
 """Parameters up to which all corners of a box are checked by true runs."""
 
@@ -56,6 +59,10 @@ class Inversion:
     journal : Journal
     nearest : Nearest
         Of all runs so far.
+    first : Surrogate
+        The one on the whole search box, which decides what is left out.
+    members : list of arrays (d,)
+        Points of the runs that keep within the error.
     """
 
     run: Callable[[np.ndarray], np.ndarray]
@@ -68,6 +75,8 @@ class Inversion:
     seed: int
     journal: Journal
     nearest: Nearest | None = field(default=None, init=False)
+    first: Surrogate | None = field(default=None, init=False)
+    members: list[np.ndarray] = field(default_factory=list, init=False)
 
     def zoomed(self, lower: np.ndarray, upper: np.ndarray) -> tuple[Surrogate, Paving]:
         """The last surrogate, on a box close around the set, and a coarse paving on it."""
@@ -75,6 +84,7 @@ class Inversion:
             surrogate = surrogate_of(
                 self._seen, lower, upper, self.scheme, self.journal, shape=self.shape, seed=self.seed
             )
+            self.first = self.first or surrogate
             paving = self.paved(surrogate, COARSE)
             if paving.hull is None or left == 0:
                 break
@@ -96,6 +106,14 @@ class Inversion:
         corners = box[np.array(choices), np.arange(d)]
         return bool(np.all(self._excess(self._seen(corners)) <= 1))
 
+    def outside(self, paving: Paving) -> np.ndarray:
+        """Return the points (n, d) of consistent runs that a paving leaves out."""
+        boxes = np.concatenate([paving.inside, paving.boundary])
+        points = np.array(self.members).reshape(len(self.members), boxes.shape[2])
+        slack = SLACK * np.ptp(boxes.reshape(-1, boxes.shape[2]), axis=0) if len(boxes) else 0.0
+        held = [bool(np.any(np.all((boxes[:, 0] - slack <= p) & (p <= boxes[:, 1] + slack), axis=1))) for p in points]
+        return points[~np.array(held, dtype=bool)]
+
     def _excess(self, values: np.ndarray) -> np.ndarray:
         """|values − data| in units of the error, both (n, outputs); infinite where a run failed."""
         apart = values - self.data
@@ -109,6 +127,7 @@ class Inversion:
         excess = self._excess(values)
         worst = excess.max(axis=1)
         best = int(np.argmin(worst))
+        self.members.extend(points[worst <= 1])
         if self.nearest is None or worst[best] < self.nearest.excess:
             self.nearest = Nearest(points[best], float(worst[best]), int(np.argmax(excess[best])))
         return values

@@ -28,7 +28,7 @@ class ParameterSet(Result):
         Boxes, lower and upper corner, that lie wholly in the set, and those of which it is not known. No box is in
         both, and they meet only in their faces.
     outer : Box
-        The smallest box around all of them: it holds the set. None for an empty set.
+        The smallest box around all of them: it holds the set, as far as the runs see it. None for an empty set.
     inner : Box
         The largest box found in the set; None if there is none.
     surrogate_error : array, shape (samples, channels)
@@ -69,7 +69,7 @@ class ParameterSet(Result):
 
     @property
     def empty(self) -> bool:
-        """Whether no parameters within the bounds are consistent with the data."""
+        """Return True if no box is left; the finding "unseen-features" has what the runs cannot exclude."""
         return self.outer is None
 
     @property

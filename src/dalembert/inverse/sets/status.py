@@ -33,7 +33,7 @@ def status(
     """
     parts = []
     if paving.hull is None:
-        parts.append("The set is empty: no parameters within their bounds are consistent with the data.")
+        parts.append("No consistent parameters: the surrogate leaves the error everywhere within the bounds.")
         if nearest is not None and np.isfinite(nearest.excess):
             parts.append(
                 f"The nearest run, at {at}, differs by {nearest.excess:.3g} times the error in "

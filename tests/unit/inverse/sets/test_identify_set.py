@@ -116,11 +116,14 @@ def test_inconsistent_data_have_an_empty_set_and_a_sentence_that_says_where():
     assert found.inner is None
     assert found.volume == (0.0, 0.0)
     assert found.status == (
-        "The set is empty: no parameters within their bounds are consistent with the data. The nearest run, at x = 2, "
-        "y = 2, differs by 4 times the error in channel 'r', time 0 s; raise the error, widen the bounds, or look what "
-        "the model lacks."
+        "No consistent parameters: the surrogate leaves the error everywhere within the bounds. The nearest run, at "
+        "x = 2, y = 2, differs by 4 times the error in channel 'r', time 0 s; raise the error, widen the bounds, or "
+        "look what the model lacks."
     )
     assert "none" in found.summary()
+    (finding,) = found.findings
+    assert (finding.code, finding.severity) == ("unseen-features", "note")
+    assert finding.message.startswith("The set may have a component where the response has a narrow feature.")
 
 
 def test_a_set_thinner_than_the_resolution_has_no_inner_box_and_it_is_said():

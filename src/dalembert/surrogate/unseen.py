@@ -27,7 +27,7 @@ def unseen(surrogate: Surrogate, names: Sequence[str]) -> Finding:
     """
     polynomial = surrogate.polynomial
     free = np.flatnonzero(polynomial.upper > polynomial.lower)
-    own = [names[k] for k in free]
+    own = [names[int(k)] for k in free]
     if not len(free):
         return Finding("unseen-features", "note", {"gap": 0.0}, "The box has no width.")
     found = gaps(polynomial.eta(surrogate.points)[:, free], variation_lengths(surrogate)[free])

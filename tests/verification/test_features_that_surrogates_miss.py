@@ -72,7 +72,8 @@ def posed(name: str) -> tuple[da.PythonModel, dict[str, tuple[float, float]], tu
     if known is None:
         values = function(LINE[None])
         known = (float(values.min()), float(values.max()))
-    return da.PythonModel(scope["named"], box, ["y"], np.zeros(1)), box, known  # pyright: ignore
+    made = da.PythonModel(scope["named"], box, ["y"], np.zeros(1), derivative="central-differences")  # pyright: ignore
+    return made, box, known
 
 
 @pytest.mark.slow
@@ -105,7 +106,7 @@ def test_a_kink_is_never_worse_than_claimed(record_evidence) -> None:
     wrong = 0
     for seed in range(120):
         place = np.random.default_rng(seed).uniform(-1, 1)
-        found = fit(lambda x, c=place: np.abs(x - c), [-1], [1], Adaptive(1e-3), seed=seed)
+        found = fit(lambda x, c=place: np.abs(x - c), [-1], [1], Adaptive(), seed=seed)
         apart = np.abs(found(LINE[::20, None]) - np.abs(LINE[::20, None] - place)).max()
         wrong += bool(apart > found.error[0])
     record_evidence(
@@ -119,7 +120,7 @@ def test_a_kink_is_never_worse_than_claimed(record_evidence) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("directions", [1, 2, 3])
+@pytest.mark.parametrize("directions", [1, 2])
 def test_features_wider_than_the_stated_gap_are_seen(directions: int, record_evidence) -> None:
     """Steps of nine widths at 20 places each: those that are not noticed are narrower than the gap that is stated."""
     hidden, wider = 0, 0

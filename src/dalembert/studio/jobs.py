@@ -35,7 +35,7 @@ class Jobs:
     def said(self, folder: Path) -> str:
         """What a process has said so far, such as that it compiles; empty if there is nothing."""
         job = self._started.get(folder)
-        return "" if job is None else job.said().strip()
+        return "" if job is None else job.said().strip() or job.progress()
 
     def tidy(self) -> None:
         """Let go of processes that have ended well."""
@@ -45,12 +45,10 @@ class Jobs:
 
     def _begin(self, folder: Path, arguments: list[str]) -> None:
         self.tidy()
-        log = tempfile.TemporaryFile("w+", encoding="utf-8")  # noqa: SIM115  it is the process's, and goes with it
+        log, output = (tempfile.TemporaryFile("w+", encoding="utf-8") for _ in range(2))  # they go with the process
         command = [sys.executable, "-m", "dalembert.cli", *arguments]
-        process = subprocess.Popen(
-            command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=log, start_new_session=True
-        )
-        self._started[folder] = Job(process, log)
+        process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=output, stderr=log, start_new_session=True)
+        self._started[folder] = Job(process, log, output)
 
 
 @dataclass
@@ -59,10 +57,17 @@ class Job:
 
     process: subprocess.Popen
     log: IO[str]
+    output: IO[str]
 
     def said(self) -> str:
+        """What it wrote as errors and warnings."""
         self.log.seek(0)
         return self.log.read()[-4000:]
+
+    def progress(self) -> str:
+        """The last line of its output."""
+        self.output.seek(0)
+        return "".join(self.output.read().strip().splitlines()[-1:])
 
 
 def stop(folder: RunFolder) -> None:

@@ -2,8 +2,8 @@
 
 import os
 import traceback
-from collections.abc import Callable, Iterator
-from contextlib import nullcontext, suppress
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from math import inf
 from pathlib import Path
@@ -23,6 +23,7 @@ from dalembert.study.tasks import TASKS, Outcome
 from dalembert.study.validation import plan
 
 Listener = Callable[[Event], None]
+Compilation = tuple[int, int]  # how many kernels are compiled, of how many
 
 
 class Stopped(KeyboardInterrupt):
@@ -60,14 +61,15 @@ def run_study(
     DalembertError
         What is wrong with the study, before there is a folder; or what stopped the run, as the folder's state says.
     """
-    with observed(_compiling(listener)) if listener else nullcontext():
+    compiled: list[Compilation] = []
+    with observed(_noting(compiled, listener)):
         plan(study)
     with connected(executor) as client:
         folder = new_folder(study.name, out, force=force)
         try:
             with folder.locked():
                 folder.keep(study)
-                return folder, _executed(replace(study, executor=client), folder, "run-started", listener)
+                return folder, _executed(replace(study, executor=client), folder, "run-started", listener, compiled)
         except StorageError as error:
             raise error if folder.is_run else not_begun(error) from None
 
@@ -112,7 +114,13 @@ def resume_run(folder: RunFolder, *, listener: Listener | None = None, executor:
         return _executed(replace(folder.kept(), executor=executor), folder, "run-resumed", listener)
 
 
-def _executed(study: Study, folder: RunFolder, beginning: str, listener: Listener | None) -> Outcome:
+def _executed(
+    study: Study,
+    folder: RunFolder,
+    beginning: str,
+    listener: Listener | None,
+    compiled: Sequence[Compilation] = (),
+) -> Outcome:
     """Do what a study says in a folder that is held, and say so in its state and its events."""
     about = {"study": study.name, "title": study.title, "task": study.task, "version": __version__}
     with EventLog(folder.events, (listener,) if listener else ()) as log:
@@ -120,6 +128,8 @@ def _executed(study: Study, folder: RunFolder, beginning: str, listener: Listene
         began = perf_counter()
         try:
             log.emit(beginning, **about)
+            for done, total in compiled:
+                log.emit("run-compiling", done=done, total=total)
             with (
                 connected(study.executor) as client,
                 Checkpoint(folder.checkpoint, lambda sentence: log.emit(LOST, message=sentence)) as checkpoint,
@@ -150,9 +160,15 @@ def _executed(study: Study, folder: RunFolder, beginning: str, listener: Listene
     return outcome
 
 
-def _compiling(listener: Listener) -> Callable[[int, int, str], None]:
-    """Progress of compilation as events, for a run that has no log yet."""
-    return lambda done, total, _: listener({"event": "run-compiling", "done": done, "total": total})
+def _noting(compiled: list[Compilation], listener: Listener | None) -> Callable[[int, int, str], None]:
+    """Progress of compilation, noted for a log that does not exist yet, and passed on as events."""
+
+    def progress(done: int, total: int, _: str) -> None:
+        compiled.append((done, total))
+        if listener is not None:
+            listener({"event": "run-compiling", "done": done, "total": total})
+
+    return progress
 
 
 def takes(study: Study) -> str:

@@ -306,9 +306,9 @@ CASES: dict[str, Case] = {
     "no move": Case(
         lambda: _slope(LeastSquares(tolerance=0.5, gain=1e-15)), ("converged: the parameters move no more",)
     ),
-    "neither": Case(
+    "no fall": Case(
         lambda: _slope(LeastSquares(tolerance=0.9, gain=0.9), start=[1.0]),
-        ("converged: neither parameters nor sum of squares move any more",),
+        ("converged: the sum of squares falls no more",),
     ),
     "no complex step": Case(
         lambda: da.identify(

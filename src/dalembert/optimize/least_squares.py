@@ -117,9 +117,7 @@ class LeastSquares:
         message = {
             0: f"stopped after {trials} trial points, not converged; allow more with LeastSquares(trials=...)",
             2: "converged: the sum of squares falls no more",
-            3: "converged: the parameters move no more",
-            4: "converged: neither parameters nor sum of squares move any more",
-        }[result.status]
+        }.get(result.status, "converged: the parameters move no more")
         return path.minimum(result.status > 0, message, result.status in (3, 4))
 
 

@@ -45,10 +45,14 @@ class Jobs:
 
     def _begin(self, folder: Path, arguments: list[str]) -> None:
         self.tidy()
-        log, output = (tempfile.TemporaryFile("w+", encoding="utf-8") for _ in range(2))  # they go with the process
+        log, output = (_temporary() for _ in range(2))
         command = [sys.executable, "-m", "dalembert.cli", *arguments]
         process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=output, stderr=log, start_new_session=True)
         self._started[folder] = Job(process, log, output)
+
+
+def _temporary() -> IO[str]:
+    return tempfile.TemporaryFile("w+", encoding="utf-8")  # it is the process's, and goes with it
 
 
 @dataclass

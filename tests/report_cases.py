@@ -275,7 +275,7 @@ CASES: dict[str, Case] = {
             _model(lambda a: a**2 * TIMES, a=(-3.0, 2.0)),
             _exact(_model(lambda a: a**2 * TIMES, a=(-3, 2)), [1.5], noise=0.1),
         ),
-        ("Another minimum, at a =", "explains the data as well"),
+        ("Another minimum explains the data as well, within the noise: a =", "times as large."),
     ),
     "outliers": Case(
         lambda: da.identify(DECAY, _exact(DECAY, [2.0, 0.8], noise=0.05, deviations=0.02), loss="cauchy"),

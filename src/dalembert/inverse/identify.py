@@ -24,6 +24,7 @@ from dalembert.inverse.noise import noise_floor
 from dalembert.inverse.problem import Linearisation, Problem, pose
 from dalembert.inverse.repeated import repeated
 from dalembert.inverse.restarts import check_restart, check_segments
+from dalembert.inverse.rivals import rival_findings, rivals
 from dalembert.inverse.runs import Method, polished, runs
 from dalembert.inverse.shooting import MultipleShooting, shots
 from dalembert.inverse.spread import SPREADS
@@ -193,6 +194,7 @@ def identify(
         else integration_findings(found, problem, told.deviations, best.fitness, known=known, white=correlated is None)
     )
     undetermined = repeated(problem, vector, response) if best.nodes is None else ()
+    others = rivals(problem, best, floor, told.deviations, known=known)
     whole = response if problem is posed else posed.responses(vector[None])[0]
     predicted = parted.validation(whole)
     unexplained = () if predicted is None else explained_findings(predicted.explained)
@@ -229,7 +231,14 @@ def identify(
         parts=parts,
         validation=predicted,
         nodes=best.nodes,
-        findings=(*undetermined, *findings, *biased, *unexplained, *findings_at(model, vector)),
+        findings=(
+            *undetermined,
+            *rival_findings(problem, best, others, floor),
+            *findings,
+            *biased,
+            *unexplained,
+            *findings_at(model, vector),
+        ),
         integration=found,
         correlated=correlated,
     )

@@ -3,11 +3,9 @@
 import numpy as np
 
 from dalembert.inverse.descent import End
-from dalembert.inverse.doubts import EXCESSIVE, RIVALLED
+from dalembert.inverse.doubts import EXCESSIVE
 from dalembert.inverse.noise import NoiseFloor, signal
 from dalembert.inverse.problem import Problem
-from dalembert.inverse.rivals import rivals
-from dalembert.inverse.simulated import named
 
 
 def status(problem: Problem, best: End, response: np.ndarray, floor: NoiseFloor, correlated: bool) -> str:
@@ -22,13 +20,6 @@ def status(problem: Problem, best: End, response: np.ndarray, floor: NoiseFloor,
         parts.append(f"{there} of {len(ended)} starts ended with the best fitness.")
     if best.nodes is not None:
         parts.append(str(best.nodes))
-    alike = rivals(problem, best)
-    if alike:
-        worse = (alike[0].fitness - best.fitness) / best.fitness
-        parts.append(
-            f"{RIVALLED} {named(problem.model, alike[0].end)}, explains the data as well (its misfit is "
-            f"{100 * worse:.2g} % larger, less than the noise can tell); measure another channel, or narrow the bounds."
-        )
     failed = len(problem.journal.failures)
     if failed:
         parts.append(f"{failed} simulations failed and were passed over, the first: {problem.journal.failures[0]}.")

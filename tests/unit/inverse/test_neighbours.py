@@ -1,12 +1,9 @@
-"""Minima beside a minimum, and minima that the data cannot tell apart."""
-
-import re
+"""Minima beside a minimum."""
 
 import numpy as np
 
 from dalembert.data import Measurements
 from dalembert.forward import PythonModel
-from dalembert.inverse import identify
 from dalembert.inverse.descent import descend
 from dalembert.inverse.journal import Journal
 from dalembert.inverse.neighbours import neighbours
@@ -39,17 +36,3 @@ def test_from_the_only_minimum_none_is_seen():
     line = PythonModel(lambda slope: slope * TIMES, {"slope": (-5.0, 5.0)}, ["x"], TIMES)
     problem = posed(line, noisy(line, [1.0], 0.1))
     assert neighbours(problem, descend([problem], LeastSquares(), np.array([0.1]))).shape == (0, 1)
-
-
-def test_one_channel_that_two_values_explain_is_said_to_be_so():
-    both = PythonModel(lambda a: a**2 * TIMES, {"a": (-3.0, 2.0)}, ["x"], TIMES)
-    fit = identify(both, noisy(both, [1.5], 0.1))
-    assert abs(abs(fit.values[0]) - 1.5) < 0.01
-    told = re.search(r"Another minimum, at a = (\S+), explains the data as well", fit.status)
-    np.testing.assert_allclose(float(told[1]), -fit.values[0], rtol=1e-3)
-
-
-def test_one_minimum_has_no_rival():
-    fit = identify(SWING, noisy(SWING, [4.0], 0.1))
-    np.testing.assert_allclose(fit.values, [4.0], atol=0.02)
-    assert "Another minimum" not in fit.status

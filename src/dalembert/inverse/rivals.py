@@ -57,10 +57,11 @@ def rivals(problem: Problem, best: End, floor: NoiseFloor, deviations: np.ndarra
             continue
         if best.nodes is None or best.nodes.segments == 1:  # one run follows the motion
             end = refine(quiet, LeastSquares(), end)
-        alike = end.fitness - best.fitness < ALIKE * noise
-        if end.success and alike and _new(problem, end, [best, *found], reach):
-            if not _one_valley(quiet, best, end, deviations, best.fitness + ALIKE * noise, reach):
-                found.append(end)
+        if not (end.success and end.fitness - best.fitness < ALIKE * noise):
+            continue
+        most = best.fitness + ALIKE * noise
+        if _new(problem, end, [best, *found], reach) and not _one_valley(quiet, best, end, deviations, most, reach):
+            found.append(end)
     problem.journal.simulations += quiet.journal.simulations
     return found
 

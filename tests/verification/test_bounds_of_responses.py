@@ -144,7 +144,7 @@ LONG = {"theta1": da.Interval.about(np.pi / 2, relative=0.05), "theta2": np.pi /
 
 def advised(refusal: da.SolveError) -> int:
     """The order that a refusal says would do."""
-    return int(str(refusal).split("about order ")[1].split()[0])
+    return int(str(refusal).split("TotalDegree(order=")[1].split(")")[0])
 
 
 def test_a_long_motion_is_refused_at_a_low_order() -> None:

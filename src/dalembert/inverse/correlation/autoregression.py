@@ -10,6 +10,9 @@ from dalembert.inverse.correlation.whiteness import lagged, on_grid, pairs
 MOST = 10
 """Highest order."""
 
+TINY = 1e-9
+"""Rounding of autocorrelations."""
+
 
 @dataclass(frozen=True, eq=False)
 class Autoregression:
@@ -39,10 +42,14 @@ class Autoregression:
         """Autocorrelation of neighbours."""
         return float(self.covariances[1] / self.covariances[0])
 
+    @property
+    def slowest(self) -> float:
+        """Factor from sample to sample of the slowest part of the autocorrelation; below 1 for a stationary process."""
+        return float(np.max(np.abs(np.roots([1.0, *-self.coefficients])), initial=0.0))
+
     def decay(self, step: float) -> float:
         """Return the time in which the slowest part of the autocorrelation decays by e, for samples every ``step``."""
-        slowest = float(np.max(np.abs(np.roots([1.0, *-self.coefficients])), initial=0.0))
-        return -step / np.log(slowest) if slowest > 0 else 0.0
+        return -step / np.log(self.slowest) if self.slowest > 0 else 0.0
 
     def product(self, series: Series, basis: np.ndarray) -> np.ndarray:
         """Return BᵀΣB, shape (columns, columns), for a basis B (values, columns) and the noise's covariance Σ."""
@@ -77,14 +84,22 @@ class Moments:
     covariances: np.ndarray
 
     def process(self) -> Autoregression:
-        """Return the process of the order of least AICc."""
+        """Return the process of the order of least AICc.
+
+        Nearly perfect correlation makes the equations of high orders singular: orders whose process is not stationary,
+        by rounding, are left out.
+        """
         number = int(self.count[0])
         most = 1 - 2 / number
         found, variances = levinson(self.covariances, most)
         orders = np.arange(1, len(found) + 1)
         criterion = number * np.log(variances) + 2 * (orders + 1) * number / (number - orders - 2)
-        best = found[int(np.argmin(criterion))]
-        return Autoregression(best, self.covariances[0] * autocorrelations(best, len(self.basis)))
+        for place in np.argsort(criterion):
+            correlations = autocorrelations(found[place], len(self.basis))
+            process = Autoregression(found[place], self.covariances[0] * correlations)
+            if process.slowest < 1 and np.max(np.abs(correlations)) <= 1 + TINY:
+                return process
+        raise AssertionError("a process of order 1 is stationary")
 
     def corrected(self, process: Autoregression, common: np.ndarray) -> "Moments":
         """Return the moments with the bias that the fit of parameters causes taken off.

@@ -1,5 +1,7 @@
 """Autoregressive and Ornstein–Uhlenbeck processes of residuals."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -81,3 +83,12 @@ def test_the_decay_is_that_of_the_slowest_root():
     assert Autoregression(np.array([0.5]), np.ones(2)).decay(0.1) == pytest.approx(0.1 / np.log(2))
     swing = np.array([2 * 0.9 * np.cos(0.7), -0.81])  # roots 0.9 exp(±0.7 i)
     assert Autoregression(swing, np.ones(3)).decay(1.0) == pytest.approx(-1 / np.log(0.9))
+
+
+def test_a_process_is_stationary_where_corrected_covariances_are_not_those_of_one():
+    """The equations of high orders were almost singular, and autocorrelations of 3e6 came out."""
+    own = series(np.arange(201.0))
+    impossible = replace(moments(own, np.ones(201), np.zeros((201, 1))), covariances=(-1.5) ** np.arange(11))
+    process = impossible.process()
+    assert np.max(np.abs(process.covariances)) <= process.variance * (1 + 1e-9)
+    assert np.isfinite(process.decay(own.step))

@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 import dalembert.multibody as mb
+from dalembert.data import Bands, Measurements
 from dalembert.errors import DalembertError
 from dalembert.forward import PythonModel
+from dalembert.inverse import identify, identify_bands
 
 TIMES = np.linspace(0.0, 1.0, 21)
 DECAY = np.exp(-1.3 * TIMES)
@@ -41,6 +43,14 @@ def decay(rate: complex) -> np.ndarray:
 
 def model() -> PythonModel:
     return PythonModel(decay, {"rate": (0.1, 3.0)}, ["x"], TIMES)
+
+
+def measured(values: object = DECAY, **options) -> Measurements:
+    return Measurements.of(TIMES, {"x": values}, **options)
+
+
+def fitted(data: Measurements | None = None, **options) -> object:
+    return identify(model(), measured() if data is None else data, **options)
 
 
 def other_name(laenge: complex) -> mb.System:
@@ -138,6 +148,57 @@ CASES: dict[str, tuple[Callable[[], object], str]] = {
         "solver is the class GeneralizedAlpha; expected 'auto' or an integrator, such as GeneralizedAlpha(step=1e-3); "
         "write GeneralizedAlpha(...)",
     ),
+    "texts as data": (lambda: measured(["a"] * 21), "channel 'x', sample 0: 'a'; expected a number"),
+    "texts as times of data": (
+        lambda: Measurements.of([0.0, "b"], {"x": [1.0, 2.0]}),
+        "the time, sample 1: 'b'; expected a number",
+    ),
+    "rows of unequal length as data": (
+        lambda: measured([[1.0], [1.0, 2.0]]),
+        "channel 'x' is [[1.0], [1.0, 2.0]]; expected numbers, in rows of equal length",
+    ),
+    "complex data": (
+        lambda: measured(DECAY + 1j),
+        "channel 'x' has complex values, such as (1+1j); expected real numbers; give the real and the imaginary part, "
+        "or amplitude and phase, as two channels",
+    ),
+    "dates as times of data": (
+        lambda: Measurements.of(np.array(["2020-01-01"], dtype="M8[D]"), {"x": [1.0]}),
+        "the time has dates or time spans, such as 2020-01-01; expected numbers in SI units",
+    ),
+    "a number as a channel's name": (
+        lambda: Measurements.of([0.0], {3: [1.0]}),  # type: ignore[dict-item]
+        "Measurements: channels is 3; expected names, such as ['AB.end.x', 'AB.end.y']",
+    ),
+    "data without names": (
+        lambda: Measurements.of([0.0], [1.0]),  # type: ignore[arg-type]
+        "the channels are [1.0]; expected a mapping from names to columns, such as {'AB.end.x': values}",
+    ),
+    "a text as deviation": (
+        lambda: measured(deviations={"x": "a"}),
+        "the deviation of channel 'x': 'a'; expected a number",
+    ),
+    "a number as bands": (
+        lambda: Bands.of([0.0], {"x": 3.0}),  # type: ignore[dict-item]
+        "channel 'x' is 3.0; expected two columns, (lower, upper)",
+    ),
+    "huge data": (
+        lambda: fitted(measured(1e200 * DECAY)),
+        "channel 'x': its largest value is 1e+200; expected at most 1e+50; use other units",
+    ),
+    "tiny data": (
+        lambda: fitted(measured(1e-200 * DECAY)),
+        "the weighted data, √W·|data|, are 1e-200 at most; expected 1e-50 to 1e+50, in which squares can be computed; "
+        "use other units or other weights",
+    ),
+    "huge deviations": (
+        lambda: fitted(measured(deviations=1e300)),
+        "channel 'x': its deviation is 1e+300; expected 1e-50 to 1e+50; use other units",
+    ),
+    "tiny deviations": (
+        lambda: fitted(measured(deviations=1e-300)),
+        "channel 'x': its deviation is 1e-300; expected 1e-50 to 1e+50; use other units",
+    ),
 }
 
 
@@ -154,3 +215,32 @@ def test_one_channel_needs_no_list() -> None:
     assert PythonModel(decay, {"rate": (0.1, 3.0)}, "displacement", TIMES).channels[0].name == "displacement"
     assert mb.simulate(pendulum(), 0.1).channels("bob.centre.x").shape == (1001, 1)
     assert hanging().channels("bob.centre.y").shape == (1,)
+
+
+def test_lists_make_measurements() -> None:
+    data = Measurements([0.0, 1.0], ["x"], [[1.0], [2.0]], [0.1])  # type: ignore[arg-type]
+    assert data.coordinate.values.tolist() == [0.0, 1.0]
+    assert (data.channels, data.values.shape) == (("x",), (2, 1))
+
+
+@pytest.mark.parametrize(
+    ("response", "data", "sentence"),
+    [
+        (decay, 0 * DECAY, "The data do not vary, so that no share of their variation can be explained."),
+        (
+            lambda rate: 1e100 * decay(rate),
+            DECAY,
+            "The response explains nothing of the data's variation: the misfit is larger than that variation.",
+        ),
+    ],
+)
+def test_a_response_that_explains_nothing_is_told_in_words(response: Callable, data: np.ndarray, sentence: str) -> None:
+    fit = identify(PythonModel(response, {"rate": (0.1, 3.0)}, ["x"], TIMES), measured(data))
+    assert sentence in fit.status
+    assert " %" not in fit.status
+
+
+def test_bands_without_width_have_a_finite_misfit() -> None:
+    fit = identify_bands(model(), Bands.of(TIMES, {"x": (DECAY, DECAY)}))
+    assert "at rms in 'x', where the given bands have no width" in fit.status
+    assert " inf " not in fit.status

@@ -45,7 +45,7 @@ def test_one_descent_ends_in_a_false_minimum(far):
     """The case is hard: this is what the others are for."""
     alone = identify(MODEL, data(0.0), start=TRUTH * far, starts=1, horizon=None)
     assert np.max(np.abs(alone.values / TRUTH - 1)) > 0.3
-    assert re.search(r"The response explains -?[\d.]+ % of the data's variation\.", alone.status)
+    assert re.search(r"The response explains (nothing|[\d.]+ %) of the data's variation", alone.status)
 
 
 @pytest.mark.parametrize("seed", range(3))

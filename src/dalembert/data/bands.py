@@ -6,8 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dalembert.data.labels import check_labels, coordinate_of, cut, digest, table_of
-from dalembert.errors import DataError
+from dalembert.arguments import names_of
+from dalembert.data.labels import by_name, check_labels, coordinate_of, cut, digest, real_numbers, table_of
+from dalembert.errors import DataError, shown
 from dalembert.forward import Coordinate
 
 
@@ -43,6 +44,13 @@ class Bands:
     upper: np.ndarray
 
     def __post_init__(self) -> None:
+        for name, value in (
+            ("coordinate", coordinate_of(self.coordinate)),
+            ("channels", names_of(self.channels, "Bands", "channels")),
+            ("lower", real_numbers(self.lower, "lower bounds")),
+            ("upper", real_numbers(self.upper, "upper bounds")),
+        ):
+            object.__setattr__(self, name, value)
         check_labels(self.coordinate, self.channels, **{"lower bounds": self.lower, "upper bounds": self.upper})
         for side in ("lower", "upper"):
             bounds = getattr(self, side)
@@ -75,11 +83,14 @@ class Bands:
         channels : mapping of str to (lower, upper), each of shape (samples,)
         """
         along = coordinate_of(coordinate)
+        names = names_of(by_name(channels), "Bands", "channels")
         for name, pair in channels.items():
+            if not hasattr(pair, "__len__") or isinstance(pair, str):
+                raise DataError(f"channel {name!r} is {shown(pair)}; expected two columns, (lower, upper)")
             if len(pair) != 2:
                 raise DataError(f"channel {name!r}: {len(pair)} columns were given; expected two, (lower, upper)")
         lower, upper = (table_of(along, {name: pair[side] for name, pair in channels.items()}) for side in (0, 1))
-        return Bands(along, tuple(channels), lower, upper)
+        return Bands(along, names, lower, upper)
 
     @property
     def middle(self) -> np.ndarray:

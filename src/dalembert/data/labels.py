@@ -2,11 +2,13 @@
 
 import hashlib
 from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dalembert.errors import DataError
+from dalembert.errors import DataError, shown
 from dalembert.forward import Coordinate
 
 
@@ -43,8 +45,71 @@ def check_labels(coordinate: Coordinate, channels: tuple[str, ...], **arrays: np
 
 
 def coordinate_of(given: Coordinate | ArrayLike) -> Coordinate:
-    """A coordinate as it is; an array, shape (samples,), as times in seconds."""
-    return given if isinstance(given, Coordinate) else Coordinate("time", "s", np.array(given, dtype=float))
+    """A coordinate as it is; an array, shape (samples,), as times in seconds.
+
+    Raises
+    ------
+    DataError
+        For values that are not real numbers, or not one row of them.
+    """
+    along = given if isinstance(given, Coordinate) else Coordinate("time", "s", np.asarray(None))
+    values = real_numbers(along.values if along is given else given, f"the {along.name}")
+    if values.ndim != 1:
+        raise DataError(f"the {along.name} has shape {values.shape}; expected (samples,), one value a sample")
+    return replace(along, values=values)
+
+
+def real_numbers(given: Any, what: str) -> np.ndarray:
+    """Array of floats from anything like an array.
+
+    Raises
+    ------
+    DataError
+        For complex numbers, dates, and what is not a number, with the first such entry.
+
+    Examples
+    --------
+    >>> real_numbers([1.0, "2,5"], "channel 'x'")
+    Traceback (most recent call last):
+    dalembert.errors.DataError: channel 'x', sample 1: '2,5'; expected a number
+    """
+    try:
+        array = np.asarray(given)
+    except ValueError:  # rows of unequal length
+        raise DataError(f"{what} is {shown(given)}; expected numbers, in rows of equal length") from None
+    if np.iscomplexobj(array) and array.size:
+        raise DataError(
+            f"{what} has complex values, such as {array.flat[0]}; expected real numbers; give the real and the "
+            "imaginary part, or amplitude and phase, as two channels"
+        )
+    if array.dtype.kind in "mM" and array.size:
+        raise DataError(f"{what} has dates or time spans, such as {array.flat[0]}; expected numbers in SI units")
+    try:
+        return np.array(array, dtype=float)
+    except (TypeError, ValueError):
+        pass
+    for place, entry in np.ndenumerate(array):
+        try:
+            float(entry)
+        except (TypeError, ValueError):
+            at = f", sample {place[0]}" if place else ""
+            given_here = entry.item() if isinstance(entry, np.generic) else entry
+            raise DataError(f"{what}{at}: {shown(given_here)}; expected a number") from None
+    raise DataError(f"{what} is {shown(given)}; expected numbers")
+
+
+def by_name(given: Any) -> Mapping[str, Any]:
+    """Columns by name, refused if they are anything else.
+
+    Raises
+    ------
+    DataError
+    """
+    if not isinstance(given, Mapping):
+        raise DataError(
+            f"the channels are {shown(given)}; expected a mapping from names to columns, such as {{'AB.end.x': values}}"
+        )
+    return given
 
 
 def table_of(coordinate: Coordinate, columns: Mapping[str, ArrayLike]) -> np.ndarray:
@@ -55,7 +120,7 @@ def table_of(coordinate: Coordinate, columns: Mapping[str, ArrayLike]) -> np.nda
     DataError
         For a column of another length than the coordinate.
     """
-    arrays = [np.array(column, dtype=float) for column in columns.values()]
+    arrays = [real_numbers(column, f"channel {name!r}") for name, column in columns.items()]
     for name, column in zip(columns, arrays, strict=True):
         if column.shape != coordinate.values.shape:
             raise DataError(

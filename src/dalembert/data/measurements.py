@@ -6,8 +6,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dalembert.data.labels import check_labels, coordinate_of, cut, digest, table_of
-from dalembert.errors import DataError, unknown
+from dalembert.arguments import names_of
+from dalembert.data.labels import by_name, check_labels, coordinate_of, cut, digest, real_numbers, table_of
+from dalembert.errors import DataError, shown, unknown
 from dalembert.forward import Coordinate
 
 MISSING = ("refuse", "leave-out")
@@ -36,8 +37,10 @@ class Measurements:
     Raises
     ------
     DataError
-        For a coordinate that goes backwards, shapes that do not fit, names that repeat, deviations not positive, an
-        unknown word for ``missing``, a wrapping channel that there is not.
+        For values that are not real numbers, a coordinate that goes backwards, shapes that do not fit, names that
+        repeat, deviations not positive, an unknown word for ``missing``, a wrapping channel that there is not.
+    InputError
+        For channels or ``wraps`` that are not names.
     """
 
     coordinate: Coordinate
@@ -48,9 +51,17 @@ class Measurements:
     wraps: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
+        for name, value in (
+            ("coordinate", coordinate_of(self.coordinate)),
+            ("channels", names_of(self.channels, "Measurements", "channels")),
+            ("values", real_numbers(self.values, "values")),
+            ("deviations", None if self.deviations is None else real_numbers(self.deviations, "deviations")),
+            ("wraps", names_of(self.wraps, "Measurements", "wraps")),
+        ):
+            object.__setattr__(self, name, value)
         check_labels(self.coordinate, self.channels, values=self.values)
         if self.missing not in MISSING:
-            raise DataError(unknown("word", self.missing, MISSING, "missing"))
+            raise DataError(unknown("word", str(self.missing), MISSING, "missing"))
         for name in self.wraps:
             if name not in self.channels:
                 raise DataError(unknown("channel", name, self.channels, "wraps"))
@@ -98,8 +109,11 @@ class Measurements:
         ((2, 2), array([0.001, 0.001]))
         """
         along = coordinate_of(coordinate)
-        names = tuple(channels)
-        return cls(along, names, table_of(along, channels), _deviations(deviations, names), missing, tuple(wraps))
+        names = names_of(by_name(channels), "Measurements", "channels")
+        return cls(
+            along, names, table_of(along, channels), _deviations(deviations, names), missing,
+            names_of(wraps, "Measurements", "wraps"),
+        )  # fmt: skip
 
     @property
     def present(self) -> np.ndarray:
@@ -253,6 +267,13 @@ def _deviations(given: Mapping[str, float] | ArrayLike | None, channels: tuple[s
             raise DataError(
                 f"no deviation given for channel {missing[0]!r}; give one for each of {', '.join(channels)}"
             )
-        return np.array([given[name] for name in channels], dtype=float)
-    array = np.array(given, dtype=float)
+        return np.array([_deviation(given[name], name) for name in channels])
+    array = real_numbers(given, "deviations")
     return np.full(len(channels), float(array)) if array.ndim == 0 else array
+
+
+def _deviation(given: float, channel: str) -> float:
+    number = real_numbers(given, f"the deviation of channel {channel!r}")
+    if number.ndim:
+        raise DataError(f"the deviation of channel {channel!r} is {shown(given)}; expected one number")
+    return float(number)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from dalembert.data import Measurements
-from dalembert.errors import DataError, InputError, unknown
+from dalembert.errors import DataError, InputError, shown, unknown
 from dalembert.forward import Coordinate, ForwardModel
 
 
@@ -79,6 +79,49 @@ def check_finite(data: Measurements) -> None:
         raise DataError(f"channel {name!r}: not one value is there; expected at least one; leave out the channel")
 
 
+MOST = 1e50
+"""Largest size of data, whose squares then lie well within the range of floating point; 1/MOST is the smallest."""
+
+
+def check_sizes(data: Measurements) -> None:
+    """Refuse values and deviations whose squares would leave the range of floating point.
+
+    Raises
+    ------
+    DataError
+    """
+    for name, largest in zip(
+        data.channels, np.max(np.abs(np.where(data.present, data.values, 0.0)), axis=0), strict=True
+    ):
+        if largest > MOST:
+            raise DataError(f"channel {name!r}: its largest value is {largest:.3g}; expected at most {MOST:g}; {UNITS}")
+    if data.deviations is None:
+        return
+    for name, deviation in zip(data.channels, data.deviations, strict=True):
+        if not 1 / MOST <= deviation <= MOST:
+            raise DataError(
+                f"channel {name!r}: its deviation is {deviation:.3g}; expected {1 / MOST:g} to {MOST:g}; {UNITS}"
+            )
+
+
+UNITS = "use other units"
+
+
+def check_weighted(data: Measurements, weights: np.ndarray) -> None:
+    """Refuse data whose weighted squares would leave the range of floating point, where they are not zero.
+
+    Raises
+    ------
+    DataError
+    """
+    largest = float(np.max(np.sqrt(weights) * np.abs(np.where(data.present, data.values, 0.0))))
+    if largest > 0 and not 1 / MOST <= largest <= MOST:
+        raise DataError(
+            f"the weighted data, √W·|data|, are {largest:.3g} at most; expected {1 / MOST:g} to {MOST:g}, in which "
+            f"squares can be computed; {UNITS} or other weights"
+        )
+
+
 def weights_of(given: ArrayLike | None, shape: tuple[int, ...]) -> np.ndarray:
     """Weights of shape (samples, channels), 1 where none are given.
 
@@ -89,7 +132,12 @@ def weights_of(given: ArrayLike | None, shape: tuple[int, ...]) -> np.ndarray:
     """
     if given is None:
         return np.broadcast_to(1.0, shape)
-    weights = np.asarray(given, dtype=float)
+    try:
+        weights = np.asarray(given, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError(
+            f"weights are {shown(given)}; expected an array of numbers, (channels,) or (samples, channels)"
+        ) from None
     if weights.shape not in (shape, shape[1:]):
         raise InputError(
             f"weights of shape {weights.shape} were given; expected (channels,) = {shape[1:]} or "

@@ -10,7 +10,7 @@ from dalembert.errors import InputError, SolveError, StorageError, told
 from dalembert.forward import ForwardModel
 from dalembert.inverse.journal import Journal
 from dalembert.inverse.loss import Loss
-from dalembert.inverse.matching import check_finite, check_samples, columns_of, weights_of
+from dalembert.inverse.matching import check_finite, check_samples, check_sizes, check_weighted, columns_of, weights_of
 from dalembert.inverse.prior import check_priors, prior_residual, prior_slopes
 from dalembert.inverse.search import Search
 from dalembert.inverse.simulated import named, simulated
@@ -169,7 +169,10 @@ def pose(model: ForwardModel, data: Measurements, weights: ArrayLike | None, jou
     columns = columns_of(model, data)
     check_finite(data)
     check_samples(model, data)
-    return Problem(model, data, columns, _weights(data, weights), Search(model.parameters), journal)
+    check_sizes(data)
+    weighted = _weights(data, weights)
+    check_weighted(data, weighted)
+    return Problem(model, data, columns, weighted, Search(model.parameters), journal)
 
 
 def _weights(data: Measurements, given: ArrayLike | None) -> np.ndarray:

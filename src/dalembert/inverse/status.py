@@ -31,8 +31,7 @@ def status(problem: Problem, best: End, response: np.ndarray, floor: NoiseFloor,
             "their squares would."
         )
     elif best.fitness > floor.fitness:
-        share = 1 - best.fitness / max(signal(problem), np.finfo(float).tiny)
-        parts.append(f"The response explains {100 * share:.4g} % of the data's variation.")
+        parts.append(_explains(best.fitness, signal(problem)))
     if best.fitness <= floor.fitness:
         parts.append(f"The misfit is at the floor that the noise of the data allows (known from {floor.source}).")
     elif floor.source == "given deviations":
@@ -43,3 +42,16 @@ def status(problem: Problem, best: End, response: np.ndarray, floor: NoiseFloor,
     elif not correlated:
         parts.append("What remains looks like noise; give the data's deviations to have it checked against them.")
     return " ".join(parts)
+
+
+def _explains(misfit: float, variation: float) -> str:
+    """Share of the data's variation that a response explains.
+
+    >>> _explains(1.0, 4.0)
+    "The response explains 75 % of the data's variation."
+    """
+    if not variation > 0:
+        return "The data do not vary, so that no share of their variation can be explained."
+    if misfit > variation:
+        return "The response explains nothing of the data's variation: the misfit is larger than that variation."
+    return f"The response explains {100 * (1 - misfit / variation):.4g} % of the data's variation."

@@ -47,10 +47,12 @@ def _misfit(problem: BandProblem, found: Found) -> str:
         return "The given bands are reproduced to the digits that they are rounded to."
     rms, width = np.sqrt(np.mean(apart**2, axis=(0, 1))), given.width.mean(axis=0)
     share = np.divide(rms, width, out=np.where(rms > 0, np.inf, 0.0), where=width > 0)
-    parts = [
-        f"The reproduced bands differ from the given ones by {share.max():.2g} of their mean width at rms in "
-        f"{given.channels[int(np.argmax(share))]!r}; {_largest(problem, apart)}."
-    ]
+    worst = int(np.argmax(share))
+    name = repr(given.channels[worst])
+    by = f"{share[worst]:.2g} of their mean width at rms in {name}"
+    if not width[worst] > 0:
+        by = f"{rms[worst]:.2g} at rms in {name}, where the given bands have no width"
+    parts = [f"The reproduced bands differ from the given ones by {by}; {_largest(problem, apart)}."]
     largest = np.max(np.abs(apart) / np.where(rms > 0, rms, 1.0))
     stands_out = largest > -ndtri(CHANCE / (2 * max(1, 2 * np.count_nonzero(problem.weights))))
     if stands_out:

@@ -9,7 +9,9 @@ import dalembert.multibody as mb
 from dalembert.data import Bands, Measurements
 from dalembert.errors import DalembertError
 from dalembert.forward import PythonModel
-from dalembert.inverse import identify, identify_bands
+from dalembert.inverse import identify, identify_bands, identify_set
+from dalembert.optimize import LeastSquares
+from dalembert.uncertainty import propagate
 
 TIMES = np.linspace(0.0, 1.0, 21)
 DECAY = np.exp(-1.3 * TIMES)
@@ -198,6 +200,47 @@ CASES: dict[str, tuple[Callable[[], object], str]] = {
     "tiny deviations": (
         lambda: fitted(measured(deviations=1e-300)),
         "channel 'x': its deviation is 1e-300; expected 1e-50 to 1e+50; use other units",
+    ),
+    "half a start": (lambda: fitted(starts=2.5), "identify: starts is 2.5; expected a whole number, at least 1"),
+    "True as starts": (lambda: fitted(starts=True), "identify: starts is True; expected a whole number, at least 1"),
+    "NaN as starts": (lambda: fitted(starts=np.nan), "identify: starts is nan; expected a whole number, at least 1"),
+    "a text as seed": (lambda: fitted(seed="a"), "identify: seed is 'a'; expected a whole number, at least 0"),
+    "texts as weights": (
+        lambda: fitted(weights=["a"]),
+        "weights are ['a']; expected an array of numbers, (channels,) or (samples, channels)",
+    ),
+    "a text as scale of a loss": (
+        lambda: fitted(loss="huber", loss_scale="a"),
+        "loss_scale is 'a'; expected a positive number",
+    ),
+    "a number as loss": (
+        lambda: fitted(loss=5),
+        "unknown loss '5'; known: cauchy, huber, linear, soft-l1",
+    ),
+    "a class as method": (
+        lambda: fitted(method=LeastSquares),
+        "method is the class LeastSquares; expected LeastSquares(), ResponseSensitivity(), ParticleSwarm(), "
+        "ImprovedParticleSwarm(), Firefly(), or a Minimiser or its name; write LeastSquares(...)",
+    ),
+    "a function as the model of a fit": (
+        lambda: identify(decay, measured()),  # type: ignore[arg-type]
+        "identify: a function was given as the model; expected a forward model, such as TimeResponse or PythonModel",
+    ),
+    "a list as the data of a fit": (
+        lambda: identify(model(), [1.0]),  # type: ignore[arg-type]
+        "identify: [1.0] was given as the data; expected Measurements, see Measurements.of",
+    ),
+    "measurements as bands": (
+        lambda: identify_bands(model(), measured()),  # type: ignore[arg-type]
+        "identify_bands: a Measurements was given as the data; expected Bands, see Bands.of",
+    ),
+    "half a seed of a set": (
+        lambda: identify_set(model(), measured(), error=0.1, seed=0.5),  # type: ignore[arg-type]
+        "identify_set: seed is 0.5; expected a whole number, at least 0",
+    ),
+    "half a seed of bounds": (
+        lambda: propagate(model(), {"rate": (0.5, 1.0)}, seed=0.5),  # type: ignore[arg-type]
+        "propagate: seed is 0.5; expected a whole number, at least 0",
     ),
 }
 

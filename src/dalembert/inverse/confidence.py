@@ -3,7 +3,8 @@
 import numpy as np
 from scipy.special import ndtri, stdtrit  # quantiles; scipy.stats takes long to load
 
-from dalembert.errors import InputError
+from dalembert.arguments import is_number
+from dalembert.errors import InputError, shown
 from dalembert.inverse.fit import Fit
 from dalembert.inverse.prior import priors
 
@@ -15,8 +16,8 @@ def check_level(level: float, where: str) -> None:
     ------
     InputError
     """
-    if not 0 < level < 1:
-        raise InputError(f"{where}: level is {level}; expected a number between 0 and 1, such as 0.95")
+    if not is_number(level) or np.iscomplexobj(level) or not 0 < level < 1:
+        raise InputError(f"{where}: level is {shown(level)}; expected a number between 0 and 1, such as 0.95")
 
 
 def noise_is_known(fit: Fit) -> bool:

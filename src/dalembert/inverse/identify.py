@@ -6,8 +6,9 @@ from dataclasses import asdict, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
+from dalembert.arguments import check_whole
 from dalembert.data import Measurements
-from dalembert.errors import DalembertError, InputError, SolveError, StorageError, unknown
+from dalembert.errors import DalembertError, InputError, SolveError, StorageError, shown, unknown
 from dalembert.forward import Executor, ForwardModel, check_derivatives, findings_at, takes_executor
 from dalembert.forward.provenance import provenance
 from dalembert.inverse.correlation import CorrelatedResiduals, correlation, correlation_findings
@@ -19,6 +20,7 @@ from dalembert.inverse.fit import Fit
 from dalembert.inverse.integration import integration_bias, integration_findings
 from dalembert.inverse.journal import Journal
 from dalembert.inverse.loss import loss_of
+from dalembert.inverse.matching import check_kinds
 from dalembert.inverse.multistart import HORIZONS, multistart
 from dalembert.inverse.noise import noise_floor
 from dalembert.inverse.problem import Linearisation, Problem, pose
@@ -140,6 +142,7 @@ def identify(
     (np.float64(6.3), True)
     """
     method = _method(method)
+    check_whole("identify", "seed", seed, 0)
     squares = isinstance(method, Squares)
     if shooting is not None:
         _check_shooting(method, validation)
@@ -251,17 +254,18 @@ def _method(given: Squares | Method | str | None) -> Squares | Method:
         return LeastSquares()
     if isinstance(given, str):
         return Minimiser(given)
-    if not hasattr(given, "minimise"):
+    if isinstance(given, type) or not hasattr(given, "minimise"):
+        hint = f"; write {given.__name__}(...)" if isinstance(given, type) else ""
         raise InputError(
-            f"method is {given!r}; expected LeastSquares(), ResponseSensitivity(), ParticleSwarm(), "
-            "ImprovedParticleSwarm(), Firefly(), or a Minimiser or its name"
+            f"method is {shown(given)}; expected LeastSquares(), ResponseSensitivity(), ParticleSwarm(), "
+            f"ImprovedParticleSwarm(), Firefly(), or a Minimiser or its name{hint}"
         )
     return given
 
 
 def _starts(given: int | None, usual: int) -> int:
-    if given is not None and given < 1:
-        raise InputError(f"starts is {given}; expected at least 1")
+    if given is not None:
+        check_whole("identify", "starts", given, 1)
     return usual if given is None else given
 
 
@@ -324,6 +328,7 @@ def _joined(
         raise InputError("identify: no data were given; expected identify(model, data), or identify([Experiment(...)])")
     if isinstance(weights, Mapping):
         raise InputError("weights by name are for several experiments; expected an array (channels,)")
+    check_kinds("identify", model, data)
     return model, data, weights, ()
 
 

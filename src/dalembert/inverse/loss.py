@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dalembert.errors import InputError, unknown
+from dalembert.arguments import is_number
+from dalembert.errors import InputError, shown, unknown
 
 Curve = Callable[[np.ndarray], np.ndarray]
 
@@ -108,8 +109,8 @@ def loss_of(name: str, scale: float | None, *, known: bool) -> Loss | None:
     InputError
         For an unknown name, a scale that is not positive or has nothing to scale, none where none is usual.
     """
-    if name not in NAMES:
-        raise InputError(unknown("loss", name, NAMES))
+    if not isinstance(name, str) or name not in NAMES:
+        raise InputError(unknown("loss", str(name), NAMES))
     if name == "linear":
         if scale is not None:
             raise InputError("loss_scale was given, but the loss is 'linear', which has none; leave it out")
@@ -121,6 +122,6 @@ def loss_of(name: str, scale: float | None, *, known: bool) -> Loss | None:
                 "the weighted residual from which one counts as an outlier"
             )
         scale = LOSSES[name][3]
-    if not (np.isfinite(scale) and scale > 0):
-        raise InputError(f"loss_scale is {scale}; expected a positive number")
+    if not is_number(scale) or np.iscomplexobj(scale) or not scale > 0:
+        raise InputError(f"loss_scale is {shown(scale)}; expected a positive number")
     return Loss(name, float(scale))

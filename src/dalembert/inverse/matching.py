@@ -20,6 +20,24 @@ class Labelled(Protocol):
     def channels(self) -> tuple[str, ...]: ...
 
 
+def check_kinds(owner: str, model: object, data: object, kind: type = Measurements) -> None:
+    """Refuse what is not a model, or not data of a kind.
+
+    Raises
+    ------
+    InputError
+    """
+    if not isinstance(model, ForwardModel):
+        raise InputError(
+            f"{owner}: {shown(model)} was given as the model; expected a forward model, such as TimeResponse or "
+            "PythonModel"
+        )
+    if not isinstance(data, kind):
+        raise InputError(
+            f"{owner}: {shown(data)} was given as the data; expected {kind.__name__}, see {kind.__name__}.of"
+        )
+
+
 def columns_of(model: ForwardModel, data: Labelled) -> np.ndarray:
     """Where the data's channels stand among the model's, shape (channels,).
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 
+from dalembert.arguments import check_whole
 from dalembert.errors import InputError, unknown
 from dalembert.forward import Executor, ForwardModel, clock, findings_at, on_cluster, takes_executor
 from dalembert.forward.provenance import provenance
@@ -66,6 +67,7 @@ def propagate(
     >>> bands.kind, bands.runs
     ('inner bound', 2)
     """
+    check_whole("propagate", "seed", seed, 0)
     model = on_cluster(model, executor)
     chosen, box = method_of(method), box_of(model, intervals)
     runs = Runs(model, box, label(chosen), on_event)

@@ -280,7 +280,7 @@ def test_parameters_that_cannot_be_told_apart_are_named():
 @pytest.mark.parametrize(
     ("options", "sentence"),
     [
-        ({"starts": 0}, "starts is 0; expected at least 1"),
+        ({"starts": 0}, "identify: starts is 0; expected a whole number, at least 1"),
         ({"horizon": "grow"}, "unknown horizon 'grow'; did you mean 'growing'?"),
         ({"spread": "sobel"}, "unknown spread 'sobel'; did you mean 'sobol'?"),
         ({"method": "Powel"}, "unknown minimiser 'Powel'; did you mean 'Powell'?"),

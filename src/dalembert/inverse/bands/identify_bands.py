@@ -5,8 +5,9 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import ArrayLike
 
+from dalembert.arguments import check_whole
 from dalembert.data import Bands
-from dalembert.errors import InputError, unknown
+from dalembert.errors import InputError, shown, unknown
 from dalembert.forward import Executor, ForwardModel, clock, on_cluster, takes_executor
 from dalembert.forward.provenance import provenance
 from dalembert.intervals import Box
@@ -22,6 +23,7 @@ from dalembert.inverse.bands.unknowns import unknowns_of
 from dalembert.inverse.estimate import Estimate, estimate
 from dalembert.inverse.events import Finished, OnEvent
 from dalembert.inverse.journal import Journal
+from dalembert.inverse.matching import check_kinds
 
 METHODS = {"global": GlobalSurrogate, "nested": Nested}
 
@@ -93,6 +95,8 @@ def identify_bands(
     >>> print(identify_bands(decay, bands).box)
     rate [0.8, 1.2]
     """
+    check_kinds("identify_bands", model, bands, Bands)
+    check_whole("identify_bands", "seed", seed, 0)
     began = clock(model)
     model, chosen = on_cluster(model, executor), _method(method)
     unknowns = unknowns_of(model.parameters, intervals)
@@ -154,8 +158,8 @@ def _method(given: Method | str | None) -> Method:
         if given not in METHODS:
             raise InputError(unknown("method of identifying bands", given, METHODS))
         return METHODS[given]()
-    if not hasattr(given, "search"):
-        raise InputError(f"method is {given!r}; expected GlobalSurrogate(...), Nested(...), 'global' or 'nested'")
+    if isinstance(given, type) or not hasattr(given, "search"):
+        raise InputError(f"method is {shown(given)}; expected GlobalSurrogate(...), Nested(...), 'global' or 'nested'")
     return given
 
 

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import ArrayLike
 
+from dalembert.arguments import check_whole
 from dalembert.data import Measurements
 from dalembert.errors import InputError, unknown
 from dalembert.forward import Executor, ForwardModel, clock, on_cluster, takes_executor
@@ -12,7 +13,7 @@ from dalembert.forward.provenance import provenance
 from dalembert.intervals import Box
 from dalembert.inverse.events import Finished, OnEvent
 from dalembert.inverse.journal import Journal
-from dalembert.inverse.matching import check_finite, check_samples, columns_of
+from dalembert.inverse.matching import check_finite, check_kinds, check_samples, check_sizes, columns_of
 from dalembert.inverse.search import Search
 from dalembert.inverse.sets.conclusions import conclusions
 from dalembert.inverse.sets.inner_box import inner_box
@@ -101,15 +102,17 @@ def identify_set(
     >>> print(found.outer)
     rate [0.946996, 1.05604]
     """
+    check_kinds("identify_set", model, data)
+    check_whole("identify_set", "seed", seed, 0)
+    check_whole("identify_set", "most_boxes", most_boxes, 1)
     began = clock(model)
     model = on_cluster(model, executor)
     columns = columns_of(model, data)
     check_finite(data)
     check_samples(model, data)
+    check_sizes(data)
     errors = _errors(error, data)
     resolution = _resolution(resolution, len(model.parameters))
-    if most_boxes < 1:
-        raise InputError(f"most_boxes is {most_boxes}; expected at least 1")
     chosen = Adaptive(tolerance=1e-2, most_order=MOST_ORDER) if scheme is None else scheme
     journal, search = Journal(len(data.coordinate.values), on_event), Search(model.parameters)
 

@@ -7,6 +7,7 @@ from functools import partial
 import numpy as np
 from scipy.special import chdtri, fdtri
 
+from dalembert.arguments import check_whole
 from dalembert.data import Measurements
 from dalembert.errors import InputError, unknown
 from dalembert.forward import Executor, ForwardModel, check_derivatives, takes_executor
@@ -104,8 +105,7 @@ def profile(
     """
     check_level(level, "profile")
     fit.needs_one_run("profile")
-    if points < 4:
-        raise InputError(f"profile: points is {points}; expected at least 4")
+    check_whole("profile", "points", points, 4)
     if "loss" in fit.provenance:
         raise InputError(
             f"profile: the fit has the loss {fit.provenance['loss']['name']!r}, whose minimum is no likelihood; fit "

@@ -240,7 +240,7 @@ def test_a_file_that_holds_something_else_is_told(tmp_path):
             {"error": 1.0, "resolution": 2.0},
             "resolution is 2.0; expected a part of the width, a number between 0 and 1",
         ),
-        ({"error": 1.0, "most_boxes": 0}, "most_boxes is 0; expected at least 1"),
+        ({"error": 1.0, "most_boxes": 0}, "identify_set: most_boxes is 0; expected a whole number, at least 1"),
     ],
 )
 def test_arguments_that_cannot_be_meant_are_told(settings, message):

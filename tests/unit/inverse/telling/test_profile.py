@@ -208,7 +208,7 @@ def test_what_cannot_be_meant_is_refused():
     fit = identify(DECAY, data)
     with pytest.raises(InputError, match=says("profile: level is 95; expected a number between 0 and 1, such as 0.95")):
         profile(DECAY, data, fit, level=95)
-    with pytest.raises(InputError, match=says("profile: points is 3; expected at least 4")):
+    with pytest.raises(InputError, match=says("profile: points is 3; expected a whole number, at least 4")):
         profile(DECAY, data, fit, points=3)
     with pytest.raises(InputError, match=says("profile: names: unknown parameter 'rat'; did you mean 'rate'?")):
         profile(DECAY, data, fit, names=["rat"])

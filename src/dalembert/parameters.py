@@ -43,6 +43,15 @@ class Parameter:
     deviation: float | None = None
 
     def __post_init__(self) -> None:
+        for what in ("lower", "upper"):
+            bound = getattr(self, what)
+            if np.ndim(bound) or np.asarray(bound).dtype.kind not in "iuf":
+                raise InputError(f"parameter {self.name!r}: {what} is {shown(bound)}; expected a number")
+        if self.lower == self.upper:
+            raise InputError(
+                f"parameter {self.name!r}: both bounds are {self.lower}, so that nothing is to be found; leave the "
+                "parameter out and write its value into the model's function"
+            )
         if not (np.isfinite(self.lower) and np.isfinite(self.upper) and self.lower < self.upper):
             raise InputError(
                 f"parameter {self.name!r}: bounds are ({self.lower}, {self.upper}); "

@@ -11,6 +11,7 @@ from dalembert.errors import DalembertError
 from dalembert.forward import PythonModel
 from dalembert.inverse import identify, identify_bands, identify_set
 from dalembert.optimize import LeastSquares
+from dalembert.parameters import Parameter
 from dalembert.uncertainty import propagate
 
 TIMES = np.linspace(0.0, 1.0, 21)
@@ -149,6 +150,20 @@ CASES: dict[str, tuple[Callable[[], object], str]] = {
         lambda: mb.simulate(pendulum(), 1.0, mb.GeneralizedAlpha),  # type: ignore[arg-type]
         "solver is the class GeneralizedAlpha; expected 'auto' or an integrator, such as GeneralizedAlpha(step=1e-3); "
         "write GeneralizedAlpha(...)",
+    ),
+    "equal bounds": (
+        lambda: PythonModel(decay, {"rate": (1.0, 1.0)}, ["x"], TIMES),
+        "parameter 'rate': both bounds are 1.0, so that nothing is to be found; leave the parameter out and write its "
+        "value into the model's function",
+    ),
+    "a text as a bound": (
+        lambda: Parameter("rate", "a", 1.0),  # type: ignore[arg-type]
+        "parameter 'rate': lower is 'a'; expected a number",
+    ),
+    "a motion of decades": (
+        lambda: motion(times=np.array([0.0, 1e9]), solver=mb.GeneralizedAlpha(step=1e-3)),
+        "TimeResponse: GeneralizedAlpha(step=0.001) until 1e+09 s takes 1e+12 steps; expected at most 1e+09, which "
+        "take hours. Use larger steps or a shorter motion",
     ),
     "texts as data": (lambda: measured(["a"] * 21), "channel 'x', sample 0: 'a'; expected a number"),
     "texts as times of data": (

@@ -96,12 +96,14 @@ class TimeResponse:
             raise InputError("TimeResponse: no channels were given; name at least one, such as 'AB.end.x'")
         parameters = Parameters.of(parameters)
         check_function("TimeResponse", builder, parameters.names)
+        solver = integrator(solver, float(times[-1]))
+        _check_steps(solver, float(times[-1]))
         for name, value in (
             ("builder", builder),
             ("parameters", parameters),
             ("channel_names", channels),
             ("times", times),
-            ("solver", integrator(solver, float(times[-1]))),
+            ("solver", solver),
             ("workers", workers or cores()),
             ("derivative", derivative),
         ):
@@ -324,3 +326,16 @@ def _parts(count: int, workers: int) -> list[np.ndarray]:
     """Rows of a batch cut into parts: small enough that no worker waits long for another at the end."""
     size = max(1, min(16, -(-count // (4 * workers))))
     return [np.arange(begin, min(begin + size, count)) for begin in range(0, count, size)]
+
+
+_MOST_STEPS = 1e9  # hours, even of the smallest mechanisms
+
+
+def _check_steps(solver: Integrator, end: float) -> None:
+    """Refuse more fixed steps than anybody can wait for."""
+    steps = 0.0 if solver.fixed_step is None else end / solver.fixed_step
+    if steps > _MOST_STEPS:
+        raise InputError(
+            f"TimeResponse: {solver} until {end:g} s takes {steps:.3g} steps; expected at most {_MOST_STEPS:g}, which "
+            "take hours. Use larger steps or a shorter motion"
+        )

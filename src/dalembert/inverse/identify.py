@@ -27,6 +27,7 @@ from dalembert.inverse.problem import Linearisation, Problem, pose
 from dalembert.inverse.repeated import repeated
 from dalembert.inverse.restarts import check_restart, check_segments
 from dalembert.inverse.rivals import rival_findings, rivals
+from dalembert.inverse.roughness import roughness_findings
 from dalembert.inverse.runs import Method, polished, runs
 from dalembert.inverse.shooting import MultipleShooting, shots
 from dalembert.inverse.spread import SPREADS
@@ -197,6 +198,7 @@ def identify(
         else integration_findings(found, problem, told.deviations, best.fitness, known=known, white=correlated is None)
     )
     undetermined = repeated(problem, vector, response) if best.nodes is None else ()
+    rough = roughness_findings(problem, best, at, told.deviations)
     others = rivals(problem, best, floor, told.deviations, known=known)
     whole = response if problem is posed else posed.responses(vector[None])[0]
     predicted = parted.validation(whole)
@@ -237,6 +239,7 @@ def identify(
         findings=(
             *undetermined,
             *rival_findings(problem, best, others, floor),
+            *rough,
             *findings,
             *biased,
             *unexplained,

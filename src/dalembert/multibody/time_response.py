@@ -25,7 +25,8 @@ from dalembert.multibody.integrators.run import Run, make_problem
 from dalembert.multibody.kernels.dual import STEP
 from dalembert.multibody.lowering import Lowered, lower
 from dalembert.multibody.observe import Observer, observer
-from dalembert.multibody.simulation import checked, integrator
+from dalembert.multibody.simulation import checked, integrator, simulate
+from dalembert.multibody.slip_rates import rubbing
 from dalembert.multibody.system import System
 from dalembert.parameters import Parameter, Parameters
 
@@ -249,8 +250,15 @@ class TimeResponse:
             self._compared.once(vector, lambda thorough: check_numbers(self.builder, self.parameters, vector, thorough))
 
     def findings(self, vector: np.ndarray) -> tuple[Finding, ...]:
-        """Findings on the mechanism at a parameter vector (parameters,)."""
-        return self.system(vector).findings
+        """Findings on the mechanism at a parameter vector (parameters,), and on its motion where joints have friction.
+
+        With Coulomb friction the motion is simulated once.
+        """
+        system = self.system(vector)
+        try:
+            return simulate(system, float(self.times[-1]), self.solver).findings if rubbing(system) else system.findings
+        except (ModelError, SolveError, InputError):  # no motion, or one that does not fit into memory
+            return system.findings
 
     @cached_property
     def _compared(self) -> Compared:

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -21,6 +22,7 @@ from dalembert.multibody.integrators.run import Run
 from dalembert.multibody.kernels.motion import Motion
 from dalembert.multibody.lowering import Lowered
 from dalembert.multibody.observe import channel_names, observer
+from dalembert.multibody.slip_rates import rubbing, slip_findings
 from dalembert.multibody.system import System
 
 if TYPE_CHECKING:
@@ -58,10 +60,21 @@ class Trajectory:
         """Unknowns, velocities and accelerations at the output times, (samples, N + 1) each."""
         return Motion(*(array[self.rows] for array in self.run.states))
 
-    @property
+    @cached_property
     def findings(self) -> tuple[Finding, ...]:
-        """Those of the system."""
-        return self.system.findings
+        """Those of the system, and of smoothed friction that does not suit the motion."""
+        joints = rubbing(self.system)
+        if not joints:
+            return self.system.findings
+        times, states = self.run.times, self.run.states
+        own = observer(self.system, self.lowered, [f"{joint.name}.rate" for joint in joints])
+        prepare(own.kernels(self.lowered, False))
+        rates = own.read(self.lowered, self.lowered.real, states.x, states.v, states.a)
+        unsuited = (
+            slip_findings(joint.name, float(np.real(joint.slip_rate)), times, column, self.solver.fixed_step)
+            for joint, column in zip(joints, rates.T, strict=True)
+        )
+        return (*self.system.findings, *chain.from_iterable(unsuited))
 
     @property
     def channel_names(self) -> tuple[str, ...]:

@@ -20,6 +20,10 @@ ROUNDING = 1e-14
 LARGEST = 1e150
 """A sample with larger residuals has failed: their squares overflow."""
 
+SMOOTH = 1e-8
+"""Fraction of the sum of squares. Where the linear model foresees a larger fall although the parameters move no more,
+the residuals are rough."""
+
 TRIALS = 100
 """Residuals at most, for each parameter and one more. Descents without progress stop long before."""
 
@@ -118,7 +122,8 @@ class LeastSquares:
             0: f"stopped after {trials} trial points, not converged; allow more with LeastSquares(trials=...)",
             2: "converged: the sum of squares falls no more",
         }.get(result.status, "converged: the parameters move no more")
-        return path.minimum(result.status > 0, message, result.status in (3, 4))
+        still = result.status in (3, 4)
+        return path.minimum(result.status > 0, message, still, still and stopping.foreseen > max(SMOOTH, self.gain))
 
 
 class _Path:

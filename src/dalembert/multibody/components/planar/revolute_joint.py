@@ -118,6 +118,8 @@ class RevoluteJoint(Joint):
         With ``pin_radius`` (m): friction torque friction_coefficient x pin_radius x reaction force.
     slip_rate : float
         Relative angular velocity, rad/s, over which the Coulomb torque turns its sign, as tanh(rate / slip_rate).
+        The finding ``slip-rate`` of a trajectory says whether it suits the motion: where it is large, the joint creeps
+        although friction should hold it; where it is small, steps jump over the change of sign.
 
     Without ``viscous``, ``coulomb`` and ``friction_coefficient`` there is no friction. A coefficient of zero stays in
     the model: it may be the value of a parameter.

@@ -198,7 +198,7 @@ def identify(
         else integration_findings(found, problem, told.deviations, best.fitness, known=known, white=correlated is None)
     )
     undetermined = repeated(problem, vector, response) if best.nodes is None else ()
-    rough = roughness_findings(problem, best, at, told.deviations)
+    rough = () if exact else roughness_findings(problem, best, at, told.deviations)
     others = rivals(problem, best, floor, told.deviations, known=known)
     whole = response if problem is posed else posed.responses(vector[None])[0]
     predicted = parted.validation(whole)

@@ -65,3 +65,8 @@ def test_a_rough_misfit_is_noted_with_how_close_the_values_are(seed):
     assert finding.severity == "note"
     assert finding.values["deviations"] < 0.5
     assert "slip_rate" in finding.advice
+
+
+def test_exact_data_are_fitted_to_rounding_which_is_no_roughness():
+    data = Measurements.of(TIMES, {"x": DECAY.function(2.0, 0.8)})
+    assert identify(DECAY, data).findings == ()

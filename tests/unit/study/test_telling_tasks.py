@@ -3,10 +3,12 @@
 import numpy as np
 import pytest
 
+import dalembert as da
 from dalembert.errors import DalembertError
 from dalembert.inverse import Designs, Prediction, Profiles
 from dalembert.study import load, plan, report_run, run_study
 from dalembert.study.runner import foreseen
+from dalembert.study.tasks import telling
 from pages import read_page
 from support import says
 
@@ -170,3 +172,21 @@ def test_a_profile_of_a_robust_loss_is_refused(write):
     )
     with pytest.raises(DalembertError, match=says(sentence)):
         write(IDENTIFY.replace("starts = 2", "starts = 2\nloss = 'huber'"))
+
+
+def test_friction_that_does_not_suit_the_motion_is_foreseen():
+    def pendulum(slip_rate):
+        def build(coulomb):
+            system = da.System()
+            rod = system.add(da.RigidBar("rod", length=0.4, mass=0.8, angle=-0.4))
+            system.add(da.RevoluteJoint("pin", system.ground, rod.start, coulomb=coulomb, slip_rate=slip_rate))
+            return system
+
+        return da.TimeResponse(build, {"coulomb": (0.0, 0.1)}, ["pin.angle"], times, da.GeneralizedAlpha(4e-3))
+
+    times = np.linspace(0.0, 2.0, 21)
+    data = da.Measurements.of(times, {"pin.angle": np.sin(times)}, deviations=0.01)
+    noted = [sentence for sentence in telling.foreseen(pendulum(1e-3), data) if "'pin'" in sentence]
+    assert len(noted) == 1
+    assert "crosses the smoothed friction" in noted[0]
+    assert not [sentence for sentence in telling.foreseen(pendulum(0.3), data) if "'pin'" in sentence]

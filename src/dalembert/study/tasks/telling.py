@@ -76,7 +76,11 @@ def load(result: Path, experiments: Iterable[str]) -> dict[str, Any]:
 
 
 def foreseen(model: Any, data: Any) -> tuple[str, ...]:
-    """Sentences on what the data can tell, from one simulation at the first guesses; ``model`` may be experiments."""
+    """Sentences on what the data can tell, and on friction that does not suit the motion, at the first guesses.
+
+    They are from one simulation with sensitivities, and another one with friction; ``model`` may be experiments.
+    """
+    from dalembert.forward import findings_at
     from dalembert.inverse import identifiability
     from dalembert.inverse.experiments import joint
 
@@ -87,4 +91,5 @@ def foreseen(model: Any, data: Any) -> tuple[str, ...]:
     except DalembertError as error:
         return (f"What the data can tell could not be foreseen: {error}",)
     sentences = told.sentences or ("The data tell every parameter, and tell them apart.",)
-    return tuple(f"At the first guesses: {sentence}" for sentence in sentences)
+    rubbing = (item for item in findings_at(model, model.parameters.start) if item.code == "slip-rate")
+    return tuple(f"At the first guesses: {sentence}" for sentence in (*sentences, *rubbing))

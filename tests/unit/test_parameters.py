@@ -22,8 +22,8 @@ def box() -> Parameters:
         ),
         (
             {"lower": 1.0, "upper": 1.0},
-            "parameter 'k': both bounds are 1.0, so that nothing is to be found; leave the parameter out and write its value "
-            "into the model's function",
+            "parameter 'k': both bounds are 1.0, so that nothing is to be found; leave the parameter out and write its "
+            "value into the model's function",
         ),
         (
             {"lower": 0.0, "upper": float("inf")},

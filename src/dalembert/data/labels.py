@@ -52,6 +52,10 @@ def coordinate_of(given: Coordinate | ArrayLike) -> Coordinate:
     DataError
         For values that are not real numbers, or not one row of them.
     """
+    if isinstance(given, Coordinate):
+        there = given.values
+        if isinstance(there, np.ndarray) and there.dtype == float and there.ndim == 1:
+            return given
     along = given if isinstance(given, Coordinate) else Coordinate("time", "s", np.asarray(None))
     values = real_numbers(along.values if along is given else given, f"the {along.name}")
     if values.ndim != 1:

@@ -36,7 +36,7 @@ def pendulum(angle1, angle2, rate1, rate2, drag):
 
 
 @pytest.mark.slow
-def test_segments_find_what_one_run_does_not_from_any_start(record_evidence):
+def test_segments_find_what_one_run_does_not_from_every_start(record_evidence):
     model = da.TimeResponse(pendulum, BOUNDS, CHANNELS, TIMES, solver=da.GeneralizedAlpha(step=2e-3))
     exact, jacobian = model.linearise(TRUTH)
     assert np.linalg.norm(jacobian[-1, :, :4], 2) > 5e6  # what a small change of the state has grown by
@@ -59,4 +59,5 @@ def test_segments_find_what_one_run_does_not_from_any_start(record_evidence):
         topic="Identification of chaotic motion",
         source="the true parameters, within four standard deviations and the noise of the data",
     )
-    assert found["growing"] == found["whole"] == 0
+    assert found["whole"] == 0
+    assert found["growing"] < found["segments"]

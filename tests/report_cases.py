@@ -257,6 +257,10 @@ CASES: dict[str, Case] = {
         lambda: da.identify(DECAY, _exact(DECAY, [2.0, 0.8], noise=0.05)),
         ("% of the data's variation.", "What remains looks like noise; give the data's deviations"),
     ),
+    "constant data": Case(
+        lambda: da.identify(DECAY, Measurements.of(TIMES, {"x": np.zeros(41)})),
+        ("The data do not vary, so that no share of their variation can be explained.",),
+    ),
     "another model's data": Case(
         lambda: da.identify(DECAY, Measurements.of(TIMES, {"x": 1 + np.cos(3 * TIMES)})),
         (
@@ -607,6 +611,10 @@ CASES: dict[str, Case] = {
             DECAY, Bands.of(TIMES, {"x": (BANDS.lower[:, 0].round(4), BANDS.upper[:, 0].round(4))})
         ),
         ("The given bands are reproduced to the digits that they are rounded to.",),
+    ),
+    "bands of zero width": Case(
+        lambda: da.identify_bands(DECAY, Bands.of(TIMES, {"x": (1 + np.cos(3 * TIMES), 1 + np.cos(3 * TIMES))})),
+        ("at rms in 'x', where the given bands have no width",),
     ),
     "noisy bands": Case(
         lambda: da.identify_bands(DECAY, _noisy_bands()),

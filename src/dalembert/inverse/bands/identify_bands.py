@@ -92,8 +92,9 @@ def identify_bands(
     >>> times = np.linspace(0, 2, 21)
     >>> decay = PythonModel(lambda rate: np.exp(-rate * times), {"rate": (0.1, 3.0)}, ["x"], times)
     >>> bands = Bands.of(times, {"x": (np.exp(-1.2 * times), np.exp(-0.8 * times))})
-    >>> print(identify_bands(decay, bands).box)
-    rate [0.8, 1.2]
+    >>> box = identify_bands(decay, bands).box
+    >>> box.lower.round(5).tolist(), box.upper.round(5).tolist()
+    ([0.8], [1.2])
     """
     check_kinds("identify_bands", model, bands, Bands)
     check_whole("identify_bands", "seed", seed, 0)

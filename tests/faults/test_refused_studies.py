@@ -200,7 +200,7 @@ def test_the_states_of_segments_are_checked_where_the_motion_does_not_begin_with
 
 
 def test_tiny_steps_are_extrapolated_and_warned_about():
-    sweep = '[sweep]\nat = 1.0\nchannels = ["bar.end.x"]\nover = { m = { count = 2000 } }\n'
+    sweep = '[sweep]\nat = 1.0\nchannels = ["bar.end.x"]\nover = { m = { count = 50000 } }\n'
     text = SOLVED.replace("1 ms", "2e-9 s").replace("mass = 1.0", 'mass = "m"')
     Path("study.toml").write_text("[parameters]\nm = { lower = 1.0, upper = 2.0 }\n" + text + sweep)
     began = time.monotonic()
@@ -208,7 +208,7 @@ def test_tiny_steps_are_extrapolated_and_warned_about():
     assert done.returncode == 0, done.stderr
     assert time.monotonic() - began < 30
     lines = done.stdout.splitlines()
-    assert re.match(r"This takes about [\d.]+ days|This takes about [\d.]+ years", lines[1])
+    assert re.match(r"This takes about [\d.]+ (h|days|years)\b", lines[1])
     assert "extrapolated from its first" in lines[1]
     assert lines[2].startswith("Warning: The study may take ")
     assert "more than a day. Check the step of the solver" in lines[2]

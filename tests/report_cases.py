@@ -10,7 +10,7 @@ import numpy as np
 import dalembert as da
 from correlated_noise import autoregressive
 from dalembert.data import Bands, Measurements
-from dalembert.forward import PythonModel
+from dalembert.forward import Channel, PythonModel
 from dalembert.inverse import Experiment, GlobalSurrogate, design, identifiability, predict, profile
 from dalembert.optimize import LeastSquares, Minimiser, ParticleSwarm, ResponseSensitivity
 from dalembert.parameters import Parameter
@@ -86,6 +86,12 @@ def _real_alone(a: Any) -> np.ndarray:
     if np.iscomplexobj(a) and np.real(a) > 1.2:
         raise ArithmeticError("no complex numbers there")
     return np.exp(a) * TIMES
+
+
+def _turned(factor: float) -> Any:
+    start = {"a": Parameter("a", 1e-3, 1e3, start=0.5)}
+    model = PythonModel(lambda a: a * TIMES, start, [Channel("x", "rad")], TIMES)
+    return da.identify(model, Measurements.of(TIMES, {"x": 0.6 * factor * TIMES}))
 
 
 def _unsimulated(method: Any, start: float, starts: int) -> Any:
@@ -514,6 +520,21 @@ CASES: dict[str, Case] = {
     "a look before that fails": Case(
         lambda: "\n".join(foreseen(FRAGILE, _exact(FRAGILE, [0.4]))),
         (f"What the data can tell could not be foreseen: {RUNS_AWAY}",),
+    ),
+    "a look before, data in another unit": Case(
+        lambda: "\n".join(foreseen(SLOPE, _exact(SLOPE, [500.0], deviations=0.1))),
+        (
+            "At the first guesses: The data of 'x' vary 1e+03 times as much as the response at the first guesses.",
+            "Is a metric prefix wrong, such as mm for m?",
+            "Give the unit of the column in units.",
+        ),
+    ),
+    "angles in degrees": Case(
+        lambda: _turned(180 / np.pi),
+        ("Are the data in degrees?", "The fit changes 'a' by such a factor to make up for it."),
+    ),
+    "angles that were converted twice": Case(
+        lambda: _turned(np.pi / 180), ("Were data in radians converted from degrees?",)
     ),
     # ── integrators ──
     "integrators": Case(

@@ -8,6 +8,14 @@ from dalembert.inverse.events import Event, OnEvent, Screened, StartBegan, Start
 from dalembert.optimize import RegularisedStep
 
 
+@dataclass(frozen=True, eq=False)
+class First:
+    """The first response that was computed, shape (samples, channels), perhaps of fewer samples, and its vector."""
+
+    vector: np.ndarray
+    response: np.ndarray
+
+
 @dataclass
 class Journal:
     """Counts simulations, keeps history and ends, and passes every event on.
@@ -25,6 +33,7 @@ class Journal:
     failures: list[str] = field(default_factory=list)
     history: list[Step] = field(default_factory=list)
     starts: list[StartEnd] = field(default_factory=list)
+    first: First | None = None
     _iteration: int = 0
     _before: int = 0
 
@@ -35,6 +44,11 @@ class Journal:
     def began(self, values: np.ndarray | None) -> None:
         self._iteration, self._before = 0, self.simulations
         self.tell(StartBegan(len(self.starts), self.simulations, values))
+
+    def computed(self, vector: np.ndarray, response: np.ndarray) -> None:
+        """Keep the first response without NaN."""
+        if self.first is None and np.all(np.isfinite(response)):
+            self.first = First(vector, response)
 
     def step(
         self,

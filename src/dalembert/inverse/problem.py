@@ -118,6 +118,7 @@ class Problem:
         except Exception as error:  # whatever a user's function raises is this vector's failure
             self.journal.failures.append(f"{told(error)} (at {named(self.model, vector)})")
             raise SolveError(told(error)) from error
+        self.journal.computed(vector, response[:, self.columns])
         return Linearisation(vector, response[:, self.columns], jacobian[:, self.columns])
 
     def residual(self, response: np.ndarray) -> np.ndarray:

@@ -17,6 +17,8 @@ def simulated(model: ForwardModel, columns: np.ndarray, journal: Journal, vector
     )
     values = responses.values[:, :, columns].astype(float)
     values[~responses.ok] = np.nan
+    if len(vectors):
+        journal.computed(vectors[0], values[0])
     return values
 
 

@@ -247,7 +247,7 @@ class Identify(Task):
         return evaluated(whole, whole.parameters.start, least, most, TOGETHER if isinstance(method, Swarm) else 1)
 
     def foresight(self, study: "Study") -> int:
-        return 1 + len(unknown_names(study))
+        return 2 + len(unknown_names(study))
 
     def trials(self, study: "Study") -> int:
         """Two where segments must meet: whether a motion can begin anew in its midst."""

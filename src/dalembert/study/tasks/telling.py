@@ -76,13 +76,15 @@ def load(result: Path, experiments: Iterable[str]) -> dict[str, Any]:
 
 
 def foreseen(model: Any, data: Any) -> tuple[str, ...]:
-    """Sentences on what the data can tell, and on friction that does not suit the motion, at the first guesses.
+    """Sentences on identifiability, suspected units and friction that does not suit the motion, at the first guesses.
 
-    They are from one simulation with sensitivities, and another one with friction; ``model`` may be experiments.
+    They are from one simulation with sensitivities, one without, and another one with friction; ``model`` may be
+    experiments.
     """
     from dalembert.forward import findings_at
     from dalembert.inverse import identifiability
     from dalembert.inverse.experiments import joint
+    from dalembert.inverse.suspect_units import first_unit_findings
 
     if data is None:
         model, data = joint(model)
@@ -92,4 +94,5 @@ def foreseen(model: Any, data: Any) -> tuple[str, ...]:
         return (f"What the data can tell could not be foreseen: {error}",)
     sentences = told.sentences or ("The data tell every parameter, and tell them apart.",)
     rubbing = (item for item in findings_at(model, model.parameters.start) if item.code == "slip-rate")
-    return tuple(f"At the first guesses: {sentence}" for sentence in (*sentences, *rubbing))
+    units = first_unit_findings(model, data)
+    return tuple(f"At the first guesses: {sentence}" for sentence in (*sentences, *rubbing, *units))

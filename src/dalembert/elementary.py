@@ -12,7 +12,7 @@ import numpy as np
 
 
 def absolute(x: Any) -> Any:
-    """Absolute value |x| of a number or an array; its derivative at 0 is 1.
+    """Absolute value of a number or an array; its derivative at 0 is 1.
 
     Examples
     --------

@@ -17,7 +17,7 @@ def node_motion(structure: Structure, motion: np.ndarray) -> np.ndarray:
     ----------
     structure : Structure
         With nodes; a reduced one gives back the motion of the full one.
-    motion : array, shape (size, ...)
+    motion : array, shape (Structure.size, ...)
         Of the structure's degrees of freedom.
 
     Returns

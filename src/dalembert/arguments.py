@@ -169,6 +169,15 @@ def is_whole(value: Any) -> bool:
     return isinstance(value, int | np.integer) and not isinstance(value, bool)
 
 
+def is_real(value: Any) -> bool:
+    """Whether a value is one real number.
+
+    >>> [is_real(value) for value in (2, np.float32(3), 1j, "2", None, True)]
+    [True, True, False, False, False, False]
+    """
+    return _is_scalar(value, "iuf")
+
+
 def _is_row(value: Any) -> bool:
     """Whether a value is a list of something."""
     if isinstance(value, np.ndarray):
@@ -179,7 +188,7 @@ def _is_row(value: Any) -> bool:
 _TESTS.update(
     {
         complex: is_number,
-        float: lambda value: _is_scalar(value, "iuf"),
+        float: is_real,
         int: is_whole,
         bool: lambda value: isinstance(value, bool | np.bool_),
         np.ndarray: lambda value: True,

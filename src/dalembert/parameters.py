@@ -1,12 +1,14 @@
 """Named parameters with bounds, units and scales: the words that models and methods share."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from dalembert.arguments import is_real
 from dalembert.errors import InputError, shown, unknown
 
 
@@ -18,7 +20,8 @@ class Parameter:
     ----------
     name : str
     lower, upper : float
-        Bounds, in SI units, ``lower < upper``.
+        Bounds, in SI units, ``lower <= upper``. A parameter with equal bounds is fixed: the model uses its value, and
+        no method varies it.
     unit : str
         Unit symbol for labels, for example ``"Pa"``.
     scale : float, optional
@@ -43,21 +46,22 @@ class Parameter:
     deviation: float | None = None
 
     def __post_init__(self) -> None:
-        for what in ("lower", "upper"):
-            bound = getattr(self, what)
-            if np.ndim(bound) or np.asarray(bound).dtype.kind not in "iuf":
-                raise InputError(f"parameter {self.name!r}: {what} is {shown(bound)}; expected a number")
-        if self.lower == self.upper:
-            raise InputError(
-                f"parameter {self.name!r}: both bounds are {self.lower}, so that nothing is to be found; leave the "
-                "parameter out and write its value into the model's function"
-            )
-        if not (np.isfinite(self.lower) and np.isfinite(self.upper) and self.lower < self.upper):
+        if not isinstance(self.name, str):
+            raise InputError(f"parameter: name is {shown(self.name)}; expected a text")
+        for what in ("lower", "upper", "scale", "start", "deviation"):
+            value = getattr(self, what)
+            if not is_real(value) and (value is not None or what in ("lower", "upper")):
+                raise InputError(f"parameter {self.name!r}: {what} is {shown(value)}; expected a number")
+        if not isinstance(self.unit, str):
+            raise InputError(f"parameter {self.name!r}: unit is {shown(self.unit)}; expected a text such as 'Pa'")
+        if not isinstance(self.log, bool | np.bool_ | None):
+            raise InputError(f"parameter {self.name!r}: log is {shown(self.log)}; expected True, False or None")
+        if not (np.isfinite(self.lower) and np.isfinite(self.upper) and self.lower <= self.upper):
             raise InputError(
                 f"parameter {self.name!r}: bounds are ({self.lower}, {self.upper}); "
                 "expected two finite numbers, the lower one first"
             )
-        if self.scale is not None and not self.scale > 0:
+        if self.scale is not None and not 0 < self.scale < np.inf:
             raise InputError(f"parameter {self.name!r}: scale is {self.scale}; expected a positive number")
         if self.start is not None and not self.lower <= self.start <= self.upper:
             raise InputError(
@@ -69,11 +73,21 @@ class Parameter:
                 f"parameter {self.name!r}: deviation is {self.deviation}; expected a positive number, the standard "
                 "deviation of what is known of it before any data"
             )
+        if self.is_fixed and self.deviation is not None:
+            raise InputError(
+                f"parameter {self.name!r}: both bounds are {self.lower}, so it is fixed and has no deviation; give "
+                "bounds that differ, or leave the deviation out"
+            )
         if self.log and not self.lower > 0:
             raise InputError(
                 f"parameter {self.name!r}: its logarithm is to be searched, but its lower bound is {self.lower}; "
                 "expected a positive one; raise the bound or leave log out"
             )
+
+    @property
+    def is_fixed(self) -> bool:
+        """Whether both bounds are equal, so that the value is known exactly."""
+        return self.lower == self.upper
 
     @property
     def logarithmic(self) -> bool:
@@ -85,6 +99,20 @@ class Parameter:
 class Parameters:
     """An ordered collection of :class:`Parameter`, seen as vectors of shape (parameters,).
 
+    Parameters with equal bounds are split off into ``fixed``. They are in no vector and in no array of bounds, so
+    that methods vary, differentiate and count only the others.
+
+    Parameters
+    ----------
+    items : tuple of Parameter
+        After construction only those that are not fixed.
+    fixed : tuple of Parameter
+
+    Raises
+    ------
+    InputError
+        For names that repeat, and for anything but a :class:`Parameter`.
+
     Examples
     --------
     >>> box = Parameters.of({"theta1": (0.6, 1.0), "theta2": Parameter("theta2", 0.4, 0.65, unit="rad")})
@@ -92,12 +120,22 @@ class Parameters:
     ('theta1', 'theta2')
     >>> box.vector({"theta2": 0.5, "theta1": 0.7})
     array([0.7, 0.5])
+    >>> box = Parameters.of({"mass": (2.0, 2.0), "stiffness": (1.0, 5.0)})
+    >>> box.names, box.arguments([3.0])
+    (('stiffness',), {'stiffness': 3.0, 'mass': 2.0})
     """
 
     items: tuple[Parameter, ...]
+    fixed: tuple[Parameter, ...] = ()
 
     def __post_init__(self) -> None:
-        repeated = {name for name in self.names if self.names.count(name) > 1}
+        for item in (*self.items, *self.fixed):
+            if not isinstance(item, Parameter):
+                raise InputError(f"parameters: {shown(item)} was given; expected a Parameter, or a mapping to bounds")
+        names = [item.name for item in (*self.items, *self.fixed)]
+        object.__setattr__(self, "fixed", (*self.fixed, *(item for item in self.items if item.is_fixed)))
+        object.__setattr__(self, "items", tuple(item for item in self.items if not item.is_fixed))
+        repeated = {name for name in names if names.count(name) > 1}
         if repeated:
             raise InputError(f"parameter names must differ; repeated: {', '.join(sorted(repeated))}")
 
@@ -106,12 +144,21 @@ class Parameters:
         cls,
         given: "Parameters | Mapping[str, Parameter | tuple[float, float]] | list[Parameter] | tuple[Parameter, ...]",
     ) -> "Parameters":
-        """Parameters from a mapping of names to bounds (or to :class:`Parameter`), or from a list."""
+        """Parameters from a mapping of names to bounds (or to :class:`Parameter`), or from a list.
+
+        Raises
+        ------
+        InputError
+            For anything else, and where the name of a :class:`Parameter` differs from its key.
+        """
         if isinstance(given, Parameters):
             return given
         if isinstance(given, Mapping):
-            return cls(
-                tuple(entry if isinstance(entry, Parameter) else _within(name, entry) for name, entry in given.items())
+            return cls(tuple(_named(name, entry) for name, entry in given.items()))
+        if isinstance(given, str | Parameter) or not isinstance(given, Iterable):
+            raise InputError(
+                f"parameters are {shown(given)}; expected a mapping from names to bounds, such as "
+                "{'stiffness': (1e3, 1e5)}, or a list of Parameter"
             )
         return cls(tuple(given))
 
@@ -148,11 +195,13 @@ class Parameters:
         return np.array([mid if own is None else own for own, mid in zip(given, middle, strict=True)], dtype=float)
 
     def vector(self, values: Mapping[str, float] | ArrayLike) -> np.ndarray:
-        """Vector of shape (parameters,) from a mapping by name, or from a sequence in order."""
+        """Vector of shape (parameters,) from a mapping by name, or from a sequence in order.
+
+        A mapping may name fixed parameters too, with their values.
+        """
         if isinstance(values, Mapping):
             for name in values:
-                if name not in self.names:
-                    raise InputError(unknown("parameter", name, self.names))
+                self.check_name(name, values[name])
             missing = [name for name in self.names if name not in values]
             if missing:
                 raise InputError(
@@ -206,12 +255,66 @@ class Parameters:
         return f"an array (batch, {len(self)}) with one column each for {', '.join(self.names) or 'no parameter'}"
 
     def mapping(self, vector: ArrayLike) -> dict[str, float]:
-        """Mapping from names to the entries of a vector of shape (parameters,)."""
-        return dict(zip(self.names, self.vector(vector).tolist(), strict=True))
+        """Mapping from names to the entries of a vector of shape (parameters,), fixed parameters included."""
+        return self.arguments(self.vector(vector).tolist())
+
+    def arguments(self, values: Iterable[Any]) -> dict[str, Any]:
+        """Arguments of a model's function: one value each in order, and those of fixed parameters."""
+        return dict(zip(self.names, values, strict=True)) | {item.name: item.lower for item in self.fixed}
+
+    @property
+    def declared(self) -> tuple[Parameter, ...]:
+        """All parameters, fixed ones last."""
+        return (*self.items, *self.fixed)
+
+    @property
+    def identity(self) -> tuple[Any, ...]:
+        """What a fingerprint needs of them: names, and the values of fixed ones."""
+        return (*self.names, *((item.name, float(item.lower)) for item in self.fixed))
+
+    def check_name(self, name: object, value: object = None, where: str = "") -> None:
+        """Raise unless a parameter of this name varies, or is fixed at this value.
+
+        Raises
+        ------
+        InputError
+        """
+        for item in self.fixed:
+            if item.name == name and value != item.lower:
+                raise InputError(
+                    f"{f'{where}: ' if where else ''}parameter {name!r} is fixed at {item.lower:g} by equal bounds; "
+                    "leave it out, or give bounds that differ"
+                )
+        if name not in self.names and all(item.name != name for item in self.fixed):
+            raise InputError(unknown("parameter", str(name), self.names, where))
+
+    def check_some(self, owner: str) -> None:
+        """Raise where no parameter varies.
+
+        Raises
+        ------
+        InputError
+        """
+        if not self.items:
+            why = (
+                "every parameter of the model is fixed by equal bounds" if self.fixed else "the model has no parameter"
+            )
+            raise InputError(f"{owner}: {why}; expected at least one parameter whose bounds differ")
 
     def clip(self, vectors: np.ndarray) -> np.ndarray:
         """Vectors of shape (..., parameters) moved onto the bounds where they lie outside."""
         return np.clip(vectors, self.lower, self.upper)
+
+
+def _named(name: str, entry: "Parameter | tuple[float, float]") -> Parameter:
+    if not isinstance(entry, Parameter):
+        return _within(name, entry)
+    if entry.name != name:
+        raise InputError(
+            f"parameters: the key {name!r} has the Parameter {entry.name!r}; expected the same name twice, or a list "
+            "of Parameter"
+        )
+    return entry
 
 
 def _within(name: str, bounds: tuple[float, float]) -> Parameter:

@@ -11,6 +11,7 @@ from dalembert.contents import Contents
 from dalembert.files import read_dataset, write_contents
 from dalembert.findings import Finding, findings_of, stored_findings
 from dalembert.hooks import hook
+from dalembert.parameters import Parameter
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -63,6 +64,23 @@ class Result(ABC):
     def report(self, path: str | Path, **options: Any) -> Any:
         """Write an HTML report that opens offline; options as those of :func:`dalembert.report.report`."""
         return hook("report")(self, path, **options)
+
+
+def fixed_of(result: Any) -> tuple[Parameter, ...]:
+    """Parameters of a result that were fixed by equal bounds."""
+    held = getattr(getattr(result, "parameters", None), "fixed", ())
+    return getattr(result, "fixed", held)
+
+
+def fixed_lines(result: Any, width: int = 12) -> list[str]:
+    """Line of a summary on fixed parameters, its label ``width`` characters wide; none without any.
+
+    >>> from types import SimpleNamespace
+    >>> fixed_lines(SimpleNamespace(fixed=(Parameter("mass", 2.0, 2.0, "kg"),)))
+    ['fixed        mass = 2 kg']
+    """
+    known = [f"{item.name} = {item.lower:.7g} {item.unit}".rstrip() for item in fixed_of(result)]
+    return [f"{'fixed':<{width}} {', '.join(known)}"] if known else []
 
 
 def stored_facts(result: Result, names: Sequence[str], **told: Any) -> dict[str, Any]:

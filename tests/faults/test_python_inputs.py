@@ -151,10 +151,10 @@ CASES: dict[str, tuple[Callable[[], object], str]] = {
         "solver is the class GeneralizedAlpha; expected 'auto' or an integrator, such as GeneralizedAlpha(step=1e-3); "
         "write GeneralizedAlpha(...)",
     ),
-    "equal bounds": (
-        lambda: PythonModel(decay, {"rate": (1.0, 1.0)}, ["x"], TIMES),
-        "parameter 'rate': both bounds are 1.0, so that nothing is to be found; leave the parameter out and write its "
-        "value into the model's function",
+    "no parameter that varies": (
+        lambda: identify(PythonModel(decay, {"rate": (1.0, 1.0)}, ["x"], TIMES), measured()),
+        "identify: every parameter of the model is fixed by equal bounds; expected at least one parameter whose bounds "
+        "differ",
     ),
     "a text as a bound": (
         lambda: Parameter("rate", "a", 1.0),  # type: ignore[arg-type]

@@ -20,11 +20,12 @@ def box() -> Parameters:
             {"lower": 2.0, "upper": 1.0},
             "parameter 'k': bounds are (2.0, 1.0); expected two finite numbers, the lower one first",
         ),
-        (
-            {"lower": 1.0, "upper": 1.0},
-            "parameter 'k': both bounds are 1.0, so that nothing is to be found; leave the parameter out and write its "
-            "value into the model's function",
-        ),
+        ({"lower": 0.0, "upper": 1.0, "scale": "big"}, "parameter 'k': scale is 'big'; expected a number"),
+        ({"lower": 0.0, "upper": 1.0, "start": [0.5]}, "parameter 'k': start is [0.5]; expected a number"),
+        ({"lower": 0.0, "upper": 1.0, "deviation": True}, "parameter 'k': deviation is True; expected a number"),
+        ({"lower": None, "upper": 1.0}, "parameter 'k': lower is None; expected a number"),
+        ({"lower": 0.0, "upper": 1.0, "unit": 3}, "parameter 'k': unit is 3; expected a text such as 'Pa'"),
+        ({"lower": 0.0, "upper": 1.0, "log": "yes"}, "parameter 'k': log is 'yes'; expected True, False or None"),
         (
             {"lower": 0.0, "upper": float("inf")},
             "parameter 'k': bounds are (0.0, inf); expected two finite numbers, the lower one first",
@@ -59,6 +60,20 @@ def test_bounds_that_are_not_two_numbers_are_refused(bounds: object) -> None:
         InputError, match=says(f"parameter 'k': bounds are {bounds!r}; expected two numbers, (lower, upper)")
     ):
         Parameters.of({"k": bounds})  # type: ignore[dict-item]
+
+
+def test_a_key_and_another_name_are_refused() -> None:
+    sentence = "parameters: the key 'a' has the Parameter 'b'; expected the same name twice, or a list of Parameter"
+    with pytest.raises(InputError, match=says(sentence)):
+        Parameters.of({"a": Parameter("b", 0.0, 1.0)})
+
+
+@pytest.mark.parametrize("given", [None, 3.5, "k", Parameter("k", 0.0, 1.0), object()])
+def test_what_are_no_parameters_is_refused(given: object) -> None:
+    with pytest.raises(InputError, match=r"^parameters are .*; expected a mapping from names to bounds, such as"):
+        Parameters.of(given)  # type: ignore[arg-type]
+    with pytest.raises(InputError, match=r"^parameters: .* was given; expected a Parameter, or a mapping to bounds"):
+        Parameters.of([given] if not isinstance(given, Parameter) else [given, None])  # type: ignore[list-item]
 
 
 def test_repeated_names_are_refused() -> None:

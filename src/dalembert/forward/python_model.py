@@ -87,7 +87,7 @@ class PythonModel:
             source = inspect.getsource(self.function)
         except (OSError, TypeError):
             source = repr(self.function)
-        text = "\n".join([source, *self.parameters.names, *(channel.name for channel in self.channels)])
+        text = "\n".join([source, *map(str, self.parameters.identity), *(channel.name for channel in self.channels)])
         return hashlib.sha256(text.encode() + self.coordinate.values.tobytes()).hexdigest()
 
     def evaluate(self, vectors: np.ndarray) -> Responses:
@@ -152,7 +152,7 @@ class PythonModel:
         return len(self.coordinate.values), len(self.channels)
 
     def _call(self, vector: np.ndarray) -> np.ndarray:
-        given = dict(zip(self.parameters.names, vector, strict=True))
+        given = self.parameters.arguments(vector)
         try:
             returned = self.function(**given)
         except DalembertError:

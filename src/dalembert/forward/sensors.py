@@ -102,7 +102,7 @@ class Sensors:
         for name, value in (
             ("model", model),
             ("sensors", dict(sensors)),
-            ("parameters", Parameters((*model.parameters, *own))),
+            ("parameters", Parameters((*model.parameters.declared, *own))),
             ("coordinate", Coordinate(along.name, along.unit, stamps)),
         ):
             object.__setattr__(self, name, value)
@@ -116,7 +116,7 @@ class Sensors:
     def fingerprint(self) -> str:
         """Hash of the model, the sensors and the time stamps."""
         at_rest = sorted(name for name, sensor in self.sensors.items() if sensor.at_rest)
-        text = repr((self.model.fingerprint, self.parameters.names, at_rest))
+        text = repr((self.model.fingerprint, self.parameters.identity, at_rest))
         return hashlib.sha256(text.encode() + self.coordinate.values.tobytes()).hexdigest()
 
     def evaluate(self, vectors: np.ndarray) -> Responses:
@@ -143,7 +143,7 @@ class Sensors:
         for column, channel in enumerate(self.channels):
             at = {what: self._column(channel.name, what) for what in QUANTITIES}
             delay, gain, offset = (self._value(vector, channel.name, what) for what in QUANTITIES)
-            there, rate = self._interpolated(table[:, column], delay, delayed=at["delay"] is not None)
+            there, rate = self._interpolated(table[:, column], delay, delayed=self._is_delayed(channel.name))
             read[:, column] = gain * there[:, 0] + offset
             jacobian[:, column, :own] = gain * there[:, 1:]
             for what, slope in (("delay", -gain * rate), ("gain", there[:, 0]), ("offset", 1.0)):
@@ -176,7 +176,7 @@ class Sensors:
         read = np.empty((len(self.coordinate.values), len(self.channels)))
         for column, channel in enumerate(self.channels):
             delay, gain, offset = (self._value(vector, channel.name, what) for what in QUANTITIES)
-            delayed = self._column(channel.name, "delay") is not None
+            delayed = self._is_delayed(channel.name)
             there, _ = self._interpolated(response[:, column, None], delay, delayed=delayed)
             read[:, column] = gain * there[:, 0] + offset
         return read
@@ -200,12 +200,23 @@ class Sensors:
 
     def _value(self, vector: np.ndarray, channel: str, what: str) -> float:
         column = self._column(channel, what)
-        return QUANTITIES[what] if column is None else float(vector[column])
+        return self._known(channel, what) if column is None else float(vector[column])
+
+    def _known(self, channel: str, what: str) -> float:
+        """Value of a quantity that no method varies: that of a fixed parameter, or of a perfect sensor."""
+        name = f"{channel} {what}"
+        return next((float(item.lower) for item in self.parameters.fixed if item.name == name), QUANTITIES[what])
+
+    def _is_delayed(self, channel: str) -> bool:
+        return self._column(channel, "delay") is not None or self._known(channel, "delay") != QUANTITIES["delay"]
 
     def _bounds(self, channel: str) -> tuple[float, float]:
         """Least and largest delay of a channel."""
         column = self._column(channel, "delay")
-        return (0.0, 0.0) if column is None else (self.parameters.lower[column], self.parameters.upper[column])
+        if column is None:
+            known = self._known(channel, "delay")
+            return known, known
+        return self.parameters.lower[column], self.parameters.upper[column]
 
     def _check_reach(self) -> None:
         """Refuse readings of times at which the model says nothing."""
@@ -244,7 +255,7 @@ def _unknowns(model: ForwardModel, name: str, sensor: Sensor) -> list[Parameter]
 
 
 def _parameter(name: str, bounds: Bounds, unit: str, perfect: float) -> Parameter:
-    (item,) = Parameters.of({name: replace(bounds, name=name) if isinstance(bounds, Parameter) else bounds})
+    (item,) = Parameters.of({name: replace(bounds, name=name) if isinstance(bounds, Parameter) else bounds}).declared
     usual = perfect if item.lower <= perfect <= item.upper else None
     return replace(item, unit=item.unit or unit, start=usual if item.start is None else item.start)
 

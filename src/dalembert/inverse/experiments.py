@@ -53,7 +53,7 @@ class Experiment:
     own: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        names = self.model.parameters.names
+        names = [item.name for item in self.model.parameters.declared]
         for name in self.own:
             if name not in names:
                 raise InputError(unknown("parameter", name, names, f"experiment {self.name!r}, own"))
@@ -61,10 +61,15 @@ class Experiment:
     @property
     def parameters(self) -> tuple[Parameter, ...]:
         """Parameters as the fit names them."""
-        items = self.model.parameters
-        return tuple(
-            replace(item, name=f"{self.name}.{item.name}") if item.name in self.own else item for item in items
-        )
+        return tuple(map(self._named, self.model.parameters))
+
+    @property
+    def fixed(self) -> tuple[Parameter, ...]:
+        """Fixed parameters as the fit names them."""
+        return tuple(map(self._named, self.model.parameters.fixed))
+
+    def _named(self, item: Parameter) -> Parameter:
+        return replace(item, name=f"{self.name}.{item.name}") if item.name in self.own else item
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,7 +153,7 @@ class JointModel:
     def fingerprint(self) -> str:
         """Hash of the experiments' names, models and parameters."""
         told = [(part.name, model.fingerprint, sorted(part.channels)) for part, model in self._all()]
-        return hashlib.sha256(repr((told, self.parameters.names, sorted(self.active))).encode()).hexdigest()
+        return hashlib.sha256(repr((told, self.parameters.identity, sorted(self.active))).encode()).hexdigest()
 
     def evaluate(self, vectors: np.ndarray) -> Responses:
         """Responses of a batch, values (batch, rows, channels); a sample fails where one of its experiments does."""
@@ -335,7 +340,7 @@ def _parameters(experiments: Sequence[Experiment]) -> Parameters:
     """Parameters of all experiments, each once, in the order in which they occur."""
     found: dict[str, tuple[Parameter, str]] = {}
     for item in experiments:
-        for parameter in item.parameters:
+        for parameter in (*item.parameters, *item.fixed):
             known, where = found.setdefault(parameter.name, (parameter, item.name))
             if known != parameter:
                 raise InputError(

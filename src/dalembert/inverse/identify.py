@@ -328,6 +328,7 @@ def _joined(
         if data is not None:
             raise InputError("identify: experiments have their own data; leave out the second argument")
         together, measured = joint(model)
+        together.parameters.check_some("identify")
         return together, measured, joint_weights(together, weights), together.parts  # pyright: ignore[reportArgumentType]
     if data is None:
         raise InputError("identify: no data were given; expected identify(model, data), or identify([Experiment(...)])")

@@ -21,7 +21,7 @@ class Labelled(Protocol):
 
 
 def check_kinds(owner: str, model: object, data: object, kind: type = Measurements) -> None:
-    """Refuse what is not a model, or not data of a kind.
+    """Refuse what is not a model with parameters, or not data of a kind.
 
     Raises
     ------
@@ -32,6 +32,7 @@ def check_kinds(owner: str, model: object, data: object, kind: type = Measuremen
             f"{owner}: {shown(model)} was given as the model; expected a forward model, such as TimeResponse or "
             "PythonModel"
         )
+    model.parameters.check_some(owner)
     if not isinstance(data, kind):
         raise InputError(
             f"{owner}: {shown(data)} was given as the data; expected {kind.__name__}, see {kind.__name__}.of"

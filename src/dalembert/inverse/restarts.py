@@ -45,8 +45,7 @@ def check_segments(
         )
     names = [channel.name for channel in model.channels]
     for name, state in states.items():
-        if name not in model.parameters.names:
-            raise InputError(unknown("parameter", name, model.parameters.names, "shooting, states"))
+        model.parameters.check_name(name, where="shooting, states")
         if state.channel not in names:
             raise InputError(unknown("channel", state.channel, names, f"shooting, state {name!r}"))
         if state.rate_of is not None and state.rate_of not in data.channels:

@@ -75,7 +75,7 @@ class Segments:
             for cut in self.cuts[1:-1]
             for name, state in self.states.items()
         ]
-        return Parameters((*self.model.parameters, *later))
+        return Parameters((*self.model.parameters.declared, *later))
 
     @property
     def channels(self) -> tuple[Channel, ...]:

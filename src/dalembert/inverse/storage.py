@@ -51,7 +51,7 @@ def contents_of(fit: Fit) -> Contents:
         **data_labels(fit.data),
     }
     told = {
-        "parameters": [asdict(item) for item in fit.parameters],
+        "parameters": [asdict(item) for item in fit.parameters.declared],
         "ends": stored_ends(fit.starts),
         "provenance": fit.provenance,
         "samples": fit.history[-1].samples if fit.history else len(fit.response),

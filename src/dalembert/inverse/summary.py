@@ -3,6 +3,7 @@
 import numpy as np
 
 from dalembert.inverse.fit import Fit
+from dalembert.results import fixed_lines
 
 
 def summary(fit: Fit) -> str:
@@ -17,6 +18,7 @@ def summary(fit: Fit) -> str:
         f"simulations  {fit.simulations}",
         f"starts       {len(fit.starts)}",
         *integration_facts(fit),
+        *fixed_lines(fit),
     ]
     experiments = experiments_table(fit)
     told = [fit.status, *([] if fit.validation is None else [str(fit.validation)]), *fit.identifiability().sentences]

@@ -81,7 +81,7 @@ def check_numbers(
 def _built(builder: Callable[..., System], parameters: Parameters, vector: np.ndarray) -> System:
     """The system with functions of the user's as Python runs them, since compiling one takes a second."""
     given = [value if value.imag else value.real for value in vector.tolist()]  # one of them is complex at most
-    system = copy(builder(**dict(zip(parameters.names, given, strict=True))))
+    system = copy(builder(**parameters.arguments(given)))
     system.loads = [
         replace(load, function=_plain(load.function)) if isinstance(load, UserForce) else load for load in system.loads
     ]

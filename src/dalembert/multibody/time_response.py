@@ -96,7 +96,7 @@ class TimeResponse:
         if not channels:
             raise InputError("TimeResponse: no channels were given; name at least one, such as 'AB.end.x'")
         parameters = Parameters.of(parameters)
-        check_function("TimeResponse", builder, parameters.names)
+        check_function("TimeResponse", builder, [item.name for item in parameters.declared])
         solver = integrator(solver, float(times[-1]))
         _check_steps(solver, float(times[-1]))
         for name, value in (
@@ -132,7 +132,7 @@ class TimeResponse:
     @cached_property
     def _fingerprint(self) -> str:
         differences = [self.derivative] * (self.derivative != COMPLEX_STEP)
-        asked = self.parameters.names, self.channel_names, self.solver, *differences
+        asked = self.parameters.identity, self.channel_names, self.solver, *differences
         return fingerprint(self._frame.lowered, self.times, *asked)
 
     def evaluate(self, vectors: np.ndarray) -> Responses:

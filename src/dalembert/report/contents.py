@@ -194,6 +194,8 @@ def contents(
             )
     if findings := tuple(getattr(result, "findings", ())):
         sections[0] = replace(sections[0], findings=findings)
+    if held := headline.fixed_facts(result):
+        sections[0] = replace(sections[0], facts=[*sections[0].facts, *held])  # type: ignore[attr-defined]
     facts = getattr(result, "provenance", {})
     return [*sections, Provenance(facts, study)] if facts or study else sections
 

@@ -39,7 +39,7 @@ class SensorTable(StudyTable):
         wrong = [
             f"{what} is between {lower:g} and {upper:g}; expected the lower bound first"
             for what, (lower, upper) in given.items()
-            if lower >= upper
+            if lower > upper
         ]
         if not given:
             wrong.append("neither delay, gain nor offset is given; expected bounds of at least one")
@@ -117,7 +117,7 @@ def _of_sensors(file: Any, channels: Sequence[str]) -> list[str]:
         for channel, table in file.sensors.items()
         if channel in channels
         for what in QUANTITIES
-        if getattr(table, what) is not None
+        if (bounds := getattr(table, what)) is not None and bounds[0] < bounds[1]
     ]
 
 

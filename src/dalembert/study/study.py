@@ -116,7 +116,7 @@ class Study:
     @property
     def settings(self) -> dict[str, Any]:
         """All that the file says, in SI units, as JSON can hold it."""
-        parameters = {item.name: asdict(item) for item in self.parameters}
+        parameters = {item.name: asdict(item) for item in self.parameters.declared}
         for name, entries in parameters.items():
             parameters[name] = {key: entry for key, entry in entries.items() if entry is not None and key != "name"}
         return _plain(self.file) | {"parameters": parameters}

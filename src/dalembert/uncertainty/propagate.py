@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 from dalembert.arguments import check_whole
-from dalembert.errors import InputError, unknown
+from dalembert.errors import InputError
 from dalembert.forward import Executor, ForwardModel, clock, findings_at, on_cluster, takes_executor
 from dalembert.forward.provenance import provenance
 from dalembert.intervals import Box, Interval
@@ -96,6 +96,7 @@ def propagate(
             model, chosen, seed=seed, intervals={name: [i.lower, i.upper] for name, i in box.items()}
         ),
         findings=(*found.findings, *findings_at(model, (box.lower + box.upper) / 2)),
+        fixed=model.parameters.fixed,
     )
     runs.tell(Ended(runs.method, result.success, result.status, result.runs, result.seconds))
     return result
@@ -109,10 +110,11 @@ def box_of(model: ForwardModel, intervals: Intervals) -> Box:
     InputError
         For a parameter without an interval, and for an interval of no parameter.
     """
+    model.parameters.check_some("propagate")
     given, names = Box.of(intervals), model.parameters.names
-    for name in given:
-        if name not in names:
-            raise InputError(unknown("parameter", name, names, "intervals"))
+    for name, interval in given.items():
+        known = interval.lower if interval.width == 0 else None
+        model.parameters.check_name(name, known, "intervals")
     for name in names:
         if name not in given.names:
             raise InputError(

@@ -10,6 +10,7 @@ from dalembert.contents import Contents
 from dalembert.data import Bands
 from dalembert.findings import Finding
 from dalembert.intervals import Box
+from dalembert.parameters import Parameter
 from dalembert.results import Result
 
 
@@ -50,6 +51,8 @@ class Propagation(Bands, Result):
         Versions, seed, hash of the model, method and settings.
     findings : tuple of Finding
         What the method concludes about the result.
+    fixed : tuple of Parameter
+        Parameters of the model that equal bounds fix; they are not in ``box``.
     """
 
     FORMAT: ClassVar[str] = "dalembert propagation 1"
@@ -68,6 +71,7 @@ class Propagation(Bands, Result):
     seconds: float
     provenance: Mapping[str, Any]
     findings: tuple[Finding, ...] = ()
+    fixed: tuple[Parameter, ...] = ()
 
     def summary(self) -> str:
         """The result as a text table with its status."""

@@ -1,5 +1,6 @@
 """Propagations and comparisons as labelled datasets, and in NetCDF files."""
 
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -7,6 +8,7 @@ import numpy as np
 from dalembert.contents import Contents
 from dalembert.forward.stored_coordinate import coordinate_of, stored_coordinate
 from dalembert.intervals import Box
+from dalembert.parameters import Parameter
 from dalembert.results import facts_of, saved_findings, stored_facts, told_of
 from dalembert.uncertainty.comparison import Comparison
 from dalembert.uncertainty.propagation import Propagation
@@ -40,7 +42,8 @@ def contents_of(result: Propagation) -> Contents:
         "unit": ("channel", list(result.units)),
         "coordinate": stored_coordinate(result.coordinate),
     }
-    attributes = stored_facts(result, FACTS, failures=result.failures, provenance=result.provenance)
+    held = [asdict(item) for item in result.fixed]
+    attributes = stored_facts(result, FACTS, failures=result.failures, provenance=result.provenance, fixed=held)
     return Contents(variables, coordinates, attributes)
 
 
@@ -62,6 +65,7 @@ def from_xarray(dataset: "Dataset") -> Propagation:
         failures=tuple(told["failures"]),
         provenance=told["provenance"],
         findings=saved_findings(dataset),
+        fixed=tuple(Parameter(**item) for item in told.get("fixed", ())),
     )
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+from dalembert.results import fixed_lines
 from dalembert.uncertainty.propagation import Propagation
 
 
@@ -18,6 +19,7 @@ def summary(result: Propagation) -> str:
         f"kind     {result.kind}",
         f"runs     {result.runs}" + (f", {len(result.failures)} failed" if result.failures else ""),
         f"seconds  {result.seconds:.2f}",
+        *fixed_lines(result, width=8),
     ]
     return "\n".join([*table(widths), "", *table(box), "", *facts, "", result.status, *map(str, result.findings)])
 

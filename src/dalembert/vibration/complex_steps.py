@@ -81,7 +81,7 @@ def _check(
     def numbers(vector: np.ndarray) -> list[Part]:
         given = [value if value.imag else value.real for value in vector.tolist()]  # one of them is complex at most
         with bases.call():
-            return list(parts(builder(**dict(zip(parameters.names, given, strict=True)))))
+            return list(parts(builder(**parameters.arguments(given))))
 
     def place(entry: int) -> str:
         for values, name in numbers(vector):

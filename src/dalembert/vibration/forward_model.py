@@ -94,7 +94,7 @@ class FrequencyResponse:
         if not channels:
             raise InputError("FrequencyResponse: no channels were given; name at least one, such as 'm2 peak'")
         parameters = Parameters.of(parameters)
-        check_function("FrequencyResponse", builder, parameters.names)
+        check_function("FrequencyResponse", builder, [item.name for item in parameters.declared])
         for name, value in (
             ("builder", builder),
             ("parameters", parameters),
@@ -124,7 +124,7 @@ class FrequencyResponse:
     @cached_property
     def _fingerprint(self) -> str:
         differences = [self.derivative] * (self.derivative != COMPLEX_STEP)
-        asked = self.parameters.names, self.channel_names, *differences
+        asked = self.parameters.identity, self.channel_names, *differences
         return fingerprint(lower(self.system(self.parameters.start)), self.method, *asked)
 
     def evaluate(self, vectors: np.ndarray) -> Responses:

@@ -50,7 +50,7 @@ def contents_of(fit: BandFit) -> Contents:
         "coordinate": stored_coordinate(fit.bands.coordinate),
     }
     told = {
-        "parameters": [asdict(item) for item in fit.parameters],
+        "parameters": [asdict(item) for item in fit.parameters.declared],
         "intervals": fit.intervals,
         "checked_fitness": fit.checked_fitness,
         "ends": stored_ends(fit.starts),

@@ -2,6 +2,7 @@
 
 from dalembert.inverse.bands.band_fit import BandFit
 from dalembert.inverse.summary import table
+from dalembert.results import fixed_lines
 
 
 def summary(fit: BandFit) -> str:
@@ -28,6 +29,7 @@ def summary(fit: BandFit) -> str:
         f"simulations  {fit.simulations}",
         f"seconds      {fit.seconds:.2g}",
         f"starts       {len(fit.starts)}",
+        *fixed_lines(fit),
     ]
     return "\n".join(
         [*table(rows), "", *facts, "", fit.status, *fit.identifiability().sentences, *map(str, fit.findings)]

@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from dalembert.errors import InputError, unknown
+from dalembert.errors import InputError
 from dalembert.inverse.search import Search
 from dalembert.parameters import Parameters
 
@@ -131,6 +131,5 @@ def unknowns_of(parameters: Parameters, intervals: Iterable[str] | None) -> Unkn
         raise InputError(f"intervals is {intervals!r}; expected names in a list, for example [{intervals!r}]")
     given = tuple(intervals)
     for name in given:
-        if name not in parameters.names:
-            raise InputError(unknown("parameter", name, parameters.names, "intervals"))
+        parameters.check_name(name, where="intervals")
     return Unknowns(parameters, tuple(name for name in parameters.names if name in given))

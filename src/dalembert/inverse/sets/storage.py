@@ -36,7 +36,7 @@ def contents_of(found: ParameterSet) -> Contents:
         "side": ("side", ["lower", "upper"]),
         **data_labels(found.data),
     }
-    told = {"parameters": [asdict(item) for item in found.parameters], "provenance": found.provenance}
+    told = {"parameters": [asdict(item) for item in found.parameters.declared], "provenance": found.provenance}
     return Contents(variables, coordinates, stored_facts(found, FACTS, **told))
 
 

@@ -2,6 +2,7 @@
 
 from dalembert.inverse.sets.parameter_set import ParameterSet
 from dalembert.inverse.summary import table
+from dalembert.results import fixed_lines
 
 
 def summary(found: ParameterSet) -> str:
@@ -16,5 +17,6 @@ def summary(found: ParameterSet) -> str:
         f"boxes        {len(found.inside)} inside, {len(found.boundary)} on the boundary",
         f"simulations  {found.runs}",
         f"seconds      {found.seconds:.2g}",
+        *fixed_lines(found),
     ]
     return "\n".join([*table(rows), "", *facts, "", found.status, *map(str, found.findings)])

@@ -70,7 +70,7 @@ def design(
     """
     if criterion not in CRITERIA:
         raise InputError(unknown("criterion", criterion, CRITERIA, "design"))
-    vector, parameters = at_of(model, at), model.parameters
+    vector, parameters = at_of(model, at, "design"), model.parameters
     names, columns, noise = noise_of(model, deviations, "design")
     sets = _sets(sensors, names)
     along = model.coordinate

@@ -10,7 +10,7 @@ from dalembert.contents import Contents
 from dalembert.errors import listed
 from dalembert.inverse.summary import table
 from dalembert.parameters import Parameter, Parameters
-from dalembert.results import Result, facts_of, stored_facts, told_of
+from dalembert.results import Result, facts_of, fixed_lines, stored_facts, told_of
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -110,12 +110,12 @@ class Designs(Result):
             expected = (f"{value:.3g}" for value in self.deviations[k])
             rows.append((", ".join(self.sensors[k]), f"{self.horizons[k]:.6g}", f"{self.scores[k]:.4g}", *expected))
         more = [f"and {len(self.scores) - 20} more"] if len(self.scores) > 20 else []
-        return "\n".join([*table(rows), *more, "", self.status])
+        return "\n".join([*table(rows), *more, "", *fixed_lines(self), self.status])
 
     def contents(self) -> Contents:
         """Everything as arrays over design and parameter."""
         told = {
-            "parameters": [asdict(item) for item in self.parameters],
+            "parameters": [asdict(item) for item in self.parameters.declared],
             "sensors": self.sensors,
             "noise": dict(self.noise),
             "provenance": self.provenance,

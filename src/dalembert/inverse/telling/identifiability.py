@@ -62,7 +62,7 @@ def identifiability(
     """
     if data is not None and deviations is not None:
         raise InputError("identifiability: data and deviations were given; expected one of them")
-    vector, parameters = at_of(model, at), model.parameters
+    vector, parameters = at_of(model, at, "identifiability"), model.parameters
     if data is not None:
         columns = columns_of(model, data)
         check_samples(model, data)

@@ -9,7 +9,7 @@ from scipy.special import chdtri, fdtri
 
 from dalembert.arguments import check_whole
 from dalembert.data import Measurements
-from dalembert.errors import InputError, unknown
+from dalembert.errors import InputError
 from dalembert.forward import Executor, ForwardModel, check_derivatives, takes_executor
 from dalembert.forward.provenance import provenance
 from dalembert.inverse.confidence import check_level, freedom, noise_is_known, variance
@@ -158,8 +158,7 @@ def _ahead(at: Linearisation, walks: Sequence[Walk], problem: Problem, way: tupl
 def _names(fit: Fit, names: Collection[str] | None) -> Iterable[str]:
     known = fit.parameters.names
     for name in names or ():
-        if name not in known:
-            raise InputError(unknown("parameter", name, known, "profile: names"))
+        fit.parameters.check_name(name, where="profile: names")
     return known if names is None else [name for name in known if name in names]
 
 
@@ -173,12 +172,16 @@ def _problem(
         whole, given = model, data
     else:
         whole, given = joint(model)
-    if whole.parameters.names != fit.parameters.names:
+    if whole.parameters.identity != fit.parameters.identity:
         raise InputError(
-            f"profile: the model has the parameters {', '.join(whole.parameters.names)}, the fit "
-            f"{', '.join(fit.parameters.names)}; expected the same"
+            f"profile: the model has the parameters {_listed(whole)}, the fit {_listed(fit)}; expected the same"
         )
     return pose(whole, given, fit.weights, Journal(len(given.coordinate.values), on_event))
+
+
+def _listed(owner: ForwardModel | Fit) -> str:
+    known = [f"{item.name} = {item.lower:.6g}" for item in owner.parameters.fixed]
+    return ", ".join([*owner.parameters.names, *known])
 
 
 def _curve(fit: Fit, k: int, sides: list) -> Profile:

@@ -11,7 +11,7 @@ from dalembert.errors import listed
 from dalembert.findings import Finding
 from dalembert.inverse.summary import table
 from dalembert.parameters import Parameter, Parameters
-from dalembert.results import Result, facts_of, saved_findings, stored_facts, told_of
+from dalembert.results import Result, facts_of, fixed_lines, saved_findings, stored_facts, told_of
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -183,12 +183,12 @@ class Profiles(Result):
             )
             item = self.parameters.items[k]
             rows.append((curve.name, f"{self.values[k]:.7g}", lower, upper, item.unit, f"{self.deviations[k]:.2g}"))
-        return "\n".join([*table(rows), "", self.status, *map(str, self.findings)])
+        return "\n".join([*table(rows), "", *fixed_lines(self), self.status, *map(str, self.findings)])
 
     def contents(self) -> Contents:
         """Everything as arrays over parameter, profile and point."""
         told = {
-            "parameters": [asdict(item) for item in self.parameters],
+            "parameters": [asdict(item) for item in self.parameters.declared],
             "known": self.known,
             "broken": [curve.broken for curve in self.curves],
             "elsewhere": [curve.elsewhere for curve in self.curves],

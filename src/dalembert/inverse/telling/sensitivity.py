@@ -40,8 +40,9 @@ def noise_of(
     return names, np.array([known.index(name) for name in names]), values
 
 
-def at_of(model: ForwardModel, at: Mapping[str, float] | ArrayLike | None) -> np.ndarray:
+def at_of(model: ForwardModel, at: Mapping[str, float] | ArrayLike | None, where: str) -> np.ndarray:
     """The parameter vector (parameters,) to look at; the first guesses if none is given."""
+    model.parameters.check_some(where)
     return model.parameters.start if at is None else np.asarray(model.parameters.vector(at), dtype=float)
 
 

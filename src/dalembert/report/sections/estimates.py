@@ -5,6 +5,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from dalembert.parameters import Parameter
 from dalembert.report import charts
 from dalembert.report.charts.parameters import on_bound
 from dalembert.report.needs import FitLike
@@ -45,13 +46,19 @@ class Estimates(Section):
             "upper bound": [cell(float(item.upper)) for item in fit.parameters],
             "note": [cell("on its bound" if mark else "", mark=bool(mark)) for mark in stuck],
         }
-        rows = list(zip(*columns.values(), strict=True))
+        rows = [*zip(*columns.values(), strict=True), *(_fixed(item, tuple(columns)) for item in fit.parameters.fixed)]
         return noted(Table("parameters", "Identified values", tuple(columns), rows))
 
     @property
     def plots(self) -> tuple[Plot, ...]:
         caption = "Each value where it lies between its bounds; bars are two standard deviations."
         return (Plot("parameters", charts.parameters(self.fit), caption),)
+
+
+def _fixed(item: Parameter, columns: tuple[str, ...]) -> tuple[Cell, ...]:
+    """Row of a fixed parameter."""
+    known = {"parameter": item.name, "value": float(item.lower), "unit": item.unit, "note": "fixed"}
+    return tuple(cell(known.get(column, "")) for column in columns)
 
 
 def _short(numbers: np.ndarray) -> list[Cell]:

@@ -12,6 +12,7 @@ from dalembert.report.needs import FitLike, IdentifiedLike, SweepLike, Trajector
 from dalembert.report.needs_integrators import WorkPrecisionLike
 from dalembert.report.quantities import labelled
 from dalembert.report.sections.section import Section
+from dalembert.results import fixed_of
 
 MOST_VALUES = 4
 ERRORS = (1e-4, 1e-8)
@@ -50,6 +51,11 @@ class Headline(Section):
     def badge(self) -> str:
         """How the verdict is shown: ``"good"``, ``"doubtful"`` or ``"bad"``."""
         return "bad" if not self.success else "doubtful" if self.doubts or self.doubtful else "good"
+
+
+def fixed_facts(result: object) -> list[Fact]:
+    """Values of the parameters that were fixed by equal bounds."""
+    return [Fact(f"{labelled(item.name, item.unit)}, fixed", shown(float(item.lower))) for item in fixed_of(result)]
 
 
 def of_fit(fit: FitLike, title: str | None, notes: Sequence[str]) -> Headline:

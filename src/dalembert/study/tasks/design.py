@@ -11,7 +11,7 @@ from dalembert.study.numbers import samples
 from dalembert.study.table import StudyTable
 from dalembert.study.tasks.result import ResultOutcome
 from dalembert.study.tasks.task import Outcome, Task
-from dalembert.study.tasks.wrong import needs_samples, needs_solver, response, unnamed
+from dalembert.study.tasks.wrong import needs_parameters, needs_samples, needs_solver, response, unnamed
 
 if TYPE_CHECKING:
     from dalembert.study.duration import Effort
@@ -51,7 +51,7 @@ class Design(Task):
 
     def wrong(self, file: Any) -> list[str]:
         table = file.design
-        wrong = [] if file.parameters else ["[design] needs at least one [parameters.NAME] table"]
+        wrong = needs_parameters(file, "design")
         wrong += unnamed(table.at, file.parameters, "[design.at]")
         wrong += needs_samples(file, "design")
         return [*wrong, *needs_solver(file)]

@@ -21,7 +21,7 @@ from dalembert.study.table import Read, StudyTable, checked
 from dalembert.study.tasks import telling
 from dalembert.study.tasks.shooting import ShootingTable
 from dalembert.study.tasks.task import Outcome, Task, concluded
-from dalembert.study.tasks.wrong import needs_solver, unmatched, unnamed
+from dalembert.study.tasks.wrong import needs_parameters, needs_solver, unmatched, unnamed
 
 if TYPE_CHECKING:
     from dalembert.inverse import Fit
@@ -212,9 +212,7 @@ class Identify(Task):
         return identify_table()
 
     def wrong(self, file: Any) -> list[str]:
-        wrong = []
-        if not file.parameters:
-            wrong.append("[identify] needs at least one [parameters.NAME] table")
+        wrong = needs_parameters(file, "identify")
         if file.data is None and not file.experiments:
             wrong.append("[identify] needs a [data] table")
         channels = measured_channels(file)

@@ -13,7 +13,7 @@ from dalembert.study.intervals import IntervalKey, Number
 from dalembert.study.table import StudyTable
 from dalembert.study.tasks.result import ResultOutcome
 from dalembert.study.tasks.task import Outcome, Task
-from dalembert.study.tasks.wrong import needs_solver, unmatched, unnamed
+from dalembert.study.tasks.wrong import needs_parameters, needs_solver, unmatched, unnamed
 
 if TYPE_CHECKING:
     from dalembert.study.duration import Effort
@@ -52,7 +52,7 @@ class IdentifyBands(Task):
 
     def wrong(self, file: Any) -> list[str]:
         table = file.identify_bands
-        wrong = [] if file.parameters else ["[identify_bands] needs at least one [parameters.NAME] table"]
+        wrong = needs_parameters(file, "identify_bands")
         wrong += [] if file.bands else ["[identify_bands] needs a [bands] table"]
         wrong += unnamed(table.intervals or (), file.parameters, "[identify_bands], intervals")
         wrong += unnamed(table.truth, file.parameters, "[identify_bands.truth]")

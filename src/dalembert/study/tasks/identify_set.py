@@ -13,7 +13,7 @@ from dalembert.study.intervals import Number
 from dalembert.study.table import StudyTable
 from dalembert.study.tasks.result import ResultOutcome
 from dalembert.study.tasks.task import Outcome, Task
-from dalembert.study.tasks.wrong import needs_solver, unmatched, unnamed
+from dalembert.study.tasks.wrong import needs_parameters, needs_solver, unmatched, unnamed
 
 if TYPE_CHECKING:
     from dalembert.study.duration import Effort
@@ -56,7 +56,7 @@ class IdentifySet(Task):
 
     def wrong(self, file: Any) -> list[str]:
         table = file.identify_set
-        wrong = [] if file.parameters else ["[identify_set] needs at least one [parameters.NAME] table"]
+        wrong = needs_parameters(file, "identify_set")
         wrong += [] if file.data else ["[identify_set] needs a [data] table"]
         wrong += unnamed(table.truth, file.parameters, "[identify_set.truth]")
         if file.data is not None and isinstance(table.error, dict):

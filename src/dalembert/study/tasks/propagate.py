@@ -15,7 +15,7 @@ from dalembert.study.numbers import samples
 from dalembert.study.table import StudyTable
 from dalembert.study.tasks.result import ResultOutcome
 from dalembert.study.tasks.task import Outcome, Task
-from dalembert.study.tasks.wrong import needs_samples, needs_solver, response, unnamed
+from dalembert.study.tasks.wrong import needs_parameters, needs_samples, needs_solver, response, unnamed
 
 if TYPE_CHECKING:
     from dalembert.study.duration import Effort
@@ -61,7 +61,7 @@ class Propagate(Task):
 
     def wrong(self, file: Any) -> list[str]:
         table = file.propagate
-        wrong = [] if file.parameters else ["[propagate] needs at least one [parameters.NAME] table"]
+        wrong = needs_parameters(file, "propagate")
         wrong += unnamed(table.intervals, file.parameters, "[propagate.intervals]")
         wrong += needs_samples(file, "propagate")
         if table.reference is not None and not table.compare:

@@ -71,9 +71,24 @@ def unmatched(given: Mapping[str, Any] | None, channels: Collection[str], what: 
 
 
 def unnamed(given: Iterable[str], parameters: Collection[str], where: str) -> list[str]:
-    """Sentences about names that no parameter has.
+    """Sentences about names that no parameter has, or only a fixed one.
 
     >>> unnamed(["theta3"], ["theta1", "theta2"], "[sweep.over]")
     ["[sweep.over]: unknown parameter 'theta3'; did you mean 'theta2' or 'theta1'?"]
     """
-    return [unknown("parameter", name, parameters, where) for name in given if name not in parameters]
+    given = tuple(given)
+    wrong = [unknown("parameter", name, parameters, where) for name in given if name not in parameters]
+    tables = parameters if isinstance(parameters, Mapping) else {}
+    return wrong + [
+        f"{where}: parameter {name!r} is fixed by equal bounds; leave it out here, or give bounds that differ"
+        for name in given
+        if name in tables and tables[name].parameter(name).is_fixed
+    ]
+
+
+def needs_parameters(file: Any, task: str) -> list[str]:
+    """Sentence about a study without a parameter that its task could vary."""
+    if any(not table.parameter(name).is_fixed for name, table in file.parameters.items()):
+        return []
+    differ = " whose bounds differ" if file.parameters else ""
+    return [f"[{task}] needs at least one [parameters.NAME] table{differ}"]

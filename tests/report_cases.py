@@ -259,6 +259,14 @@ CASES: dict[str, Case] = {
         lambda: da.identify(DECAY, _exact(DECAY, [2.0, 0.8], noise=0.05, deviations=0.02)),
         ("times what the given deviations allow; look whether they are too small",),
     ),
+    "fewer values than parameters": Case(
+        lambda: da.identify(SUM.first(2), _exact(SUM, [1.0, 0.5]).first(2), weights=[[0.0], [1.0]]),
+        ("Converged to one of many solutions.", "1 value cannot determine 2 parameters: other parameters explain"),
+    ),
+    "as many values as parameters": Case(
+        lambda: da.identify(SLOPE.first(2), _exact(SLOPE, [1.0]).first(2), weights=[[0.0], [1.0]]),
+        ("There are as many parameters as values (1), so no residuals are left",),
+    ),
     "noise unknown": Case(
         lambda: da.identify(DECAY, _exact(DECAY, [2.0, 0.8], noise=0.05)),
         ("% of the data's variation.", "What remains looks like noise; give the data's deviations"),

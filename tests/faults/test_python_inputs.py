@@ -9,7 +9,7 @@ import dalembert.multibody as mb
 from dalembert.data import Bands, Measurements
 from dalembert.errors import DalembertError
 from dalembert.forward import PythonModel
-from dalembert.inverse import identify, identify_bands, identify_set
+from dalembert.inverse import Fit, identify, identify_bands, identify_set
 from dalembert.optimize import LeastSquares
 from dalembert.parameters import Parameter
 from dalembert.uncertainty import propagate
@@ -302,3 +302,42 @@ def test_bands_without_width_have_a_finite_misfit() -> None:
     fit = identify_bands(model(), Bands.of(TIMES, {"x": (DECAY, DECAY)}))
     assert "at rms in 'x', where the given bands have no width" in fit.status
     assert " inf " not in fit.status
+
+
+def of_three(samples: int, deviations: float | None = None) -> Fit:
+    """A fit of three parameters to few samples."""
+    times = TIMES[:samples]
+    few = PythonModel(
+        lambda rate, height, floor: height * np.exp(-rate * times) + floor,
+        {"rate": (0.1, 3.0), "height": (0.5, 2.0), "floor": (-1.0, 1.0)},
+        ["x"],
+        times,
+    )
+    return identify(few, Measurements.of(times, {"x": DECAY[:samples]}, deviations=deviations))
+
+
+@pytest.mark.parametrize("deviations", [None, 0.01])
+def test_fewer_data_than_parameters_are_no_plain_success(deviations: float | None) -> None:
+    fit = of_three(2, deviations)
+    finding = next(finding for finding in fit.findings if finding.code == "too-few-data")
+    assert (finding.severity, dict(finding.values)) == ("warning", {"values": 2, "parameters": 3})
+    assert fit.status.startswith("Converged to one of many solutions.")
+    assert "noise of the data allows" not in fit.status
+    assert not np.any(np.isfinite(fit.deviations))
+    assert finding.message in fit.doubts
+    assert finding.message in fit.summary()
+
+
+def test_as_many_data_as_parameters_leave_the_deviations_unknown() -> None:
+    fit = of_three(3)
+    assert [finding.code for finding in fit.findings] == ["too-few-data"]
+    assert np.all(np.isnan(fit.deviations))
+    assert of_three(3, 0.01).findings == of_three(4).findings == ()
+
+
+def test_fixed_parameters_make_the_data_enough() -> None:
+    times = TIMES[:2]
+    model = PythonModel(
+        lambda rate, height: height * np.exp(-rate * times), {"rate": (1.3, 1.3), "height": (0.5, 2.0)}, ["x"], times
+    )
+    assert identify(model, Measurements.of(times, {"x": DECAY[:2]})).findings == ()

@@ -33,6 +33,7 @@ from dalembert.inverse.shooting import MultipleShooting, shots
 from dalembert.inverse.spread import SPREADS
 from dalembert.inverse.status import status
 from dalembert.inverse.suspect_units import unit_findings
+from dalembert.inverse.too_few import too_few_findings
 from dalembert.inverse.validation import split
 from dalembert.optimize import LeastSquares, Minimiser, Squares
 
@@ -239,6 +240,7 @@ def identify(
         nodes=best.nodes,
         findings=(
             *undetermined,
+            *too_few_findings(problem, known=known),
             *rival_findings(problem, best, others, floor),
             *unit_findings(problem, vector, response),
             *rough,

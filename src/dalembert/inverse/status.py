@@ -6,6 +6,7 @@ from dalembert.inverse.descent import End
 from dalembert.inverse.doubts import EXCESSIVE
 from dalembert.inverse.noise import NoiseFloor, signal
 from dalembert.inverse.problem import Problem
+from dalembert.inverse.too_few import lacking
 
 
 def status(problem: Problem, best: End, response: np.ndarray, floor: NoiseFloor, correlated: bool) -> str:
@@ -13,7 +14,9 @@ def status(problem: Problem, best: End, response: np.ndarray, floor: NoiseFloor,
 
     Findings say what ``correlated`` residuals mean.
     """
-    parts = ["Converged." if best.success else f"Not converged: {best.message}."]
+    few = lacking(problem)
+    ended_well = "Converged to one of many solutions." if few else "Converged."
+    parts = [ended_well if best.success else f"Not converged: {best.message}."]
     ended = [start.fitness for start in problem.journal.starts]
     if len(ended) > 1:
         there = sum(fitness <= best.fitness * (1 + 1e-3) + floor.fitness * 1e-3 for fitness in ended)
@@ -32,6 +35,8 @@ def status(problem: Problem, best: End, response: np.ndarray, floor: NoiseFloor,
         )
     elif best.fitness > floor.fitness:
         parts.append(_explains(best.fitness, signal(problem)))
+    if few:  # a misfit near zero proves nothing
+        return " ".join(parts)
     if best.fitness <= floor.fitness:
         parts.append(f"The misfit is at the floor that the noise of the data allows (known from {floor.source}).")
     elif floor.source == "given deviations":

@@ -19,7 +19,10 @@ SOURCE = Path(dalembert.__file__).parent
 SECTIONS = sorted(path.relative_to(SOURCE).as_posix() for path in (SOURCE / "report" / "sections").glob("*.py"))
 SOURCES = [
     *(f"inverse/{name}.py" for name in ("descent", "doubts", "estimate", "prior", "sentences", "status", "validation")),
-    *(f"inverse/{name}.py" for name in ("correlation/findings", "explained", "integration", "suspect_units")),
+    *(
+        f"inverse/{name}.py"
+        for name in ("correlation/findings", "explained", "integration", "suspect_units", "too_few")
+    ),
     *(f"inverse/bands/{name}.py" for name in ("status", "telling")),
     "inverse/sets/status.py",
     *(f"inverse/telling/{name}.py" for name in ("designs", "prediction", "profiles", "walk")),

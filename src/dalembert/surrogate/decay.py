@@ -7,8 +7,14 @@ SLOWEST = 0.9
 
 SHORT = 6
 """Degrees below which no power of the decay is computed."""
-SMOOTH = 5.0
-"""Powers of the degree up to which coefficients decay as those of a function that is not smooth."""
+SMOOTH, SMOOTHEST, EACH_POWER = 5.0, 9.0, 3.2
+"""Powers of the degree up to which coefficients decay as those of a function that is not smooth.
+
+At least the first, at most the second, and one for each so many degrees: smooth functions reach higher degrees only
+with higher powers, and the power of a kink scatters widely.
+"""
+GEOMETRIC = 0.5
+"""Coefficients decay geometrically where a geometric series fits this much better than a power of the degree."""
 STEEPEST = 2.0
 """Largest power that such a decay is continued with."""
 CAUTION = 3.0
@@ -68,7 +74,8 @@ def slow_tail(shells: np.ndarray) -> np.ndarray:
 
     The shells are taken to continue as s (m/n)^−p, whose sum is s n/(p − 1): s is the largest of the upper half, moved
     to the last degree n. The coefficients of a kink oscillate, so that p may be too large: no more than ``STEEPEST`` is
-    taken. Zero where p is above ``SMOOTH``: :func:`tail` holds there.
+    taken. Zero where p is too large for a kink, or where the coefficients clearly decay geometrically: :func:`tail`
+    holds there.
 
     Examples
     --------
@@ -82,7 +89,26 @@ def slow_tail(shells: np.ndarray) -> np.ndarray:
     degrees = np.arange((order + 1) // 2, order + 1)
     taken = np.minimum(p, STEEPEST)
     last = np.max(shells[degrees] * (degrees[:, None] / order) ** taken, axis=0)
-    return np.where(p <= SMOOTH, CAUTION * last * order / np.maximum(taken - 1, FLATTEST), 0.0)
+    kink = (p <= np.clip(order / EACH_POWER, SMOOTH, SMOOTHEST)) & (_misfit_ratio(shells) >= GEOMETRIC)
+    return np.where(kink, CAUTION * last * order / np.maximum(taken - 1, FLATTEST), 0.0)
+
+
+def _misfit_ratio(shells: np.ndarray) -> np.ndarray:
+    """Return the misfit of a geometric series over that of a power of the degree, shape (outputs,).
+
+    Both by least squares in the logarithm of the larger of two neighbouring shells, as one may vanish by symmetry.
+    """
+    varying = np.maximum(shells[1:], np.finfo(float).eps * shells.max(axis=0) + np.finfo(float).tiny)
+    logs = np.log(np.maximum(varying, np.concatenate([varying[:1], varying[:-1]])))
+    degrees = np.arange(1.0, len(shells))
+    geometric, algebraic = (_misfit(x, logs) for x in (degrees, np.log(degrees)))
+    return np.divide(geometric, algebraic, out=np.ones(shells.shape[1]), where=algebraic > 0)
+
+
+def _misfit(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Return the root of the sum of squares (outputs,) that a line through points x (n,), y (n, outputs) leaves."""
+    x, y = (x - x.mean())[:, None], y - y.mean(axis=0)
+    return np.linalg.norm(y - x * (np.sum(x * y, axis=0) / np.sum(x**2)), axis=0)
 
 
 def needed_order(shells: np.ndarray, tolerance: np.ndarray) -> tuple[int, bool]:

@@ -6,11 +6,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from dalembert.errors import InputError, SolveError
-from dalembert.surrogate.basis import chebyshev, full_tensor, products, roots
+from dalembert.surrogate.basis import chebyshev, full_tensor, roots
 from dalembert.surrogate.decay import by_direction, tail
 from dalembert.surrogate.held_out import HeldOut
 from dalembert.surrogate.runs import Runs, failed
 from dalembert.surrogate.scheme import Fitted
+
+MOST_RUNS = 1_000_000
+"""Largest number of runs that a tensor is made from."""
 
 
 @dataclass(frozen=True)
@@ -26,6 +29,8 @@ class Tensor:
     ------
     InputError
         For an order below 1, or as many orders as there are no directions.
+    SolveError
+        From a fit that would take more than a million runs.
 
     Notes
     -----
@@ -65,6 +70,12 @@ class Tensor:
 
     def fitted(self, runs: Runs, seed: int, held_out: HeldOut, scale: Callable[[], np.ndarray]) -> Fitted:
         orders = self.orders(runs.directions)
+        number = self.runs(runs.directions)
+        if number > MOST_RUNS:
+            raise SolveError(
+                f"a tensor surrogate of orders {list(orders)} takes {number} runs, more than {MOST_RUNS}; lower the "
+                "order, or use Adaptive"
+            )
         exponents = full_tensor(orders)
         eta = np.array([roots(order + 1)[exponents[:, k]] for k, order in enumerate(orders)]).T.reshape(exponents.shape)
         values = runs(eta)
@@ -74,8 +85,7 @@ class Tensor:
                 f"{runs.place(eta[failed(values)])[0].tolist()}; a tensor surrogate needs all of them; "
                 "keep the box away from where the model fails, or use TotalDegree, which can do without some"
             )
-        weights = np.prod((2.0 - (exponents == 0)) / (np.array(orders) + 1.0), axis=1)
-        coefficients = weights[:, None] * (products(chebyshev(eta, np.array(orders, int)), exponents).T @ values)
+        coefficients = _transformed(values, orders)
         left_out = [tail(shells) for shells in self.shells(exponents, coefficients)]
         return Fitted(exponents, coefficients, np.sum(left_out, axis=0) * np.ones(values.shape[1]))
 
@@ -84,3 +94,13 @@ class Tensor:
 
     def more(self, order: int) -> str:
         return f"take Tensor({order})"
+
+
+def _transformed(values: np.ndarray, orders: tuple[int, ...]) -> np.ndarray:
+    """Return the coefficients (terms, outputs) of values (points, outputs) on the root grid, direction by direction."""
+    grid = values.reshape(*(order + 1 for order in orders), values.shape[1])
+    for k, order in enumerate(orders):
+        basis = chebyshev(roots(order + 1)[:, None], np.array([order]))[0]
+        weights = (2.0 - (np.arange(order + 1) == 0)) / (order + 1)
+        grid = np.moveaxis(np.tensordot(weights[:, None] * basis.T, grid, axes=(1, k)), 0, k)
+    return grid.reshape(values.shape)

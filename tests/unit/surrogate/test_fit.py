@@ -114,3 +114,10 @@ def test_a_surrogate_that_is_wrong_is_refused_with_an_order_that_would_do() -> N
     assert f"about order {order} would do: take Tensor({order})," in str(told.value)
     assert order <= 20
     fit(smooth, LOWER, UPPER, Tensor(order)).demand(1e-9)
+
+
+def test_a_tensor_of_millions_of_runs_is_refused_before_the_first() -> None:
+    asked: list[int] = []
+    with pytest.raises(SolveError, match="takes 43046721 runs, more than 1000000; lower the order, or use Adaptive"):
+        fit(lambda p: np.sin(p.sum(axis=1))[:, None], -np.ones(8), np.ones(8), Tensor(8), on_runs=asked.append)
+    assert asked == [16]  # the held-out runs

@@ -1,5 +1,7 @@
 """Functions with kinks, narrow bumps, steps, symmetries and poles: what each method claims about their bounds."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -55,12 +57,47 @@ METHODS = {
     "taylor": da.Taylor(),
     "optimise": da.Optimise(most_runs=400),
 }
-CODES = {"unseen-features", "unknown-error"}
+IN_8 = {"total degree": da.Chebyshev(TotalDegree(3)), "scan": Scan(2)}
+REFUSALS = {
+    "no decay": r"the coefficients do not decay along 'p\d'.*: use method 'optimise', ",
+    "order": r"; about order \d+ would do: ",
+    "next order": r"; about order \d+ is to be tried next, as no decay shows yet: ",
+    "runs": "takes 43046721 runs, more than 1000000; lower the order, or use Adaptive",
+}
+# What the surrogates (adaptive, Bernstein, tensor, total degree) answer: a kind of refusal, or whether the claim holds.
+# "coarse" holds with a warning that the response varies over lengths shorter than the gap, "wide" with one that the
+# enclosure is wide; "missed" does not hold, and the finding states a gap wider than the feature.
+ANSWERS = {
+    "kink": ("no decay", "no decay", "no decay", "no decay"),
+    "kink at the end": ("no decay", "no decay", "holds", "no decay"),
+    "narrow bump": ("missed", "missed", "missed", "missed"),
+    "narrow step": ("missed", "missed", "missed", "missed"),
+    "narrow pit": ("no decay", "no decay", "missed", "missed"),
+    "two components": ("missed", "missed", "no decay", "no decay"),
+    "aliased wave": ("no decay", "no decay", "no decay", "no decay"),
+    "tanh 100x": ("no decay", "no decay", "no decay", "no decay"),
+    "step": ("no decay", "no decay", "no decay", "no decay"),
+    "near a pole": ("holds", "holds, wide", "order", "order"),
+    "sin 40x (1 + 0.1x)": ("holds, coarse", "holds, coarse, wide", "no decay", "order"),
+    "Ishigami in 3": ("holds, coarse", "holds, coarse", "no decay", "no decay"),
+    "Ishigami in 8": ("order", "order", "runs", "next order"),
+    "Sobol g": ("no decay", "no decay", "no decay", "no decay"),
+}
 
 
-def posed(name: str) -> tuple[da.PythonModel, dict[str, tuple[float, float]], tuple[float, float]]:
-    """Return a model with one output, its box and the true bounds."""
-    function, directions, reach, known = FUNCTIONS[name]
+@cache
+def true_bounds(name: str) -> tuple[float, float]:
+    function, _, _, known = FUNCTIONS[name]
+    values = function(LINE[None]) if known is None else np.array(known)
+    return float(values.min()), float(values.max())
+
+
+def posed(name: str) -> tuple[da.PythonModel, dict[str, tuple[float, float]]]:
+    """Return a model with one output, and its box."""
+    return posed_of(*FUNCTIONS[name][:3])
+
+
+def posed_of(function, directions: int, reach: float) -> tuple[da.PythonModel, dict[str, tuple[float, float]]]:
     box = {f"p{k}": (-reach, reach) for k in range(directions)}
 
     def model(**p: float) -> np.ndarray:
@@ -69,11 +106,21 @@ def posed(name: str) -> tuple[da.PythonModel, dict[str, tuple[float, float]], tu
     names = ", ".join(box)
     scope = {"model": model}
     exec(f"def named({names}): return model({', '.join(f'{k}={k}' for k in box)})", scope)
-    if known is None:
-        values = function(LINE[None])
-        known = (float(values.min()), float(values.max()))
     made = da.PythonModel(scope["named"], box, ["y"], np.zeros(1), derivative="central-differences")  # pyright: ignore
-    return made, box, known
+    return made, box
+
+
+def answer(found: da.Propagation, low: float, high: float) -> str:
+    """Return whether the bounds hold within their error, and what the findings warn of."""
+    error = 1.01 * found.error.item() + 1e-8
+    held = found.lower.item() - error <= low and high <= found.upper.item() + error
+    narrow = found.findings[0]
+    assert narrow.code == "unseen-features"
+    assert "cannot exclude a bump, pit or step narrower than" in narrow.message
+    assert narrow.values["gap"] > 0.004  # the part of the interval that the narrow features above take
+    warnings = {"coarse"} if narrow.severity == "warning" else set()
+    warnings |= {{"wide-enclosure": "wide"}[finding.code] for finding in found.findings[1:]}
+    return ", ".join(["holds" if held else "missed", *sorted(warnings)])
 
 
 @pytest.mark.slow
@@ -81,36 +128,38 @@ def posed(name: str) -> tuple[da.PythonModel, dict[str, tuple[float, float]], tu
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_no_method_claims_more_than_is_true(name: str, method: str) -> None:
     """The true bounds lie within the claimed error, or a finding names what cannot be excluded, or it is refused."""
-    if (name, method) == ("Ishigami in 8", "scan"):
-        pytest.skip("5^8 runs")
-    model, box, (low, high) = posed(name)
-    try:
-        found = da.propagate(model, box, METHODS[method])
-    except SolveError:  # refused
+    model, box = posed(name)
+    settings = {**METHODS, **(IN_8 if name == "Ishigami in 8" else {})}[method]
+    expected = dict(zip(METHODS, ANSWERS[name], strict=False)).get(method)  # the surrogates come first
+    if expected in REFUSALS:
+        with pytest.raises(SolveError, match=REFUSALS[expected]):
+            da.propagate(model, box, settings)
         return
-    narrow = [finding for finding in found.findings if finding.code in CODES]
-    if found.error is None:
-        assert [finding.code for finding in narrow] == ["unknown-error"]
-        assert "The error of the bounds is unknown" in narrow[0].message
-        return
-    error = 1.01 * found.error.item() + 1e-8
-    if not (found.lower.item() - error <= low and high <= found.upper.item() + error):
-        assert "cannot exclude a bump, pit or step narrower than" in narrow[0].message
-        assert narrow[0].values["gap"] > 0.008  # the full width of the features above
+    found = da.propagate(model, box, settings)
     assert found.kind != "enclosure"
+    if expected is None:
+        assert found.error is None
+        assert [finding.code for finding in found.findings] == ["unknown-error"]
+        assert "The error of the bounds is unknown" in found.findings[0].message
+    else:
+        assert answer(found, *true_bounds(name)) == expected
 
 
 @pytest.mark.slow
-def test_a_kink_is_never_worse_than_claimed(record_evidence) -> None:
-    """|x − c| at 120 random places: former versions were wrong by 67 to 303 times the claimed error at four of them."""
+@pytest.mark.parametrize(("tolerance", "most_runs"), [(1e-1, 2000), (1e-2, 2000), (1e-3, 120), (1e-6, 120)])
+def test_a_kink_is_never_worse_than_claimed(tolerance: float, most_runs: int, record_evidence) -> None:
+    """|x − c| at 120 random places: former versions were wrong by up to 303 times the claimed error at some of them.
+
+    Small tolerances need more runs than there may be: a surrogate must neither stop early nor claim too much there.
+    """
     wrong = 0
     for seed in range(120):
         place = np.random.default_rng(seed).uniform(-1, 1)
-        found = fit(lambda x, c=place: np.abs(x - c), [-1], [1], Adaptive(), seed=seed)
-        apart = np.abs(found(LINE[::20, None]) - np.abs(LINE[::20, None] - place)).max()
-        wrong += bool(apart > found.error[0])
+        found = fit(lambda x, c=place: np.abs(x - c), [-1], [1], Adaptive(tolerance, most_runs=most_runs), seed=seed)
+        points = np.append(LINE[::100], place)[:, None]
+        wrong += bool(np.abs(found(points) - np.abs(points - place)).max() > found.error[0])
     record_evidence(
-        "surrogates of |x − c| that are wrong by more than the claimed error, of 120 random c",
+        f"surrogates of |x − c| wrong by more than the claimed error, of 120 random c, at tolerance {tolerance:g}",
         0,
         wrong,
         tolerance=0,
@@ -120,28 +169,38 @@ def test_a_kink_is_never_worse_than_claimed(record_evidence) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("directions", [1, 2])
+@pytest.mark.parametrize("directions", [1, 2, 3])
 def test_features_wider_than_the_stated_gap_are_seen(directions: int, record_evidence) -> None:
-    """Steps of nine widths at 20 places each: those that are not noticed are narrower than the gap that is stated."""
-    hidden, wider = 0, 0
+    """Steps of nine widths at 20 places each: of those wider than the gap stated for the function without a step.
+
+    A step that is not seen leaves this gap.
+    """
+
+    def fitted(middle: np.ndarray, width: float, seed: int) -> tuple[bool, float]:
+        """Return whether the error is claimed to be small, and the stated gap; the width is a part of the box."""
+
+        def stepped(x: np.ndarray) -> np.ndarray:
+            return (np.sin(x.sum(axis=1)) + np.all(np.abs(x - middle) < width, axis=1))[:, None]
+
+        scheme = Adaptive(1e-3, most_runs=60 * directions)
+        found = fit(stepped, -np.ones(directions), np.ones(directions), scheme, seed=seed)
+        return bool(found.error[0] <= 1e-3 * found.scale[0]), unseen(found, "abc"[:directions]).values["gap"]
+
+    hidden, wider, missed = 0, 0, 0
+    plain = [fitted(np.zeros(directions), 0.0, seed) for seed in range(20)]
+    assert all(small for small, _ in plain)
     for width in (0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8):
-        for seed in range(20):
-            middle = np.random.default_rng((seed, directions, int(100 * width))).uniform(
-                width - 1, 1 - width, directions
-            )
-
-            def stepped(x: np.ndarray, c: np.ndarray = middle, w: float = width) -> np.ndarray:
-                return (np.sin(x.sum(axis=1)) + np.all(np.abs(x - c) <= w, axis=1))[:, None]
-
-            found = fit(stepped, -np.ones(directions), np.ones(directions), Adaptive(most_runs=150), seed=seed)
-            if np.all(found.error <= 1e-4 * found.scale):
-                hidden += 1
-                wider += unseen(found, "abc"[:directions]).values["gap"] < width
+        for seed, (_, gap) in enumerate(plain):
+            random = np.random.default_rng((seed, directions, int(100 * width)))
+            small, stated = fitted(random.uniform(width - 1, 1 - width, directions), width, seed)
+            assert not small or stated == gap
+            hidden, wider, missed = hidden + small, wider + (width > gap), missed + (small and width > gap)
     assert hidden > 10
+    assert wider >= 40
     record_evidence(
-        f"steps in {directions} directions wider than the stated gap that are not seen, part of 180",
+        f"steps in {directions} directions wider than the stated gap that are not seen, part of {wider}",
         0.0,
-        wider / 180,
+        missed / wider,
         tolerance=0.05,
         topic=TOPIC,
         source="target: at most 5 %",
@@ -166,16 +225,14 @@ SMOOTH = {
 @pytest.mark.parametrize("name", SMOOTH)
 def test_smooth_functions_get_no_warning(name: str) -> None:
     function, directions = SMOOTH[name]
-    FUNCTIONS["smooth"] = (function, directions, 1.0, (0.0, 0.0))
-    model, box, _ = posed("smooth")
-    del FUNCTIONS["smooth"]
+    model, box = posed_of(function, directions, 1.0)
     found = da.propagate(model, box)
     assert [(finding.code, finding.severity) for finding in found.findings] == [("unseen-features", "note")]
 
 
 def test_functions_that_are_not_smooth_are_refused_soon_with_the_parameter() -> None:
     for name in ("kink", "tanh 100x", "Sobol g"):
-        model, box, _ = posed(name)
+        model, box = posed(name)
         with pytest.raises(
             SolveError, match=r"the coefficients do not decay along 'p0'.*: use method 'optimise', raise"
         ):
@@ -184,7 +241,7 @@ def test_functions_that_are_not_smooth_are_refused_soon_with_the_parameter() -> 
 
 @pytest.mark.parametrize(("name", "value"), [("narrow pit", -1.0), ("two components", 1.4)])
 def test_a_set_in_a_narrow_feature_is_not_said_to_be_excluded(name: str, value: float) -> None:
-    model, _, _ = posed(name)
+    model, _ = posed(name)
     data = da.Measurements.of(np.zeros(1), {"y": [value]})
     found = da.identify_set(model, data, error=0.1)
     assert found.empty
@@ -195,7 +252,7 @@ def test_a_set_in_a_narrow_feature_is_not_said_to_be_excluded(name: str, value: 
 
 
 def test_a_set_beside_a_step_says_that_the_surrogate_decides_little() -> None:
-    model, _, _ = posed("step")
+    model, _ = posed("step")
     found = da.identify_set(model, da.Measurements.of(np.zeros(1), {"y": [1.0]}), error=0.1)
     assert [finding.code for finding in found.findings] == ["unseen-features", "coarse-surrogate"]
     assert "do not decay along 'p0'" in found.findings[1].message

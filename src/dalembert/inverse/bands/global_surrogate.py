@@ -73,7 +73,9 @@ class GlobalSurrogate:
     Notes
     -----
     The bounds of a polynomial on a box change with the box as the polynomial does where they are taken (envelope
-    theorem), so the jacobian is exact. A few true runs check all bounds, since most are taken at the same corners.
+    theorem), so the jacobian is exact. A few true runs check all bounds, since most are taken at the same corners. The
+    checks end when surrogate and true runs agree to 1e-6 of a channel's range. This limits the accuracy of the answer
+    if the bands have no noise; the deviations do not include it.
     """
 
     scheme: Scheme = field(default_factory=lambda: Adaptive(tolerance=1e-2, cautious=False))

@@ -198,13 +198,13 @@ def estimate(n, scale, method, pattern, matrices, damped, h, start, s, b):
     It is the difference to the method of the order of the stages that also weighs the rates at the start, by the
     reciprocal of the real eigenvalue (Hairer and Wanner 1996, IV.8.18).
     """
-    size, u, a = len(start.x) - 1, s.u, s.a
+    size, u, a = len(start.x) - 1, s.v, s.a
     real = method.real / h
     q, v, given, answer = b.weighed[0], b.weighed[1], b.given, b.answer
     for k in range(n):
         q[k], v[k] = start.v[k], start.a[k]
         for i in range(len(u)):
-            q[k] -= method.start[i] * u[i, k]
+            q[k] -= method.start[i] * s.v[i, k]
             v[k] -= method.start[i] * a[i, k]
         q[k] /= real
         v[k] /= real

@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 import dalembert as da
+from dalembert.multibody.integrators.integrator import Integrator
+from damped_slider_crank import damped_slider_crank
 from flexible_pendulum import pendulum
 from rigid_mechanisms import andrews, n_four_bar, read, two_link_arm
 from soft_pendulum import soft
@@ -187,6 +189,29 @@ def test_flexible_pendulum_agrees_with_generalized_alpha(record_evidence) -> Non
         topic=TOPIC,
         source="generalized-α",
     )
+
+
+@pytest.mark.parametrize(("damping", "span"), [(0.0, 0.002), (1e-4, 0.002), (1e-3, 0.0005)])
+def test_errors_of_a_stiff_slider_crank_fall_with_the_tolerance(record_evidence, damping: float, span: float) -> None:
+    """Its rod is flexible and has material damping; the last row is near rounding."""
+    system, times = damped_slider_crank(damping), np.array([0.0, span])
+    names = [f"{place}.{entry}" for place in ("crank.end", "rod.end") for entry in ("x", "y", "vx", "vy")]
+
+    def end(solver: Integrator) -> np.ndarray:
+        return da.simulate(system, span, solver=solver, times=times).channels(names)[-1]
+
+    exact = end(da.OdeSolver("DOP853", 1e-12, 1e-13, da.Partitioning()))
+    for tolerance, bound in ((1e-6, 2e-7), (1e-8, 2e-10), (1e-10, 2e-12)):
+        record_evidence(
+            f"slider-crank, flexible rod (damping {damping:g} s), positions and velocities (tolerance {tolerance:g})",
+            exact,
+            end(da.RadauIIA(tolerance)),
+            unit="m, m/s",
+            tolerance=bound,
+            topic=TOPIC,
+            source="DOP853 with coordinate partitioning, relative tolerance 1e-12",
+            noisy=True,
+        )
 
 
 def test_outputs_leave_the_motion_alone(reference) -> None:

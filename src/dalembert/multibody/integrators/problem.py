@@ -5,7 +5,7 @@ from typing import NamedTuple
 from dalembert.kernels.words import Integers, Reals, Reals2
 from dalembert.multibody.kernels.linear import Layout
 
-DONE, NEWTON_FAILED, SINGULAR, TOO_MANY_STEPS, DIVERGED = range(5)
+DONE, NEWTON_FAILED, SINGULAR, TOO_MANY_STEPS, DIVERGED, INEXACT = range(6)
 
 
 class Reduced(NamedTuple):

@@ -12,7 +12,7 @@ from dalembert.multibody.integrators.consistent import accelerate_along
 from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.matrices import pattern_of
 from dalembert.multibody.integrators.outputs import record_along
-from dalembert.multibody.integrators.problem import DONE, Log, Problem
+from dalembert.multibody.integrators.problem import DONE, INEXACT, Log, Problem
 from dalembert.multibody.integrators.radau_coefficients import coefficients
 from dalembert.multibody.integrators.radau_derivatives import differentiate, settle_end_along
 from dalembert.multibody.integrators.radau_loop import integrate
@@ -26,6 +26,9 @@ from dalembert.multibody.structure import Structure
 from dalembert.settings import expect, expect_positive
 
 _ROOM = 100_000  # steps whose Newton counts are kept, where their number is not known before
+_ABOVE = 100.0  # times the smallest error: a tolerance at which rounding hardly changes the step
+_FINEST = 1e-12  # tolerance from which rounding does not limit the steps of stiff mechanisms (measured)
+_ROUNDED = 1e-7  # tolerance that no rounding asks for
 
 
 @dataclass(frozen=True)
@@ -42,7 +45,8 @@ class RadauIIA(Integrator):
     ----------
     tolerance : float
         Of the estimated error of a step, relative to each coordinate's scale, and of velocities to the largest one so
-        far. The estimate is of the order of the stages, so errors of fine steps are much smaller.
+        far. The estimate is of the order of the stages, so errors of fine steps are much smaller. Rounding allows
+        1e-12 and more for stiff mechanisms.
     step : float, optional
         Fixed step in s; chosen by ``tolerance`` if not given.
     stages : {5, 3, 7}
@@ -126,8 +130,8 @@ class RadauIIA(Integrator):
             edges = problem.edges[number, : problem.stretches[number] + 1]
             own, start = resting(*shape), Motion(*(array[number] for array in states))
             model, dual = lowered.real.need("rates").address, lowered.dual.address
-            status, time, unknown = run(edges, self._settings(lowered), model, dual, start, own, log)
-            reason = None if status == DONE else self._explain(lowered, status, time, unknown, spare.new.x)
+            status, time, unknown, least = run(edges, self._settings(lowered), model, dual, start, own, log)
+            reason = None if status == DONE else self._explain(lowered, status, time, unknown, least, spare.new.x)
             taken = min(int(log.counts[0]), room)
             runs.append(Run(reason, problem.times, own, dout, log.counts, log.iterations[:taken], log.ends[:taken]))
         return runs
@@ -141,8 +145,21 @@ class RadauIIA(Integrator):
             lowered.dissipates,
         )
 
-    def _explain(self, lowered: Lowered, status: int, time: float, unknown: int, x: np.ndarray) -> str:
+    def _explain(self, lowered: Lowered, status: int, time: float, unknown: int, least: float, x: np.ndarray) -> str:
         cut_down = "the step was cut down for it"
         if self.step is not None:
             cut_down = f"the step of {self.step:g} s was cut down to 1/256 for it"
+        if status == INEXACT and not lowered.failures.errors:
+            return named(lowered, x, time) or self._explain_inexact(time, least)
         return named(lowered, x, time) or explain(lowered, status, time, unknown, cut_down, self.most_steps)
+
+    def _explain_inexact(self, time: float, least: float) -> str:
+        floor = least * self.tolerance
+        enough = max(_FINEST, 10.0 ** np.ceil(np.log10(_ABOVE * floor)))
+        rounded = enough <= _ROUNDED
+        cause = "by rounding, or by a load" if rounded else "by a load"
+        return (
+            f"no step meets tolerance = {self.tolerance:g} at t = {time:.6g} s: its estimated error is {floor:.1e} or "
+            f"more, {cause} that jumps or grows without bound; "
+            + (f"use tolerance = {enough:g} or more, or check the loads" if rounded else "check the loads")
+        )

@@ -8,7 +8,7 @@ from dalembert.multibody.integrators.consistent import Consistency, accelerate
 from dalembert.multibody.integrators.ends import append, support
 from dalembert.multibody.integrators.matrices import Matrices, Pattern, renew, weigh_masses
 from dalembert.multibody.integrators.outputs import record
-from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR, TOO_MANY_STEPS, Log, Problem
+from dalembert.multibody.integrators.problem import DONE, INEXACT, NEWTON_FAILED, SINGULAR, TOO_MANY_STEPS, Log, Problem
 from dalembert.multibody.integrators.radau_coefficients import Coefficients
 from dalembert.multibody.integrators.radau_derivatives import differentiate, settle_end_along
 from dalembert.multibody.integrators.radau_step import attempt, speed_of
@@ -64,8 +64,10 @@ def integrate(
     problem: Problem, method: Coefficients, pattern: Pattern, directions: Integers, dstates: Motions, dout: Histories,
     new: Motion, matrices: Matrices, step: Step, outputs: Outputs, along: Along, consistency: Consistency,
     edges: Reals, settings: Settings, model: Address, dual: Address, start: Motion, out: Motions, log: Log,
-) -> tuple[int, float, int]:  # fmt: skip
-    """Run one sample between ``edges`` (s): status, time reached, and the unknown that moved most.
+) -> tuple[int, float, int, float]:  # fmt: skip
+    """Run one sample between ``edges`` (s): status, time reached, unknown that moved most, smallest error of a step.
+
+    That error is of the last step, against the tolerance, over all lengths that were tried.
 
     ``method`` are the coefficients; ``directions`` are addresses of complex models, one a direction of differentiation.
     ``start`` (N + 1) and its derivatives ``dstates`` (directions, N + 1) are overwritten; ``out`` (times, N + 1) and
@@ -80,12 +82,12 @@ def integrate(
     clear(matrices.damping)  # is not evaluated where there is none
     clear(apart.damping)
     due = 0
-    speed, h, length, taken = 1.0 / (edges[-1] - edges[0]), 0.0, 0.0, 0.0
+    speed, h, length, taken, least = 1.0 / (edges[-1] - edges[0]), 0.0, 0.0, 0.0, np.inf
     for stretch in range(len(edges) - 1):
         t, end = edges[stretch], edges[stretch + 1]
         within = 0.5 * (t + end)
         if not accelerate(problem, model, dual, directions, t, within, new, dstates, consistency):
-            return SINGULAR, t, 0
+            return SINGULAR, t, 0, 0.0
         if stretch == 0:
             set_signals(dual, t, within, dual_work)  # those of a direction would count as masses
             weigh_masses(pattern, matrices, dual, n, new, dual_work)
@@ -109,7 +111,7 @@ def integrate(
                     problem, pattern, apart if far else matrices, far, model, dual, directions, last, within, out,
                     dout, due, outputs.between, outputs.dbetween, shares, moved, work, dual_work, lifted, along.record,
                 ):  # fmt: skip
-                    return NEWTON_FAILED, times[due], 0
+                    return NEWTON_FAILED, times[due], 0, 0.0
                 due += 1
             if number == steps:
                 break
@@ -125,7 +127,7 @@ def integrate(
             )  # fmt: skip
             counts[1] += iterations
             if status == SINGULAR:
-                return SINGULAR, t, 0
+                return SINGULAR, t, 0, 0.0
             counts[2] += 1 if made == h else 0
             fresh, stale = fresh or stale, False
             converged = status == DONE
@@ -138,10 +140,11 @@ def integrate(
                 if adaptive:
                     shorter = max(0.1, 0.9 * error ** (-1.0 / order)) if converged and error < 1e100 else 0.25
                     length = h * shorter
+                    least = min(least, error) if converged else least
                     if length < 1e-12 * (end - begin):
-                        return NEWTON_FAILED, t, worst
+                        return (INEXACT if converged else NEWTON_FAILED), t, worst, least
                 elif level == _HALVINGS:
-                    return NEWTON_FAILED, t, worst
+                    return NEWTON_FAILED, t, worst, 0.0
                 else:
                     level += 1
                 continue
@@ -150,7 +153,7 @@ def integrate(
                     along.differentiate, problem, method, pattern, matrices, directions, t, target, within, step.s,
                     along.dold, dstates, along.ds, step.b, along.works,
                 )  # fmt: skip
-            arrived, speed, before, earlier, taken = True, own, h, before, h
+            arrived, speed, before, earlier, taken, least = True, own, h, before, h, np.inf
             if counts[0] < len(log.iterations):
                 log.iterations[counts[0]] = iterations
                 log.ends[counts[0]] = target
@@ -161,7 +164,7 @@ def integrate(
             fresh, stale, far = False, rate > _AGED, rate > _AGED
             if adaptive:
                 if counts[0] >= settings.most_steps and not reached:
-                    return TOO_MANY_STEPS, t, 0
+                    return TOO_MANY_STEPS, t, 0, 0.0
                 error = max(error, 1e-30)
                 length = h * min(3.0, 0.9 * error ** (-1.0 / order))
                 if former > 0.0:
@@ -169,4 +172,4 @@ def integrate(
                     length = min(length, max(foreseen, _SHORTEST * h))
                 former = max(error, 1e-2)
     copy(new, start)
-    return DONE, edges[-1], 0
+    return DONE, edges[-1], 0, 0.0

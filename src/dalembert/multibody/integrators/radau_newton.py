@@ -154,8 +154,8 @@ def converge(
     for iteration in range(1, MOST_ITERATIONS + 1):
         for i in range(count):
             residual(model, n, x[i], v[i], a[i], works[i], 1.0, motion[i])
-            for k in range(n, size):  # rounding would come back as velocities, 1/h times as large
-                if abs(motion[i, k]) <= closed:
+            for k in range(n, size):  # what is left of it is rounding, and would disturb the rates at each iteration
+                if iteration > 2 and abs(motion[i, k]) <= closed:
                     motion[i, k] = 0.0
             for k in range(n):
                 given[k] = u[i, k] - v[i, k]
@@ -196,14 +196,16 @@ def estimate(n, scale, method, pattern, matrices, damped, h, start, s, b):
     """Estimated error of a step, as a part of the scales: of coordinates, and of velocities, 1/s.
 
     It is the difference to the method of the order of the stages that also weighs the rates at the start, by the
-    reciprocal of the real eigenvalue (Hairer and Wanner 1996, IV.8.18).
+    reciprocal of the real eigenvalue (Hairer and Wanner 1996, IV.8.18). Rates of the coordinates are the velocities
+    of the stages: ``u`` also holds the rounding of constraints over h, and viscous forces C would turn it into
+    velocities, C M^-1 times the rounding, whatever the step.
     """
-    size, u, a = len(start.x) - 1, s.v, s.a
+    size, a = len(start.x) - 1, s.a
     real = method.real / h
     q, v, given, answer = b.weighed[0], b.weighed[1], b.given, b.answer
     for k in range(n):
         q[k], v[k] = start.v[k], start.a[k]
-        for i in range(len(u)):
+        for i in range(len(a)):
             q[k] -= method.start[i] * s.v[i, k]
             v[k] -= method.start[i] * a[i, k]
         q[k] /= real

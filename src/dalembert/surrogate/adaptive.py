@@ -8,7 +8,7 @@ import numpy as np
 
 from dalembert.errors import InputError, unknown
 from dalembert.settings import expect_at_least, expect_positive
-from dalembert.surrogate.decay import by_direction, by_total_degree, slow_tail
+from dalembert.surrogate.decay import by_direction, by_total_degree, slow_tails
 from dalembert.surrogate.growth import Growth
 from dalembert.surrogate.held_out import SHARE, HeldOut
 from dalembert.surrogate.runs import Runs
@@ -127,8 +127,8 @@ class Adaptive:
         exponents, coefficients = growth.polynomial()
         if not self.cautious:
             return Fitted(exponents, coefficients, growth.tail(), ended)
-        slow = np.sum([slow_tail(shells) for shells in by_direction(exponents, coefficients)], axis=0)
-        return Fitted(exponents, coefficients, np.maximum(growth.tail(), slow), ended)
+        tail = np.maximum(growth.tail(), slow_tails(exponents, coefficients))
+        return Fitted(exponents, coefficients, tail, ended)
 
     def shells(self, exponents: np.ndarray, coefficients: np.ndarray) -> list[np.ndarray]:
         by_degree = by_total_degree if self.basis == "total-degree" else by_direction

@@ -7,7 +7,7 @@ import numpy as np
 
 from dalembert.errors import InputError, SolveError
 from dalembert.surrogate.basis import chebyshev, full_tensor, roots
-from dalembert.surrogate.decay import by_direction, tail
+from dalembert.surrogate.decay import by_direction, slow_tails, tail
 from dalembert.surrogate.held_out import HeldOut
 from dalembert.surrogate.runs import Runs, failed
 from dalembert.surrogate.scheme import Fitted
@@ -86,8 +86,8 @@ class Tensor:
                 "keep the box away from where the model fails, or use TotalDegree, which can do without some"
             )
         coefficients = _transformed(values, orders)
-        left_out = [tail(shells) for shells in self.shells(exponents, coefficients)]
-        return Fitted(exponents, coefficients, np.sum(left_out, axis=0) * np.ones(values.shape[1]))
+        left_out = np.sum([tail(shells) for shells in self.shells(exponents, coefficients)], axis=0)
+        return Fitted(exponents, coefficients, np.maximum(left_out, slow_tails(exponents, coefficients)))
 
     def shells(self, exponents: np.ndarray, coefficients: np.ndarray) -> list[np.ndarray]:
         return by_direction(exponents, coefficients)

@@ -9,7 +9,7 @@ from scipy.linalg import lstsq, qr
 from dalembert.errors import SolveError
 from dalembert.settings import expect, expect_at_least
 from dalembert.surrogate.basis import chebyshev, products, roots, terms_of, total_degree
-from dalembert.surrogate.decay import by_total_degree, tail
+from dalembert.surrogate.decay import by_total_degree, slow_tails, tail
 from dalembert.surrogate.held_out import HeldOut
 from dalembert.surrogate.runs import Runs, failed
 from dalembert.surrogate.scheme import Fitted
@@ -75,7 +75,8 @@ class TotalDegree:
                 f"{(~kept).sum()} of the {len(eta)} runs of a surrogate failed; those that are left do not "
                 f"determine its {len(exponents)} terms; raise TotalDegree(oversampling=...)"
             )
-        return Fitted(exponents, coefficients, tail(self.shells(exponents, coefficients)[0]))
+        left_out = tail(self.shells(exponents, coefficients)[0])
+        return Fitted(exponents, coefficients, np.maximum(left_out, slow_tails(exponents, coefficients)))
 
     def points(self, directions: int, seed: int = 0) -> np.ndarray:
         """Coordinates η of the runs, shape (M, d); ``seed`` counts only where the grid is too large to search whole."""

@@ -10,11 +10,11 @@ SHORT = 6
 SMOOTH, SMOOTHEST, EACH_POWER = 5.0, 9.0, 3.2
 """Powers of the degree up to which coefficients decay as those of a function that is not smooth.
 
-At least the first, at most the second, and one for each so many degrees: smooth functions reach higher degrees only
-with higher powers, and the power of a kink scatters widely.
+At least the first, at most the second, and between them the order divided by the third: smooth functions reach high
+orders with large powers only, and the power of a kink scatters.
 """
 GEOMETRIC = 0.5
-"""Coefficients decay geometrically where a geometric series fits this much better than a power of the degree."""
+"""Misfit of a geometric series, as a part of that of a power of the degree, below which the decay is geometric."""
 STEEPEST = 2.0
 """Largest power that such a decay is continued with."""
 CAUTION = 3.0

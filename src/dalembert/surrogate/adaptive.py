@@ -127,7 +127,7 @@ class Adaptive:
         exponents, coefficients = growth.polynomial()
         if not self.cautious:
             return Fitted(exponents, coefficients, growth.tail(), ended)
-        tail = np.maximum(growth.tail(), slow_tails(exponents, coefficients))
+        tail = np.maximum(growth.tail(), slow_tails(by_direction(exponents, coefficients)))
         return Fitted(exponents, coefficients, tail, ended)
 
     def shells(self, exponents: np.ndarray, coefficients: np.ndarray) -> list[np.ndarray]:

@@ -93,9 +93,9 @@ def slow_tail(shells: np.ndarray) -> np.ndarray:
     return np.where(kink, CAUTION * last * order / np.maximum(taken - 1, FLATTEST), 0.0)
 
 
-def slow_tails(exponents: np.ndarray, coefficients: np.ndarray) -> np.ndarray:
-    """Return the sum of :func:`slow_tail` over all directions, shape (outputs,)."""
-    return np.sum([slow_tail(shells) for shells in by_direction(exponents, coefficients)], axis=0)
+def slow_tails(directions: list[np.ndarray]) -> np.ndarray:
+    """Return the sum of :func:`slow_tail` over the shells of all directions, shape (outputs,)."""
+    return np.sum([slow_tail(shells) for shells in directions], axis=0)
 
 
 def _misfit_ratio(shells: np.ndarray) -> np.ndarray:

@@ -86,8 +86,9 @@ class Tensor:
                 "keep the box away from where the model fails, or use TotalDegree, which can do without some"
             )
         coefficients = _transformed(values, orders)
-        left_out = np.sum([tail(shells) for shells in self.shells(exponents, coefficients)], axis=0)
-        return Fitted(exponents, coefficients, np.maximum(left_out, slow_tails(exponents, coefficients)))
+        directions = self.shells(exponents, coefficients)
+        left_out = np.sum([tail(shells) for shells in directions], axis=0)
+        return Fitted(exponents, coefficients, np.maximum(left_out, slow_tails(directions)))
 
     def shells(self, exponents: np.ndarray, coefficients: np.ndarray) -> list[np.ndarray]:
         return by_direction(exponents, coefficients)

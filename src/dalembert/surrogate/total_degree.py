@@ -9,7 +9,7 @@ from scipy.linalg import lstsq, qr
 from dalembert.errors import SolveError
 from dalembert.settings import expect, expect_at_least
 from dalembert.surrogate.basis import chebyshev, products, roots, terms_of, total_degree
-from dalembert.surrogate.decay import by_total_degree, slow_tails, tail
+from dalembert.surrogate.decay import by_direction, by_total_degree, slow_tails, tail
 from dalembert.surrogate.held_out import HeldOut
 from dalembert.surrogate.runs import Runs, failed
 from dalembert.surrogate.scheme import Fitted
@@ -76,7 +76,7 @@ class TotalDegree:
                 f"determine its {len(exponents)} terms; raise TotalDegree(oversampling=...)"
             )
         left_out = tail(self.shells(exponents, coefficients)[0])
-        return Fitted(exponents, coefficients, np.maximum(left_out, slow_tails(exponents, coefficients)))
+        return Fitted(exponents, coefficients, np.maximum(left_out, slow_tails(by_direction(exponents, coefficients))))
 
     def points(self, directions: int, seed: int = 0) -> np.ndarray:
         """Coordinates η of the runs, shape (M, d); ``seed`` counts only where the grid is too large to search whole."""

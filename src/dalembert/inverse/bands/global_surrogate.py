@@ -23,7 +23,7 @@ from dalembert.surrogate.scheme import Scheme
 SCREENED = 100
 """Boxes bounded on the surrogate to choose starts from, an unknown."""
 
-ENOUGH = 1e-6
+ENOUGH = 1e-7
 """Checks end when surrogate and true runs agree to this part of a channel's range."""
 
 NEGLIGIBLE = 0.1
@@ -74,7 +74,7 @@ class GlobalSurrogate:
     -----
     The bounds of a polynomial on a box change with the box as the polynomial does where they are taken (envelope
     theorem), so the jacobian is exact. A few true runs check all bounds, since most are taken at the same corners. The
-    checks end when surrogate and true runs agree to 1e-6 of a channel's range. This limits the accuracy of the answer
+    checks end when surrogate and true runs agree to 1e-7 of a channel's range. This limits the accuracy of the answer
     if the bands have no noise; the deviations do not include it.
     """
 

@@ -93,7 +93,7 @@ def identify_bands(
     >>> decay = PythonModel(lambda rate: np.exp(-rate * times), {"rate": (0.1, 3.0)}, ["x"], times)
     >>> bands = Bands.of(times, {"x": (np.exp(-1.2 * times), np.exp(-0.8 * times))})
     >>> box = identify_bands(decay, bands).box
-    >>> box.lower.round(5).tolist(), box.upper.round(5).tolist()
+    >>> box.lower.round(6).tolist(), box.upper.round(6).tolist()
     ([0.8], [1.2])
     """
     check_kinds("identify_bands", model, bands, Bands)

@@ -222,6 +222,16 @@ def test_a_million_samples_are_extrapolated():
     assert "extrapolated from its first" in done.stdout
 
 
+def test_a_sweep_with_sensitivities_refuses_a_model_that_loses_the_complex_step():
+    Path("lost.py").write_text(MODELS.replace("x = place *", "x = abs(place) *"))
+    sweep = HEAD.replace("models.py", "lost.py") + '[sweep]\nat = 0.1\nchannels = ["x"]\nover = { place = [1.0] }\n'
+    Path("study.toml").write_text(sweep)
+    with pytest.raises(DalembertError, match=r"by 'place' is .* by the complex step, but .* by differences"):
+        run_study(load("study.toml"))
+    Path("study.toml").write_text(sweep + "sensitivities = false\n")
+    run_study(load("study.toml"))
+
+
 def test_the_check_ends_at_its_time_limit():
     Path("study.toml").write_text(HEAD.replace("swing", "pause") + DATA + "[identify]\n")
     began = time.monotonic()

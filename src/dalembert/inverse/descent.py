@@ -40,7 +40,7 @@ class Memo:
 
     def __init__(self, problem: Problem, at: Linearisation | None = None) -> None:
         self.problem, self.hopeful = problem, True
-        self.at = at
+        self.at = self.accepted = at
 
     def residual(self, point: np.ndarray) -> np.ndarray:
         vector, hopeful = self.problem.search.vectors(point), self.hopeful
@@ -60,8 +60,13 @@ class Memo:
         vector = self.problem.search.vectors(point)
         if self.at is None or not np.array_equal(self.at.vector, vector):
             self.at = self.problem.linearise(vector)
-        self.hopeful = True
+        self.hopeful, self.accepted = True, self.at
         return self.problem.slopes(self.at)
+
+    def known(self, vector: np.ndarray) -> Linearisation | None:
+        """The linearisation at a vector (parameters,), if it is that of the last or of the last accepted point."""
+        both = (at for at in (self.at, self.accepted) if at is not None)
+        return next((at for at in both if np.array_equal(at.vector, vector)), None)
 
 
 def descend(ladder: Sequence[Problem], method: Squares, point: np.ndarray, fitness: float | None = None) -> End:
@@ -101,6 +106,5 @@ def _local(memo: Memo, method: Squares, point: np.ndarray) -> End:
         return replace(best, message=f"the sensitivities could not be computed: {error}")
     reasons = [] if np.isfinite(found.fitness) else journal.failures[-1:]
     message = ": ".join([found.message, *reasons])
-    at = memo.at
-    kept = at if at is not None and np.array_equal(at.vector, search.vectors(found.x)) else None
+    kept = memo.known(search.vectors(found.x))
     return End(found.x, found.fitness, found.success, message, found.stationary, kept, rough=found.rough, begun=begun)

@@ -47,8 +47,8 @@ def assembled(system: System, tilted: bool = False, placed: Lowered | None = Non
             lowered, **{name: getattr(lowered, name).astype(complex) for name in ("frames", "rates", "x", "v")}
         )
     free = _free(system)
-    frames = _close(system.bodies, lowered, model, free)
-    lowered = replace(lowered, frames=frames, x=unknowns(lowered, coordinates_of(system.bodies, frames)))
+    frames, x = _close(system.bodies, lowered, model, free)
+    lowered = replace(lowered, frames=frames, x=x)
     return replace(lowered, v=initial_velocities(system.bodies, lowered, model))
 
 
@@ -135,8 +135,8 @@ def _free(system: System) -> np.ndarray:
     return free
 
 
-def _close(bodies: Sequence[Body], lowered: Lowered, model: Model, free: np.ndarray) -> np.ndarray:
-    """Frames at which all joints are closed."""
+def _close(bodies: Sequence[Body], lowered: Lowered, model: Model, free: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Frames at which all joints are closed, and the unknowns there."""
     frames = lowered.frames
     still = np.zeros_like(lowered.x)
     extent = scales(lowered).max()
@@ -147,7 +147,7 @@ def _close(bodies: Sequence[Body], lowered: Lowered, model: Model, free: np.ndar
         (gap, slope), moved = size_of(gaps), max(1.0, size_of(x)[1])
         closed = max(gap, slope / moved) / extent  # derivatives are rounded in proportion to their size
         if closed <= CLOSED:
-            return frames
+            return frames, x
         if not np.all(np.isfinite(gaps)):
             break
         modes = spread(lowered, bodies, modes_of(bodies, coordinates, frames))
@@ -158,7 +158,7 @@ def _close(bodies: Sequence[Body], lowered: Lowered, model: Model, free: np.ndar
         frames = frames.copy()
         frames[free] += step * min(1.0, 0.5 * extent / (longest + 1e-300))
         if longest <= 1e-15 and closed <= 1e3 * CLOSED:
-            return frames
+            return frames, unknowns(lowered, coordinates_of(bodies, frames))
     structure = lowered.structure
     for error in lowered.failures.inexact:
         raise error

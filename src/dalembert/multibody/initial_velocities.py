@@ -14,7 +14,7 @@ from dalembert.multibody.components.planar.body import Body
 from dalembert.multibody.evaluate import constraint_rates
 from dalembert.multibody.kernels.model import Model
 from dalembert.multibody.lowering import Lowered
-from dalembert.multibody.rigid_motions import CLOSED, coordinates_of, modes_of, size_of, smallest, spread
+from dalembert.multibody.rigid_motions import CLOSED, modes_of, size_of, smallest, spread
 
 _ROUNDING = 1e-9  # of the largest velocity: what stated velocities may leave of a constraint's rate
 
@@ -30,8 +30,7 @@ def initial_velocities(bodies: Sequence[Body], lowered: Lowered, model: Model) -
     """
     turning = np.array([[True, True, body.turns] for body in bodies])
     motion = _Motion(bodies, lowered, model)
-    chosen, left = motion.completed(np.where(lowered.stated, lowered.rates, 0.0), turning & ~lowered.stated)
-    v = motion.velocities(chosen)
+    _, v, left = motion.completed(np.where(lowered.stated, lowered.rates, 0.0), turning & ~lowered.stated)
     wrong, wrong_slope = size_of(left)
     speed, slope = motion.sizes(v)
     if wrong > _ROUNDING * speed:
@@ -50,8 +49,10 @@ class _Motion:
 
     def __init__(self, bodies: Sequence[Body], lowered: Lowered, model: Model) -> None:
         self.bodies, self.lowered, self.model = bodies, lowered, model
-        self._coordinates = coordinates_of(bodies, lowered.frames)
+        first = [lowered.structure.first[body.name] for body in bodies]
+        self._coordinates = [lowered.x[k : k + body.size] for k, body in zip(first, bodies, strict=True)]
         self._each = modes_of(bodies, self._coordinates, lowered.frames)
+        self._place = max(size_of(lowered.x)[1], 1.0)
         self._modes = spread(lowered, bodies, self._each)
         self._tail = np.zeros(lowered.structure.size + 1 - lowered.structure.n)
 
@@ -66,12 +67,12 @@ class _Motion:
 
     def sizes(self, v: np.ndarray) -> tuple[float, float]:
         """Sizes against which constraint rates, and their derivatives, count as none."""
-        (speed, slope), (_, place) = size_of(v), size_of(self.lowered.x)
+        speed, slope = size_of(v)
         speed = max(speed, 1.0)
-        return speed, max(slope, speed * max(place, 1.0))
+        return speed, max(slope, speed * self._place)
 
-    def completed(self, chosen: np.ndarray, free: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Chosen rates with the smallest change of the ``free`` ones, and the constraint rates that remain."""
+    def completed(self, chosen: np.ndarray, free: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Chosen rates with the smallest change of the ``free`` ones, velocities, and constraint rates that remain."""
         lowered, chosen = self.lowered, chosen.astype(self.lowered.x.dtype)
         units = None
         for attempt in range(4):  # linear: once for the value, twice for rounding
@@ -82,7 +83,7 @@ class _Motion:
                 break
             units = self._units(free) if units is None else units
             chosen[free] += smallest(lowered, self.model, lowered.x, units, -left)
-        return chosen, left
+        return chosen, v, left
 
     def _units(self, free: np.ndarray) -> np.ndarray:
         """Derivatives of the velocities by the free rates, (n, free)."""
@@ -98,9 +99,9 @@ def _contradiction(motion: _Motion, turning: np.ndarray, left: np.ndarray) -> Mo
     wide = np.abs(np.real(left))
     joints = sorted({motion.owner(row) for row in np.flatnonzero(wide > 0.5 * wide.max()).tolist()})
     lowered, given = motion.lowered, np.where(motion.lowered.stated, motion.lowered.rates, 0.0)
-    possible, remains = motion.completed(given, turning)
+    possible, v, remains = motion.completed(given, turning)
     worst = int(np.argmax(np.abs(np.real(remains))))
-    if size_of(remains)[0] > _ROUNDING * motion.sizes(motion.velocities(possible))[0]:
+    if size_of(remains)[0] > _ROUNDING * motion.sizes(v)[0]:
         return ModelError(
             f"no initial velocities satisfy joint {motion.owner(worst)!r}: {np.abs(np.real(remains[worst])):.3g} "
             "(m/s or rad/s) remain. Check the prescribed motions at the start"

@@ -39,6 +39,8 @@ def spread(lowered: Lowered, bodies: Sequence[Body], modes: Sequence[np.ndarray]
 
 def size_of(values: np.ndarray) -> tuple[float, float]:
     """Largest entry, and the largest derivative."""
+    if not np.iscomplexobj(values):
+        return np.abs(values).max(initial=0.0), 0.0
     return np.abs(np.real(values)).max(initial=0.0), np.abs(np.imag(values)).max(initial=0.0) / STEP
 
 

@@ -14,6 +14,10 @@ from dalembert.settings import expect
 LEAST_GAIN = 1e-14
 """Fraction of the sum of squares. A step that gains less ends a descent, whatever is foreseen."""
 
+COARSE = 1e-3
+"""Fraction of the sum of squares. With this ``gain`` a descent is one of many, of which the best continues: progress is
+judged sooner. With a larger one it only leads to another descent, and one step that gains less ends it."""
+
 ROUNDING = 1e-14
 """Columns of the jacobian below this part of the largest are rounding."""
 
@@ -40,7 +44,8 @@ class LeastSquares:
         Ends when a step is shorter than this, relative to one unit a parameter.
     gain : float
         Ends when the linear model within the bounds foresees a fall of the sum of squares by less than this fraction,
-        or when a step that goes as foreseen lowers it by less than the smaller of this and 1e-14.
+        or when a step that goes as foreseen lowers it by less than the smaller of this and 1e-14. Above 1e-3 one step
+        that lowers it by less than ``gain`` is enough.
 
     Notes
     -----
@@ -48,8 +53,9 @@ class LeastSquares:
     parameter may move the farther, the less the residuals depend on it. The first trust radius is that of the first
     point, so every parameter may move by about one ``scale`` at first, wherever the origin of x lies.
 
-    A descent also ends when 20 trial points lowered the sum of squares by less than 0.1 %, and the foreseen fall did
-    not shrink tenfold either: the residuals are rough then, or the jacobian is wrong. If the foreseen fall is below
+    A descent also ends when 10 trial points for each parameter, or 4 with a ``gain`` from 1e-3 on, and at least 20,
+    lowered the sum of squares by less than 2 %, and the foreseen fall did not shrink tenfold either: the residuals are
+    rough then, the jacobian is wrong, or the descent follows a long curved valley. If the foreseen fall is below
     0.01 %, the minimum is reached up to the roughness, otherwise the descent has not converged.
 
     Examples
@@ -94,7 +100,8 @@ class LeastSquares:
         """
         low, high = box(lower, upper)
         origin = np.clip(np.asarray(start, dtype=float), low, high)
-        stopping = Stopping(self.gain, max(WINDOW, 10 * len(origin)))
+        window = max(WINDOW, (10 if self.gain < COARSE else 4) * len(origin))
+        stopping = Stopping(self.gain, window)
         path = _Path(
             residual, jacobian, low, high, origin, np.broadcast_to(scale, origin.shape), on_iteration, stopping
         )
@@ -110,7 +117,7 @@ class LeastSquares:
                 method="trf",
                 x_scale="jac",
                 # A larger one would end a descent along a curved valley, where steps are short.
-                ftol=min(LEAST_GAIN, self.gain),
+                ftol=self.gain if self.gain > COARSE else min(LEAST_GAIN, self.gain),
                 xtol=self.tolerance,
                 # An absolute threshold on the gradient would depend on the units of the data.
                 gtol=None,  # pyright: ignore[reportArgumentType]

@@ -7,9 +7,9 @@ import numpy as np
 from dalembert.optimize.linear_model import LinearModel
 
 WINDOW = 20
-"""Trial points after which progress is judged, at least; ten for each parameter."""
+"""Trial points after which progress is judged, at least."""
 
-PROGRESS = 1e-3
+PROGRESS = 0.02
 """Least progress over a window: a fall of the sum of squares by this fraction."""
 
 ROUGH = 1e-4
@@ -55,7 +55,9 @@ class Stopping:
         """
         size = np.linalg.norm(slopes, axis=0)
         size[size == 0] = 1.0
-        model = LinearModel(residual, slopes / size, down * size, up * size)
+        # Its triangular factor has the same steps and falls, and is decomposed sooner.
+        factor = np.asarray(np.linalg.qr(np.column_stack([slopes / size, residual]), mode="r"))
+        model = LinearModel(factor[:, -1], factor[:, :-1], down * size, up * size)
         self.foreseen = model.foreseen(model.step(0.0)) / float(residual @ residual)
         if self.foreseen < self.gain:
             raise Stopped("converged: the sum of squares falls no more")

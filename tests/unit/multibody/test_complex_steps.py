@@ -62,6 +62,26 @@ def test_an_identification_does_not_begin_with_wrong_derivatives() -> None:
         da.identify(response(arm(safe=abs)), data, starts=1, seed=0)
 
 
+NARROW = {"length": (0.9, 1.1), "stiffness": (14.0, 16.0)}
+METHODS: dict[str, Callable] = {
+    "taylor": lambda model, data, fit: da.propagate(model, NARROW, "taylor"),
+    "optimise": lambda model, data, fit: da.propagate(model, NARROW, "optimise"),
+    "profile": da.profile,
+    "predict": lambda model, data, fit: da.predict(model, fit),
+    "design": lambda model, data, fit: da.design(model, VALUES, deviations=1e-3),
+}
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_every_method_that_differentiates_refuses_a_lost_step(method: str) -> None:
+    """The fit is that of a builder that carries the step."""
+    safe, losing = response(arm()), response(arm(safe=abs))
+    data = da.Measurements.of(TIMES, {"bar.end.x": safe.evaluate(VALUES[None]).values[0, :, 0]}, 1e-3)
+    fit = da.identify(safe, data, start=VALUES, starts=1)
+    with pytest.raises(da.InputError, match="by 'length' is 0 by the complex step"):
+        METHODS[method](losing, data, fit)
+
+
 def test_safe_functions_and_differences_give_the_derivatives() -> None:
     exact = response(arm()).jacobian(VALUES)
     safe = arm(safe=lambda x: da.hypot(x, 0.0), stiff=da.absolute, course=lambda x: da.norm([0.0, x]))

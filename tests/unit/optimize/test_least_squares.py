@@ -96,6 +96,45 @@ def test_progress_is_told_at_the_start_and_after_each_accepted_step():
     assert seen[-1].iteration == found.iterations
 
 
+def valley(x):
+    """Rosenbrock's residuals, and as many others as there are parameters more."""
+    return np.array([1.0 - x[0], 100 * (x[1] - x[0] ** 2), *x[2:]])
+
+
+def valley_slope(x):
+    slopes = np.eye(len(x))
+    slopes[:2, :2] = [[-1.0, 0.0], [-200 * x[0], 100.0]]
+    return slopes
+
+
+def test_a_coarse_descent_ends_after_a_step_that_gains_little():
+    """In the valley the linear model always foresees a fall to zero."""
+    coarse, fine = (
+        LeastSquares(gain=gain).minimise(valley, valley_slope, [-2, -2], [2, 2], [-1.5, 1.0]) for gain in (0.5, 1e-3)
+    )
+    assert coarse.success
+    assert coarse.evaluations < fine.evaluations / 5
+    np.testing.assert_allclose(fine.x, 1.0, rtol=1e-8)
+
+
+def test_one_of_many_descents_is_judged_sooner():
+    """A constant residual of 20 makes the progress along the valley small: the sum of squares falls from 404 to 400."""
+    many, last = (
+        LeastSquares(gain=gain).minimise(
+            lambda x: np.append(valley(x), 20.0),
+            lambda x: np.vstack([valley_slope(x), np.zeros(5)]),
+            [-2] * 5,
+            [2] * 5,
+            [-1.0, 1.0, 0.0, 0.0, 0.0],
+        )
+        for gain in (1e-3, 1e-14)
+    )
+    assert "stopped, not converged" in many.message
+    assert many.evaluations < 25
+    assert last.success
+    np.testing.assert_allclose(last.fitness, 400.0)
+
+
 @pytest.mark.parametrize(
     ("settings", "sentence"),
     [

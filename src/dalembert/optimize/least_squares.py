@@ -69,7 +69,7 @@ class LeastSquares:
 
     trials: int | None = None
     tolerance: float = 1e-10
-    gain: float = 1e-14
+    gain: float = 1e-13
 
     def __post_init__(self) -> None:
         expect(self, "at least 1", lambda given: given is None or given >= 1, "trials")

@@ -8,7 +8,7 @@ confirms, the numbers follow the parameter in steps.
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import partial
+from functools import cache, partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -237,7 +237,7 @@ def check_steps(
     if not thorough and not attempted(partial(lost_step, _together(numbers, inside, sizes), 1.0)):
         return
     for column, (name, unit) in enumerate(zip(parameters.names, np.eye(len(vector)), strict=True)):
-        along = _line(numbers, inside, unit)
+        along = cache(_line(numbers, inside, unit))  # intervals around the same point share it
         lost = attempted(partial(lost_step, along, sizes[column]))
         if lost:
             raise InputError(

@@ -13,6 +13,7 @@ from dalembert.multibody.callbacks import in_complex_numbers
 from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha
 from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.run import make_problem
+from dalembert.multibody.long_runs import MOST_STEPS, check_pace, check_steps, works
 from dalembert.multibody.lowering import Lowered, lower
 from dalembert.multibody.system import System
 from dalembert.multibody.trajectory import Trajectory
@@ -22,7 +23,12 @@ _ROOM = 20_000_000  # numbers up to which the states of all steps are kept, wher
 
 
 def simulate(
-    system: System, end: float, solver: Integrator | str | None = None, times: np.ndarray | None = None
+    system: System,
+    end: float,
+    solver: Integrator | str | None = None,
+    times: np.ndarray | None = None,
+    *,
+    most_steps: float = MOST_STEPS,
 ) -> Trajectory:
     """Integrate the motion of a system from time 0.
 
@@ -38,6 +44,10 @@ def simulate(
         Output times in s, increasing, within [0, end]. Every step if not given; 1001 equal ones if the solver chooses
         its steps. Between steps the motion is interpolated, by generalized-alpha cubically.
 
+    most_steps : float
+        Fixed steps from which the simulation is refused. Methods that choose their steps have the setting
+        ``most_steps``.
+
     Returns
     -------
     Trajectory
@@ -45,7 +55,7 @@ def simulate(
     Raises
     ------
     InputError
-        For times that do not increase or lie outside the motion.
+        For times that do not increase or lie outside the motion, and for more than ``most_steps`` fixed steps.
     ModelError
         Where the mechanism cannot be assembled or has redundant constraints.
     SolveError
@@ -62,7 +72,8 @@ def simulate(
     array([0.986])
     """
     with in_complex_numbers(strict=False):
-        lowered, chosen, times, grid = posed(system, end, solver, times)
+        lowered, chosen, times, grid = posed(system, end, solver, times, most_steps)
+        check_pace(lowered, chosen, end)
         problem = make_problem(lowered, grid)
         (result,) = chosen.integrate([lowered], (), problem, end)
         if other := integrator(solver, end).instead(result.reason, end):
@@ -74,7 +85,7 @@ def simulate(
 
 
 def posed(
-    system: System, end: float, solver: Integrator | str | None, times: np.ndarray | None
+    system: System, end: float, solver: Integrator | str | None, times: np.ndarray | None, most_steps: float = np.inf
 ) -> tuple[Lowered, Integrator, np.ndarray, np.ndarray]:
     """Return what :func:`simulate` integrates, after all its checks.
 
@@ -82,9 +93,11 @@ def posed(
     """
     if not (is_number(end) and not np.iscomplexobj(end) and end > 0):
         raise InputError(f"simulate: end is {shown(end)}; expected a positive number of seconds")
-    lowered, chosen = prepared(system, end, integrator(solver, end))
+    given = integrator(solver, end)
+    check_steps("simulate", given, end, most_steps, advice=", or raise most_steps")
+    lowered, chosen = prepared(system, end, given)
     count = _ADAPTIVE_OUTPUTS if chosen.fixed_step is None else end / chosen.fixed_step
-    worked = _works(lowered) and count * len(lowered.x) < _ROOM
+    worked = works(lowered) and count * len(lowered.x) < _ROOM
     if times is None:
         _check_memory(chosen, end, 3 * len(lowered.x) * count)
     steps = chosen.step_ends(end, lowered.jumps) if times is None or worked else np.zeros(1)
@@ -122,11 +135,6 @@ def prepared(system: System, end: float, solver: Integrator) -> tuple[Lowered, I
         refuse_redundancy(lowered)
     refuse_kinks(lowered, end)
     return lowered, solver
-
-
-def _works(lowered: Lowered) -> bool:
-    """Whether loads, losses or prescribed motions may do work."""
-    return lowered.dissipates or any(kind.driven or kind.loads for kind in lowered.data)
 
 
 def integrator(given: Integrator | str | None, end: float) -> Integrator:

@@ -23,6 +23,7 @@ from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.problem import Problem
 from dalembert.multibody.integrators.run import Run, make_problem
 from dalembert.multibody.kernels.dual import STEP
+from dalembert.multibody.long_runs import check_pace, check_steps
 from dalembert.multibody.lowering import Lowered, lower
 from dalembert.multibody.observe import Observer, observer
 from dalembert.multibody.simulation import checked, integrator, simulate
@@ -98,7 +99,7 @@ class TimeResponse:
         parameters = Parameters.of(parameters)
         check_function("TimeResponse", builder, [item.name for item in parameters.declared])
         solver = integrator(solver, float(times[-1]))
-        _check_steps(solver, float(times[-1]))
+        check_steps("TimeResponse", solver, float(times[-1]), _MOST_STEPS)
         for name, value in (
             ("builder", builder),
             ("parameters", parameters),
@@ -283,6 +284,7 @@ class TimeResponse:
         if not self.solver.suiting(lowered, float(self.times[-1])).takes_redundancy:
             refuse_redundancy(lowered)
         refuse_kinks(lowered, float(self.times[-1]))
+        check_pace(lowered, self.solver.suiting(lowered, float(self.times[-1])), float(self.times[-1]))
         return _Frame(lowered, make_problem(lowered, self.times), observer(system, lowered, self.channel_names))
 
     def _prepare(self, lowered: Lowered, observer: Observer, derivatives: bool) -> None:
@@ -337,13 +339,3 @@ def _parts(count: int, workers: int) -> list[np.ndarray]:
 
 
 _MOST_STEPS = 1e9  # hours, even of the smallest mechanisms
-
-
-def _check_steps(solver: Integrator, end: float) -> None:
-    """Refuse more fixed steps than anybody can wait for."""
-    steps = 0.0 if solver.fixed_step is None else end / solver.fixed_step
-    if steps > _MOST_STEPS:
-        raise InputError(
-            f"TimeResponse: {solver} until {end:g} s takes {steps:.3g} steps; expected at most {_MOST_STEPS:g}, which "
-            "take hours. Use larger steps or a shorter motion"
-        )

@@ -174,7 +174,7 @@ class Study:
         """The mechanism's motion until ``end`` (s) at a parameter vector."""
         from dalembert.multibody import simulate
 
-        return simulate(self.system(vector), end, solver=self.solver, times=times)
+        return simulate(self.system(vector), end, solver=self.solver, times=times, most_steps=np.inf)
 
     def forward(self, channels: Sequence[str], samples: np.ndarray) -> ForwardModel:
         """The model between parameters and channels, at samples of its coordinate."""

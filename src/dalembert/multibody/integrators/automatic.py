@@ -43,7 +43,7 @@ class Automatic(Integrator):
     >>> bar = system.add(RigidBar("bar", length=1.0, mass=1.0))
     >>> pin = system.add(RevoluteJoint("pin", system.ground, bar.start))
     >>> simulate(system, end=1.0, solver="auto").solver
-    RadauIIA(tolerance=1e-06, step=None, stages=5, newton_tolerance=1e-14, most_steps=10000000)
+    RadauIIA(tolerance=1e-06, step=None, stages=5, newton_tolerance=1e-14, most_steps=1000000)
     """
 
     tolerance: float = field(default=1e-6, metadata={"unit": ""})

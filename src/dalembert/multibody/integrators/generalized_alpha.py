@@ -76,7 +76,7 @@ class GeneralizedAlpha(Integrator):
     adaptive: bool = False
     tolerance: float = field(default=1e-6, metadata={"unit": ""})
     newton_tolerance: float = field(default=2e-15, metadata={"unit": ""})
-    most_steps: int = 10_000_000
+    most_steps: int = 1_000_000
 
     def __post_init__(self) -> None:
         if not (np.isfinite(self.step) and self.step > 0):

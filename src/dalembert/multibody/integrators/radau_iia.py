@@ -77,7 +77,7 @@ class RadauIIA(Integrator):
     step: float | None = field(default=None, metadata={"unit": "s"})
     stages: int = 5
     newton_tolerance: float = field(default=1e-14, metadata={"unit": ""})
-    most_steps: int = 10_000_000
+    most_steps: int = 1_000_000
 
     def __post_init__(self) -> None:
         in_range = "a positive number of seconds, or none"

@@ -1,17 +1,19 @@
 """Arguments of dataclasses, checked by their annotations before anything is computed with them."""
 
+import inspect
 import types
 import typing
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import InitVar
 from functools import cache, wraps
-from typing import Any, NamedTuple, Union
+from typing import Any, NamedTuple, TypeVar, Union, cast
 
 import numpy as np
 
 from dalembert.errors import InputError, shown
 
 LARGEST = 1e100  # of a number of a model; squares of larger ones soon leave the range of floating point
+Function = TypeVar("Function", bound=Callable[..., Any])
 _PLAIN = (float, int, complex, np.float64, np.complex128)
 
 
@@ -130,7 +132,14 @@ def _test(kind: Any) -> Callable[[Any], bool]:
         return lambda value: (of_text and isinstance(value, str)) or (_is_row(value) and all(map(inner[0], value)))
     if origin is Mapping:
         return lambda value: isinstance(value, Mapping) and all(map(inner[1], value.values()))
-    return (lambda value: isinstance(value, kind)) if isinstance(kind, type) else lambda value: True
+    if kind is Any or not isinstance(kind, type) or (getattr(kind, "_is_protocol", False) and not _is_runtime(kind)):
+        return lambda value: True
+    return lambda value: isinstance(value, kind)
+
+
+def _is_runtime(protocol: Any) -> bool:
+    """Whether instances of a protocol can be told by their members."""
+    return getattr(protocol, "_is_runtime_protocol", False)
 
 
 def _any_of(annotation: Any) -> Callable[[Any], bool]:
@@ -140,6 +149,46 @@ def _any_of(annotation: Any) -> Callable[[Any], bool]:
 
 def _holds(test: Callable[[Any], bool], value: Any) -> bool:
     return test(value)
+
+
+def takes_checked(*but: str) -> Callable[[Function], Function]:
+    """Decorator of a function whose arguments are checked by their annotations, as those of :class:`Checked` are.
+
+    Parameters
+    ----------
+    but : str
+        Names of arguments that the function checks itself, in more words.
+
+    Examples
+    --------
+    >>> @takes_checked()
+    ... def repeated(word: str, times: int = 2) -> str:
+    ...     return word * times
+    >>> repeated("a", 2.5)
+    Traceback (most recent call last):
+    dalembert.errors.InputError: repeated: times is 2.5; expected a whole number
+    """
+
+    def checking(function: Function) -> Function:
+        signature = inspect.signature(function)
+        known = {
+            name: (kinds_of(entry.annotation), _any_of(entry.annotation), entry.default)
+            for name, entry in signature.parameters.items()
+            if entry.annotation is not entry.empty and entry.kind is not entry.VAR_KEYWORD and name not in but
+        }
+
+        @wraps(function)
+        def with_checks(*args: Any, **options: Any) -> Any:
+            for name, value in signature.bind(*args, **options).arguments.items():
+                if name in known:
+                    kinds, test, default = known[name]
+                    if value is not default and not test(value):
+                        raise InputError(refusal(function.__name__, name, value, kinds))
+            return function(*args, **options)
+
+        return cast(Function, with_checks)
+
+    return checking
 
 
 def is_number(value: Any) -> bool:
@@ -248,6 +297,49 @@ def names_of(given: str | Iterable[str], owner: str, what: str) -> tuple[str, ..
         wrong = next((name for name in names if not isinstance(name, str)), given)
         raise InputError(f"{owner}: {what} is {shown(wrong)}; expected names, such as ['AB.end.x', 'AB.end.y']")
     return tuple(map(str, names))
+
+
+def numbers_of(given: Any, owner: str, what: str) -> np.ndarray:
+    """Real numbers as an array of floats.
+
+    >>> numbers_of([1, 2], "design", "deviations")
+    array([1., 2.])
+    >>> numbers_of("many", "design", "deviations")
+    Traceback (most recent call last):
+    dalembert.errors.InputError: design: deviations is 'many'; expected real numbers
+    """
+    try:
+        if given is not None and not isinstance(given, str | bytes):
+            return np.array(given, dtype=object).astype(float)
+    except (TypeError, ValueError):
+        pass
+    raise InputError(f"{owner}: {what} is {shown(given)}; expected real numbers")
+
+
+def samples_of(given: Any, owner: str, what: str) -> np.ndarray:
+    """Real numbers as an array (samples,) of at least one.
+
+    >>> samples_of(3.5, "PythonModel", "samples")
+    Traceback (most recent call last):
+    dalembert.errors.InputError: PythonModel: samples is 3.5; expected a list of real numbers
+    """
+    numbers = np.zeros(0) if np.ndim(given) != 1 else numbers_of(given, owner, what)
+    if not len(numbers):
+        raise InputError(f"{owner}: {what} is {shown(given)}; expected a list of real numbers")
+    return numbers
+
+
+def check_model(owner: str, given: Any) -> None:
+    """Raise unless something may be a forward model; its channels are not looked at, as they may take long.
+
+    >>> check_model("Sensors", 3.5)
+    Traceback (most recent call last):
+    dalembert.errors.InputError: Sensors: model is 3.5; expected a forward model, such as TimeResponse or PythonModel
+    """
+    if not (hasattr(type(given), "evaluate") and hasattr(given, "parameters")):
+        raise InputError(
+            f"{owner}: model is {shown(given)}; expected a forward model, such as TimeResponse or PythonModel"
+        )
 
 
 def check_whole(owner: str, name: str, value: Any, least: int) -> None:

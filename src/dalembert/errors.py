@@ -59,14 +59,14 @@ def not_begun(error: StorageError) -> StorageError:
     return StorageError(str(error).replace(_BEGUN, _NOT_BEGUN))
 
 
-def unknown(what: str, given: str, known: Iterable[str], where: str = "") -> str:
+def unknown(what: str, given: object, known: Iterable[str], where: str = "") -> str:
     """Sentence for an unknown name, with the closest known ones.
 
     >>> unknown("channel", "AB.end.z", ["AB.end.x", "AB.end.y", "OA.end.x"])
     "unknown channel 'AB.end.z'; did you mean 'AB.end.y' or 'AB.end.x'?"
     """
     names = sorted(known)
-    close = get_close_matches(given, names, n=2, cutoff=0.6)
+    close = get_close_matches(str(given), names, n=2, cutoff=0.6)
     prefix = f"{where}: " if where else ""
     if close:
         return f"{prefix}unknown {what} {given!r}; did you mean {' or '.join(map(repr, close))}?"

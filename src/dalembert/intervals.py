@@ -7,11 +7,12 @@ from itertools import product
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dalembert.errors import InputError, unknown
+from dalembert.arguments import Checked, takes_checked
+from dalembert.errors import InputError, shown, unknown
 
 
 @dataclass(frozen=True)
-class Interval:
+class Interval(Checked):
     """All numbers from ``lower`` to ``upper``, both included.
 
     Parameters
@@ -41,6 +42,7 @@ class Interval:
             raise InputError(f"an interval of ({self.lower}, {self.upper}) was given; expected {_EXPECTED}")
 
     @classmethod
+    @takes_checked()
     def about(cls, middle: float, radius: float | None = None, relative: float | None = None) -> "Interval":
         """Interval from its middle and its radius, or its radius relative to the magnitude of the middle.
 
@@ -129,6 +131,11 @@ class Box:
         """Box from a mapping of names to intervals, to pairs (lower, upper), or to numbers that are known exactly."""
         if isinstance(given, Box):
             return given
+        if not isinstance(given, Mapping):
+            raise InputError(
+                f"intervals are {shown(given)}; expected a mapping from names to bounds, such as "
+                "{'stiffness': (1e3, 1e5)}"
+            )
         pairs = [_pair(name, entry) for name, entry in given.items()]
         bounds = np.array(pairs, dtype=float).reshape(-1, 2)
         return cls(tuple(given), bounds[:, 0], bounds[:, 1])

@@ -82,8 +82,12 @@ CASES = {
         "model.py:model cannot be called with a Parameters: too many positional arguments",
     ),
     "factory gives nonsense to the package": (
+        (FACTORY, FORWARD.format(body="return t").replace(", t)", ", t, zero=0)")),
+        RAISED.format("TypeError: PythonModel.__init__() got an unexpected keyword argument 'zero' (model.py, line 7)"),
+    ),
+    "factory gives texts as samples": (
         (FACTORY, FORWARD.format(body="return t").replace(", t)", ", ['a', 'b'])")),
-        RAISED.format("ValueError: could not convert string to float: 'a' (model.py, line 7)"),
+        "PythonModel: samples is ['a', 'b']; expected real numbers",
     ),
     "factory ends the program": (
         (FACTORY, "def model(parameters):\n    raise SystemExit('licence')"),

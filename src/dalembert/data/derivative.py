@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial.legendre import legder, legval, legvander
 
+from dalembert.arguments import takes_checked
 from dalembert.data.measurements import Measurements
 from dalembert.data.stretches import stretches
 from dalembert.errors import DataError, InputError, unknown
@@ -57,6 +58,7 @@ class Derivative:
         return float(np.sqrt(np.nanmean(self.noise**2) + self.bias**2))
 
 
+@takes_checked()
 def derivative(
     data: Measurements, channel: str, *, order: int = 1, window: int | None = None, degree: int = 3
 ) -> Derivative:

@@ -11,7 +11,7 @@ from contextlib import contextmanager, suppress
 from functools import wraps
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, cast
 
-from dalembert.errors import ClusterError, DalembertError, InputError
+from dalembert.errors import ClusterError, DalembertError, InputError, shown
 
 if TYPE_CHECKING:
     from distributed import Client, Future
@@ -37,6 +37,8 @@ def connected(executor: Executor) -> Iterator["Client | None"]:
         Where Dask is not installed, or no scheduler answers.
     """
     if not isinstance(executor, str):
+        if executor is not None and not hasattr(executor, "submit"):
+            raise InputError(f"executor is {shown(executor)}; expected the address of a Dask cluster, or its client")
         yield executor
         return
     try:

@@ -8,7 +8,8 @@ from functools import cached_property
 
 import numpy as np
 
-from dalembert.errors import DalembertError, InputError, SolveError, told, unknown, users_place
+from dalembert.arguments import check_whole, samples_of
+from dalembert.errors import DalembertError, InputError, SolveError, shown, told, unknown, users_place
 from dalembert.forward.builders import named
 from dalembert.forward.complex_steps import STEP, Compared, check_steps
 from dalembert.forward.differences import COMPLEX_STEP, DERIVATIVES, RELATIVE_STEP
@@ -67,14 +68,21 @@ class PythonModel:
     ) -> None:
         if derivative not in DERIVATIVES:
             raise InputError(unknown("derivative", derivative, DERIVATIVES))
+        if not callable(function):
+            raise InputError(f"PythonModel: function is {shown(function)}; expected a function")
         parameters = Parameters.of(parameters)
         channels = [channels] if isinstance(channels, str) else channels
+        if not isinstance(channels, Iterable):
+            raise InputError(f"PythonModel: channels is {shown(channels)}; expected names, such as ['x', 'y']")
+        if kept is not None:
+            check_whole("PythonModel", "kept", kept, 0)
+        samples = samples_of(samples, "PythonModel", "samples")
         given = tuple(Channel(entry) if isinstance(entry, str) else entry for entry in channels)
         for name, value in (
             ("function", function),
             ("parameters", parameters),
             ("channels", given),
-            ("coordinate", Coordinate(coordinate, unit, np.asarray(samples, dtype=float)[:kept])),
+            ("coordinate", Coordinate(coordinate, unit, samples[:kept])),
             ("derivative", derivative),
             ("kept", kept),
         ):

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import make_interp_spline
 
-from dalembert.errors import InputError, unknown
+from dalembert.arguments import check_model, samples_of
+from dalembert.errors import InputError, shown, unknown
 from dalembert.forward.complex_steps import check_derivatives
 from dalembert.forward.model import Channel, Coordinate, ForwardModel
 from dalembert.forward.refinement import Refinement, refined
@@ -96,8 +97,11 @@ class Sensors:
     coordinate: Coordinate
 
     def __init__(self, model: ForwardModel, sensors: Mapping[str, Sensor], times: ArrayLike | None = None) -> None:
+        check_model("Sensors", model)
+        if not isinstance(sensors, Mapping) or not all(isinstance(sensor, Sensor) for sensor in sensors.values()):
+            raise InputError(f"Sensors: sensors is {shown(sensors)}; expected a mapping from channels to Sensor")
         along = model.coordinate
-        stamps = along.values if times is None else np.array(times, dtype=float)
+        stamps = along.values if times is None else samples_of(times, "Sensors", "times")
         own = [entry for name, sensor in sensors.items() for entry in _unknowns(model, name, sensor)]
         for name, value in (
             ("model", model),

@@ -8,8 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
+from dalembert.arguments import check_model, names_of
 from dalembert.data import Measurements
-from dalembert.errors import DalembertError, InputError, unknown
+from dalembert.errors import DalembertError, InputError, shown, unknown
 from dalembert.findings import Finding
 from dalembert.forward import (
     Channel,
@@ -53,6 +54,12 @@ class Experiment:
     own: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
+        if not isinstance(self.name, str):
+            raise InputError(f"Experiment: name is {shown(self.name)}; expected a text")
+        check_model(f"Experiment {self.name!r}", self.model)
+        if not isinstance(self.data, Measurements):
+            raise InputError(f"Experiment {self.name!r}: data is {shown(self.data)}; expected Measurements")
+        object.__setattr__(self, "own", names_of(self.own, f"Experiment {self.name!r}", "own"))
         names = [item.name for item in self.model.parameters.declared]
         for name in self.own:
             if name not in names:

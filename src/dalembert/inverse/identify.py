@@ -6,7 +6,7 @@ from dataclasses import asdict, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dalembert.arguments import check_whole
+from dalembert.arguments import check_whole, takes_checked
 from dalembert.data import Measurements
 from dalembert.errors import DalembertError, InputError, SolveError, StorageError, shown, unknown
 from dalembert.forward import Executor, ForwardModel, check_derivatives, findings_at, takes_executor
@@ -39,6 +39,9 @@ from dalembert.optimize import LeastSquares, Minimiser, Squares
 
 
 @takes_executor
+@takes_checked(
+    "model", "data", "method", "starts", "seed", "loss", "loss_scale", "horizon", "spread", "weights", "start"
+)
 def identify(
     model: ForwardModel | Sequence[Experiment],
     data: Measurements | None = None,

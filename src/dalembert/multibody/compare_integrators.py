@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from dalembert.arguments import names_of, takes_checked
 from dalembert.contents import Contents
 from dalembert.errors import DalembertError, InputError
 from dalembert.forward import Checkpoint
@@ -142,6 +143,7 @@ class WorkPrecision(Result):
         return cls(tuple(told["channels"]), reference=told["reference"], rows=rows, **facts)
 
 
+@takes_checked()
 def work_precision(
     system: System,
     end: float,
@@ -203,6 +205,9 @@ def work_precision(
     >>> errors[1] < 0.02 * errors[0]  # second order
     True
     """
+    channels = names_of(channels, "work_precision", "channels")
+    if not channels:
+        raise InputError("work_precision: no channels were given; name at least one, such as 'AB.end.x'")
     if len(reference) != 2:
         given = "1 reference was" if len(reference) == 1 else f"{len(reference)} references were"
         raise InputError(
@@ -211,7 +216,7 @@ def work_precision(
     if not any(solvers.values()):
         raise InputError("work_precision: no integrators were given; expected at least one series of them")
     times = np.linspace(0.0, end, samples)
-    compared = _Comparison(system, end, times, tuple(channels), reference[0], repeats, checkpoint)
+    compared = _Comparison(system, end, times, channels, reference[0], repeats, checkpoint)
     known, beside = map(compared.motion, reference)
     rows = []
     for method, series in solvers.items():
@@ -219,7 +224,7 @@ def work_precision(
             rows.append(compared.row(method, solver, known))
             if on_row:
                 on_row(rows[-1])
-    return WorkPrecision(tuple(channels), float(end), str(reference[0]), _distance(beside, known), tuple(rows))
+    return WorkPrecision(channels, float(end), str(reference[0]), _distance(beside, known), tuple(rows))
 
 
 @dataclass(frozen=True)

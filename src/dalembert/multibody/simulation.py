@@ -5,7 +5,7 @@ import os
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dalembert.arguments import is_number
+from dalembert.arguments import is_number, takes_checked
 from dalembert.errors import InputError, SolveError, shown, unknown
 from dalembert.kernels.preparation import prepare
 from dalembert.multibody.assemble import assembled, refuse_kinks, refuse_redundancy
@@ -22,6 +22,7 @@ _ADAPTIVE_OUTPUTS = 1001
 _ROOM = 20_000_000  # numbers up to which the states of all steps are kept, where loads and losses may do work
 
 
+@takes_checked("system", "end", "solver", "times", "most_steps")
 def simulate(
     system: System,
     end: float,

@@ -9,7 +9,7 @@ from scipy.linalg import eig, eigh, null_space
 from scipy.sparse import csr_matrix
 from scipy.sparse.linalg import lsqr, splu
 
-from dalembert.arguments import names_of
+from dalembert.arguments import names_of, takes_checked
 from dalembert.errors import SolveError
 from dalembert.kernels.preparation import prepare
 from dalembert.multibody.assemble import assembled, refuse_redundancy, scales
@@ -161,6 +161,7 @@ def _solution(matrix: csr_matrix, forces: np.ndarray) -> np.ndarray | None:
         return step if balanced else None
 
 
+@takes_checked()
 def modes(state: System | Equilibrium, count: int | None = None) -> Modes:
     """Frequencies, damping ratios and shapes of small vibrations that satisfy the joints.
 

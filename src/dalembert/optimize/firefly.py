@@ -5,12 +5,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from dalembert.arguments import Checked
 from dalembert.optimize.minimum import Minimum, Objective, OnIteration, Progress, box, fitness_of
 from dalembert.settings import expect, expect_at_least, expect_positive
 
 
 @dataclass(frozen=True)
-class Firefly:
+class Firefly(Checked):
     """Firefly algorithm whose fireflies fly to the brightest one and remember how they flew.
 
     Every generation tries x ← x + η for each firefly, where η ← α η + β (brightest − x), β = β₀ exp(−γ Rᵛ) and R is the

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import least_squares
 
+from dalembert.arguments import Checked
 from dalembert.optimize.minimum import Minimum, OnIteration, Progress, box, expect_reachable
 from dalembert.optimize.stopping import WINDOW, Stopped, Stopping
 from dalembert.settings import expect
@@ -33,7 +34,7 @@ TRIALS = 100
 
 
 @dataclass(frozen=True)
-class LeastSquares:
+class LeastSquares(Checked):
     """Bounded nonlinear least squares by SciPy's trust-region reflective method.
 
     Parameters

@@ -10,6 +10,7 @@ import numpy as np
 import scipy.optimize as so
 from numpy.typing import ArrayLike
 
+from dalembert.arguments import Checked
 from dalembert.errors import InputError, unknown
 from dalembert.optimize.minimum import Minimum, Objective, OnIteration, Progress, box, fitness_of
 
@@ -25,7 +26,7 @@ FAILED = 10.0
 
 
 @dataclass(frozen=True)
-class Minimiser:
+class Minimiser(Checked):
     """A minimiser of ``scipy.optimize``, local or global, by name.
 
     Parameters

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike
 
+from dalembert.arguments import Checked
 from dalembert.errors import InputError, unknown
 from dalembert.optimize.linear_model import LinearModel
 from dalembert.optimize.minimum import Minimum, OnIteration, Progress, RegularisedStep, box, expect_reachable
@@ -16,7 +17,7 @@ REGULARISATIONS = ("l-curve", "gcv", "discrepancy")
 
 
 @dataclass(frozen=True)
-class ResponseSensitivity:
+class ResponseSensitivity(Checked):
     """Bounded nonlinear least squares by regularised steps, d = (SᵀS + μ²)⁻¹ Sᵀ (−r), within a trust region.
 
     In each iteration μ is chosen anew, from the corner of the L-curve, say, and raised until the sum of squares falls

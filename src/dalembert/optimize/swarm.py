@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from dalembert.arguments import Checked
 from dalembert.optimize.minimum import Minimum, Objective, OnIteration, Progress, box, fitness_of
 from dalembert.settings import expect_at_least
 
@@ -56,7 +57,7 @@ class SwarmState:
 
 
 @dataclass(frozen=True)
-class Swarm(ABC):
+class Swarm(Checked, ABC):
     """Base of the swarms: a whole swarm is one batch, and ``advance`` is one iteration.
 
     Parameters

@@ -6,6 +6,7 @@ from typing import Literal
 
 import numpy as np
 
+from dalembert.arguments import Checked
 from dalembert.errors import InputError, unknown
 from dalembert.settings import expect_at_least, expect_positive
 from dalembert.surrogate.decay import by_direction, by_total_degree, slow_tails
@@ -26,7 +27,7 @@ BASES = ("sparse", "total-degree", "tensor")
 
 
 @dataclass(frozen=True)
-class Adaptive:
+class Adaptive(Checked):
     """Terms added where they are expected to matter most, until the error is below a tolerance.
 
     Parameters

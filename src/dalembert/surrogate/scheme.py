@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
@@ -30,6 +30,7 @@ class Fitted:
     ended: str = ""
 
 
+@runtime_checkable
 class Scheme(Protocol):
     """Settings of a way to choose terms and runs."""
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dalembert.arguments import Checked
 from dalembert.errors import InputError, SolveError
 from dalembert.surrogate.basis import chebyshev, full_tensor, roots
 from dalembert.surrogate.decay import by_direction, slow_tails, tail
@@ -17,7 +18,7 @@ MOST_RUNS = 1_000_000
 
 
 @dataclass(frozen=True)
-class Tensor:
+class Tensor(Checked):
     """All products of Chebyshev polynomials up to an order in each direction, through all points of the root grid.
 
     Parameters

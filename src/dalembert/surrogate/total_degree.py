@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import lstsq, qr
 
+from dalembert.arguments import Checked
 from dalembert.errors import SolveError
 from dalembert.settings import expect, expect_at_least
 from dalembert.surrogate.basis import chebyshev, products, roots, terms_of, total_degree
@@ -19,7 +20,7 @@ MOST_CANDIDATES = 20
 
 
 @dataclass(frozen=True)
-class TotalDegree:
+class TotalDegree(Checked):
     """All terms of total degree at most ``order``, by least squares from ``oversampling`` runs a term.
 
     Parameters

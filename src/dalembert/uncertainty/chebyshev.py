@@ -5,6 +5,7 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
+from dalembert.arguments import Checked
 from dalembert.errors import InputError, unknown
 from dalembert.findings import Finding
 from dalembert.settings import expect, expect_positive
@@ -23,7 +24,7 @@ STARTS = 5
 
 
 @dataclass(frozen=True)
-class Chebyshev:
+class Chebyshev(Checked):
     """Bounds of a polynomial that stands for the model, all samples and channels at once.
 
     Parameters

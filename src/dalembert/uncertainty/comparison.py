@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from dalembert.arguments import takes_checked
 from dalembert.contents import Contents
 from dalembert.errors import ClusterError, DalembertError, InputError, StorageError
 from dalembert.forward import Executor, ForwardModel, on_cluster, takes_executor
@@ -117,6 +118,7 @@ class Comparison(Result):
 
 
 @takes_executor
+@takes_checked("seed", "reference")
 def compare(
     model: ForwardModel,
     intervals: Intervals,

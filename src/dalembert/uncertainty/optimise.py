@@ -6,6 +6,7 @@ from typing import ClassVar
 import numpy as np
 import scipy
 
+from dalembert.arguments import Checked
 from dalembert.findings import Finding
 from dalembert.settings import expect
 from dalembert.uncertainty.found import Found
@@ -15,7 +16,7 @@ from dalembert.uncertainty.unknown_error import share_of, unknown_error
 
 
 @dataclass(frozen=True)
-class Optimise:
+class Optimise(Checked):
     """Extremes by second-order steps from every run, with exact gradients of the model.
 
     Parameters

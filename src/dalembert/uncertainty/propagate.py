@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from dalembert.arguments import check_whole
+from dalembert.arguments import check_whole, takes_checked
 from dalembert.errors import InputError
 from dalembert.forward import Executor, ForwardModel, clock, findings_at, on_cluster, takes_executor
 from dalembert.forward.provenance import provenance
@@ -17,6 +17,7 @@ Intervals = Box | Mapping[str, Interval | tuple[float, float] | float]
 
 
 @takes_executor
+@takes_checked("seed", "method")
 def propagate(
     model: ForwardModel,
     intervals: Intervals,

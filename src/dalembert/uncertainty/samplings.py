@@ -7,6 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from dalembert.arguments import Checked
 from dalembert.errors import InputError
 from dalembert.findings import Finding
 from dalembert.intervals import Box
@@ -17,7 +18,7 @@ from dalembert.uncertainty.runs import Runs
 from dalembert.uncertainty.unknown_error import share_of, unknown_error
 
 
-class Sampling(ABC):
+class Sampling(Checked, ABC):
     """Extremes over chosen points. Their error is unknown; what the later part of them still widened is a finding."""
 
     name: ClassVar[str]

@@ -5,6 +5,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from dalembert.arguments import Checked
 from dalembert.findings import Finding
 from dalembert.settings import expect
 from dalembert.uncertainty.found import Found
@@ -16,7 +17,7 @@ CURVED = 0.1
 
 
 @dataclass(frozen=True)
-class Taylor:
+class Taylor(Checked):
     """Bounds of the response linearised in the middle of the box: ``f(x_c) ± Σ |∂f/∂x_i| x_w,i``.
 
     Parameters

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 
+from dalembert.arguments import Checked
 from dalembert.errors import InputError
 from dalembert.settings import expect
 
@@ -9,7 +10,7 @@ AUTOMATIC = "automatic"
 
 
 @dataclass(frozen=True)
-class HarmonicBalance:
+class HarmonicBalance(Checked):
     """How a periodic response is balanced.
 
     Parameters

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dalembert.arguments import Checked
 from dalembert.errors import InputError
 from dalembert.settings import expect
 from dalembert.vibration.contacts import require_positive
@@ -11,7 +12,7 @@ from dalembert.vibration.time_steps import Scheme
 
 
 @dataclass(frozen=True)
-class Newmark:
+class Newmark(Checked):
     """Integration in time with equal steps: Newmark's average acceleration, or generalized-alpha.
 
     Parameters

@@ -5,6 +5,7 @@ from functools import partial
 
 import numpy as np
 
+from dalembert.arguments import Checked as CheckedArguments
 from dalembert.inverse.bands.band_problem import BandProblem
 from dalembert.inverse.bands.candidate import Candidate, candidate
 from dalembert.inverse.bands.check import Check, check, scale
@@ -43,7 +44,7 @@ MARGIN = (0.5, 0.02)
 
 
 @dataclass(frozen=True)
-class GlobalSurrogate:
+class GlobalSurrogate(CheckedArguments):
     """Least squares over middles and radii, on one surrogate of the model over the whole search box.
 
     Parameters

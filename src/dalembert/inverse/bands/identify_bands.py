@@ -5,7 +5,7 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dalembert.arguments import check_whole
+from dalembert.arguments import check_whole, takes_checked
 from dalembert.data import Bands
 from dalembert.errors import InputError, shown, unknown
 from dalembert.forward import Executor, ForwardModel, clock, on_cluster, takes_executor
@@ -29,6 +29,7 @@ METHODS = {"global": GlobalSurrogate, "nested": Nested}
 
 
 @takes_executor
+@takes_checked("model", "bands", "seed", "method", "intervals")
 def identify_bands(
     model: ForwardModel,
     bands: Bands,

@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from dalembert.arguments import Checked
 from dalembert.errors import InputError, SolveError
 from dalembert.inverse.bands.band_problem import BandProblem
 from dalembert.inverse.bands.candidate import candidate
@@ -20,7 +21,7 @@ surrogate, so that it has slopes there."""
 
 
 @dataclass(frozen=True)
-class Nested:
+class Nested(Checked):
     """A swarm of candidate boxes, each bounded on a surrogate of its own; a whole swarm is one batch of runs.
 
     Parameters

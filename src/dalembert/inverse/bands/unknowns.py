@@ -6,6 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
+from dalembert.arguments import names_of
 from dalembert.errors import InputError
 from dalembert.inverse.search import Search
 from dalembert.parameters import Parameters
@@ -129,7 +130,7 @@ def unknowns_of(parameters: Parameters, intervals: Iterable[str] | None) -> Unkn
         return Unknowns(parameters, parameters.names)
     if isinstance(intervals, str):
         raise InputError(f"intervals is {intervals!r}; expected names in a list, for example [{intervals!r}]")
-    given = tuple(intervals)
+    given = names_of(intervals, "identify_bands", "intervals")
     for name in given:
         parameters.check_name(name, where="intervals")
     return Unknowns(parameters, tuple(name for name in parameters.names if name in given))

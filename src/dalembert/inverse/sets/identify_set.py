@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dalembert.arguments import check_whole
+from dalembert.arguments import check_whole, numbers_of, takes_checked
 from dalembert.data import Measurements
 from dalembert.errors import InputError, unknown
 from dalembert.forward import Executor, ForwardModel, clock, on_cluster, takes_executor
@@ -32,6 +32,7 @@ MOST_ORDER = 64
 
 
 @takes_executor
+@takes_checked("model", "data", "seed", "most_boxes")
 def identify_set(
     model: ForwardModel,
     data: Measurements,
@@ -188,7 +189,7 @@ def _errors(given: float | Mapping[str, float] | ArrayLike, data: Measurements) 
                 f"no error given for channel {missing[0]!r}; give one for each of {', '.join(data.channels)}"
             )
         given = [given[name] for name in data.channels]
-    errors = np.asarray(given, dtype=float)
+    errors = numbers_of(given, "identify_set", "error")
     if errors.shape not in ((), data.values.shape[1:], data.values.shape):
         raise InputError(
             f"an error of shape {errors.shape} was given; expected one number, (channels,) = {data.values.shape[1:]} "

@@ -6,6 +6,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from dalembert.arguments import takes_checked
 from dalembert.errors import InputError, unknown
 from dalembert.forward import ForwardModel
 from dalembert.forward.provenance import provenance
@@ -17,6 +18,7 @@ from dalembert.inverse.telling.sensitivity import at_of, linearised, noise_of
 SETS = ("singles", "pairs", "all")
 
 
+@takes_checked()
 def design(
     model: ForwardModel,
     at: Mapping[str, float] | ArrayLike | None = None,

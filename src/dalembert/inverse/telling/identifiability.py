@@ -5,6 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import ArrayLike
 
+from dalembert.arguments import takes_checked
 from dalembert.data import Measurements
 from dalembert.errors import InputError
 from dalembert.forward import ForwardModel
@@ -15,6 +16,7 @@ from dalembert.inverse.sentences import foreseen
 from dalembert.inverse.telling.sensitivity import at_of, linearised, noise_of
 
 
+@takes_checked()
 def identifiability(
     model: ForwardModel,
     at: Mapping[str, float] | ArrayLike | None = None,

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from dalembert.arguments import takes_checked
 from dalembert.errors import InputError, unknown
 from dalembert.findings import Finding
 from dalembert.forward import ForwardModel
@@ -19,6 +20,7 @@ INHERITED = ("correlated-residuals", "systematic-residuals")
 """Findings of the fit that concern its predictions, too."""
 
 
+@takes_checked("level")
 def predict(model: ForwardModel | Experiment, fit: Fit, level: float = 0.95) -> Prediction:
     """Response at identified parameters, with bands in which the true response, and a new measurement, are expected.
 

@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 from scipy.special import chdtri, fdtri
 
-from dalembert.arguments import check_whole
+from dalembert.arguments import check_whole, names_of, takes_checked
 from dalembert.data import Measurements
 from dalembert.errors import InputError
 from dalembert.forward import Executor, ForwardModel, check_derivatives, takes_executor
@@ -29,6 +29,7 @@ POINTS = 12
 
 
 @takes_executor
+@takes_checked("level", "points")
 def profile(
     model: ForwardModel | Sequence[Experiment],
     data: Measurements | None,
@@ -157,6 +158,7 @@ def _ahead(at: Linearisation, walks: Sequence[Walk], problem: Problem, way: tupl
 
 def _names(fit: Fit, names: Collection[str] | None) -> Iterable[str]:
     known = fit.parameters.names
+    names = None if names is None else names_of(names, "profile", "names")
     for name in names or ():
         fit.parameters.check_name(name, where="profile: names")
     return known if names is None else [name for name in known if name in names]

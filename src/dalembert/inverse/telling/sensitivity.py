@@ -5,6 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import ArrayLike
 
+from dalembert.arguments import numbers_of
 from dalembert.errors import InputError, SolveError, StorageError, told, unknown
 from dalembert.forward import ForwardModel, check_derivatives
 
@@ -27,7 +28,7 @@ def noise_of(
         if name not in known:
             raise InputError(unknown("channel", name, known, f"{where}: deviations"))
     given = [deviations[name] for name in names] if isinstance(deviations, Mapping) else deviations
-    values = np.asarray(given, dtype=float)
+    values = numbers_of(given, where, "deviations")
     if values.shape not in ((), (len(names),)) or not names:
         raise InputError(
             f"{where}: deviations of shape {values.shape} were given; expected a number, or one for each of "

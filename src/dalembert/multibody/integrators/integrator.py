@@ -10,6 +10,7 @@ from typing import Any, cast
 
 import numpy as np
 
+from dalembert.arguments import Checked
 from dalembert.kernels.kernel import Compiled
 from dalembert.multibody.integrators.problem import Problem
 from dalembert.multibody.integrators.run import Run
@@ -17,7 +18,7 @@ from dalembert.multibody.lowering import Lowered
 from dalembert.multibody.structure import Structure
 
 
-class Integrator(ABC):
+class Integrator(Checked, ABC):
     """A method that integrates the equations of motion, with its settings; a frozen dataclass.
 
     Every integrator serves :func:`~dalembert.multibody.simulate` and :class:`~dalembert.multibody.TimeResponse` alike:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from dalembert.arguments import Checked
 from dalembert.errors import InputError
 from dalembert.multibody.assemble import redundancy
 from dalembert.multibody.evaluate import constraint_jacobian
@@ -16,7 +17,7 @@ from dalembert.multibody.lowering import Lowered
 from dalembert.settings import expect
 
 
-class Stabilisation:
+class Stabilisation(Checked):
     """What is done about the drift of positions and velocities off the constraints; a frozen dataclass."""
 
     way: int = AS_THEY_COME

@@ -22,7 +22,8 @@ class Checked:
 
     An annotation says what is accepted: ``float | complex`` a finite number of a model, which is complex while a
     derivative is taken; ``float`` a real number; ``int``, ``bool``, ``str``, ``None`` and classes what they name;
-    tuples, sequences and mappings of these. Other annotations accept everything.
+    tuples, sequences and mappings of these. Other annotations accept everything, and so do fields with the metadata
+    ``checked=False``, which the class checks itself.
 
     Raises
     ------
@@ -95,7 +96,7 @@ def _arguments(made: type) -> tuple[_Argument, ...]:
         annotation, place = annotations.get(entry.name, entry.type), None
         if isinstance(annotation, InitVar):
             annotation, place, passed_on = annotation.type, passed_on, passed_on + 1
-        kinds = kinds_of(annotation)
+        kinds = kinds_of(annotation if entry.metadata.get("checked", True) else Any)
         unit = entry.metadata.get("unit", "")
         found.append(_Argument(entry.name, tuple(map(_test, kinds)), place, entry.default, kinds, unit))
     return tuple(found)

@@ -88,7 +88,9 @@ class Collocation(Integrator):
     """
 
     step: float = field(metadata={"unit": "s"})
-    minimiser: GaussNewton | Firefly | LeastSquares | ResponseSensitivity | Swarm | Minimiser = GaussNewton()
+    minimiser: GaussNewton | Firefly | LeastSquares | ResponseSensitivity | Swarm | Minimiser = field(
+        default=GaussNewton(), metadata={"checked": False}
+    )
     degree: int = 2
     gauss_points: int = 2
     seed: int = 0

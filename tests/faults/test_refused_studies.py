@@ -247,7 +247,7 @@ def test_what_would_take_longer_than_the_limit_is_left_out():
     done = checked("--limit", "1.4")
     assert done.returncode == 0, done.stderr
     assert done.stdout.splitlines()[2] == (
-        "The check ends before its time limit, 1.4 s: what it would simulate next takes 1.2 s. Raise --limit."
+        "The check ends before its time limit, 1.4 s: what it would simulate next takes 1.6 s. Raise --limit."
     )
 
 

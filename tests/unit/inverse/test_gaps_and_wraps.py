@@ -46,7 +46,7 @@ def test_a_fit_with_gaps_is_the_least_squares_of_what_is_there(deviations):
     values, squares, *_ = np.linalg.lstsq(
         (root[..., None] * DESIGN).reshape(-1, 2), (root * np.nan_to_num(data.values)).ravel(), rcond=None
     )
-    np.testing.assert_allclose(fit.values, values, rtol=1e-8)
+    np.testing.assert_allclose(fit.values, values, rtol=0, atol=1e-5 * fit.deviations.min())  # a gain below 1e-13
     assert fit.fitness == pytest.approx(squares.item(), rel=1e-9)
     np.testing.assert_array_equal(fit.weights == 0, ~data.present)
     np.testing.assert_array_equal(np.isnan(fit.residuals), ~data.present)

@@ -99,10 +99,12 @@ def autocorrelation(residual: np.ndarray, shape: tuple[int, int], present: np.nd
     return float(neighbours / max(np.sum(table**2), np.finfo(float).tiny))
 
 
-def random_residuals(residual: np.ndarray, shape: tuple[int, int], present: np.ndarray | None = None) -> bool:
-    """Whether residuals look like noise: their autocorrelation is within three of its deviations, 1/√values.
+def random_residuals(
+    residual: np.ndarray, shape: tuple[int, int], present: np.ndarray | None = None, *, deviations: float = 3.0
+) -> bool:
+    """Whether residuals look like noise: their autocorrelation is within ``deviations`` of its own, 1/√values.
 
     ``present`` (samples, channels) masks the values that are there, all if not given; the others' residuals are 0.
     """
     values = residual.size if present is None else np.count_nonzero(present)
-    return abs(autocorrelation(residual, shape, present)) < 3 / np.sqrt(values)
+    return abs(autocorrelation(residual, shape, present)) < deviations / np.sqrt(values)

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 from dalembert.arguments import check_whole, takes_checked
 from dalembert.data import Bands
 from dalembert.errors import InputError, shown, unknown
-from dalembert.forward import Executor, ForwardModel, clock, on_cluster, takes_executor
+from dalembert.forward import Executor, ForwardModel, clock, findings_at, on_cluster, takes_executor
 from dalembert.forward.provenance import provenance
 from dalembert.intervals import Box
 from dalembert.inverse.bands.band_fit import BandFit
@@ -107,7 +107,8 @@ def identify_bands(
     found = chosen.search(problem, seed)
     at, checked = found.candidate, found.check
     text = status(problem, found)
-    findings = conclusions(found, text)
+    concluded = conclusions(found, text)
+    ends = tuple(unknowns.search.vectors(end) for end in (at.lower, at.upper))
     told = _told(problem, found)
     d = len(model.parameters)
     radius_deviations = np.zeros(d)
@@ -115,7 +116,7 @@ def identify_bands(
     fit = BandFit(
         parameters=model.parameters,
         intervals=unknowns.intervals,
-        box=Box(model.parameters.names, *(unknowns.search.vectors(end) for end in (at.lower, at.upper))),
+        box=Box(model.parameters.names, *ends),
         unknowns=unknowns.names,
         middle_deviations=told.deviations[:d],
         radius_deviations=radius_deviations,
@@ -133,7 +134,7 @@ def identify_bands(
         checked_fitness=None if checked is None else float(problem.fitness(checked.lower, checked.upper)),
         history=tuple(journal.history),
         starts=tuple(journal.starts),
-        success=found.success and not any(finding.severity == "error" for finding in findings),
+        success=found.success and not any(finding.severity == "error" for finding in concluded),
         status=text,
         method=chosen.name,
         simulations=journal.simulations,
@@ -146,7 +147,7 @@ def identify_bands(
             intervals=unknowns.intervals,
             weights="given" if weights is not None else "one",
         ),
-        findings=findings,
+        findings=(*concluded, *findings_at(model, (ends[0] + ends[1]) / 2)),
     )
     values = np.concatenate([fit.middle, fit.radius[unknowns.chosen]])
     journal.tell(Finished(fit.success, fit.status, fit.fitness, values, fit.simulations))

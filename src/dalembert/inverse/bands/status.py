@@ -16,6 +16,9 @@ SMALL = 1e-2
 CHANCE = 1e-3
 """Probability with which normal noise would make some bound stand out."""
 
+CORRELATED = 4.0
+"""Autocorrelation of noise, in its deviations, beyond which the bands are inconsistent: noise has it once in 10,000."""
+
 
 def status(problem: BandProblem, found: Found) -> str:
     """Whether it converged, how far given and reproduced bands lie apart, and what true runs say."""
@@ -57,7 +60,9 @@ def _misfit(problem: BandProblem, found: Found) -> str:
     stands_out = largest > -ndtri(CHANCE / (2 * max(1, 2 * np.count_nonzero(problem.weights))))
     if stands_out:
         parts.append(f"One bound stands out, {largest:.2g} times the rms of its channel: look whether it is a slip.")
-    if not stands_out and random_residuals(np.hstack(tuple(apart)), (problem.shape[0], 2 * problem.shape[1])):
+    if not stands_out and random_residuals(
+        np.hstack(tuple(apart)), (problem.shape[0], 2 * problem.shape[1]), deviations=CORRELATED
+    ):
         parts.append("What remains looks like noise.")
     elif share.max() > SMALL:
         parts.append(

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 from dalembert.arguments import check_whole, numbers_of, takes_checked
 from dalembert.data import Measurements
 from dalembert.errors import InputError, unknown
-from dalembert.forward import Executor, ForwardModel, clock, on_cluster, takes_executor
+from dalembert.forward import Executor, ForwardModel, clock, findings_at, on_cluster, takes_executor
 from dalembert.forward.provenance import provenance
 from dalembert.intervals import Box
 from dalembert.inverse.events import Finished, OnEvent
@@ -131,13 +131,14 @@ def identify_set(
     left_out = inversion.outside(paving)
     findings = conclusions(inversion, surrogate, paving, left_out, names := model.parameters.names)
     nearest = inversion.nearest
+    outer = None if paving.hull is None else Box(names, *(search.vectors(corner) for corner in paving.hull))
     found = ParameterSet(
         parameters=model.parameters,
         data=data,
         error=errors,
         inside=search.vectors(paving.inside),
         boundary=search.vectors(paving.boundary),
-        outer=None if paving.hull is None else Box(names, *(search.vectors(corner) for corner in paving.hull)),
+        outer=outer,
         inner=None if inner is None else Box(names, *search.vectors(inner)),
         surrogate_error=surrogate.error.reshape(errors.shape),
         resolution=resolution,
@@ -162,7 +163,7 @@ def identify_set(
             resolution=resolution,
             most_boxes=most_boxes,
         ),
-        findings=findings,
+        findings=(*findings, *(() if outer is None else findings_at(model, outer.middle))),
     )
     middle = np.full(len(names), np.nan) if found.outer is None else found.outer.middle
     journal.tell(Finished(found.success, found.status, np.nan, middle, found.runs))

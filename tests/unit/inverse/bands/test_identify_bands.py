@@ -6,6 +6,7 @@ import pytest
 import dalembert
 from dalembert.data import Bands
 from dalembert.errors import DataError, InputError, SolveError
+from dalembert.findings import Finding
 from dalembert.forward import PythonModel
 from dalembert.inverse import GlobalSurrogate, Nested, as_record, identify_bands
 from dalembert.optimize import ImprovedParticleSwarm, ParticleSwarm
@@ -14,6 +15,15 @@ from small_models import DECAY, LINE, TIMES, banded
 from support import says
 
 EXACT = banded(DECAY, [1.8, 0.7], [2.2, 0.9], points=2)
+
+
+def noisy(bands, deviation, seed):
+    """Return bands of one channel with normal noise on each bound, exchanged where they cross."""
+    noise = deviation * np.random.default_rng(seed).standard_normal((2, len(bands.lower)))
+    lower, upper = np.sort([bands.lower[:, 0] + noise[0], bands.upper[:, 0] + noise[1]], axis=0)
+    return Bands.of(bands.coordinate, {bands.channels[0]: (lower, upper)})
+
+
 NESTED = Nested(ImprovedParticleSwarm(particles=24, iterations=60, velocity_limit=0.05))
 
 
@@ -184,10 +194,81 @@ def test_bands_with_noise_are_said_to_have_it():
     assert "What remains looks like noise." in identify_bands(DECAY, Bands.of(TIMES, {"x": (lower, upper)})).status
 
 
-def test_bands_of_another_model_are_said_to_be_nobodys():
+@pytest.mark.parametrize("shape", ["wave", "slip", "drift"])
+def test_bands_that_no_box_has_are_inconsistent_and_no_success(shape):
+    """Bands of another model, with one slip, and with noise that adds up from sample to sample."""
+    lower, upper = EXACT.lower[:, 0].copy(), EXACT.upper[:, 0].copy()
+    if shape == "wave":
+        lower, upper = np.cos(3 * TIMES) - 0.1, np.cos(3 * TIMES) + 0.1
+    elif shape == "slip":
+        upper[20] += 0.5
+    else:
+        drift = np.cumsum(0.03 * np.random.default_rng(0).standard_normal(len(TIMES)))
+        lower, upper = lower + drift, upper + drift
+    fit = identify_bands(DECAY, Bands.of(TIMES, {"x": (lower, upper)}))
+    assert not fit.success
+    assert "No box of these parameters has these bands" in fit.status
+    assert [(item.code, item.severity) for item in fit.findings] == [("inconsistent-bands", "error")]
+
+
+@pytest.mark.parametrize("seed", [1326, 1360])
+def test_white_noise_that_alternates_by_chance_does_not_make_bands_inconsistent(seed):
+    """These two of 1,400 seeds have an autocorrelation below -3 of its deviations."""
+    fit = identify_bands(DECAY, noisy(EXACT, 0.01, seed))
+    assert "What remains looks like noise." in fit.status
+    assert fit.success
+    assert fit.findings == ()
+
+
+def waves(slow, fast):
+    """Return two cosines of a few decimetres, whose sum has false minima over both frequencies."""
+    return 0.3 * np.cos(slow * INSTANTS) + 0.2 * np.cos(fast * INSTANTS)
+
+
+INSTANTS = np.linspace(0, 2, 41)
+WAVES = PythonModel(waves, {"slow": (2.0, 8.0), "fast": (2.0, 12.0)}, ["x"], INSTANTS)
+WAVING = banded(WAVES, [3.8, 8.8], [4.2, 9.2], points=21)
+
+
+@pytest.mark.parametrize("seed", [2, 3, 37])
+def test_descents_from_other_starts_leave_false_minima_until_the_best_is_reached_twice(seed):
+    """With 5 mm of noise, the first four starts of seeds 2 and 37 all end in false minima, 5 deviations off."""
+    bands = noisy(WAVING, 0.005, seed)
+    fit = identify_bands(WAVES, bands, seed=seed)
+    known = np.array([4.0, 9.0, 0.2, 0.2])
+    apart = np.concatenate([fit.middle, fit.radius]) - known
+    assert np.all(np.abs(apart) < 3 * np.concatenate([fit.middle_deviations, fit.radius_deviations]))
+    assert "minimum-reached-once" not in {item.code for item in fit.findings}
+    descents = np.array([end.fitness for end in fit.starts[:-1]])  # the last one refines the answer
+    assert np.count_nonzero(descents < 1.01 * descents.min()) >= 2
+    many = identify_bands(WAVES, bands, method=GlobalSurrogate(starts=40), seed=seed)
+    assert len(many.starts) >= 32
+    assert fit.fitness == pytest.approx(many.fitness, rel=1e-6)
+    np.testing.assert_allclose([fit.box.lower, fit.box.upper], [many.box.lower, many.box.upper], rtol=1e-5)
+
+
+def test_a_best_end_that_only_one_descent_reached_is_a_finding():
+    fit = identify_bands(DECAY, EXACT, method=GlobalSurrogate(starts=1))
+    assert [(item.code, item.severity) for item in fit.findings] == [("minimum-reached-once", "warning")]
+
+
+def test_a_surrogate_that_is_better_than_the_noise_of_the_bands_is_not_refused():
+    """The surrogate's error is above its tolerance, and below the 5 mm that noise leaves."""
+    assert identify_bands(WAVES, noisy(WAVING, 0.005, 35), seed=35).success
+
+
+@pytest.mark.parametrize("consistent", [True, False])
+def test_findings_on_the_model_join_those_on_the_bands(consistent):
+    class Doubted(PythonModel):
+        def findings(self, vector):
+            return (Finding("beam-locking", "warning", {"middle": vector.tolist()}, "The beam locks."),)
+
     wave = np.cos(3 * TIMES)
-    status = identify_bands(DECAY, Bands.of(TIMES, {"x": (wave - 0.1, wave + 0.1)})).status
-    assert "No box of these parameters has these bands" in status
+    bands = EXACT if consistent else Bands.of(TIMES, {"x": (wave - 0.1, wave + 0.1)})
+    fit = identify_bands(Doubted(DECAY.function, DECAY.parameters, ["x"], TIMES), bands)
+    assert [item.code for item in fit.findings] == [*([] if consistent else ["inconsistent-bands"]), "beam-locking"]
+    assert fit.findings[-1].values["middle"] == pytest.approx(fit.middle)
+    assert fit.success == consistent
 
 
 def test_an_interval_on_its_bound_is_said():

@@ -6,6 +6,7 @@ import pytest
 import dalembert
 from dalembert.data import Measurements
 from dalembert.errors import DataError, InputError
+from dalembert.findings import Finding
 from dalembert.forward import PythonModel
 from dalembert.inverse import ParameterSet, as_record, identify_set
 from dalembert.parameters import Parameter
@@ -31,6 +32,19 @@ def test_one_parameter_has_the_interval_of_the_closed_form():
         assert 0 <= outside * (box.upper[0] - upper) < 2e-3
     assert found.success
     assert found.contains(np.array([[1.0], [2.0]])).tolist() == [1.0, 0.0]
+
+
+@pytest.mark.parametrize(("radius", "codes"), [(1.0, ["beam-locking"]), (-9.0, [])], ids=["a disc", "empty"])
+def test_findings_on_the_model_in_the_middle_of_the_set_join_those_on_the_set(radius, codes):
+    class Doubted(PythonModel):
+        def findings(self, vector):
+            return (Finding("beam-locking", "warning", {"middle": vector.tolist()}, "The beam locks."),)
+
+    model = Doubted(DISC.function, DISC.parameters, ["r"], NOWHEN)
+    found = identify_set(model, Measurements.of(NOWHEN, {"r": [radius]}), error=0.5)
+    assert [item.code for item in found.findings] == ["unseen-features", *codes]
+    if codes:
+        assert found.findings[-1].values["middle"] == pytest.approx(found.outer.middle)
 
 
 @pytest.mark.parametrize(("model", "exact"), [(DISC, np.pi), (BALL, 4 * np.pi / 3)], ids=["disc", "ball"])

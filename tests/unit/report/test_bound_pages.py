@@ -4,8 +4,11 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from markupsafe import escape
 
+from dalembert.forward import PythonModel
 from dalembert.report import figures, report
+from dalembert.uncertainty import propagate
 from pages import read_page
 from stand_ins import band_fit, comparison, parameter_set, propagation
 
@@ -35,12 +38,24 @@ def test_bounds_have_their_report(tmp_path):
     assert list(figures(result)) == ["bands-1"]
 
 
-def test_bounds_of_a_method_that_knows_no_error_and_no_places(tmp_path):
+def test_bounds_of_a_method_that_knows_no_places_have_none(tmp_path):
     result = propagation("scan", "inner bound")
     result.at_lower = result.at_upper = None
     page = read_page(report(result, tmp_path / "a.html"))
-    assert page.table("widths")[0] == ["channel", "largest width", "at time (s)", "mean width", "unit"]
-    assert "estimated error" not in page.text
+    assert page.table("widths")[0][3:] == ["mean width", "estimated error", "unit"]
+
+
+def test_an_unknown_error_is_shown_with_its_reason(tmp_path):
+    model = PythonModel(lambda x: np.array([x**2]), {"x": (-1.0, 2.0)}, ["y"], [0.0])
+    result = propagate(model, {"x": (-1.0, 2.0)}, method="scan")
+    assert result.error is None
+    page = read_page(report(result, tmp_path / "a.html"))
+    widths = page.table("widths")
+    assert widths[1][widths[0].index("estimated error")] == "unknown"
+    assert "largest estimated error unknown" in " ".join(page.text.split())
+    reason = next(item.message for item in result.findings if item.code == "unknown-error")
+    bounds = (tmp_path / "a.html").read_text(encoding="utf-8").split('id="bounds"')[1]
+    assert str(escape(reason)) in bounds
 
 
 def test_bounds_that_could_not_be_found_say_so(tmp_path):

@@ -18,8 +18,8 @@ def intervals(
 ) -> go.Figure:
     """Each identified interval as a bar between the parameter's search bounds, its middle marked.
 
-    Whiskers are two standard deviations of the two ends, diamonds the ends of the true intervals where these are
-    known.
+    Whiskers are two standard deviations of the two ends, at most the width of the search bounds. Diamonds are the ends
+    of the true intervals where these are known.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ def intervals(
         y=np.repeat(names, 2),
         mode="markers",
         marker={"color": LIGHT.series[0], "size": 9, "symbol": "line-ns-open", "line": {"width": 2}},
-        error_x={"array": np.where(np.isfinite(spread), spread, 0.0).ravel(), "color": LIGHT.ink, "width": 5},
+        error_x={"array": np.minimum(spread, 1.0).ravel(), "color": LIGHT.ink, "width": 5},
         hoverinfo="skip",
         showlegend=False,
     )
@@ -61,11 +61,16 @@ def intervals(
 
 
 def end_deviations(fit: BandFitLike) -> np.ndarray:
-    """Standard deviations of the two ends, middle − radius and middle + radius, shape (parameters, 2)."""
+    """Standard deviations of the two ends, middle − radius and middle + radius, shape (parameters, 2).
+
+    Those of a parameter whose middle or radius is not identifiable are infinite.
+    """
     middle, radius = np.asarray(fit.middle_deviations, dtype=float), np.asarray(fit.radius_deviations, dtype=float)
-    shared = 2 * middle * radius * np.array([_correlation(fit, name) for name in fit.parameters.names])
-    variance = (middle**2 + radius**2)[:, None] + shared[:, None] * [-1, 1]
-    return np.sqrt(np.maximum(variance, 0.0))
+    correlation = np.array([_correlation(fit, name) for name in fit.parameters.names])
+    known = np.isfinite(middle) & np.isfinite(radius) & np.isfinite(correlation)
+    middle, radius, correlation = (np.where(known, item, 0.0) for item in (middle, radius, correlation))
+    variance = (middle**2 + radius**2)[:, None] + (2 * middle * radius * correlation)[:, None] * [-1, 1]
+    return np.where(known[:, None], np.sqrt(np.maximum(variance, 0.0)), np.inf)
 
 
 def _correlation(fit: BandFitLike, name: str) -> float:

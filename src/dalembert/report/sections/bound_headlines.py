@@ -13,14 +13,11 @@ from dalembert.report.sections.headline import MOST_VALUES, Fact, Headline, of_i
 
 def of_propagation(result: PropagationLike, title: str | None, notes: Sequence[str]) -> Headline:
     """Headline of bounds of a response."""
+    error = result.error
     facts = [
         Fact("method", result.method),
         Fact("the bounds are", result.kind),
-        *(
-            []
-            if result.error is None
-            else [Fact("largest estimated error", shown(float(result.error.max()), digits=2))]
-        ),
+        Fact("largest estimated error", "unknown" if error is None else shown(float(error.max()), digits=2)),
         Fact("runs of the model", counted(result.runs)),
         Fact("time", f"{shown(result.seconds, digits=3)} s"),
     ]

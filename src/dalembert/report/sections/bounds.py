@@ -58,16 +58,27 @@ class Bounds(Section):
                 cell(float(width[:, column].max())),
                 cell(float(along.values[width[:, column].argmax()])),
                 cell(float(width[:, column].mean())),
-                *([] if result.error is None else [cell(float(result.error[:, column].max()), digits=2)]),
+                cell("unknown" if result.error is None else float(result.error[:, column].max()), digits=2),
                 *([] if corners is None else [_percent(corners[column])]),
                 cell(unit(channel, result.units[column])),
             )
             for column, channel in enumerate(result.channels)
         ]
-        columns = ["channel", "largest width", labelled(f"at {along.name}", along.unit), "mean width"]
-        columns += [] if result.error is None else ["estimated error"]
+        columns = [
+            "channel",
+            "largest width",
+            labelled(f"at {along.name}", along.unit),
+            "mean width",
+            "estimated error",
+        ]
         columns += [] if corners is None else ["taken at corners of the box"]
         return noted(Table("widths", "Widths", [*columns, "unit"], rows))
+
+    @property
+    def reasons(self) -> tuple[str, ...]:
+        """Why the error is unknown; empty where it is estimated."""
+        findings = getattr(self.result, "findings", ())
+        return tuple(finding.message for finding in findings if finding.code == "unknown-error")
 
     @property
     def samples(self) -> Table | None:

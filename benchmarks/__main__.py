@@ -14,6 +14,7 @@ NAMES = (
     "batches",
     "cluster",
     "identification",
+    "regressions",
     "swarms",
     "collocation",
     "digits",

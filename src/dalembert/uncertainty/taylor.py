@@ -67,9 +67,10 @@ class Taylor(Checked):
         message += (
             f" At {self.held_out} corners the response differs from the linear one by up to {share:.2g} of the width."
         )
-        severity = "warning" if share > CURVED else "note"
-        advice = "Use method 'optimise' or 'chebyshev'." if share > CURVED else ""
-        return (Finding("unknown-error", severity, {"difference": share}, message, advice),)
+        curved = share > CURVED
+        advice = "Use method 'optimise' or 'chebyshev'." if curved else ""
+        values = {"difference": share}
+        return (Finding("unknown-error", "warning" if curved else "note", values, message, advice),)
 
     def _apart(self, runs: Runs, seed: int, response: np.ndarray, slopes: np.ndarray) -> np.ndarray | None:
         if not (self.held_out and len(runs.free)):

@@ -19,13 +19,11 @@ from functools import cached_property
 import numpy as np
 
 from dalembert.vibration.condensation import Point
+from dalembert.vibration.contact_sums import ContactSums, Shape, contact_sums
 from dalembert.vibration.fourier import Fourier, real_blocks
 from dalembert.vibration.friction_law import NORMAL, STUCK, TANGENTIAL
-from dalembert.vibration.friction_period import forces
-from dalembert.vibration.friction_tangent import Tangent as FrictionTangent
-from dalembert.vibration.friction_tangent import tangent_of
 from dalembert.vibration.lowering import ELASTIC, FrictionBlock, Lowered
-from dalembert.vibration.springs import UserElement
+from dalembert.vibration.springs import BilinearStop, Gap, UserElement
 from dalembert.vibration.tangents import BlockTangent, DenseTangent, Tangent
 
 LARGE = 500
@@ -59,10 +57,13 @@ class Balance:
     ----------
     lowered : Lowered
     series : Fourier
+    events : bool
+        Whether the sums of contacts and stops are corrected at the events between samples.
     """
 
     lowered: Lowered
     series: Fourier
+    events: bool = True
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -127,6 +128,9 @@ class Balance:
         """Elements without memory: their forces, and their local Jacobians in the global one."""
         series = self.series
         for rows, element in self.lowered.springs:
+            if self.events and isinstance(element, Gap | BilinearStop):
+                self._add_stop(rows, element, acting, unknowns, tangent)
+                continue
             samples = (self._combination[rows] @ unknowns) @ series.synthesis.T
             several = isinstance(element, UserElement)
             force, slopes = element.law(samples if several else samples[0])
@@ -134,14 +138,39 @@ class Balance:
             if tangent is None:
                 continue
             slopes = slopes if several else slopes[None, None]
-            blocks = series.analysis @ (slopes[:, :, :, None] * series.synthesis)
-            if isinstance(tangent, BlockTangent):
-                local = np.swapaxes(blocks, 1, 2).reshape(1, len(rows) * series.count, -1)
-                tangent.add(self._retained[rows][None], local, np.zeros((1, len(rows))))
-                continue
-            for i, row in enumerate(rows):
-                for j, column in enumerate(rows):
-                    self._scatter(tangent.jacobian, row, column, blocks[i, j])
+            self._spread_spring(rows, series.analysis @ (slopes[:, :, :, None] * series.synthesis), tangent)
+
+    def _add_stop(
+        self,
+        rows: np.ndarray,
+        element: Gap | BilinearStop,
+        acting: np.ndarray,
+        unknowns: np.ndarray,
+        tangent: Tangent | None,
+    ) -> None:
+        """A stop: on both sides it is one on one side, and another one for the opposite displacement."""
+        sides = np.array([1.0]) if isinstance(element, Gap) else np.array([1.0, -1.0])
+        sums = contact_sums(
+            np.array([[0.0, element.stiffness, element.gap, 0.0, 0.0]] * len(sides)),
+            Shape(tangents=0, normal=True, memory=True), self.series, self.events,
+        )  # fmt: skip
+        displacements = sides[:, None, None] * (self._combination[rows] @ unknowns)
+        if tangent is None:
+            force, _ = sums.forces(displacements)
+        else:
+            force, _, local = sums.with_slopes(displacements)
+            self._spread_spring(rows, np.sum(local, axis=0)[None, None], tangent)
+        acting[rows] += sides @ force[:, 0]
+
+    def _spread_spring(self, rows: np.ndarray, blocks: np.ndarray, tangent: Tangent) -> None:
+        """Add the local Jacobian of an element, blocks (rows, rows, coefficients, coefficients), to the global one."""
+        if isinstance(tangent, BlockTangent):
+            local = np.swapaxes(blocks, 1, 2).reshape(1, len(rows) * self.series.count, -1)
+            tangent.add(self._retained[rows][None], local, np.zeros((1, len(rows))))
+            return
+        for i, row in enumerate(rows):
+            for j, column in enumerate(rows):
+                self._scatter(tangent.jacobian, row, column, blocks[i, j])
 
     def _scatter(self, jacobian: np.ndarray, row: int, column: int, block: np.ndarray) -> None:
         """Add the derivative of the force of one row by the displacement of another."""
@@ -159,19 +188,18 @@ class Balance:
         before: DenseTangent | None,
     ) -> np.ndarray:
         """Forces of a block's cells, and its part of the tangent; the states (cells, samples)."""
-        block, series = self.lowered.blocks[number], self.series
-        samples = np.ascontiguousarray(self._predicted(block, unknowns, total) @ series.synthesis.T)
+        block = self.lowered.blocks[number]
+        displacements = self._predicted(block, unknowns, total)
         if tangent is None:
-            force, states = forces(samples, self._numbers[number], block.tangents, block.normal, block.memory)
+            result, states = self._sums[number].forces(displacements)
         else:
-            force, states, local = self._tangents[number](samples)
+            result, states, local = self._sums[number].with_slopes(displacements)
             if isinstance(tangent, BlockTangent):
                 tangent.add(self._retained[block.rows], local, _penalties(block))
             elif before is None:
                 self._spread_elastic(block, local, tangent.jacobian)
             else:
                 self._spread_rigid(block, local, tangent, before)
-        result = force @ series.analysis.T
         for cell in self._undetermined(block, states):
             places = self._retained[block.rows[cell, : block.tangents]]
             penalty = block.numbers[cell, TANGENTIAL]
@@ -198,16 +226,11 @@ class Balance:
         return np.concatenate([trial, moved[:, block.tangents :]], axis=1)
 
     @cached_property
-    def _numbers(self) -> list[np.ndarray]:
-        """Numbers (cells, 5) that the law of each block is given."""
-        return [_given(block) for block in self.lowered.blocks]
-
-    @cached_property
-    def _tangents(self) -> list[FrictionTangent]:
-        """The law of each block with its derivatives."""
+    def _sums(self) -> list[ContactSums]:
+        """The sums of each block."""
         return [
-            tangent_of(numbers, block.tangents, block.normal, block.memory, self.series.synthesis, self.series.analysis)
-            for block, numbers in zip(self.lowered.blocks, self._numbers, strict=True)
+            contact_sums(_given(block), Shape(block.tangents, block.normal, block.memory), self.series, self.events)
+            for block in self.lowered.blocks
         ]
 
     def _undetermined(self, block: FrictionBlock, states: np.ndarray) -> np.ndarray:

@@ -44,7 +44,7 @@ class Equations:
     def balance(self, samples: int) -> Balance:
         """The elements with this many samples of a period."""
         if samples not in self._balances:
-            self._balances[samples] = Balance(self.lowered, Fourier(self.method.orders, samples))
+            self._balances[samples] = Balance(self.lowered, Fourier(self.method.orders, samples), self.method.events)
         return self._balances[samples]
 
     def solve(
@@ -129,7 +129,7 @@ def equations(
     lowered = lower(system).real
     if method.odd_only:
         _require_symmetry(lowered)
-    prepare_balance(lowered, residuals=residuals, stability=stability, derivatives=derivatives)
+    prepare_balance(lowered, method.events, residuals=residuals, stability=stability, derivatives=derivatives)
     return Equations(lowered, method)
 
 

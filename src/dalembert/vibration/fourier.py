@@ -60,6 +60,12 @@ class Fourier:
         return matrix
 
     @cached_property
+    def waves(self) -> np.ndarray:
+        """The synthesis and its first two derivatives by tau, (3, samples, coefficients)."""
+        first = self.synthesis @ self.derivative
+        return np.stack([self.synthesis, first, first @ self.derivative])
+
+    @cached_property
     def cosines(self) -> np.ndarray:
         """Places of the cosine coefficients, and of the mean, (orders,)."""
         return np.array([*range(self.mean), *range(self.mean, self.count, 2)], dtype=int)

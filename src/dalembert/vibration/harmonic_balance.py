@@ -23,6 +23,9 @@ class HarmonicBalance(Checked):
     samples : int or "automatic"
         Samples of a period at which the elements' forces are evaluated. Automatic: doubled until twice as many change
         the balance of forces by less than ``sampling``.
+    events : bool
+        Whether contact and slip events between samples are found and the sums over samples corrected there, for stops
+        and for contacts that slip in one direction. Without, a curve has a kink for each sample that changes its state.
     sampling : float
         Largest change, as part of the forces, for which samples are enough.
     tolerance : float
@@ -53,6 +56,7 @@ class HarmonicBalance(Checked):
     harmonics: int = 9
     odd_only: bool = False
     samples: int | str = AUTOMATIC
+    events: bool = True
     sampling: float = 1e-4
     tolerance: float = 1e-10
     iterations: int = 30

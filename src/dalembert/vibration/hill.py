@@ -42,7 +42,7 @@ def hill(problem: Equations, solution: Solution) -> np.ndarray:
     every = Fourier(tuple(range(orders[-1] + 1)), solution.samples)
     own = problem.balance(solution.samples)
     linear = own.linear(solution.point.stiffness, solution.point.force, solution.unknowns)
-    system = Uncondensed(problem.lowered, problem.condensation, every)
+    system = Uncondensed(problem.lowered, problem.condensation, every, problem.method.events)
     pencil = _pencil(system, _padded(linear, own.series), _padded(solution.unknowns, own.series), solution.omega)
     values, vectors = _eigenvalues(pencil)
     centres = _centres(vectors.reshape(-1, every.count, len(values)), system.matrices[1])

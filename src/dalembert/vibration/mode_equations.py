@@ -104,7 +104,7 @@ class ModeEquations:
     def system(self, samples: int) -> Uncondensed:
         """The elements with this many samples."""
         series = Fourier(self.problem.method.orders, samples)
-        return Uncondensed(self.problem.lowered, self.problem.condensation, series)
+        return Uncondensed(self.problem.lowered, self.problem.condensation, series, self.problem.method.events)
 
     @cached_property
     def basis(self) -> np.ndarray:

@@ -5,10 +5,12 @@ from threading import Lock
 
 from dalembert.kernels.kernel import Compiled
 from dalembert.kernels.preparation import prepare
+from dalembert.vibration.event_sums import sums_and_slopes, sums_complex, sums_real
 from dalembert.vibration.friction_period import forces_complex, forces_real
 from dalembert.vibration.friction_tangent import forces_and_slopes
 from dalembert.vibration.linearised_law import linearise
 from dalembert.vibration.lowering import ELASTIC, Lowered
+from dalembert.vibration.springs import BilinearStop, Gap
 from dalembert.vibration.time_elements import react, settle
 from dalembert.vibration.time_steps import go_through
 
@@ -16,17 +18,36 @@ _TURN = Lock()
 """Threads of an ensemble start together: one of them compiles, and the others wait."""
 
 
-def prepare_balance(lowered: Lowered, *, residuals: bool, stability: bool, derivatives: bool) -> None:
+_PLAIN = (forces_and_slopes, forces_real, forces_complex)
+_CORRECTED = (sums_and_slopes, sums_real, sums_complex)
+"""Kernels of sums with their Jacobians, of sums alone, and of their derivatives with respect to parameters."""
+
+
+def prepare_balance(lowered: Lowered, events: bool, *, residuals: bool, stability: bool, derivatives: bool) -> None:
     """Prepare the kernels of harmonic balance, for the same arguments as ``equations`` takes."""
-    if lowered.blocks:
-        elastic = any(block.kind == ELASTIC for block in lowered.blocks)
-        own = {forces_real: residuals, linearise: stability and elastic, forces_complex: derivatives}
-        _prepare([forces_and_slopes, *(kernel for kernel, needed in own.items() if needed)])
+    elastic = any(block.kind == ELASTIC for block in lowered.blocks)
+    own: dict[Compiled, bool] = {linearise: stability and elastic}
+    for law, needed in ((_PLAIN, _plain(lowered, events)), (_CORRECTED, _corrected(lowered, events))):
+        own |= dict(zip(law, (needed, needed and residuals, needed and derivatives), strict=True))
+    kernels = [kernel for kernel, needed in own.items() if needed]
+    if kernels:
+        _prepare(kernels)
+
+
+def _plain(lowered: Lowered, events: bool) -> bool:
+    """Whether sums of samples are needed."""
+    return any(block.tangents == 2 or not events for block in lowered.blocks)
+
+
+def _corrected(lowered: Lowered, events: bool) -> bool:
+    """Whether sums that are corrected at events are needed."""
+    stops = any(isinstance(element, Gap | BilinearStop) for _, element in lowered.springs)
+    return events and (stops or any(block.tangents < 2 for block in lowered.blocks))
 
 
 def prepare_time(lowered: Lowered, *, on_curve: bool) -> None:
     """Compile or load the kernels of integration in time, from rest or from a point of a curve."""
-    balance = [forces_and_slopes, forces_real] if lowered.blocks else []
+    balance = [*_PLAIN[:2], *_CORRECTED[:2]] if lowered.blocks else []
     _prepare([react, go_through, *([settle, *balance] if on_curve else [])])
 
 

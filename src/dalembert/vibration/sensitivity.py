@@ -44,7 +44,9 @@ def sensitivities(problem: Equations, solution: Solution, tilted: Sequence[Lower
         condensed = outer - (np.swapaxes(point.follow, 1, 2) @ inner[:, :, None])[:, :, 0]
         elements = replace(problem.lowered, blocks=own.blocks, springs=own.springs)
         stepped = linear - 1j * STEP * series.coefficients(condensed)
-        residuals.append(_step(Balance(elements, series).residual(stepped, solution.unknowns).residual))
+        residuals.append(
+            _step(Balance(elements, series, problem.method.events).residual(stepped, solution.unknowns).residual)
+        )
         given.append(inner)
     moved = -np.moveaxis(solution.tangent.solve(np.stack(residuals, axis=2)), 2, 0)
     result = []

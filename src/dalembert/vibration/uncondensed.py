@@ -43,11 +43,14 @@ class Uncondensed:
     condensation : Condensation
         Which splits the structure.
     series : Fourier
+    events : bool
+        As :class:`Balance` takes it.
     """
 
     lowered: Lowered
     condensation: Condensation
     series: Fourier
+    events: bool = True
 
     def __post_init__(self) -> None:
         blocks = tuple(
@@ -59,7 +62,7 @@ class Uncondensed:
     @cached_property
     def balance(self) -> Balance:
         """The elements."""
-        return Balance(self.lowered, self.series)
+        return Balance(self.lowered, self.series, self.events)
 
     @property
     def retained(self) -> int:

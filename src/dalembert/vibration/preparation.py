@@ -25,13 +25,22 @@ _CORRECTED = (sums_and_slopes, sums_real, sums_complex)
 
 def prepare_balance(lowered: Lowered, events: bool, *, residuals: bool, stability: bool, derivatives: bool) -> None:
     """Prepare the kernels of harmonic balance, for the same arguments as ``equations`` takes."""
-    elastic = any(block.kind == ELASTIC for block in lowered.blocks)
-    own: dict[Compiled, bool] = {linearise: stability and elastic}
-    for law, needed in ((_PLAIN, _plain(lowered, events)), (_CORRECTED, _corrected(lowered, events))):
-        own |= dict(zip(law, (needed, needed and residuals, needed and derivatives), strict=True))
-    kernels = [kernel for kernel, needed in own.items() if needed]
+    kernels = _kernels(lowered, events, residuals, derivatives)
+    if stability and lowered.blocks:  # the map of stability goes from sample to sample
+        kernels += [kernel for kernel in (forces_and_slopes,) if kernel not in kernels]
+        kernels += [linearise] if any(block.kind == ELASTIC for block in lowered.blocks) else []
     if kernels:
         _prepare(kernels)
+
+
+def _kernels(lowered: Lowered, events: bool, residuals: bool, derivatives: bool) -> list[Compiled]:
+    """Kernels of the sums of contacts and stops."""
+    return [
+        kernel
+        for law, used in ((_PLAIN, _plain(lowered, events)), (_CORRECTED, _corrected(lowered, events)))
+        for kernel, needed in zip(law, (True, residuals, derivatives), strict=True)
+        if used and needed
+    ]
 
 
 def _plain(lowered: Lowered, events: bool) -> bool:
@@ -45,10 +54,13 @@ def _corrected(lowered: Lowered, events: bool) -> bool:
     return events and (stops or any(block.tangents < 2 for block in lowered.blocks))
 
 
-def prepare_time(lowered: Lowered, *, on_curve: bool) -> None:
-    """Compile or load the kernels of integration in time, from rest or from a point of a curve."""
-    balance = [*_PLAIN[:2], *_CORRECTED[:2]] if lowered.blocks else []
-    _prepare([react, go_through, *([settle, *balance] if on_curve else [])])
+def prepare_time(lowered: Lowered, events: bool | None) -> None:
+    """Compile or load the kernels of integration in time.
+
+    With ``events`` it begins at a point of a curve, and they are as the method of the curve has them.
+    """
+    balance = [] if events is None else [settle, *_kernels(lowered, events, residuals=True, derivatives=False)]
+    _prepare([react, go_through, *balance])
 
 
 def _prepare(kernels: Sequence[Compiled]) -> None:

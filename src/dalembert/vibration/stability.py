@@ -54,7 +54,8 @@ def _by_time_map(problem: Equations, solution: Solution) -> np.ndarray:
     balance = problem.balance(solution.samples)
     linear = balance.linear(solution.point.stiffness, solution.point.force, solution.unknowns)
     series = Fourier(problem.method.orders, max(FEWEST, solution.samples))
-    system = Uncondensed(problem.lowered, problem.condensation, series, problem.method.events)
+    # The map goes from sample to sample, and so do the states that it takes from the elements.
+    system = Uncondensed(problem.lowered, problem.condensation, series, events=False)
     factors = np.linalg.eigvals(monodromy(system, linear, solution.unknowns, solution.omega)).astype(complex)
     values = np.log(factors[np.abs(factors) > FORGOTTEN]) / (2 * np.pi)
     return np.array(sorted(values, key=lambda value: (-value.real, abs(value.imag), value.imag)))

@@ -90,7 +90,7 @@ def steady_state(
     lowered = lower(system).real
     problem = InTime(lowered, 2 * np.pi * frequency, method.steps_per_period, method.stand_in)
     rows = observed(lowered, observe)
-    prepare_time(lowered, on_curve=start is not None)
+    prepare_time(lowered, None if start is None else HarmonicBalance(**start[0].provenance["method"]).events)
     with one_thread():
         run = _Run(problem, method, [])
         state = run.rest() if start is None else run.on_curve(system, *start)

@@ -24,7 +24,8 @@ TURN = 2 * np.pi
     ("harmonics", "published"), [(1, 3.6405013685), (5, 3.6251784738), (7, 3.6247259686), (9, 3.6247415284)]
 )
 def test_one_mass_with_a_slider(record_evidence, harmonics: int, published: float) -> None:
-    curve = frequency_response(one_mass(), np.array([1.12]) / TURN, HarmonicBalance(harmonics, samples=1024))
+    method = HarmonicBalance(harmonics, samples=1024, events=False)
+    curve = frequency_response(one_mass(), np.array([1.12]) / TURN, method)
     record_evidence(
         f"one mass with a slider, {harmonics} harmonics: largest displacement at 1.12 rad/s",
         published, curve.amplitude("m")[0], tolerance=5e-11, topic=TOPIC, source=CODES, unit="m",
@@ -35,17 +36,42 @@ def test_one_mass_with_a_slider(record_evidence, harmonics: int, published: floa
     ("harmonics", "published"), [(1, 4.8150033694), (5, 4.6653328247), (7, 4.6635200230), (9, 4.6647671962)]
 )
 def test_two_masses_with_a_slider(record_evidence, harmonics: int, published: float) -> None:
-    curve = frequency_response(two_masses(), np.array([0.88]) / TURN, HarmonicBalance(harmonics, samples=1024))
+    method = HarmonicBalance(harmonics, samples=1024, events=False)
+    curve = frequency_response(two_masses(), np.array([0.88]) / TURN, method)
     record_evidence(
         f"two masses with a slider, {harmonics} harmonics: largest displacement at 0.88 rad/s",
         published, curve.amplitude("m2")[0], tolerance=5e-11, topic=TOPIC, source=CODES, unit="m",
     )  # fmt: skip
 
 
+EXACT = {
+    "m": ((1, 3.6404880841), (5, 3.6251839247), (7, 3.6247393277), (9, 3.6247543381)),
+    "m2": ((1, 4.8149850598), (5, 4.6654096960), (7, 4.6634858311), (9, 4.6646731246)),
+}
+
+
+@pytest.mark.parametrize(
+    ("mass", "samples", "tolerance"), [("m", 128, 3e-9), ("m", 1024, 1e-10), ("m2", 128, 6e-8), ("m2", 1024, 1e-10)]
+)
+def test_sums_corrected_at_events_leave_no_error_of_sampling(
+    record_evidence, mass: str, samples: int, tolerance: float
+) -> None:
+    system, omega = (one_mass(), 1.12) if mass == "m" else (two_masses(), 0.88)
+    for harmonics, exact in EXACT[mass]:
+        curve = frequency_response(
+            system, np.array([omega]) / TURN, HarmonicBalance(harmonics, samples=samples, tolerance=1e-13)
+        )
+        record_evidence(
+            f"slider on {mass}, {harmonics} harmonics, {samples} samples corrected at events: largest displacement",
+            exact, curve.amplitude(mass)[0], tolerance=tolerance, topic=TOPIC, unit="m",
+            source="independent event-driven evaluation, 1,024 corrected samples",
+        )  # fmt: skip
+
+
 @pytest.mark.slow
 def test_three_masses_with_sliders_cubic_springs_and_a_stop(record_evidence) -> None:
     omegas = np.arange(0.8, 1.7001, 0.005)
-    curve = frequency_response(chain(), omegas / TURN, HarmonicBalance(7, samples=1024))
+    curve = frequency_response(chain(), omegas / TURN, HarmonicBalance(7, samples=1024, events=False))
     assert curve.converged.all()
     for mass, at, published in (("m1", 1.635, 0.20274), ("m2", 1.610, 0.23301), ("m3", 1.625, 0.71153)):
         sizes = curve.amplitude(mass, "rms")

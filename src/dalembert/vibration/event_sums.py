@@ -26,6 +26,7 @@ from dalembert.kernels.arithmetic import Numbers2, Numbers3, kernels
 from dalembert.kernels.blas import product
 from dalembert.kernels.kernel import inner, kernel
 from dalembert.kernels.words import Address, Bytes2, Integers, Reals2, Reals3, Reals4
+from dalembert.vibration.dense import dot
 from dalembert.vibration.friction_law import FRICTION, GAP, LOAD, NORMAL, SEPARATED, SLIPPING, STUCK, TANGENTIAL
 
 MOST = 12
@@ -34,18 +35,18 @@ REFINEMENTS = 60
 """Of a zero, at most: bisections that end at rounding."""
 LEAST = 1e-14
 """Value of a signal, as part of its amplitude, that is zero."""
-ROUNDING = 1e-15
-"""Change of an angle at which a zero is known."""
+SETTLED = 1e-9
+"""Newton step of an angle after which a zero is known to rounding."""
 
 #: Rows of signals: trial force k u, limit mu N, load N.
 TRIAL, LIMIT, PRESSED = range(3)
 
 
 @inner
-def waves(tau, orders, mean, table):
-    """Set table (5, coefficients) to cosines and sines at an angle, and to their first four derivatives."""
+def waves(tau, orders, mean, table, rows):
+    """Set rows of a table (5, coefficients) to cosines and sines at an angle, and to their derivatives."""
     if mean:
-        for row in range(5):
+        for row in range(rows):
             table[row, 0] = 1.0 if row == 0 else 0.0
     cosine, sine = np.cos(tau), np.sin(tau)
     c, s, reached = cosine, sine, 1
@@ -56,17 +57,9 @@ def waves(tau, orders, mean, table):
         at = mean + 2 * (number - mean)
         table[0, at], table[0, at + 1] = c, s
         table[1, at], table[1, at + 1] = -order * s, order * c
-        for row in range(2, 5):
+        for row in range(2, rows):
             table[row, at] = -order * order * table[row - 2, at]
             table[row, at + 1] = -order * order * table[row - 2, at + 1]
-
-
-@inner
-def _dot(x, y):
-    total = 0.0 * y[0]
-    for i in range(len(x)):
-        total += x[i] * y[i]
-    return total
 
 
 @inner
@@ -80,7 +73,7 @@ def evaluate(signals, constants, table, values):
     """Set values (orders, signals) of the signals (signals, coefficients) from a table of waves."""
     for order in range(len(values)):
         for row in range(3):
-            values[order, row] = _dot(signals[row], table[order])
+            values[order, row] = dot(signals[row], table[order])
     for row in range(3):
         values[0, row] += constants[row]
 
@@ -90,20 +83,24 @@ def zero(weights, shift, order, low, high, rising, orders, mean, signals, consta
     """The zero of a combination of signals between two angles; ``rising`` says whether it grows through zero."""
     place = 0.5 * (low + high)
     for _ in range(REFINEMENTS):
-        waves(place, orders, mean, table)
-        evaluate(signals, constants, table, values)
-        size, slope = value(weights, values, order) + shift, value(weights, values, order + 1)
+        waves(place, orders, mean, table, order + 2)
+        size, slope = shift, 0.0 * shift
+        for row in range(3):
+            if weights[row] != 0.0:
+                size += weights[row] * dot(signals[row], table[order])
+                slope += weights[row] * dot(signals[row], table[order + 1])
+                size += weights[row] * constants[row] if order == 0 else 0.0
         if (size.real > 0.0) == rising:
             high = place
         else:
             low = place
-        step = size.real / slope.real if slope.real != 0.0 else high - low
-        trial = place - step
+        trial = place - size.real / slope.real if slope.real != 0.0 else low
         if not low < trial < high:
             trial = 0.5 * (low + high)
-        if abs(trial - place) <= ROUNDING * (1.0 + abs(place)):
-            break
+        close = abs(trial - place) <= SETTLED
         place = trial
+        if close:  # Newton's next step would be the square of this one
+            break
     return place
 
 
@@ -122,7 +119,7 @@ def crossing(
         if not (rise > 0.0 and fall < 0.0):
             return -1.0
         high = zero(weights, 0.0 * shift, order + 1, begin, end, False, orders, mean, signals, constants, table, values)
-        waves(high, orders, mean, table)
+        waves(high, orders, mean, table, 5)
         evaluate(signals, constants, table, values)
         if (value(weights, values, order) + shift).real <= least:
             return -1.0
@@ -311,13 +308,13 @@ def march(
                 if event < 0.0:
                     break
                 moved = True
-                waves(event, orders, mean, table)
+                waves(event, orders, mean, table, 5)
                 evaluate(signals, constants, table, values)
                 error, slope = value(weights, values, order) + shift, value(weights, values, order + 1)
                 angle = event + nothing
                 if abs(error) < 1e-6 * h * abs(slope):  # Newton's last step carries directions of differentiation
                     angle = event - error / slope
-                    waves(angle, orders, mean, table)
+                    waves(angle, orders, mean, table, 5)
                     evaluate(signals, constants, table, values)
                 if wanted:
                     slope_of(weights, order, numbers, table, tangents, normal, move)
@@ -395,9 +392,13 @@ def prepare(d, numbers, tangents, normal, orders, mean, table, signals, constant
     for order in range(3):
         for t in range(grid.shape[1]):
             for row in range(3):
-                grid[order, t, row] = _dot(signals[row], waving[order, t])
-                if order == 0:
-                    grid[order, t, row] += constants[row]
+                grid[order, t, row] = 0.0 if order else constants[row]
+            if tangents == 1:
+                grid[order, t, TRIAL] += dot(signals[TRIAL], waving[order, t])
+            if normal:
+                load = dot(signals[PRESSED], waving[order, t])
+                grid[order, t, PRESSED] += load
+                grid[order, t, LIMIT] += numbers[FRICTION] * load if tangents == 1 else 0.0
 
 
 def _sums(

@@ -21,7 +21,7 @@ import numpy as np
 from dalembert.vibration.condensation import Point
 from dalembert.vibration.contact_sums import ContactSums, Shape, contact_sums
 from dalembert.vibration.fourier import Fourier, real_blocks
-from dalembert.vibration.friction_law import NORMAL, STUCK, TANGENTIAL
+from dalembert.vibration.friction_law import GAP, NORMAL, STUCK, TANGENTIAL
 from dalembert.vibration.lowering import ELASTIC, FrictionBlock, Lowered
 from dalembert.vibration.springs import BilinearStop, Gap, UserElement
 from dalembert.vibration.tangents import BlockTangent, DenseTangent, Tangent
@@ -103,9 +103,23 @@ class Balance:
     def tangent(self, point: Point, unknowns: np.ndarray) -> Tangent:
         """The tangent of the structure alone, to which :meth:`residual` adds the elements."""
         slope = self.linear(point.slope, point.force_slope, unknowns)
-        if unknowns.size > LARGE and self._separate:
+        if unknowns.size > LARGE and self._separate and point.held:
             return BlockTangent(point, self.series, slope, *self._references)
-        return DenseTangent(real_blocks(point.stiffness, self.series.mean), slope)
+        return DenseTangent(real_blocks(point.stiffness, self.series.mean), slope, point.held)
+
+    def stuck(self, point: Point) -> np.ndarray:
+        """Unknowns where all elastic contacts are closed and stick, without preload, (q, coefficients)."""
+        stiffness, force = point.stiffness.copy(), point.force.copy()
+        for block in self.lowered.blocks:
+            if block.kind != ELASTIC:
+                continue
+            for rows, penalties, numbers in zip(block.rows, _penalties(block), block.numbers, strict=True):
+                shapes = self._combination[rows]
+                stiffness += shapes.T @ (penalties[:, None] * shapes)
+                if block.normal and self.series.mean:
+                    force[0] += numbers[NORMAL] * numbers[GAP] * shapes[-1]
+        found = np.stack([np.linalg.lstsq(own, right)[0] for own, right in zip(stiffness, force, strict=True)])
+        return self.series.coefficients(found)
 
     def residual(self, linear: np.ndarray, unknowns: np.ndarray, tangent: Tangent | None = None) -> Evaluation:
         """Residual from its linear part; the elements' part of the tangent is added to ``tangent``.

@@ -21,7 +21,9 @@ MOST_STEPS = 120
 
 @dataclass(frozen=True)
 class Loading:
-    """The equations at one frequency, with the part of the force that acts in the place of the frequency.
+    """The equations at one frequency, with the part of the varying forces that acts in the place of the frequency.
+
+    Static forces act from the beginning: they may be what presses the contacts.
 
     Parameters
     ----------
@@ -36,10 +38,11 @@ class Loading:
     point: Point
 
     def at(self, load: float) -> Point:
-        """The structure with a part of the force, and its derivatives by that."""
+        """The structure with a part of the varying forces, and its derivatives by that."""
+        varying = np.where(self.point.frequencies[:, None] > 0, self.point.force, 0.0)
         return replace(
             self.point, slope=np.zeros_like(self.point.slope),
-            force=load * self.point.force, force_slope=self.point.force,
+            force=self.point.force + (load - 1.0) * varying, force_slope=varying,
         )  # fmt: skip
 
     def solve(self, unknowns: np.ndarray, load: float, samples: int, plane: Plane | None = None) -> Solution:
@@ -47,8 +50,8 @@ class Loading:
         return correct(self.balance, self, self.method, unknowns, load, plane)
 
     def first(self, load: float) -> Solution:
-        """From rest."""
-        return self.solve(np.zeros(self.balance.shape), load, self.balance.series.samples)
+        """From where contacts are closed and stick."""
+        return self.solve(self.balance.stuck(self.at(load)), load, self.balance.series.samples)
 
     def last(self) -> np.ndarray:
         """Unknowns where the path over the force, past its folds, ends: with all of it, if it gets there."""

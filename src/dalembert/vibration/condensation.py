@@ -75,6 +75,14 @@ class Point:
         """Largest entry of the stiffness."""
         return float(np.abs(self.stiffness).max(initial=0.0))
 
+    @cached_property
+    def held(self) -> bool:
+        """Whether the stiffness alone holds the mean position; else only contacts can, and perhaps none does."""
+        if not len(self.frequencies) or self.frequencies[0] != 0 or not self.stiffness.shape[1]:
+            return True
+        values = np.linalg.eigvalsh(np.real(self.stiffness[0]))
+        return bool(values.min() > FLOATING * self.stiffest)
+
     def interior(self, retained: np.ndarray) -> np.ndarray:
         """Interior coordinates (orders, l) where the retained ones are (orders, q)."""
         return self.free - (self.follow @ retained[:, :, None])[:, :, 0]

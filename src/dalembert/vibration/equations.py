@@ -12,7 +12,7 @@ from dalembert.vibration.cold_start import by_force
 from dalembert.vibration.condensation import Condensation, Point, norm
 from dalembert.vibration.fourier import Fourier
 from dalembert.vibration.harmonic_balance import AUTOMATIC, MOST_SAMPLES, HarmonicBalance
-from dalembert.vibration.lowering import Lowered, lower
+from dalembert.vibration.lowering import ELASTIC, Lowered, lower
 from dalembert.vibration.newton import Plane, Solution, correct
 from dalembert.vibration.preparation import prepare_balance
 from dalembert.vibration.springs import BilinearStop, CubicSpring
@@ -69,13 +69,14 @@ class Equations:
         return solution
 
     def first(self, omega: float) -> Solution:
-        """A first point: from rest, where contacts stick; from the motion without contacts; with more and more force.
+        """A first point: from closed contacts that stick, from the motion without contacts, with more and more force.
 
-        With little force contacts stick, so that this is the way of a friction limit from infinity to its own.
+        With little varying force contacts stick, so that this is the way of a friction limit from infinity to its own.
         """
         point, samples = self.condensation.at(omega), self.method.first_samples
-        rest = np.zeros(self.balance(samples).shape)
-        best = self.solve(rest, omega, samples, point=point)
+        balance = self.balance(samples)
+        pressed = any(block.normal and block.kind == ELASTIC for block in self.lowered.blocks)
+        best = self.solve(balance.stuck(point) if pressed else np.zeros(balance.shape), omega, samples, point=point)
         if best.converged:
             return best
         try:

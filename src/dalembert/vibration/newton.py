@@ -22,6 +22,8 @@ PATIENCE, PROGRESS = 10, 0.7
 COARSE = 1e-6
 """Residual of the linear system of a step, as part of its right-hand side, where that is iterated."""
 ROUNDING = 100 * np.finfo(float).eps
+VERIFIED = 1e-8
+"""Residual, as part of the forces, above which no rounding is an excuse: nothing is balanced there."""
 
 
 class Condensed(Protocol):
@@ -130,7 +132,7 @@ def correct(
     at, converged = place(unknowns, omega, point), False
     errors = [at.error]
     while True:
-        converged = at.error <= max(method.tolerance, at.floor)
+        converged = at.error <= max(method.tolerance, min(at.floor, VERIFIED))
         if converged or len(errors) > method.iterations or _stalls(errors):
             break
         step = _step(at, plane)

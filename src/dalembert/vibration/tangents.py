@@ -6,6 +6,9 @@ import numpy as np
 
 from dalembert.vibration.block_tangent import EXACT, BlockTangent
 
+FREE = 1e-11
+"""Singular value, as part of the largest, of what nothing holds."""
+
 
 @dataclass(frozen=True)
 class DenseTangent:
@@ -16,14 +19,18 @@ class DenseTangent:
     jacobian : array, shape (q, coefficients, q, coefficients)
     slope : array, shape (q, coefficients)
         By ω.
+    held : bool
+        Whether the structure holds its mean position. Else contacts may leave it undetermined, and of all solutions
+        the smallest is taken.
     """
 
     jacobian: np.ndarray
     slope: np.ndarray
+    held: bool = True
 
     def copy(self) -> "DenseTangent":
         """The same in other places of memory."""
-        return DenseTangent(self.jacobian.copy(), self.slope.copy())
+        return DenseTangent(self.jacobian.copy(), self.slope.copy(), self.held)
 
     @property
     def matrix(self) -> np.ndarray:
@@ -32,10 +39,15 @@ class DenseTangent:
 
     def solve(self, right: np.ndarray, tolerance: float = EXACT) -> np.ndarray:
         """J⁻¹ times right-hand sides (q, coefficients, columns); to rounding, whatever the tolerance."""
-        return np.linalg.solve(self.matrix, right.reshape(self.slope.size, right.shape[2])).reshape(right.shape)
+        return solution(self.matrix, right.reshape(self.slope.size, right.shape[2]), self.held).reshape(right.shape)
 
 
 Tangent = DenseTangent | BlockTangent
+
+
+def solution(matrix: np.ndarray, right: np.ndarray, held: bool) -> np.ndarray:
+    """Solution of linear equations; the smallest one that leaves the least, if the mean position may be free."""
+    return np.linalg.solve(matrix, right) if held else np.linalg.lstsq(matrix, right, rcond=FREE)[0]
 
 
 def bordered(
@@ -66,7 +78,7 @@ def bordered(
         matrix[:-1, :-1] = tangent.matrix * (size / force)
         matrix[:-1, -1] = tangent.slope.ravel() * (width / force)
         matrix[-1] = direction
-        change = np.linalg.solve(matrix, np.append(top.ravel(), bottom))
+        change = solution(matrix, np.append(top.ravel(), bottom), tangent.held)
         return change[:-1].reshape(top.shape), float(change[-1])
     right = np.stack([top * (force / size), tangent.slope * (width / size)], axis=2)
     solved = tangent.solve(right, tolerance)

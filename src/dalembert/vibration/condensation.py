@@ -76,12 +76,17 @@ class Point:
         return float(np.abs(self.stiffness).max(initial=0.0))
 
     @cached_property
-    def held(self) -> bool:
-        """Whether the stiffness alone holds the mean position; else only contacts can, and perhaps none does."""
+    def free_motions(self) -> np.ndarray:
+        """Mean motions (q, motions) that the stiffness does not hold: only contacts can, and perhaps none does."""
         if not len(self.frequencies) or self.frequencies[0] != 0 or not self.stiffness.shape[1]:
-            return True
-        values = np.linalg.eigvalsh(np.real(self.stiffness[0]))
-        return bool(values.min() > FLOATING * self.stiffest)
+            return np.zeros((self.stiffness.shape[1], 0))
+        values, vectors = np.linalg.eigh(np.real(self.stiffness[0]))
+        return vectors[:, values <= FLOATING * self.stiffest]
+
+    @property
+    def held(self) -> bool:
+        """Whether the stiffness alone holds the mean position."""
+        return not self.free_motions.size
 
     def interior(self, retained: np.ndarray) -> np.ndarray:
         """Interior coordinates (orders, l) where the retained ones are (orders, q)."""

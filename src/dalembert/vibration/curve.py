@@ -10,6 +10,7 @@ from scipy.optimize import minimize_scalar
 
 from dalembert.contents import Contents
 from dalembert.errors import InputError, unknown
+from dalembert.findings import Finding
 from dalembert.results import Result
 from dalembert.units import unit_of
 from dalembert.vibration.amplitudes import Amplitude, observed_column
@@ -82,6 +83,8 @@ class FrequencyCurve(Result):
         and ``"branch point"``.
     provenance : mapping
         Versions, method, settings.
+    findings : tuple of Finding
+        ``"unbalanced-mean"`` or ``"points-not-found"`` where points were not found.
     """
 
     FORMAT: ClassVar[str] = "dalembert frequency curve 1"
@@ -105,6 +108,7 @@ class FrequencyCurve(Result):
     stable: np.ndarray
     markers: tuple[tuple[str, int], ...]
     provenance: Mapping[str, Any]
+    findings: tuple[Finding, ...] = ()
 
     def __len__(self) -> int:
         return len(self.frequencies)

@@ -55,12 +55,18 @@ class Equations:
         plane: Plane | None = None,
         point: Point | None = None,
     ) -> Solution:
-        """Newton's method from a guess, with as many samples as it needs, and at least those given."""
+        """Newton's method from a guess, with as many samples as it needs, and at least those given.
+
+        Where nothing holds a mean position, few samples may leave a mean force that more of them remove.
+        """
         solution = correct(self.balance(samples), self.condensation, self.method, unknowns, omega, plane, point)
+        while solution.error <= self.method.sampling and not solution.converged and self._doubles(solution):
+            finer = self.balance(2 * solution.samples)
+            near = solution.unknowns, solution.omega
+            solution = correct(finer, self.condensation, self.method, *near, plane, solution.point)
         while solution.converged:
             solution = replace(solution, sampling_error=self._sampling_error(solution))
-            enough = solution.sampling_error <= self.method.sampling or solution.samples >= MOST_SAMPLES
-            if self.method.samples != AUTOMATIC or enough:
+            if solution.sampling_error <= self.method.sampling or not self._doubles(solution):
                 break
             finer = self.balance(2 * solution.samples)
             found = (solution.unknowns, solution.omega)
@@ -94,6 +100,10 @@ class Equations:
     def once(self, what: str, solution: Solution, compute: Callable[[], np.ndarray]) -> np.ndarray:
         """What follows from a solution, by name; it is kept where solutions are."""
         return compute()
+
+    def _doubles(self, solution: Solution) -> bool:
+        """Whether more samples may be taken."""
+        return self.method.samples == AUTOMATIC and solution.samples < MOST_SAMPLES
 
     def _sampling_error(self, solution: Solution) -> float:
         finer = self.balance(2 * solution.samples)

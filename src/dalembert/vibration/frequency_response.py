@@ -20,6 +20,7 @@ from dalembert.vibration.newton import Solution
 from dalembert.vibration.recorded import recorded
 from dalembert.vibration.system import VibrationSystem
 from dalembert.vibration.threads import one_thread
+from dalembert.vibration.unfound import unfound, unfound_findings
 
 NATURAL, ARC_LENGTH = "natural", "arc-length"
 PHASES = 64
@@ -187,10 +188,11 @@ def _curve(
     omegas: np.ndarray,
     on_point: OnPoint | None,
 ) -> FrequencyCurve:
-    lowered, records, done = problem.lowered, [], 0.0
+    lowered, records, lost, done = problem.lowered, [], [], 0.0
     dofs = tuple(lowered.structure.dofs.names[row] for row in rows)
     for one in points:
         records.append(_Record.of(problem, one, rows))
+        lost.append(unfound(problem, one.found.solution))
         if on_point is not None:
             given, omega = settings["frequencies"] == "given", one.found.solution.omega
             come = len(records) / len(omegas) if given else (omega - omegas[0]) / (omegas[1] - omegas[0])
@@ -206,6 +208,7 @@ def _curve(
         **{**kept, "stable": kept["stable"].astype(np.int8)},
         markers=tuple((one.marker, number) for number, one in enumerate(records) if one.marker),
         provenance={**provenance, "method": asdict(problem.method), **settings},
+        findings=unfound_findings(len(records), filter(None, lost)),
     )
 
 

@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from dalembert.contents import Contents
+from dalembert.findings import findings_of, stored_findings
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -19,7 +20,12 @@ def stored(result: Any, dimensions: Dimensions, units: Mapping[str, str], names:
         name: (over, getattr(result, name), {"units": units[name]} if units.get(name) else {})
         for name, over in dimensions.items()
     }
-    told = {"names": {name: getattr(result, name) for name in names}, "provenance": dict(result.provenance)}
+    found = stored_findings(result.findings)
+    told = {
+        "names": {name: getattr(result, name) for name in names},
+        "provenance": dict(result.provenance),
+        "findings": found,
+    }
     attributes = {"format": result.FORMAT, **{key: json.dumps(own) for key, own in told.items()}}
     return Contents(variables, attributes=attributes)
 
@@ -29,7 +35,9 @@ def fields_of(dataset: "Dataset", dimensions: Dimensions, truths: Sequence[str] 
     arrays = {name: dataset[name].values for name in dimensions if name in dataset}
     names = {name: _tuples(own) for name, own in json.loads(dataset.attrs["names"]).items()}
     provenance = json.loads(dataset.attrs["provenance"])
-    return {**arrays, **{name: arrays[name].astype(bool) for name in truths}, **names, "provenance": provenance}
+    found = findings_of(json.loads(dataset.attrs.get("findings", "[]")))
+    told = {"provenance": provenance, **({"findings": found} if found else {})}
+    return {**arrays, **{name: arrays[name].astype(bool) for name in truths}, **names, **told}
 
 
 def _tuples(given: Any) -> Any:

@@ -84,7 +84,7 @@ class FrequencyCurve(Result):
     provenance : mapping
         Versions, method, settings.
     findings : tuple of Finding
-        ``"unbalanced-mean"`` or ``"points-not-found"`` where points were not found.
+        ``"unbalanced-mean"`` or ``"points-not-found"`` where points were not found; ``"few-harmonics"``.
     """
 
     FORMAT: ClassVar[str] = "dalembert frequency curve 1"
@@ -193,8 +193,8 @@ class FrequencyCurve(Result):
 
     @property
     def success(self) -> bool:
-        """Whether every point was found."""
-        return bool(self.converged.all())
+        """Whether every point was found, and no finding is an error."""
+        return bool(self.converged.all()) and all(finding.severity != "error" for finding in self.findings)
 
     @property
     def status(self) -> str:

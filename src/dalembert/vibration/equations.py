@@ -41,6 +41,11 @@ class Equations:
         loads = series.phasors(np.real(self.lowered.loads(series)))
         return Condensation(self.lowered.structure, self.lowered.coordinates, self.method.orders, loads)
 
+    @property
+    def nonlinear(self) -> bool:
+        """Whether there are contacts or springs."""
+        return bool(self.lowered.blocks or self.lowered.springs)
+
     def balance(self, samples: int) -> Balance:
         """The elements with this many samples of a period."""
         if samples not in self._balances:

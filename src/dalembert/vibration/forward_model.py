@@ -218,7 +218,7 @@ class FrequencyResponse:
 
     def curve(self, vector: np.ndarray) -> FrequencyCurve:
         """The whole result at a parameter vector (parameters,)."""
-        return frequency_response(self.system(vector), self.frequencies, self.method)
+        return frequency_response(self.system(vector), self.frequencies, self.method, check=False)
 
     def _linearise(self, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         problem = equations(self.system(vector), self.method, derivatives=True)

@@ -20,6 +20,7 @@ from dalembert.vibration.newton import Solution
 from dalembert.vibration.recorded import recorded
 from dalembert.vibration.system import VibrationSystem
 from dalembert.vibration.threads import one_thread
+from dalembert.vibration.truncation import largest, truncation_findings
 from dalembert.vibration.unfound import unfound, unfound_findings
 
 NATURAL, ARC_LENGTH = "natural", "arc-length"
@@ -62,6 +63,7 @@ def frequency_response(
     observe: Sequence[str] | None = None,
     start: tuple[FrequencyCurve, int] | None = None,
     stability: bool = False,
+    check: bool = True,
     checkpoint: Checkpoint | None = None,
     on_point: OnPoint | None = None,
 ) -> FrequencyCurve:
@@ -84,6 +86,9 @@ def frequency_response(
         Whether the stability of each point is found too, and the places where it changes: by Hill's method, or with
         friction by the linearised motion over a period (see :func:`floquet_multipliers`). On paths between two
         frequencies these places are points of their own; with given frequencies the first one behind is marked.
+    check : bool
+        Whether the largest motion is computed again with twice the harmonics. A change is the finding
+        ``"few-harmonics"``.
     checkpoint : Checkpoint, optional
         Where solutions are kept as they are found; begun again with the same file the curve is followed to where it was
         in a part of the time, and on from there to the same bits.
@@ -133,7 +138,7 @@ def frequency_response(
     settings = {"continuation": continuation, "frequencies": list(map(float, frequencies)) if ends else "given"}
     with one_thread():
         problem = recorded(equations(system, method, stability=stability), checkpoint)
-        return _followed(problem, omegas, settings, observe, start, stability, on_point)
+        return _followed(problem, omegas, settings, observe, start, stability, check, on_point)
 
 
 def _followed(
@@ -143,6 +148,7 @@ def _followed(
     observe: Sequence[str] | None,
     start: tuple[FrequencyCurve, int] | None,
     stability: bool,
+    check: bool,
     on_point: OnPoint | None,
 ) -> FrequencyCurve:
     """The curve through given frequencies, or between two."""
@@ -154,7 +160,7 @@ def _followed(
         follow = along if settings["continuation"] == ARC_LENGTH else natural
         found = follow(problem, float(omegas[0]), float(omegas[1]), known)
     points = judged(problem, found, located=not given) if stability else unjudged(found)
-    return _curve(problem, points, observed(problem.lowered, observe), settings, omegas, on_point)
+    return _curve(problem, points, observed(problem.lowered, observe), settings, omegas, check, on_point)
 
 
 def restarted(problem: Equations, curve: FrequencyCurve, point: int, where: str) -> Solution:
@@ -186,13 +192,16 @@ def _curve(
     rows: np.ndarray,
     settings: dict,
     omegas: np.ndarray,
+    check: bool,
     on_point: OnPoint | None,
 ) -> FrequencyCurve:
     lowered, records, lost, done = problem.lowered, [], [], 0.0
+    top: Solution | None = None
     dofs = tuple(lowered.structure.dofs.names[row] for row in rows)
     for one in points:
         records.append(_Record.of(problem, one, rows))
         lost.append(unfound(problem, one.found.solution))
+        top = largest(top, one.found.solution) if check else None
         if on_point is not None:
             given, omega = settings["frequencies"] == "given", one.found.solution.omega
             come = len(records) / len(omegas) if given else (omega - omegas[0]) / (omegas[1] - omegas[0])
@@ -208,7 +217,10 @@ def _curve(
         **{**kept, "stable": kept["stable"].astype(np.int8)},
         markers=tuple((one.marker, number) for number, one in enumerate(records) if one.marker),
         provenance={**provenance, "method": asdict(problem.method), **settings},
-        findings=unfound_findings(len(records), filter(None, lost)),
+        findings=(
+            *unfound_findings(len(records), filter(None, lost)),
+            *(() if top is None else truncation_findings(problem, top)),
+        ),
     )
 
 

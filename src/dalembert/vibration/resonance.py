@@ -118,7 +118,7 @@ def track_resonance(
         if not isinstance(curve, FrequencyCurve):
             system = builder(**{parameter: float(numbers[0])})
             curve = frequency_response(
-                system, curve, method, continuation=ARC_LENGTH, observe=[name], checkpoint=checkpoint
+                system, curve, method, continuation=ARC_LENGTH, observe=[name], check=False, checkpoint=checkpoint
             )
         begin = restarted(first, curve, _top(curve, name, size), "track_resonance")
         row = first.lowered.structure.dofs.index(name)

@@ -1,0 +1,103 @@
+"""Whether the harmonics that are kept resolve a motion: how much of it more harmonics change."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from dalembert.findings import Finding
+from dalembert.vibration.condensation import norm
+from dalembert.vibration.contacts import RIGID_KINDS
+from dalembert.vibration.equations import Equations
+from dalembert.vibration.fourier import Fourier
+from dalembert.vibration.lowering import ELASTIC, Lowered
+from dalembert.vibration.newton import Solution
+
+DISPLACEMENT, VELOCITY = RIGID_KINDS
+SLOW = 2.5
+"""Error over the change by twice the harmonics: about 2 where forces jump, so that it falls with 1/harmonics."""
+LARGE = 5e-3
+"""Error of the largest motion, as part of it, that is a finding."""
+PHASES = 1024
+
+
+def truncation_findings(problem: Equations, solution: Solution) -> Iterator[Finding]:
+    """Yield a finding where twice the harmonics change the motion of the retained coordinates at a solution.
+
+    Rigid contacts on coordinates with mass need the most harmonics, because their forces jump where motion stops.
+    """
+    error = float(problem.once("truncation", solution, lambda: np.array([_error(problem, solution)]))[0])
+    if error <= LARGE:
+        return
+    frequency, harmonics = solution.omega / (2 * np.pi), problem.method.harmonics
+    rigid = any(block.kind != ELASTIC for block in problem.lowered.blocks)
+    if np.isnan(error):
+        yield Finding(
+            "unchecked-harmonics",
+            "error" if rigid else "warning",
+            {"frequency": frequency, "harmonics": harmonics},
+            f"Whether {harmonics} harmonics resolve the motion at {frequency:.6g} Hz is not known: with "
+            f"{2 * harmonics + 1} harmonics it was not found.",
+            "Try another number of harmonics, or compare the curve with integration in time.",
+        )
+        return
+    yield Finding(
+        "few-harmonics",
+        "error" if rigid else "warning",
+        {"frequency": frequency, "harmonics": harmonics, "error": error},
+        f"{harmonics} harmonics do not resolve the motion at {frequency:.6g} Hz: its error is about "
+        f"{100 * error:.2g} %, by the change with {2 * harmonics + 1} harmonics.",
+        "Keep more harmonics. "
+        + (
+            "The force of a rigid contact with mass jumps, so that the error falls slowly; an elastic law falls faster."
+            if rigid
+            else "Compare the curve with integration in time."
+        ),
+    )
+
+
+def _error(problem: Equations, solution: Solution) -> float:
+    """Error of the peak of the retained coordinate that moves most, as part of it; NaN if no finer motion is found."""
+    method = problem.method.refined()
+    if method is None or not problem.nonlinear:
+        return 0.0
+    finer = Equations(_robust(problem), method)
+    samples = max(method.first_samples, solution.samples)
+    begin = np.zeros(finer.balance(samples).shape)
+    places = np.searchsorted(_columns(method.orders), _columns(problem.method.orders))
+    begin[:, places] = solution.unknowns
+    better = finer.solve(begin, solution.omega, samples)
+    if not better.converged:
+        better = finer.first(solution.omega)
+    if not better.converged:
+        return np.nan
+    own, other = (
+        np.ptp(Fourier(orders, PHASES).synthesis @ unknowns.T, axis=0) / 2
+        for orders, unknowns in ((problem.method.orders, solution.unknowns), (method.orders, better.unknowns))
+    )
+    most = int(np.argmax(other))
+    return SLOW * abs(own[most] - other[most]) / (other[most] or 1.0)
+
+
+def _robust(problem: Equations) -> Lowered:
+    """The elements with rigid contacts of the velocity kind where they carry mass: that kind converges faster there."""
+    lowered, mass = problem.lowered, problem.condensation.outer[1]
+    place = {row: number for number, row in enumerate(lowered.coordinates.rows.tolist())}
+    blocks = []
+    for block in lowered.blocks:
+        rows = [place[row] for row in block.rows.ravel().tolist() if row in place]
+        heavy = block.kind == DISPLACEMENT and np.any(np.diag(mass)[rows] > 0)
+        blocks.append(replace(block, kind=VELOCITY) if heavy else block)
+    return replace(lowered, blocks=tuple(blocks))
+
+
+def _columns(orders: tuple[int, ...]) -> np.ndarray:
+    """Numbers of coefficients, cosine and sine of each harmonic, in a series with all harmonics."""
+    return np.array([column for order in orders for column in ((0,) if order == 0 else (2 * order - 1, 2 * order))])
+
+
+def largest(best: Solution | None, solution: Solution) -> Solution | None:
+    """The solution with the larger motion; None before one was found."""
+    if not solution.converged or (best is not None and norm(best.unknowns) >= norm(solution.unknowns)):
+        return best
+    return solution

@@ -29,7 +29,7 @@ def truncation_findings(problem: Equations, solution: Solution) -> Iterator[Find
     error = float(problem.once("truncation", solution, lambda: np.array([_error(problem, solution)]))[0])
     if error <= LARGE:
         return
-    frequency, harmonics = solution.omega / (2 * np.pi), problem.method.harmonics
+    frequency, harmonics = float(solution.omega) / (2 * np.pi), problem.method.harmonics
     rigid = any(block.kind != ELASTIC for block in problem.lowered.blocks)
     if np.isnan(error):
         yield Finding(

@@ -42,7 +42,7 @@ def unfound(problem: Equations, solution: Solution) -> Unfound | None:
     """Return the cause if a point was not found."""
     if solution.converged:
         return None
-    frequency, residual = solution.omega / (2 * np.pi), solution.evaluation.residual
+    frequency, residual = float(solution.omega) / (2 * np.pi), solution.evaluation.residual
     motions = solution.point.free_motions
     along = motions.T @ residual[:, 0]
     largest = max(LEFT * float(np.linalg.norm(residual)), VERIFIED * solution.point.load)

@@ -72,7 +72,7 @@ def test_each_point_is_found_with_finite_displacements(name: str, law: str) -> N
     assert curve.converged.all()
     assert np.all(curve.residuals < 1e-8)
     assert np.abs(curve.unknowns).max() < 200
-    assert curve.findings == ()
+    assert {finding.code for finding in curve.findings} <= {"few-harmonics"}
 
 
 @pytest.mark.parametrize(

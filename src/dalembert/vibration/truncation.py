@@ -13,7 +13,7 @@ from dalembert.vibration.fourier import Fourier
 from dalembert.vibration.lowering import ELASTIC, Lowered
 from dalembert.vibration.newton import Solution
 
-DISPLACEMENT, VELOCITY = RIGID_KINDS
+_, VELOCITY = RIGID_KINDS
 SLOW = 2.5
 """Error over the change by twice the harmonics: about 2 where forces jump, so that it falls with 1/harmonics."""
 LARGE = 5e-3
@@ -30,11 +30,11 @@ def truncation_findings(problem: Equations, solution: Solution) -> Iterator[Find
     if error <= LARGE:
         return
     frequency, harmonics = float(solution.omega) / (2 * np.pi), problem.method.harmonics
-    rigid = any(block.kind != ELASTIC for block in problem.lowered.blocks)
+    heavy = any(_heavy(problem, solution.omega))
     if np.isnan(error):
         yield Finding(
             "unchecked-harmonics",
-            "error" if rigid else "warning",
+            "error" if heavy else "warning",
             {"frequency": frequency, "harmonics": harmonics},
             f"Whether {harmonics} harmonics resolve the motion at {frequency:.6g} Hz is not known: with "
             f"{2 * harmonics + 1} harmonics it was not found.",
@@ -43,14 +43,14 @@ def truncation_findings(problem: Equations, solution: Solution) -> Iterator[Find
         return
     yield Finding(
         "few-harmonics",
-        "error" if rigid else "warning",
+        "error" if heavy else "warning",
         {"frequency": frequency, "harmonics": harmonics, "error": error},
         f"{harmonics} harmonics do not resolve the motion at {frequency:.6g} Hz: its error is about "
         f"{100 * error:.2g} %, by the change with {2 * harmonics + 1} harmonics.",
         "Keep more harmonics. "
         + (
             "The force of a rigid contact with mass jumps, so that the error falls slowly; an elastic law falls faster."
-            if rigid
+            if heavy
             else "Compare the curve with integration in time."
         ),
     )
@@ -61,7 +61,7 @@ def _error(problem: Equations, solution: Solution) -> float:
     method = problem.method.refined()
     if method is None or not problem.nonlinear:
         return 0.0
-    finer = Equations(_robust(problem), method)
+    finer = Equations(_robust(problem, solution.omega), method)
     samples = max(method.first_samples, solution.samples)
     begin = np.zeros(finer.balance(samples).shape)
     places = np.searchsorted(_columns(method.orders), _columns(problem.method.orders))
@@ -79,16 +79,28 @@ def _error(problem: Equations, solution: Solution) -> float:
     return SLOW * abs(own[most] - other[most]) / (other[most] or 1.0)
 
 
-def _robust(problem: Equations) -> Lowered:
-    """The elements with rigid contacts of the velocity kind where they carry mass: that kind converges faster there."""
-    lowered, mass = problem.lowered, problem.condensation.outer[1]
+def _heavy(problem: Equations, omega: float) -> tuple[bool, ...]:
+    """Whether the rigid contacts of each block carry mass.
+
+    They do if the highest harmonic meets more inertia than stiffness, with everything else held.
+    """
+    lowered, (stiffness, mass, _) = problem.lowered, problem.condensation.outer
+    inertia = np.diag(mass) * (problem.method.harmonics * omega) ** 2
     place = {row: number for number, row in enumerate(lowered.coordinates.rows.tolist())}
-    blocks = []
-    for block in lowered.blocks:
-        rows = [place[row] for row in block.rows.ravel().tolist() if row in place]
-        heavy = block.kind == DISPLACEMENT and np.any(np.diag(mass)[rows] > 0)
-        blocks.append(replace(block, kind=VELOCITY) if heavy else block)
-    return replace(lowered, blocks=tuple(blocks))
+    rows = [[place[row] for row in block.rows.ravel().tolist() if row in place] for block in lowered.blocks]
+    return tuple(
+        block.kind != ELASTIC and bool(np.any(inertia[own] > np.diag(stiffness)[own]))
+        for block, own in zip(lowered.blocks, rows, strict=True)
+    )
+
+
+def _robust(problem: Equations, omega: float) -> Lowered:
+    """The elements with rigid contacts of the velocity kind where these carry mass: that kind converges faster there."""
+    blocks = tuple(
+        replace(block, kind=VELOCITY) if heavy and block.memory else block
+        for block, heavy in zip(problem.lowered.blocks, _heavy(problem, omega), strict=True)
+    )
+    return replace(problem.lowered, blocks=blocks)
 
 
 def _columns(orders: tuple[int, ...]) -> np.ndarray:

@@ -95,7 +95,7 @@ def _heavy(problem: Equations, omega: float) -> tuple[bool, ...]:
 
 
 def _robust(problem: Equations, omega: float) -> Lowered:
-    """The elements with rigid contacts of the velocity kind where these carry mass: that kind converges faster there."""
+    """The elements with rigid contacts of the velocity kind where these carry mass: it converges faster there."""
     blocks = tuple(
         replace(block, kind=VELOCITY) if heavy and block.memory else block
         for block, heavy in zip(problem.lowered.blocks, _heavy(problem, omega), strict=True)

@@ -222,7 +222,7 @@ class FrequencyCurve(Result):
             for dof in self.dofs[:8]:
                 peak = self.peak(dof)
                 lines.append(f"{dof}: largest {peak.amplitude:.6g} {unit_of(dof)} at {peak.frequency:.6g} Hz")
-        return "\n".join(lines)
+        return "\n".join([*lines, *map(str, self.findings)])
 
     def _bifurcations(self) -> list[str]:
         """A line a kind, and one on stability."""

@@ -32,7 +32,8 @@ _ENTRIES = 2  # that are halved at most
 _HALVINGS = 40  # until a steep function changes by less than _JUMP of the difference
 _JUMP = 1e-6
 DROPPING = "abs, np.abs, .real, np.linalg.norm, np.angle and rounding"
-REMEDY = "Use absolute, norm, hypot and atan2 of dalembert, or give derivative='central-differences'"
+SAFE = "Use absolute, norm, hypot and atan2 of dalembert"
+REMEDY = f"{SAFE}, or give derivative='central-differences'"
 
 
 class Lost(NamedTuple):

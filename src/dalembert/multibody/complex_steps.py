@@ -177,7 +177,7 @@ def _of_components(lowered: Lowered, along: Along) -> Iterator[tuple[str, np.nda
             yield f"the channel {channel.name!r}", column
 
 
-def check_forces(lowered: Lowered, along: Along, scale: np.ndarray) -> None:
+def check_forces(lowered: Lowered, along: Along, scale: np.ndarray, remedy: str = REMEDY) -> None:
     """Raise where a function of the user's, or a kind of another package, loses the complex step of the state.
 
     Parameters
@@ -186,6 +186,8 @@ def check_forces(lowered: Lowered, along: Along, scale: np.ndarray) -> None:
     along : Along
     scale : array (N + 1,)
         Typical sizes of the coordinates.
+    remedy : str
+        What to do about a force, at the end of the message.
 
     Raises
     ------
@@ -199,7 +201,7 @@ def check_forces(lowered: Lowered, along: Along, scale: np.ndarray) -> None:
                 for sample in along.samples:
                     state = [part[sample] for part in along.states[:3]]
                     for kind in kinds:
-                        _check_force(lowered, kind, direction, float(along.times[sample]), state)
+                        _check_force(lowered, kind, direction, float(along.times[sample]), state, remedy)
                     if along.readers:
                         _check_channels(lowered, along.readers, direction, state)
 
@@ -217,7 +219,9 @@ def _directions(lowered: Lowered, states: Motion, scale: np.ndarray) -> list[tup
     return [(signs * scale, still), (still, signs * speed)]
 
 
-def _check_force(lowered: Lowered, kind: Kind, direction: Sequence[np.ndarray], t: float, state: list) -> None:
+def _check_force(
+    lowered: Lowered, kind: Kind, direction: Sequence[np.ndarray], t: float, state: list, remedy: str
+) -> None:
     x, v, a = state
     dx, dv = direction
 
@@ -233,7 +237,7 @@ def _check_force(lowered: Lowered, kind: Kind, direction: Sequence[np.ndarray], 
         raise InputError(
             f"a force of {', '.join(map(repr, names))} depends on the state, but its derivative is {lost.by_step:.6g} "
             f"by the complex step and {lost.by_differences:.6g} by differences, at t = {t:.6g} s. Its function drops "
-            f"the imaginary part, as {DROPPING} do. {REMEDY}"
+            f"the imaginary part, as {DROPPING} do. {remedy}"
         )
 
 

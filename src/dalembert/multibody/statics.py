@@ -11,6 +11,7 @@ from scipy.sparse.linalg import lsqr, splu
 
 from dalembert.arguments import names_of, takes_checked
 from dalembert.errors import SolveError
+from dalembert.forward.complex_steps import SAFE
 from dalembert.kernels.preparation import prepare
 from dalembert.multibody.assemble import assembled, refuse_redundancy, scales
 from dalembert.multibody.complex_steps import Along, check_forces
@@ -220,7 +221,7 @@ def _check_tangents(lowered: Lowered, x: np.ndarray) -> None:
     """Raise where stiffness or damping of a force would be wrong."""
     at_rest = np.zeros((1, len(x)))
     along = Along(Observer((), ()), np.zeros(1), Motion(x[None], at_rest, at_rest, at_rest))
-    check_forces(lowered, along, scales(lowered))
+    check_forces(lowered, along, scales(lowered), SAFE)
 
 
 def _undamped(k: np.ndarray, m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -19,6 +19,7 @@ from dalembert.multibody.kernels.dual import sin_cos
 from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.kernels.model import Blocks, Model
 from dalembert.multibody.kernels.records import RESIDUAL, TANGENT
+from dalembert.multibody.kernels.reduction import reduction
 from dalembert.multibody.lowering import Lowered, lower
 
 COUNT = 500  # joints that one call of a kernel loops over
@@ -126,7 +127,8 @@ class _Kernel:
         whole = chain.model(self.dtype)
         kept = whole.blocks.index, whole.blocks.integers, whole.blocks.numbers
         blocks = Blocks(*({kind: columns[place]} for columns in kept))
-        self.model = Model(blocks, whole.signals, whole.callbacks, whole.size, whole.coordinates, self.dtype)
+        rows = reduction(blocks.index, whole.coordinates, whole.size)
+        self.model = Model(blocks, whole.signals, whole.callbacks, whole.size, whole.coordinates, self.dtype, rows)
         self.state = np.random.default_rng(1).normal(size=(3, whole.size + 1))
         self.state[:, -1] = 0.0
         slots, entries, _ = chain.structure.coordinate_layout

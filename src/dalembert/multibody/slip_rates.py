@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from dalembert.findings import Finding
-from dalembert.multibody.components.planar.revolute_joint import RevoluteJoint
+from dalembert.multibody.components.planar.friction import Smoothing
 from dalembert.multibody.system import System
 
 CROSSING = 1.0  # steps, at least, in which the motion should cross the smoothed zone
@@ -15,24 +15,22 @@ LARGE = 0.05  # part of the joint's largest rate that a slip rate should not exc
 STAY = 10.0  # crossings at the mean acceleration, after which friction holds the joint
 
 
-def rubbing(system: System) -> list[RevoluteJoint]:
-    """Return the revolute joints with Coulomb friction."""
-    joints = [joint for joint in system.joints if isinstance(joint, RevoluteJoint)]
-    return [joint for joint in joints if joint.coulomb or joint.friction_coefficient]
+def rubbing(system: System) -> dict[str, Smoothing]:
+    """Return how joints with Coulomb friction smooth it, by their names."""
+    return {joint.name: joint.smoothing for joint in system.joints if joint.smoothing}
 
 
 def slip_findings(
-    name: str, slip: float, times: np.ndarray, rates: np.ndarray, step: float | None
+    name: str, smoothing: Smoothing, times: np.ndarray, rates: np.ndarray, step: float | None
 ) -> Iterator[Finding]:
     """Yield whether a joint creeps where friction should hold it, or crosses the smoothed zone in too few steps.
 
     Parameters
     ----------
     name : str
-    slip : float
-        rad/s; the friction is proportional to tanh(rate / slip).
+    smoothing : Smoothing
     times, rates : array, shape (samples,)
-        s and rad/s, samples farther apart than a ``step`` do not show how it crosses the zone.
+        s and rad/s or m/s, samples farther apart than a ``step`` do not show how it crosses the zone.
     step : float or None
         s; None for a solver that chooses its steps, which is only judged by the creep.
 
@@ -42,6 +40,7 @@ def slip_findings(
     times as long as a crossing takes at the root mean square of the acceleration. The
     rate of creep is about the slip rate; the number of steps in a crossing is proportional to it.
     """
+    slip, setting, unit = float(np.real(smoothing.slip)), smoothing.setting, smoothing.unit
     largest = float(np.max(np.abs(rates)))
     if largest == 0 or len(times) < 2:
         return
@@ -51,12 +50,12 @@ def slip_findings(
     most = CREEP / 2 * travel / duration if duration else np.inf  # the rate of creep is about the slip rate
     if creep > CREEP:
         proposed = _rounded(min(slip / 2, most))
-        values = {"joint": name, "slip_rate": slip, "largest_rate": largest, "creep": creep, "proposed": proposed}
+        values = {"joint": name, setting: slip, "largest_rate": largest, "creep": creep, "proposed": proposed}
         message = (
             f"Joint {name!r} creeps where friction should hold it, by {100 * creep:.2g} % of its range of motion: its "
-            f"slip_rate {slip:.3g} rad/s is too large."
+            f"{setting} {slip:.3g} {unit} is too large."
         )
-        advice = f"Set slip_rate to {proposed:.2g} rad/s or less."
+        advice = f"Set {setting} to {proposed:.2g} {unit} or less."
         yield Finding("slip-rate", "warning", values, message, advice)
         return
     change = _crossing(slip, rates)
@@ -65,21 +64,21 @@ def slip_findings(
     proposed = max(slip, _rounded(min(SMOOTH / 2 * change, most, LARGE * largest)))
     finer = min(step, _rounded(0.9 * step * 2 * proposed / change / CROSSING))
     values = {
-        "joint": name, "slip_rate": slip, "largest_rate": largest, "steps": 2 * slip / change, "proposed": proposed,
+        "joint": name, setting: slip, "largest_rate": largest, "steps": 2 * slip / change, "proposed": proposed,
         "step": finer,
     }  # fmt: skip
     message = (
-        f"The motion crosses the smoothed friction of joint {name!r} in {2 * slip / change:.2g} steps: its slip_rate "
-        f"is {slip:.3g} rad/s. The response is rough over the parameters, and fits may converge slowly."
+        f"The motion crosses the smoothed friction of joint {name!r} in {2 * slip / change:.2g} steps: its {setting} "
+        f"is {slip:.3g} {unit}. The response is rough over the parameters, and fits may converge slowly."
     )
-    to_do = [f"set slip_rate to {proposed:.2g} rad/s"] * (proposed > slip) + [f"use steps of {finer:.2g} s"] * (
+    to_do = [f"set {setting} to {proposed:.2g} {unit}"] * (proposed > slip) + [f"use steps of {finer:.2g} s"] * (
         finer < step
     )
     yield Finding("slip-rate", "note", values, message, f"For a fit, {' and '.join(to_do)}.")
 
 
 def _held(slip: float, times: np.ndarray, rates: np.ndarray) -> tuple[float, float]:
-    """Return the angle, rad, and the duration, s, of all intervals in which friction holds the joint."""
+    """Return the change of position and the duration, s, of all intervals in which friction holds the joint."""
     spacing = np.diff(times)
     acceleration = np.sqrt(np.mean((np.diff(rates) / spacing) ** 2))
     slow = np.concatenate([[False], np.abs(rates) < 2 * slip, [False]])
@@ -91,13 +90,13 @@ def _held(slip: float, times: np.ndarray, rates: np.ndarray) -> tuple[float, flo
 
 
 def _travel(times: np.ndarray, rates: np.ndarray) -> float:
-    """Return the range of the joint's angle, rad."""
+    """Return the range of the joint's angle or position, rad or m."""
     steps = np.diff(times) * (rates[1:] + rates[:-1]) / 2
     return float(np.ptp(np.concatenate([[0.0], np.cumsum(steps)]))) or 1.0
 
 
 def _crossing(slip: float, rates: np.ndarray) -> float:
-    """Return the largest change of the rate in a step that crosses zero or an edge of the zone, rad/s; 0 for none."""
+    """Return the largest change of the rate in a step that crosses zero or an edge of the zone; 0 for none."""
     inside = np.abs(rates) < slip
     across = (rates[:-1] * rates[1:] < 0) | (inside[1:] != inside[:-1])
     return float(np.max(np.abs(np.diff(rates)), where=across, initial=0.0))

@@ -67,12 +67,12 @@ class Trajectory:
         if not joints:
             return self.system.findings
         times, states = self.run.times, self.run.states
-        own = observer(self.system, self.lowered, [f"{joint.name}.rate" for joint in joints])
-        prepare(own.kernels(self.lowered, False))
-        rates = own.read(self.lowered, self.lowered.real, states.x, states.v, states.a)
+        readers = observer(self.system, self.lowered, [f"{name}.{own.channel}" for name, own in joints.items()])
+        prepare(readers.kernels(self.lowered, False))
+        rates = readers.read(self.lowered, self.lowered.real, states.x, states.v, states.a)
         unsuited = (
-            slip_findings(joint.name, float(np.real(joint.slip_rate)), times, column, self.solver.fixed_step)
-            for joint, column in zip(joints, rates.T, strict=True)
+            slip_findings(name, own, times, column, self.solver.fixed_step)
+            for (name, own), column in zip(joints.items(), rates.T, strict=True)
         )
         return (*self.system.findings, *chain.from_iterable(unsuited))
 

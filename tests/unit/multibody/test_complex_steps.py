@@ -295,9 +295,13 @@ PULLS: dict[str, Callable] = {
 
 @pytest.mark.parametrize("name", PULLS)
 def test_modes_with_a_force_that_loses_the_step_are_refused(name: str) -> None:
-    with pytest.raises(da.InputError, match="a force of 'own' depends on the state, but its derivative is 0 by the") as told:
+    with pytest.raises(
+        da.InputError, match="a force of 'own' depends on the state, but its derivative is 0 by the"
+    ) as told:
         da.modes(sprung(PULLS[name]))
-    assert str(told.value).endswith(" do. Use absolute, norm, hypot and atan2 of dalembert")  # modes have no differences
+    assert str(told.value).endswith(
+        " do. Use absolute, norm, hypot and atan2 of dalembert"
+    )  # modes have no differences
 
 
 def test_modes_with_a_force_by_safe_functions_are_right() -> None:

@@ -3,10 +3,23 @@
 import numpy as np
 import pytest
 
-from dalembert.multibody import GeneralizedAlpha, RevoluteJoint, RigidBar, System, TimeResponse, simulate
+from dalembert.multibody import (
+    DistanceJoint,
+    GeneralizedAlpha,
+    PrismaticJoint,
+    RevoluteJoint,
+    RigidBar,
+    RigidBody,
+    Spring,
+    System,
+    TimeResponse,
+    simulate,
+)
+from dalembert.multibody.components.planar.friction import Smoothing
 from dalembert.multibody.slip_rates import slip_findings
 
 TIMES = np.linspace(0, 6, 61)
+PIN = Smoothing("rate", "slip_rate", 1e-3, "rad/s")
 
 
 def pendulum(coulomb, slip_rate, friction=True):
@@ -54,15 +67,60 @@ def test_creep_of_a_joint_that_friction_holds_is_a_warning():
 
 
 def test_a_joint_at_rest_or_without_friction_has_no_finding():
-    assert list(slip_findings("pin", 1e-3, TIMES, np.zeros(61), 0.1)) == []
+    assert list(slip_findings("pin", PIN, TIMES, np.zeros(61), 0.1)) == []
     assert simulate(pendulum(0.0, 1e-3), 1.0).findings == ()
     assert simulate(pendulum(0.0, 1e-3, friction=False), 1.0).findings == ()
 
 
 def test_solvers_that_choose_their_steps_are_judged_by_creep_only():
     rates = np.where(np.arange(61) % 2, 5.0, -5.0)
-    assert list(slip_findings("pin", 1e-3, TIMES, rates, None)) == []
-    assert len(list(slip_findings("pin", 1e-3, TIMES, rates, 0.1))) == 1
+    assert list(slip_findings("pin", PIN, TIMES, rates, None)) == []
+    assert len(list(slip_findings("pin", PIN, TIMES, rates, 0.1))) == 1
+
+
+def block(slip_velocity, stiffness=0.0):
+    """A block that slides down a slope of 0.3 rad, which friction of 5 N stops."""
+    system = System()
+    body = system.add(RigidBody("block", 1.0, 1.0, velocity=np.array([np.cos(0.3), -np.sin(0.3)])))
+    slope = {"angle": -0.3, "coulomb": 5.0, "slip_velocity": slip_velocity}
+    system.add(PrismaticJoint("slide", system.ground.point(0.0, 0.0), body.centre, **slope))
+    if stiffness:
+        end = system.ground.point(10 * np.cos(0.3), -10 * np.sin(0.3))
+        system.add(Spring("spring", end, body.centre, stiffness, free_length=9.0))
+    return system
+
+
+def test_a_slide_that_creeps_down_a_slope_is_a_warning_in_its_units():
+    motion = simulate(block(1e-2), 6.0, GeneralizedAlpha(2e-3))
+    (warning,) = motion.findings
+    assert (warning.code, warning.severity) == ("slip-rate", "warning")
+    # The block stops after 1 m/s / (5 N / kg - g sin 0.3) and creeps at 1e-2 m/s artanh(g sin 0.3 / 5 N / kg).
+    pull = 9.81 * np.sin(0.3)
+    stop = 1 / (5 - pull)
+    crept = 1e-2 * np.arctanh(pull / 5) * (6 - stop)
+    assert warning.values["creep"] == pytest.approx(crept / (stop / 2 + crept), rel=0.05)
+    assert "its slip_velocity 0.01 m/s is too large" in warning.message
+    assert warning.advice == f"Set slip_velocity to {warning.values['proposed']:.2g} m/s or less."
+    assert simulate(block(warning.values["proposed"]), 6.0, GeneralizedAlpha(2e-4)).findings == ()
+
+
+def test_a_slide_that_turns_within_a_step_is_noted():
+    (noted,) = simulate(block(1e-4, stiffness=400.0), 0.3, GeneralizedAlpha(2e-3)).findings
+    assert (noted.code, noted.severity, noted.values["slip_velocity"]) == ("slip-rate", "note", 1e-4)
+    assert "set slip_velocity to" in noted.advice
+
+
+def test_the_sliding_velocity_is_an_output_along_the_line():
+    motion = simulate(block(1e-3), 0.2, GeneralizedAlpha(1e-3))
+    along = motion.channels(["block.centre.vx", "block.centre.vy"]) @ [np.cos(0.3), -np.sin(0.3)]
+    np.testing.assert_allclose(motion.channels(["slide.sliding_velocity"])[:, 0], along, atol=1e-12)
+
+
+def test_a_joint_without_coulomb_friction_declares_none():
+    system = System()
+    rod = system.add(RigidBar("rod", 1.0, 1.0))
+    joints = [DistanceJoint("rod joint", system.ground, rod.end), PrismaticJoint("slide", system.ground, rod.start)]
+    assert [joint.smoothing for joint in joints] == [None, None]
 
 
 def test_a_time_response_has_the_findings_of_its_motion():

@@ -1,6 +1,6 @@
 """Friction in joints: viscous, and smoothed Coulomb friction that may grow with the reaction."""
 
-from typing import Any
+from typing import Any, NamedTuple
 
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number
@@ -10,6 +10,27 @@ from dalembert.multibody.kernels.dual import tanh
 #: times pin radius, or friction coefficient), and the rate at which tanh(rate / slip) turns its sign.
 NUMBERS = ("viscous", "coulomb", "per_reaction", "slip")
 TINY = 1e-18  # keeps |reaction| differentiable where the reaction vanishes, N^2
+
+
+class Smoothing(NamedTuple):
+    """How a joint smooths its Coulomb friction, as tanh(rate / slip).
+
+    Parameters
+    ----------
+    channel : str
+        Output of the joint that has the rate.
+    setting : str
+        Name of the field that has the slip.
+    slip : float
+        In the unit.
+    unit : str
+        Of the rate.
+    """
+
+    channel: str
+    setting: str
+    slip: Number
+    unit: str
 
 
 @inlined

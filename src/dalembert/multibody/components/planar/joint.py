@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, ClassVar
 from dalembert.arguments import Checked
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number
+from dalembert.multibody.components.planar.friction import Smoothing
 from dalembert.multibody.components.planar.pairs import relative_angle, relative_spin
 from dalembert.multibody.components.points import Side, require_direction
 from dalembert.multibody.kernels.kind import Kind
@@ -29,6 +30,11 @@ class Joint(Checked):
     b: Side
 
     kind: ClassVar[Kind]
+
+    @property
+    def smoothing(self) -> Smoothing | None:
+        """How the joint smooths Coulomb friction; None without it. The finding ``slip-rate`` judges it."""
+        return None
 
     @abstractmethod
     def lower(self, lowering: "Lowering") -> None:

@@ -31,6 +31,14 @@ def _axis(x, p, m):
 
 
 @inlined
+def _sliding(x, v, p, m):
+    """Velocity of b along the axis."""
+    c, s = _axis(x, p, m)
+    ux, uy = separation_rate(x, v, p, m)
+    return c * ux + s * uy
+
+
+@inlined
 def _turned(x, p, m):
     """Sine and cosine of the angle by which b has turned against a."""
     return sin_cos(relative_angle(x, p, m) - p.rest_angle)
@@ -58,6 +66,7 @@ def _forces(x, p, m, r):
 def _observe(x, v, a, p, m, inputs, out):
     c, s = _axis(x, p, m)
     observe_joint(x, v, p, m, s * x[8], -c * x[8], -x[9], out)
+    out[5] = _sliding(x, v, p, m)
 
 
 PRISMATIC = Kind(
@@ -68,7 +77,7 @@ PRISMATIC = Kind(
     integers=pairs.INTEGERS,
     constraint=_constraint,
     forces=_forces,
-    outputs=OUTPUTS,
+    outputs=(*OUTPUTS, ("sliding_velocity", "m/s")),
     observe=_observe,
     lengths=("a_x", "a_y", "b_x", "b_y"),
     holds=True,
@@ -79,8 +88,7 @@ PRISMATIC = Kind(
 def _resistance(x, v, p, m):
     """Axis, sliding velocity, and the friction force against it, which grows with the normal force."""
     c, s = _axis(x, p, m)
-    ux, uy = separation_rate(x, v, p, m)
-    rate = c * ux + s * uy
+    rate = _sliding(x, v, p, m)
     return c, s, rate, friction.resistance(root(x[8] * x[8] + friction.TINY), rate, p)
 
 
@@ -125,7 +133,10 @@ class PrismaticJoint(Joint):
     friction_coefficient : float
         Friction force per normal force.
     slip_velocity : float
-        Sliding velocity, m/s, over which the Coulomb force turns its sign.
+        Sliding velocity, m/s, over which the Coulomb force turns its sign, as tanh(velocity / slip_velocity). The
+        finding ``slip-rate`` of a trajectory says whether it suits the motion, as for a revolute joint.
+
+    The output ``sliding_velocity`` is the velocity of b against a along the line.
     """
 
     angle: Number = number("rad", 0.0)
@@ -140,6 +151,11 @@ class PrismaticJoint(Joint):
         owner = f"prismatic joint {self.name!r}"
         require_not_negative(owner, **friction.coefficients(self))
         require(owner, slip_velocity=self.slip_velocity)
+
+    @property
+    def smoothing(self) -> friction.Smoothing | None:
+        rubs = self.coulomb or self.friction_coefficient
+        return friction.Smoothing("sliding_velocity", "slip_velocity", self.slip_velocity, "m/s") if rubs else None
 
     def lower(self, lowering: "Lowering") -> None:
         pair = lowering.pair(self.a, self.b, self.name)

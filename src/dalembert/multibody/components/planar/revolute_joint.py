@@ -143,6 +143,11 @@ class RevoluteJoint(Joint):
                 "give the pin's radius in m"
             )
 
+    @property
+    def smoothing(self) -> friction.Smoothing | None:
+        rubs = self.coulomb or self.friction_coefficient
+        return friction.Smoothing("rate", "slip_rate", self.slip_rate, "rad/s") if rubs else None
+
     def lower(self, lowering: "Lowering") -> None:
         pair = lowering.pair(self.a, self.b, self.name)
         index = self._add(lowering, pair)

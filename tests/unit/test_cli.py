@@ -64,6 +64,28 @@ def test_run_list_report(dalembert, tmp_path):
     assert dalembert("report", "runs/decay").stdout == made.stdout
 
 
+def test_a_fit_with_a_fixed_parameter(dalembert, tmp_path):
+    rows = "".join(f"{k / 10},{2.71828 ** (-0.12 * k) + 1e-3 * (-1) ** k}\n" for k in range(11))
+    (tmp_path / "decay.csv").write_text(f"t,x\n{rows}")
+    (tmp_path / "decay.py").write_text(
+        DECAY.replace("response(rate)", "response(rate, height)").replace("np.exp(", "height * np.exp(")
+    )
+    bounds = 'rate = { lower = 0.5, upper = 2.0 }\nheight = { lower = "1 m", upper = "1 m" }\n'
+    study = f'[parameters]\n{bounds}[model]\nforward = "decay.py:decay"\n[data]\nfile = "decay.csv"\n'
+    (tmp_path / "decay.toml").write_text(f'{study}columns = {{ x = "x" }}\n[identify]\n')
+    ran = dalembert("run", "decay.toml")
+    assert ran.returncode == 0
+    assert "fixed        height = 1 m\n" in ran.stdout
+    best = json.loads((tmp_path / "runs/decay/state.json").read_text())["best"]
+    assert best["values"] == {"rate": pytest.approx(1.2, abs=5e-3), "height": 1.0}
+    assert list(best["deviations"]) == ["rate"]
+    assert re.search(r"fitness \S+, rate = 1\.\d+, height = 1 ", dalembert("list").stdout)
+    page = tmp_path / "runs/decay/report.html"
+    page.unlink()
+    assert dalembert("report", "decay").returncode == 0
+    assert "<dt>height (m), fixed</dt><dd>1</dd>" in page.read_text(encoding="utf-8")
+
+
 def test_a_study_from_a_template(dalembert, tmp_path):
     listed = dalembert("new").stdout.splitlines()
     assert listed[1].startswith("identify  Parameters from a measured motion: The drag of")

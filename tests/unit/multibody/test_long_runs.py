@@ -31,6 +31,24 @@ def test_an_adaptive_method_is_tried_before_a_long_motion(solver: mb.Integrator 
     )
 
 
+@pytest.mark.parametrize("solver", [mb.RadauIIA(), mb.OdeSolver()])
+def test_a_motion_on_undamped_springs_is_tried_too(solver: mb.Integrator) -> None:
+    system = mb.System()
+    bob = system.add(mb.PointMass("bob", mass=1.0, position=(0.0, -1.5)))
+    system.add(mb.Spring("spring", system.ground.point(0.0, 0.0), bob.centre, 100.0, free_length=1.0))
+    with pytest.raises(SolveError, match=r" took 2000 steps until t = "):
+        mb.simulate(system, YEARS, solver, times=[0.0, YEARS])  # type: ignore[arg-type]
+
+
+def test_a_motion_on_an_undamped_bushing_is_tried_too() -> None:
+    system = mb.System()
+    body = system.add(mb.RigidBody("body", 1.0, 1.0, position=(0.1, 0.0)))
+    stiff = {"stiffness_x": 100.0, "stiffness_y": 100.0, "stiffness_angle": 10.0}
+    system.add(mb.Bushing("bushing", system.ground.point(0.0, 0.0), body.centre, **stiff))
+    with pytest.raises(SolveError, match=r" took 2000 steps until t = "):
+        mb.simulate(system, YEARS, mb.RadauIIA(), times=[0.0, YEARS])  # type: ignore[arg-type]
+
+
 def test_a_model_of_a_long_motion_is_refused_too() -> None:
     model = mb.TimeResponse(pendulum, {"length": (0.5, 2.0)}, ["bar.end.x"], np.array([0.0, YEARS]), mb.RadauIIA())
     with pytest.raises(SolveError, match=r"^RadauIIA.* took 2000 steps until"):

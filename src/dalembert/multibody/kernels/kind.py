@@ -61,8 +61,8 @@ class Kind:
         that support it solve for the increments, without these constraints and their multipliers.
     charts : tuple of Chart
         Those of the coordinates, one after the other, `flat` ones between them; none if all are flat.
-    dissipates : bool or str
-        Whether a force depends on velocities; or the column of which any entry that is not zero says so.
+    dissipates : bool, str or tuple of str
+        Whether a force depends on velocities; or the columns of which any entry that is not zero says so.
     driven, loads : bool
         Whether a prescribed motion, or a load, may do work.
     holds : bool
@@ -90,7 +90,7 @@ class Kind:
     gravity: tuple[str, ...] = ()
     chart: Chart | None = None
     charts: tuple[Chart, ...] = ()
-    dissipates: bool | str = False
+    dissipates: bool | str | tuple[str, ...] = False
     driven: bool = False
     loads: bool = False
     holds: bool = False
@@ -148,9 +148,10 @@ class Kind:
 
     def dissipative(self, numbers: np.ndarray) -> bool:
         """Whether a force of components with these numbers (count, -) depends on velocities."""
-        if isinstance(self.dissipates, str):
-            return bool(np.any(numbers[:, self.numbers.index(self.dissipates)]))
-        return self.dissipates
+        if isinstance(self.dissipates, bool):
+            return self.dissipates
+        names = (self.dissipates,) if isinstance(self.dissipates, str) else self.dissipates
+        return bool(np.any(numbers[:, self.columns(names)]))
 
     def kernel(self, role: str, dtype: type) -> Compiled:
         """The kernel of a role, such as residual, in real or in complex numbers."""

@@ -89,7 +89,7 @@ BUSHING = Kind(
     energy=_energy,
     outputs=(("x", "m"), ("y", "m"), ("angle", "rad"), ("force_x", "N"), ("force_y", "N"), ("torque", "N*m")),
     observe=_observe,
-    dissipates=True,
+    dissipates=("damping_x", "damping_y", "damping_angle"),
     holds=True,
 )  # fmt: skip
 

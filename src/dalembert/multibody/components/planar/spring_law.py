@@ -41,7 +41,7 @@ def spring_kind(name: str, stretch: Callable[..., Any], residual: Callable[..., 
         energy=energy,
         outputs=(("elongation", "m"), ("force", "N")),
         observe=observe,
-        dissipates=True,
+        dissipates="damping",
         holds=True,
         **properties,
     )

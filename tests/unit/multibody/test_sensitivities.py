@@ -346,3 +346,18 @@ def test_friction_that_is_zero_may_be_a_parameter() -> None:
     assert np.abs(still - moved).max() > 1e-3
     ahead = model.evaluate(np.array([[1e-6]])).only()[0]
     np.testing.assert_allclose((ahead - still) / 1e-6, model.jacobian(np.array([0.0]))[:, :, 0], rtol=1e-3, atol=1e-2)
+
+
+@pytest.mark.parametrize("solver", [mb.RadauIIA(), mb.GeneralizedAlpha(1e-3), mb.Variational(1e-3)], ids=str)
+def test_the_derivative_by_a_damping_of_zero(solver: mb.Integrator) -> None:
+    def build(damping: complex) -> mb.System:
+        system = mb.System()
+        bob = system.add(mb.PointMass("bob", mass=1.0, position=(0.3, -1.5)))
+        ends = system.ground.point(0.0, 0.0), bob.centre
+        system.add(mb.Spring("spring", *ends, 100.0, free_length=1.0, damping=damping))
+        return system
+
+    model = mb.TimeResponse(build, {"damping": (0.0, 1.0)}, ["bob.centre.y"], np.linspace(0, 1, 11), solver)
+    none, little, more = model.evaluate([[0.0], [1e-5], [2e-5]]).values[:, :, 0]
+    one_sided = (4 * little - 3 * none - more) / 2e-5
+    np.testing.assert_allclose(model.jacobian([0.0])[:, 0, 0], one_sided, atol=1e-6 * np.abs(one_sided).max())

@@ -77,7 +77,7 @@ class ReducedStructure(Structure):
 
     Parameters
     ----------
-    mass, stiffness, dofs, damping, nodes
+    mass, stiffness, dofs, damping, nodes, loss
         As of every :class:`Structure`; dense.
     basis : array, shape (n, reduced size)
         The motion of the full structure for each coordinate.
@@ -193,6 +193,7 @@ def craig_bampton(structure: Structure, masters: str | Sequence[str], modes: int
         Dofs(tuple(names)),
         None if structure.damping is None else reduced(structure.damping),
         structure.nodes,
+        None if structure.loss is None else reduced(structure.loss),
         basis=basis,
         full_dofs=structure.dofs,
     )

@@ -40,12 +40,17 @@ def combine(parts: Mapping[str, Structure]) -> Structure:
     def whole(name: str) -> csc_array:
         return csc_array(block_diag([csc_array(getattr(one, name)) for one in structures], format="csc"))
 
-    damped = [one if one.damping is not None else replace(one, damping=0 * one.mass) for one in structures]
+    def optional(name: str) -> csc_array | None:
+        matrices = [getattr(one, name) for one in structures]
+        if all(one is None for one in matrices):
+            return None
+        given = [0 * one.mass if own is None else own for one, own in zip(structures, matrices, strict=True)]
+        return csc_array(block_diag([csc_array(one) for one in given], format="csc"))
+
     names = tuple(f"{part}/{name}" for part, one in parts.items() for name in one.dofs.names)
-    damping = None
-    if any(one.damping is not None for one in structures):
-        damping = csc_array(block_diag([csc_array(one.damping) for one in damped], format="csc"))
-    return Structure(whole("mass"), whole("stiffness"), Dofs(names), damping, _nodes(parts))
+    return Structure(
+        whole("mass"), whole("stiffness"), Dofs(names), optional("damping"), _nodes(parts), optional("loss")
+    )
 
 
 def pairs(structure: Structure, first: str, second: str, tolerance: float) -> Pairs:
@@ -85,7 +90,7 @@ def pairs(structure: Structure, first: str, second: str, tolerance: float) -> Pa
             f"pairs: the node {theirs[values[np.argmax(counts)]]!r} of {second!r} is nearest to {counts.max()} nodes "
             f"of {first!r}; expected one each; lower the tolerance, or swap the sets"
         )
-    return tuple((node, theirs[other]) for node, other in zip(ours, np.ravel(nearest), strict=True))
+    return tuple((str(node), str(theirs[other])) for node, other in zip(ours, np.ravel(nearest), strict=True))
 
 
 def tie(structure: Structure, joined: Sequence[tuple[str, str]]) -> Structure:
@@ -131,6 +136,7 @@ def tie(structure: Structure, joined: Sequence[tuple[str, str]]) -> Structure:
         stiffness=tied(structure.stiffness),
         dofs=Dofs(names),
         damping=None if structure.damping is None else tied(structure.damping),
+        loss=None if structure.loss is None else tied(structure.loss),
         nodes=nodes,
     )
 

@@ -18,8 +18,9 @@ def lumped(masses: Mapping[str, float], springs: Sequence[Spring]) -> Structure:
     masses : mapping of str to float
         kg, by name; the degree of freedom of the mass ``"a"`` is ``"a.x"``, or ``"a"`` for short. A mass that moves
         along several axes is given for each of them: ``"a.x"``, ``"a.y"``.
-    springs : sequence of (first, second, stiffness, damping)
-        Names of two masses (None for the ground), N/m and N s/m.
+    springs : sequence of (first, second, stiffness, damping) or (first, second, stiffness, damping, loss factor)
+        Names of two masses (None for the ground), N/m and N s/m; the loss factor η of hysteretic damping is 0 if not
+        given: the spring then has the complex stiffness k (1 + i η) under harmonic motion.
 
     Raises
     ------

@@ -10,12 +10,13 @@ from dalembert.errors import DataError, InputError, unknown
 from dalembert.files import replacing
 from dalembert.structure.dofs import Dofs
 from dalembert.structure.matrix_files import NamedMatrix, matrices
-from dalembert.structure.structure import Matrix, Structure
+from dalembert.structure.structure import OPTIONAL, Matrix, Structure
 
 ROLES = {
     "mass": ("mass", "m", "maa", "mgg"),
     "stiffness": ("stiffness", "k", "kaa", "kgg"),
     "damping": ("damping", "c", "baa", "bgg"),
+    "loss": ("loss", "k4aa", "k4gg"),
 }
 """What matrices are usually called in files, in small letters; the last ones are Nastran's."""
 
@@ -43,7 +44,8 @@ def read_structure(
     Parameters
     ----------
     path : path, or mapping of str to path
-        One file with all matrices, or files for "mass", "stiffness" and, if there is, "damping".
+        One file with all matrices, or files for "mass", "stiffness" and, if there are, "damping" and "loss" (hysteretic
+        damping). The imaginary part of a complex stiffness becomes the loss matrix.
     names : mapping of str to str, optional
         Which matrix of the file is which, such as ``{"mass": "MXX"}``; the usual ones (mass, M, MAA, …) are found.
     dofs : sequence of str, optional
@@ -84,7 +86,7 @@ def read_structure(
         one = _of_role(role, read[file], names.get(role), alone=not whole)
         if one is not None:
             found[role] = one
-        elif role != "damping" or not whole:
+        elif role not in OPTIONAL or not whole:
             raise DataError(
                 f"{file}: no {role} matrix is found; name it, such as names={{{role!r}: NAME}}; the file has "
                 f"{', '.join(read[file]) or 'no square matrices'}"
@@ -94,7 +96,8 @@ def read_structure(
     for role in ("mass", "stiffness"):
         if role not in aligned:
             raise InputError(f"read_structure: no file is given for the {role}; expected files for mass and stiffness")
-    return Structure(aligned["mass"], aligned["stiffness"], Dofs(rows), aligned.get("damping"))
+    real = _split(aligned)
+    return Structure(real["mass"], real["stiffness"], Dofs(rows), damping=real.get("damping"), loss=real.get("loss"))
 
 
 def write_structure(structure: Structure, path: str | Path) -> None:
@@ -150,6 +153,24 @@ def _rows(found: Mapping[str, NamedMatrix], dofs: Sequence[str] | None, directio
             f"{', '.join(directions)} of each node"
         )
     return tuple(f"{node}.{direction}" for node in range(1, size // len(directions) + 1) for direction in directions)
+
+
+def _split(aligned: Mapping[str, Matrix]) -> dict[str, Matrix]:
+    """Real matrices, the imaginary part of the stiffness as the loss."""
+    real = dict(aligned)
+    for role, matrix in aligned.items():
+        if not np.iscomplexobj(matrix):
+            continue
+        real[role], imaginary = matrix.real, matrix.imag
+        if not abs(imaginary).max():
+            continue
+        if role != "stiffness" or "loss" in aligned:
+            raise DataError(
+                f"read_structure: the {role} matrix has imaginary parts up to {abs(imaginary).max():.3g}; expected a "
+                "real one. Only a stiffness may be complex, if there is no loss matrix: its imaginary part is the loss"
+            )
+        real["loss"] = imaginary
+    return real
 
 
 def _aligned(one: NamedMatrix, rows: tuple[str, ...]) -> Matrix:

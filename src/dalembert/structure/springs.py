@@ -2,15 +2,17 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from scipy.sparse import csc_array, issparse
 
-from dalembert.errors import InputError
-from dalembert.structure.structure import Structure
+from dalembert.arguments import is_number
+from dalembert.errors import InputError, shown
+from dalembert.structure.structure import Matrix, Structure, checked_factor
 
-Spring = tuple[str, str | None, complex, complex]
-"""First and second degree of freedom (None for the ground), stiffness in N/m and damping in N s/m."""
+Spring = tuple[str, str | None, complex, complex] | tuple[str, str | None, complex, complex, complex]
+"""First and second degree of freedom (None for the ground), stiffness in N/m, damping in N s/m, maybe a loss factor."""
 
 
 def with_springs(structure: Structure, springs: Sequence[Spring]) -> Structure:
@@ -19,13 +21,14 @@ def with_springs(structure: Structure, springs: Sequence[Spring]) -> Structure:
     Parameters
     ----------
     structure : Structure
-    springs : sequence of (first, second, stiffness, damping)
-        Degrees of freedom (None for the ground), N/m and N s/m.
+    springs : sequence of (first, second, stiffness, damping) or (first, second, stiffness, damping, loss factor)
+        Degrees of freedom (None for the ground), N/m and N s/m; the loss factor η of hysteretic damping is 0 if not
+        given.
 
     Raises
     ------
     InputError
-        For a degree of freedom that is not there.
+        For a degree of freedom that is not there, a spring from one to itself, and numbers that are none.
 
     Examples
     --------
@@ -35,15 +38,42 @@ def with_springs(structure: Structure, springs: Sequence[Spring]) -> Structure:
     """
     if not springs:
         return structure
-    rows = np.zeros((structure.size, len(springs)))
-    for number, (first, second, *_) in enumerate(springs):
+    rows, numbers = np.zeros((structure.size, len(springs))), []
+    for number, spring in enumerate(springs):
+        numbers.append(_numbers(spring, number))
+        first, second = spring[:2]
         for end, sign in ((first, 1.0), (second, -1.0)):
             if end is not None:
                 rows[_row(structure, end, number), number] += sign
     ends = csc_array(rows) if issparse(structure.stiffness) else rows
-    stiffness, damping = ((ends * np.array(sizes)) @ ends.T for sizes in list(zip(*springs, strict=True))[2:])
-    own = 0.0 * structure.mass if structure.damping is None else structure.damping
-    return replace(structure, stiffness=structure.stiffness + stiffness, damping=own + damping)
+    stiffness, damping, factors = (np.array(sizes) for sizes in zip(*numbers, strict=True))
+
+    def added(matrix: Matrix | None, sizes: np.ndarray) -> Matrix:
+        return (0.0 * structure.mass if matrix is None else matrix) + (ends * sizes) @ ends.T
+
+    return replace(
+        structure,
+        stiffness=added(structure.stiffness, stiffness),
+        damping=added(structure.damping, damping),
+        loss=added(structure.loss, factors * stiffness) if np.any(factors) else structure.loss,
+    )
+
+
+def _numbers(spring: Any, number: int) -> tuple[complex, complex, complex]:
+    """Stiffness, damping and loss factor of a spring."""
+    where = f"spring {number + 1}"
+    if not isinstance(spring, Sequence) or isinstance(spring, str) or len(spring) not in (4, 5):
+        raise InputError(
+            f"{where} is {shown(spring)}; expected (first, second, stiffness, damping), perhaps with a loss factor"
+        )
+    first, second, *numbers = spring
+    for what, value in zip(("stiffness", "damping"), numbers, strict=False):
+        if not is_number(value):
+            raise InputError(f"{where}: the {what} is {shown(value)}; expected a finite number")
+    if first == second:
+        raise InputError(f"{where} connects {first!r} with itself; expected two ends, None for the ground")
+    factor = checked_factor(f"{where}: the loss factor", numbers[2]) if len(numbers) == 3 else 0.0
+    return numbers[0], numbers[1], factor
 
 
 def _row(structure: Structure, dof: str, number: int) -> int:

@@ -7,9 +7,10 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from scipy.sparse import issparse
+from scipy.sparse import csc_array, issparse
 
-from dalembert.errors import InputError
+from dalembert.arguments import is_number
+from dalembert.errors import InputError, shown
 from dalembert.structure.damping import Modal, Rayleigh
 from dalembert.structure.dofs import Dofs
 from dalembert.structure.nodes import Nodes
@@ -17,29 +18,44 @@ from dalembert.structure.nodes import Nodes
 Matrix = Any
 """A NumPy array or a SciPy sparse array, (n, n), real, or complex with a complex step as its imaginary part."""
 
+MATRICES = ("mass", "stiffness", "damping", "loss")
+"""Of a structure, in the order of a dynamic stiffness."""
+OPTIONAL = ("damping", "loss")
 ASYMMETRY = 1e-8
 """Largest difference from its transpose, as part of the largest entry, that is taken for rounding."""
+STEP = 1e-10
+"""Imaginary part, as part of the largest entry, above which it cannot be the direction of a derivative."""
+FAINT = 1e-20
+"""Imaginary part that is a direction however small the entries are."""
 
 
 @dataclass(frozen=True, eq=False)
 class Structure:
-    r"""A linear structure :math:`M \ddot x + C \dot x + K x = f`.
+    r"""A linear structure :math:`M \ddot x + C \dot x + K x = f`, perhaps with hysteretic damping.
+
+    Hysteretic (structural) damping is a loss matrix D: the dynamic stiffness at :math:`\omega > 0` is
+    :math:`K - \omega^2 M + i \omega C + i D`. It has no meaning for other motions than harmonic ones, so integration in
+    time, stability and nonlinear modes refuse it. D does not act on the mean of a motion.
 
     Parameters
     ----------
     mass, stiffness : array or sparse array, shape (n, n)
-        kg and N/m where all unknowns are displacements; symmetric. Imaginary parts are directions of derivatives.
+        kg and N/m where all unknowns are displacements; symmetric. Imaginary parts are directions of derivatives, so
+        a complex stiffness K (1 + i η) is given as ``stiffness=K, loss=eta * K``.
     dofs : Dofs
         Names of the n rows.
     damping : array or sparse array, shape (n, n), optional
         N s/m; none if not given.
     nodes : Nodes, optional
         Where the nodes are, and their sets.
+    loss : array or sparse array, shape (n, n), optional
+        Hysteretic damping, N/m; none if not given. See :meth:`with_loss` for a loss factor.
 
     Raises
     ------
     InputError
-        For matrices whose sizes do not fit, or that are not symmetric or not finite.
+        For matrices whose sizes do not fit, or that are not symmetric or not finite, for negative masses, and for
+        imaginary parts that are too large to be directions of derivatives.
 
     Examples
     --------
@@ -54,15 +70,18 @@ class Structure:
     dofs: Dofs
     damping: Matrix | None = None
     nodes: Nodes | None = None
+    loss: Matrix | None = None
 
     def __post_init__(self) -> None:
-        for name in ("mass", "stiffness", "damping"):
+        self._check_names()
+        for name in MATRICES:
             matrix = getattr(self, name)
-            if matrix is None:
+            if matrix is None and name in OPTIONAL:
                 continue
-            if not issparse(matrix):
-                matrix = np.asarray(matrix)
-                object.__setattr__(self, name, matrix)
+            matrix: Matrix = csc_array(matrix) if issparse(matrix) else np.asarray(matrix)
+            object.__setattr__(self, name, matrix)
+            if matrix.dtype.kind not in "iufc":
+                raise InputError(f"Structure: the {name} is {shown(getattr(self, name))}; expected a matrix of numbers")
             if matrix.shape != (self.size, self.size):
                 raise InputError(
                     f"Structure: the {name} matrix has shape {matrix.shape}; expected {(self.size, self.size)}, "
@@ -77,6 +96,30 @@ class Structure:
                     f"Structure: the {name} matrix is not symmetric, it differs from its transpose by up to {off:.3g}; "
                     "expected a symmetric one"
                 )
+            _require_direction(matrix, name)
+        self._require_positive("mass", "kg")
+        if self.loss is not None:
+            self._require_positive("loss", "N/m")
+
+    def _check_names(self) -> None:
+        if not isinstance(self.dofs, Dofs):
+            raise InputError(f"Structure: dofs is {shown(self.dofs)}; expected Dofs, such as Dofs(('A.x', 'B.x'))")
+        if not isinstance(self.nodes, Nodes | None):
+            raise InputError(f"Structure: nodes is {shown(self.nodes)}; expected Nodes")
+        if not self.size:
+            raise InputError(
+                "Structure: there are no degrees of freedom, perhaps all are clamped; expected at least one"
+            )
+
+    def _require_positive(self, name: str, unit: str) -> None:
+        """Refuse a negative diagonal entry."""
+        diagonal = np.real(getattr(self, name).diagonal())
+        row = int(diagonal.argmin())
+        if diagonal[row] < -ASYMMETRY * np.abs(diagonal).max():
+            raise InputError(
+                f"Structure: the {name} of {self.dofs.names[row]!r} is {diagonal[row]:g} {unit}; expected a number "
+                "that is not negative"
+            )
 
     @property
     def size(self) -> int:
@@ -117,6 +160,7 @@ class Structure:
             stiffness=block(self.stiffness, kept),
             dofs=Dofs(tuple(self.dofs.names[row] for row in kept)),
             damping=None if self.damping is None else block(self.damping, kept),
+            loss=None if self.loss is None else block(self.loss, kept),
         )
 
     def with_damping(self, damping: Rayleigh | Modal | Matrix) -> Structure:
@@ -133,7 +177,63 @@ class Structure:
         [[0.08]]
         """
         matrix = damping.matrix(self.mass, self.stiffness) if isinstance(damping, (Rayleigh, Modal)) else damping
+        if np.ndim(matrix) == 0 and not issparse(matrix):
+            raise InputError(
+                f"with_damping: damping is {shown(matrix)}; expected Modal(ratio), Rayleigh(mass, stiffness) or a "
+                "matrix"
+            )
         return replace(self, damping=matrix)
+
+    def with_loss(self, loss: float | complex | Matrix) -> Structure:
+        r"""The structure with another hysteretic damping in place of its own.
+
+        Parameters
+        ----------
+        loss : float, or array or sparse array of shape (n, n)
+            Loss factor η for :math:`D = \eta K`, not negative, or the matrix D in N/m.
+
+        Raises
+        ------
+        InputError
+            For a loss factor that is negative or not a number, and a matrix that is no loss matrix.
+
+        Examples
+        --------
+        >>> bob = Structure(np.array([[2.0]]), np.array([[8.0]]), Dofs(("bob.x",)))
+        >>> bob.with_loss(0.02).loss.tolist()
+        [[0.16]]
+        """
+        if np.ndim(loss) == 0 and not issparse(loss):
+            loss = checked_factor("with_loss: the loss factor", loss) * self.stiffness
+        return replace(self, loss=loss)
+
+
+def checked_factor(what: str, factor: Any) -> Any:
+    """A loss factor that is a number and not negative.
+
+    Raises
+    ------
+    InputError
+    """
+    if not is_number(factor) or np.real(factor) < 0 or abs(np.imag(factor)) > FAINT:
+        raise InputError(f"{what} is {shown(factor)}; expected a real number that is not negative")
+    return factor
+
+
+def _require_direction(matrix: Matrix, name: str) -> None:
+    """Refuse imaginary parts that are no complex step."""
+    if not np.iscomplexobj(matrix):
+        return
+    imaginary, largest = abs(matrix.imag).max(), abs(matrix.real).max()
+    if imaginary > max(STEP * largest, FAINT):
+        advice = (
+            "Give hysteretic damping as stiffness=K.real, loss=K.imag" if name == "stiffness" else "Give a real one"
+        )
+        part = imaginary / (largest or 1.0)
+        raise InputError(
+            f"Structure: the {name} matrix has imaginary parts up to {imaginary:.3g}, {part:.2g} of its "
+            f"largest entry. Imaginary parts are directions of derivatives here. {advice}"
+        )
 
 
 def block(matrix: Matrix, rows: np.ndarray, columns: np.ndarray | None = None) -> Matrix:

@@ -40,7 +40,7 @@ class SystemBuilder:
         gravity = self.model.gravity
         options: dict[str, Any] = {"driving": self.model.driving}
         if gravity is not None:
-            options["gravity"] = tuple(_number(one, values, "[model], gravity") for one in gravity)
+            options["gravity"] = tuple(resolved(one, values, "[model], gravity") for one in gravity)
         system = System(**options)
         placed: dict[str, Any] = {}
         for table, component in self.model.components:
@@ -99,7 +99,7 @@ def named_values(constants: Mapping[str, float | Expression], parameters: Values
     """
     values = dict(parameters)
     for name, given in constants.items():
-        values[name] = _number(given, values, f"[constants], {name}")
+        values[name] = resolved(given, values, f"[constants], {name}")
     return values
 
 
@@ -122,7 +122,7 @@ def _resolved(given: Any, values: Values, placed: Values, system: Any, where: st
     """What a key's value stands for once the parameters are known."""
     match given:
         case Expression():
-            return _number(given, values, where)
+            return resolved(given, values, where)
         case Place():
             return _place(given, values, placed, system, where)
         case KindTable():
@@ -136,7 +136,8 @@ def _resolved(given: Any, values: Values, placed: Values, system: Any, where: st
     return given
 
 
-def _number(given: float | Expression, values: Values, where: str) -> complex:
+def resolved(given: float | Expression, values: Values, where: str) -> complex:
+    """A number, that of an expression once the parameters are known."""
     try:
         return given(values) if isinstance(given, Expression) else given
     except InputError as error:
@@ -146,7 +147,7 @@ def _number(given: float | Expression, values: Values, where: str) -> complex:
 def _place(given: Place, values: Values, placed: Values, system: Any, where: str) -> Any:
     """Point of a body or of the ground."""
     if given.position is not None:
-        return system.ground.point(*(_number(one, values, where) for one in given.position))
+        return system.ground.point(*(resolved(one, values, where) for one in given.position))
     if not given.body:
         return system.ground
     try:

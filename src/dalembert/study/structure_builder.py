@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from dalembert.errors import DalembertError, InputError
-from dalembert.study.builder import built, named_values
+from dalembert.study.builder import built, named_values, resolved
 from dalembert.study.expressions import Expression
 from dalembert.study.model_table import ModelTable
 from dalembert.study.structure_parts import LinearSpring
@@ -75,12 +75,15 @@ class StructureBuilder:
         return found
 
     def _structure(self, values: Mapping[str, Any], springs: list[LinearSpring]) -> "Structure":
-        """Matrices with springs, then the damping, then the dampers beside the springs."""
+        """Matrices with their loss, then springs, then the damping, then the dampers beside the springs."""
         from dalembert.structure.springs import with_springs
 
         base = self._lumped(values) if self.model.mass else self._reduced
+        if self._table.loss_factor is not None:
+            where = "[model.structure], loss_factor"
+            base = _told(where, base.with_loss, resolved(self._table.loss_factor, values, where))
         ends = [(one.first, one.second) for one in springs]
-        stiff = [(*pair, one.stiffness, 0.0) for pair, one in zip(ends, springs, strict=True)]
+        stiff = [(*pair, one.stiffness, 0.0, one.loss_factor) for pair, one in zip(ends, springs, strict=True)]
         damped = [(*pair, 0.0, one.damping) for pair, one in zip(ends, springs, strict=True)]
         whole = _told("[[model.spring]]", with_springs, base, stiff)
         if self._table.damping is not None:

@@ -39,9 +39,12 @@ class LinearSpring:
         N/m.
     damping : float
         N s/m.
+    loss_factor : float
+        Of hysteretic damping, η of the complex stiffness k (1 + i η) under harmonic motion.
     """
 
     first: str
     second: str | None = None
     stiffness: Number = field(default=0.0, kw_only=True, metadata={"unit": "N/m"})
     damping: Number = field(default=0.0, kw_only=True, metadata={"unit": "N*s/m"})
+    loss_factor: Number = field(default=0.0, kw_only=True, metadata={"unit": ""})

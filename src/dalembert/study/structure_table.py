@@ -11,6 +11,7 @@ from dalembert.study.catalogue import dampings, laws, structure_parts
 from dalembert.study.components import one_of, settings_of, table_of
 from dalembert.study.data_table import DataFile
 from dalembert.study.functions import FunctionName
+from dalembert.study.numbers import number
 from dalembert.study.table import StudyTable, problem
 
 PARTS = ("mass", "spring", "force", "contact")
@@ -38,6 +39,7 @@ class StructureTable(StudyTable):
     sets: dict[str, list[str]] = Field({}, description="named lists of nodes: { feet = ['12', '13'] }")
     fixed: list[str] = Field([], description="degrees of freedom, nodes or sets that are clamped")
     damping: Any = None
+    loss_factor: Any = None
     reduction: ReductionTable | None = Field(None, description="to few coordinates, by Craig and Bampton")
 
     @property
@@ -57,6 +59,8 @@ class StructureTable(StudyTable):
         if self.arguments and self.function is None:
             wrong.append("arguments are for a function, and there is none")
         if not given:
+            if self.loss_factor is not None:
+                wrong.append("loss_factor: there are no matrices here for it; give springs a loss_factor each")
             wrong += [
                 f"{key}: there are no matrices here for it; give file, files or function"
                 for key in ("names", "dofs", "sets", "fixed", "reduction")
@@ -72,7 +76,8 @@ def structure_table() -> Any:
     """The table with all kinds of damping that there are."""
     kinds = ", ".join(f"'{name}'" for name in dampings())
     damping = settings_of(dampings(), varying=True) | None, Field(None, description=f"{kinds}, with settings")
-    fields: dict[str, Any] = {"damping": damping}
+    loss = number("") | None, Field(None, description="of the matrices: hysteretic damping D = loss_factor K")
+    fields: dict[str, Any] = {"damping": damping, "loss_factor": loss}
     return create_model("StructureTable", __base__=StructureTable, __doc__=StructureTable.__doc__, **fields)
 
 

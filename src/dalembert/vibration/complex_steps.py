@@ -14,7 +14,7 @@ from scipy.sparse import issparse
 from dalembert.forward.complex_steps import check_steps
 from dalembert.parameters import Parameters
 from dalembert.structure.craig_bampton import HeldBases
-from dalembert.structure.structure import Structure
+from dalembert.structure.structure import MATRICES, Structure
 from dalembert.vibration.lowering import Lowered, lower
 from dalembert.vibration.springs import UserElement
 from dalembert.vibration.system import VibrationSystem
@@ -101,7 +101,7 @@ def _check(
 
 def _parts(lowered: Lowered) -> Iterator[Part]:
     structure = lowered.structure
-    for name in ("mass", "stiffness", "damping"):
+    for name in MATRICES:
         matrix = getattr(structure, name)
         if matrix is not None:
             yield _entries(matrix), lambda entry, name=name, matrix=matrix: _entry(structure, name, matrix, entry)

@@ -2,10 +2,11 @@ r"""Dynamic stiffness of a structure at the coordinates of its nonlinear element
 
 With q the retained and l the interior coordinates, for each harmonic at :math:`s = h\omega`, exactly,
 
-.. math:: Z(s) = K - s^2 M + i s C, \qquad Z_q = Z_{qq} - Z_{ql} Z_{ll}^{-1} Z_{lq}, \qquad
+.. math:: Z(s) = K - s^2 M + i s C + i \,\mathrm{sign}(s) D, \qquad Z_q = Z_{qq} - Z_{ql} Z_{ll}^{-1} Z_{lq}, \qquad
           F_q = f_q - Z_{ql} Z_{ll}^{-1} f_l,
 
-which is the inverse of the receptance :math:`S Z^{-1} S^T`, and is also there where that has none. The interior of a
+with the loss matrix D of hysteretic damping, which does not act on the mean (s = 0); this
+is the inverse of the receptance :math:`S Z^{-1} S^T`, and is also there where that has none. The interior of a
 small structure is written in its modes with q held, so that :math:`Z_{ll}` is diagonal if the damping is; else it is
 factorised.
 """
@@ -112,6 +113,8 @@ class Condensation:
         size: int = structure.size
         matrices = [_real(structure.stiffness), _real(structure.mass)]
         matrices.append(matrices[0] * 0.0 if structure.damping is None else _real(structure.damping))
+        if structure.loss is not None:
+            matrices.append(_real(structure.loss))
         retained, interior = coordinates.retained, coordinates.interior
         dense = size <= DENSE or not issparse(structure.stiffness)
         self.retained, self.back = retained.toarray(), interior.toarray() if dense else interior
@@ -173,33 +176,33 @@ class Condensation:
 
     def _modal(self, blocks: list[np.ndarray]) -> list[np.ndarray]:
         """Interior matrices in modes with q held: vectors where they are diagonal. Without modes, as they are."""
-        stiffness, mass, damping = blocks
+        stiffness, mass, *damped = blocks
         try:
             squares, shapes = eigh(stiffness, mass)
         except LinAlgError:  # an interior without mass somewhere
             return blocks
-        modal = shapes.T @ damping @ shapes
-        off = np.abs(modal - np.diag(np.diag(modal))).max()
-        if off > COUPLED * max(np.abs(np.diag(modal)).max(), np.finfo(float).tiny):
-            return blocks
+        modal = [shapes.T @ matrix @ shapes for matrix in damped]
+        for matrix in modal:
+            off = np.abs(matrix - np.diag(np.diag(matrix))).max()
+            if off > COUPLED * max(np.abs(np.diag(matrix)).max(), np.finfo(float).tiny):
+                return blocks
         self.back = self.back @ shapes
-        return [squares, np.ones_like(squares), np.diag(modal)]
+        return [squares, np.ones_like(squares), *map(np.diag, modal)]
 
     def _inner(self, s: np.ndarray) -> Any:
-        stiffness, mass, damping = self.inner
-        if issparse(stiffness):
-            return [csc_array(stiffness - x**2 * mass + 1j * x * damping) for x in s]
+        if issparse(self.inner[0]):
+            return [csc_array(_dynamic(self.inner, x)) for x in s]
         return _dynamic(self.inner, s)
 
     def _slope(self, blocks: list[np.ndarray], s: np.ndarray) -> np.ndarray:
         """Derivative of K - s²M + i s C by ω."""
-        _, mass, damping = blocks
+        _, mass, damping = blocks[:3]
         factor = self.orders.reshape(-1, *[1] * mass.ndim)
         return factor * (1j * damping - 2 * s.reshape(factor.shape) * mass)
 
     def _inner_slope(self, s: np.ndarray, solved: np.ndarray) -> np.ndarray:
         """Derivative of Z_ll by ω, times columns (orders, l, columns)."""
-        _, mass, damping = self.inner
+        _, mass, damping = self.inner[:3]
         if issparse(mass):
             return np.stack(
                 [h * (1j * (damping @ x) - 2 * w * (mass @ x)) for h, w, x in zip(self.orders, s, solved, strict=True)]
@@ -232,10 +235,13 @@ def _times(inner: np.ndarray, columns: np.ndarray) -> np.ndarray:
     return inner[:, :, None] * columns if inner.ndim == 2 else inner @ columns
 
 
-def _dynamic(blocks: list[np.ndarray], s: np.ndarray) -> np.ndarray:
-    stiffness, mass, damping = blocks
-    s = s.reshape(-1, *[1] * mass.ndim)
-    return stiffness - s**2 * mass + 1j * s * damping
+def _dynamic(blocks: list[Any], s: Any) -> Any:
+    """Z at frequencies (orders,), or at one."""
+    stiffness, mass, damping, *loss = blocks
+    if np.ndim(s):
+        s = s.reshape(-1, *[1] * mass.ndim)
+    result = stiffness - s**2 * mass + 1j * s * damping
+    return result + 1j * np.sign(s) * loss[0] if loss else result
 
 
 def _two_sided(left: Any, matrix: Any, right: Any) -> Any:

@@ -17,8 +17,8 @@ def fingerprint(lowered: Lowered, method: HarmonicBalance, *more: object) -> str
     own = lowered.structure
     digest = hashlib.sha256(repr((*more, method)).encode())
     digest.update(repr((own.dofs.names, lowered.row_names, lowered.contacts, lowered.forces)).encode())
-    damping = [] if own.damping is None else [own.damping]
-    for matrix in (own.mass, own.stiffness, *damping, lowered.matrix):
+    optional = [matrix for matrix in (own.damping, own.loss) if matrix is not None]
+    for matrix in (own.mass, own.stiffness, *optional, lowered.matrix):
         digest.update(np.asarray(matrix @ np.linspace(0.5, 1.5, own.size)).tobytes())
     for block in lowered.blocks:
         digest.update(repr((block.kind, block.tangents, block.normal)).encode() + block.numbers.tobytes())

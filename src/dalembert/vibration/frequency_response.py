@@ -15,6 +15,7 @@ from dalembert.vibration.continuation import along, at_frequencies, natural
 from dalembert.vibration.curve import FrequencyCurve
 from dalembert.vibration.equations import Equations, equations
 from dalembert.vibration.harmonic_balance import HarmonicBalance
+from dalembert.vibration.hysteretic import require_viscous
 from dalembert.vibration.lowering import Lowered
 from dalembert.vibration.newton import Solution
 from dalembert.vibration.recorded import recorded
@@ -105,7 +106,8 @@ def frequency_response(
     ------
     InputError
         For frequencies that are not positive, unknown degrees of freedom, a start that does not fit, and stability of
-        a structure that is too large for dense matrices, or where several degrees of freedom share one mass.
+        a structure that is too large for dense matrices, has hysteretic damping, or where several degrees of freedom
+        share one mass.
     ModelError
         For rigid contacts that depend on each other, and for a structure whose mean position nothing holds.
 
@@ -136,6 +138,8 @@ def frequency_response(
             "frequency_response: a path by arc length finds its own frequencies; give a tuple of two, (begin, end)"
         )
     settings = {"continuation": continuation, "frequencies": list(map(float, frequencies)) if ends else "given"}
+    if stability:
+        require_viscous(system.structure, "stability and Floquet multipliers")
     with one_thread():
         problem = recorded(equations(system, method, stability=stability), checkpoint)
         return _followed(problem, omegas, settings, observe, start, stability, check, on_point)

@@ -65,6 +65,8 @@ def _unbalanced(own: Lowered, frequencies: np.ndarray, motion: np.ndarray) -> np
     total = stiffness - mass * frequencies**2
     if structure.damping is not None:
         total = total + 1j * (_step(structure.damping) @ motion.T) * frequencies
+    if structure.loss is not None:
+        total = total + 1j * (_step(structure.loss) @ motion.T) * np.sign(frequencies)
     return np.asarray(total.T)
 
 

@@ -18,6 +18,7 @@ from dalembert.errors import ModelError
 from dalembert.vibration.condensation import COUPLED, DENSE
 from dalembert.vibration.fourier import Fourier
 from dalembert.vibration.friction_law import NORMAL, TANGENTIAL
+from dalembert.vibration.hysteretic import require_viscous
 from dalembert.vibration.lowering import ELASTIC, Lowered
 from dalembert.vibration.springs import BilinearStop, CubicSpring, Gap, UserElement
 from dalembert.vibration.system import StaticForce
@@ -61,6 +62,8 @@ def spectral(structure: Any, omega: float) -> Spectral:
 
     Raises
     ------
+    InputError
+        For hysteretic damping.
     ModelError
         For a structure too large, or with degrees of freedom that have neither mass nor stiffness.
     """
@@ -69,6 +72,7 @@ def spectral(structure: Any, omega: float) -> Spectral:
             f"the structure has {structure.size} degrees of freedom, too many to be integrated in time (at most "
             f"{DENSE}); reduce it with craig_bampton"
         )
+    require_viscous(structure, "motions in time")
     given = (structure.mass, structure.stiffness, structure.damping)
     mass, stiffness, damping = (
         np.real(matrix.toarray() if issparse(matrix) else matrix)

@@ -17,6 +17,7 @@ from dalembert.errors import InputError
 from dalembert.vibration.balance import Balance, Evaluation
 from dalembert.vibration.condensation import Condensation
 from dalembert.vibration.fourier import Fourier
+from dalembert.vibration.hysteretic import require_viscous
 from dalembert.vibration.lowering import ELASTIC, Lowered
 from dalembert.vibration.tangents import DenseTangent
 
@@ -76,9 +77,10 @@ class Uncondensed:
         Raises
         ------
         InputError
-            For a structure so large that its interior is kept sparse.
+            For a structure so large that its interior is kept sparse, and for hysteretic damping.
         """
         own = self.condensation
+        require_viscous(self.lowered.structure, "stability and nonlinear modes")
         if any(map(issparse, own.inner)):
             raise InputError(
                 f"stability and nonlinear modes take dense matrices of all {self.lowered.structure.size} degrees of "
@@ -86,7 +88,7 @@ class Uncondensed:
             )
         return tuple(
             np.block([[outer, across], [across.T, np.diag(inner) if inner.ndim == 1 else inner]])
-            for outer, across, inner in zip(own.outer, own.across, own.inner, strict=True)
+            for outer, across, inner in zip(own.outer[:3], own.across[:3], own.inner[:3], strict=True)
         )  # type: ignore[return-value]
 
     def elements(self, linear: np.ndarray, unknowns: np.ndarray) -> Local:

@@ -189,6 +189,42 @@ def test_a_mass_may_move_along_several_axes(write):
     assert load(write(text)).system().structure.dofs.names == ("m1.x", "m1.y", "m2.x")
 
 
+LOSSY = WHOLE.replace('stiffness = "k"\n', 'stiffness = "k"\nloss_factor = "0.1*mu"\n', 1)
+
+
+def test_springs_and_matrices_have_loss_factors(write):
+    assert load(write(WHOLE)).system().structure.loss is None
+    np.testing.assert_allclose(load(write(LOSSY)).system().structure.loss, [[0.03, 0.0], [0.0, 0.0]])
+    text = "[model]\n" + IMPORTED.replace("damping =", "loss_factor = 0.02\ndamping =", 1)
+    structure = load(write(text)).system().structure
+    np.testing.assert_allclose(structure.loss, 0.02 * structure.stiffness)
+
+
+def test_a_loss_factor_of_matrices_needs_these(write):
+    text = WHOLE.replace("[model]\n", "[model]\n[model.structure]\nloss_factor = 0.02\n", 1)
+    with pytest.raises(InputError, match=r"loss_factor: there are no matrices here for it; give springs a loss_factor"):
+        load(write(text))
+
+
+def test_hysteretic_damping_carries_a_curve_and_not_its_stability(write, tmp_path):
+    folder, _ = run_study(load(write(LOSSY)), tmp_path / "run")
+    springs = [("m1", None, 1.0, 0.02, 0.03), ("m1", "m2", 1.0, 0.02), ("m2", None, 0.5, 0.01)]
+    system = VibrationSystem(lumped({"m1": 1.0, "m2": 1.0}, springs))
+    system.add(HarmonicForce("m1", 1.0))
+    system.add(FrictionContact("slider", "m2", friction=0.3, preload=2.0, law=Elastic(1.5)))
+    theirs = frequency_response(system, np.linspace(0.12, 0.16, 5), HarmonicBalance(5, samples=256))
+    np.testing.assert_array_equal(FrequencyCurve.load(folder.result).response, theirs.response)
+    for key, line in (
+        ("stability", "stability = true\n"),
+        ("compare_in_time", "compare_in_time = { frequencies = [0.12] }\n"),
+    ):
+        with pytest.raises(InputError, match=rf"\[frequency_response\], {key}: the structure has hysteretic damping"):
+            plan(load(write(LOSSY + line)))
+    nonlinear = LOSSY.replace(CURVE, '[backbone]\nbetween = ["0.1 m", "1 m"]\n')
+    with pytest.raises(InputError, match=r"\[backbone\]: the structure has hysteretic damping"):
+        plan(load(write(nonlinear)))
+
+
 def test_damping_stands_beside_dampers(write):
     text = WHOLE.replace(
         "[model]\n", '[model]\n[model.structure]\ndamping = { kind = "Rayleigh", stiffness = "0.1*mu" }\n', 1

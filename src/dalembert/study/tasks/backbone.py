@@ -7,7 +7,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from dalembert.study.numbers import fixed, samples
-from dalembert.study.table import Read, StudyTable, problem
+from dalembert.study.table import Read, StudyTable, placed, problem
 from dalembert.study.tasks.result import ResultOutcome
 from dalembert.study.tasks.task import Outcome, Task
 from dalembert.study.tasks.wrong import needs_structure
@@ -66,8 +66,11 @@ class BackboneTask(Task):
         return needs_structure(file, "backbone")
 
     def plan(self, study: "Study") -> str:
+        from dalembert.vibration.hysteretic import require_viscous
+
         table = study.table
-        study.equations()
+        with placed("[backbone]"):
+            require_viscous(study.equations().lowered.structure, "nonlinear modes")
         count = "as many amplitudes as it needs" if table.between else f"{len(table.given)} amplitudes"
         return f"follows mode {table.mode} from {table.given[0]:g} to {table.given[-1]:g} m ({count}): 1 simulation"
 

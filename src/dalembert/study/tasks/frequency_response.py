@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 MOST_DRAWN = 6
 """Degrees of freedom that a figure shows by themselves; of more the report chooses."""
 Frequency = Annotated[float, Read(fixed("Hz"))]
+VISCOUS = {"stability": "stability", "compare_in_time": "motions in time", "backbone": "nonlinear modes"}
+"""What is not defined with hysteretic damping, by the key that asks for it."""
 
 
 class FamilyTable(StudyTable):
@@ -181,8 +183,13 @@ class FrequencyResponseTask(Task):
 
     def plan(self, study: "Study") -> str:
         from dalembert.vibration.amplitudes import Amplitude
+        from dalembert.vibration.hysteretic import require_viscous
 
         table, problem = study.table, study.equations()
+        for key, what in VISCOUS.items():
+            if getattr(table, key):
+                with placed(f"[frequency_response], {key}"):
+                    require_viscous(problem.lowered.structure, what)
         names = problem.lowered.structure.dofs.names
         if table.observe is not None:
             with placed("[frequency_response], observe"):

@@ -57,6 +57,8 @@ def judged(problem: Equations, path: Iterable[Found], located: bool) -> Iterator
     before: tuple[Solution, Exponents] | None = None
     folded = False
     for one in path:
+        if one.returned:
+            before = None
         if not one.solution.converged:
             yield Judged(one)
             before = None

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from itertools import islice
 from typing import Protocol, cast
 
 import numpy as np
@@ -10,7 +11,7 @@ from scipy.optimize import brentq
 from dalembert.vibration.condensation import norm
 from dalembert.vibration.harmonic_balance import HarmonicBalance
 from dalembert.vibration.newton import Plane, Solution
-from dalembert.vibration.tangents import bordered
+from dalembert.vibration.tangents import bordered, orientation
 
 STEADY = 0.9
 """Cosine of the angle between directions of a path, below which a step was too long."""
@@ -18,6 +19,15 @@ EASY = 4
 """Newton iterations that a step may take and the next still be longer."""
 SHORTEST = 1e-7
 """Step, as part of the longest, at which a path is given up."""
+SHARP = 1e-3
+"""Step, as part of the longest, from which on the path may have a sharp turn."""
+REACHES = (1.0, 4.0, 16.0, 64.0)
+"""Steps beyond a sharp turn, in parts of the one that failed before it."""
+BEHIND = 2.0
+"""Part of the way between two frequencies by which the curve from one to the other may turn back behind the first, as
+long as it keeps half of that."""
+MOST_AROUND = 500
+"""Points of that curve after which the second is given up."""
 STILL = 1e-3
 """Motion, as part of what the forces would cause on the stiffness of the structure alone, that counts as none."""
 MOST_POINTS = 20_000
@@ -43,10 +53,13 @@ class Found:
     solution : Solution
     fold : bool
         Whether the curve turns back here.
+    returned : bool
+        Whether the curve comes back here to the frequencies that were asked for.
     """
 
     solution: Solution
     fold: bool = False
+    returned: bool = False
 
 
 def at_frequencies(equations: Problem, omegas: np.ndarray, start: Solution | None) -> Iterator[Found]:
@@ -69,11 +82,21 @@ def _towards(equations: Problem, known: Solution, omega: float) -> Solution:
             way.pop()
         elif len(way) > equations.method.halvings:
             fresh = equations.first(omega)
-            return fresh if fresh.converged else worst or solution
+            return fresh if fresh.converged else _around(equations, known, omega) or worst or solution
         else:
             worst = worst or solution
             way.append((known.omega + way[-1]) / 2)
     return known
+
+
+def _around(equations: Problem, known: Solution, omega: float) -> Solution | None:
+    """The solution at a frequency from a known one along the curve, past folds where no motion is near by."""
+    if known.omega == omega or not equations.method.halvings:
+        return None
+    for found in islice(along(equations, known.omega, omega, known, _behind(known.omega, omega)), MOST_AROUND):
+        if found.solution.converged and found.solution.omega == omega:
+            return found.solution
+    return None
 
 
 def _predicted(known: Solution, omega: float) -> np.ndarray:
@@ -107,21 +130,31 @@ def natural(equations: Problem, begin: float, end: float, start: Solution | None
         step = min(2 * step, longest, key=abs) if solution.iterations <= EASY else step
 
 
-def along(equations: Problem, begin: float, end: float, start: Solution | None) -> Iterator[Found]:
-    """Points along the curve from one frequency to another, by arc length, with its folds."""
+def along(equations: Problem, begin: float, end: float, start: Solution | None, behind: float = 0.0) -> Iterator[Found]:
+    """Points along the curve from one frequency to another, by arc length, with its folds.
+
+    It may turn back behind its beginning, by a part of the way.
+    """
     known = start if start is not None else equations.first(begin)
     yield Found(known)
     if not known.converged:
         return
     width = abs(end - begin) / 10
     longest = 10 * equations.method.resolution
-    low, high = min(begin, end), max(begin, end)
+    low, high = sorted((begin - behind * (end - begin), end))
     onward = np.zeros(known.unknowns.size + 1)
     onward[-1] = np.sign(end - begin)
     step, points = longest / 4, 1
     path = Path(known, direction_at(known, onward, width), width)
     while points < MOST_POINTS:
         solution, direction = path.step(equations, step)
+        if direction is None and step <= SHARP * longest:
+            beyond = path.turned(equations, solution, step)
+            if beyond is not None:
+                path = beyond
+                yield Found(path.known)
+                points += 1
+                continue
         bent = direction is not None and float(path.direction @ direction) < STEADY
         if direction is None or (bent and step > longest * 1e-2):
             step /= 2
@@ -130,7 +163,8 @@ def along(equations: Problem, begin: float, end: float, start: Solution | None) 
                 return
             continue
         if not low <= solution.omega <= high:
-            last = equations.solve(*_on_border(path.known, solution, low, high), solution.samples)
+            border = low if solution.omega < low else high
+            last = equations.solve(*_on_border(path.known, solution, border), solution.samples)
             yield Found(last)
             return
         if direction[-1] * path.direction[-1] < 0:
@@ -141,6 +175,28 @@ def along(equations: Problem, begin: float, end: float, start: Solution | None) 
         points += 1
         path = Path(solution, direction_at(solution, direction, width), width)
         step = min(longest, step * (1.5 if solution.iterations <= EASY else 0.7))
+
+
+def across(equations: Problem, begin: float, end: float, start: Solution | None) -> Iterator[Found]:
+    """Points of :func:`along` between two frequencies, where the curve may leave and come back at the first of them."""
+    low, high = min(begin, end), max(begin, end)
+    before: Solution | None = None
+    outside = 0
+    for found in along(equations, begin, end, start, _behind(begin, end)):
+        solution, leaves = found.solution, not low <= found.solution.omega <= high
+        if before is not None and leaves != bool(outside) and solution.converged:
+            border = equations.solve(*_on_border(before, solution, begin), solution.samples)
+            yield Found(border, returned=not leaves)
+        if not leaves:
+            yield found
+        outside = outside + 1 if leaves else 0
+        if outside > MOST_AROUND:
+            return
+        before = solution
+
+
+def _behind(begin: float, end: float) -> float:
+    return min(BEHIND, 0.5 * abs(begin / (end - begin)))
 
 
 @dataclass(frozen=True)
@@ -165,6 +221,37 @@ class Path:
             return solution, None
         return solution, direction_at(solution, self.direction, self.width, self.size)
 
+    def turned(self, equations: Problem, failed: Solution, length: float) -> "Path | None":
+        """The path beyond a sharp turn, by the tangent where a step over it failed.
+
+        The tangent is oriented by the sign of the determinant with the direction as a row, which a path keeps.
+        """
+        sign = _sign(self.known, self.direction, self.width, self.size)
+        if not sign:
+            return None
+        try:
+            beyond = direction_at(failed, self.direction, self.width, self.size)
+        except np.linalg.LinAlgError:
+            return None
+        if not np.all(np.isfinite(beyond)):
+            return None
+        beyond *= sign * _sign(failed, beyond, self.width, self.size)
+        for reach in REACHES if np.any(beyond) else ():
+            solution, direction = replace(self, direction=beyond).step(equations, reach * length)
+            if direction is None or float(direction @ beyond) < STEADY:
+                continue
+            if _sign(solution, direction, self.width, self.size) == sign:
+                return Path(solution, direction_at(solution, direction, self.width), self.width)
+        return None
+
+
+def _sign(known: Solution, direction: np.ndarray, width: float, size: float) -> float:
+    return orientation(known.tangent, direction, (size, width, _scale(known)))
+
+
+def _scale(known: Solution) -> float:
+    return known.point.load + norm(known.evaluation.forces) or 1.0
+
 
 def _size(known: Solution) -> float:
     """Size of the unknowns; where all contacts stick and these are rounding, a part of what the forces could move."""
@@ -174,15 +261,13 @@ def _size(known: Solution) -> float:
 def direction_at(known: Solution, before: np.ndarray, width: float, size: float | None = None) -> np.ndarray:
     """Unit tangent of the curve in scaled unknowns, to the same side as the one before."""
     size = size or _size(known)
-    scale = known.point.load + norm(known.evaluation.forces) or 1.0
-    change, turned = bordered(known.tangent, before, (size, width, scale), np.zeros_like(known.unknowns), 1.0)
+    change, turned = bordered(known.tangent, before, (size, width, _scale(known)), np.zeros_like(known.unknowns), 1.0)
     tangent = np.append(change, turned)
     return tangent / np.linalg.norm(tangent)
 
 
-def _on_border(before: Solution, after: Solution, low: float, high: float) -> tuple[np.ndarray, float]:
+def _on_border(before: Solution, after: Solution, border: float) -> tuple[np.ndarray, float]:
     """Guess where the way between two points crosses the border of the frequencies."""
-    border = low if after.omega < low else high
     part = (border - before.omega) / (after.omega - before.omega)
     return before.unknowns + part * (after.unknowns - before.unknowns), border
 

@@ -11,7 +11,7 @@ import dalembert
 from dalembert.errors import InputError, unknown
 from dalembert.forward import Checkpoint
 from dalembert.vibration.bifurcations import Judged, judged, unjudged
-from dalembert.vibration.continuation import along, at_frequencies, natural
+from dalembert.vibration.continuation import across, at_frequencies, natural
 from dalembert.vibration.curve import FrequencyCurve
 from dalembert.vibration.equations import Equations, equations
 from dalembert.vibration.harmonic_balance import HarmonicBalance
@@ -161,7 +161,7 @@ def _followed(
     if given:
         found = at_frequencies(problem, omegas, known)
     else:
-        follow = along if settings["continuation"] == ARC_LENGTH else natural
+        follow = across if settings["continuation"] == ARC_LENGTH else natural
         found = follow(problem, float(omegas[0]), float(omegas[1]), known)
     points = judged(problem, found, located=not given) if stability else unjudged(found)
     return _curve(problem, points, observed(problem.lowered, observe), settings, omegas, check, on_point)

@@ -74,10 +74,7 @@ def bordered(
     """
     size, width, force = scales
     if isinstance(tangent, DenseTangent):
-        matrix = np.empty((len(direction), len(direction)))
-        matrix[:-1, :-1] = tangent.matrix * (size / force)
-        matrix[:-1, -1] = tangent.slope.ravel() * (width / force)
-        matrix[-1] = direction
+        matrix = _with_row(tangent, direction, scales)
         change = solution(matrix, np.append(top.ravel(), bottom), tangent.held)
         return change[:-1].reshape(top.shape), float(change[-1])
     right = np.stack([top * (force / size), tangent.slope * (width / size)], axis=2)
@@ -85,3 +82,19 @@ def bordered(
     row, (still, moving) = direction[:-1], np.moveaxis(solved, 2, 0)
     turned = (bottom - float(row @ still.ravel())) / (float(direction[-1]) - float(row @ moving.ravel()))
     return still - turned * moving, turned
+
+
+def orientation(tangent: Tangent, direction: np.ndarray, scales: tuple[float, float, float]) -> float:
+    """Sign of the determinant of the tangent with a row, which a direction along a path keeps; 0 where not dense."""
+    if not isinstance(tangent, DenseTangent):
+        return 0.0
+    return float(np.linalg.slogdet(_with_row(tangent, direction, scales))[0])
+
+
+def _with_row(tangent: DenseTangent, direction: np.ndarray, scales: tuple[float, float, float]) -> np.ndarray:
+    size, width, force = scales
+    matrix = np.empty((len(direction), len(direction)))
+    matrix[:-1, :-1] = tangent.matrix * (size / force)
+    matrix[:-1, -1] = tangent.slope.ravel() * (width / force)
+    matrix[-1] = direction
+    return matrix

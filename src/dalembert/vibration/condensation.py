@@ -20,7 +20,7 @@ from scipy.linalg import LinAlgError, eigh
 from scipy.sparse import csc_array, eye_array, issparse
 from scipy.sparse.linalg import splu
 
-from dalembert.errors import ModelError, listed
+from dalembert.errors import ModelError, SolveError, listed
 from dalembert.structure import Structure
 from dalembert.vibration.coordinates import Coordinates
 
@@ -30,6 +30,8 @@ COUPLED = 1e-9
 """Damping between modes, as part of the largest of a mode, above which it counts."""
 FLOATING = 3e-14
 """Smallest interior stiffness as part of the largest, below which it is none."""
+NEARLY = 1e-8
+"""Dynamic stiffness, as part of the stiffness, of an interior mode that has none: half the digits are left of both."""
 MOVING = 1e-6
 """Part of the largest motion above which a degree of freedom is said to move."""
 SOFT = 1e-12
@@ -124,7 +126,7 @@ class Condensation:
         self.inner: list[Any] = [block if dense else csc_array(block) for block in inner]
         self.outer = [np.asarray(self.retained.T @ (matrix @ self.retained)) for matrix in matrices]
         self.across = [np.asarray(self.back.T @ (matrix @ self.retained)).T for matrix in matrices]
-        self.loads = loads
+        self.loads, self.names = loads, structure.dofs.names
         self.outer_loads, self.inner_loads = loads @ self.retained, np.asarray((self.back.T @ loads.T).T)
         if self.orders[0] == 0:
             _require_held(self.inner[0], self.back, structure.dofs.names)
@@ -140,7 +142,7 @@ class Condensation:
             )
         inner = inner[0] if inner else self._inner(s)
         right = np.concatenate([np.swapaxes(across, 1, 2), self.inner_loads[:, :, None]], axis=2)
-        solved = self.solve(s, right, inner)
+        solved = self.solve(s, right, self._off_resonance(s, inner, right))
         follow, free = solved[:, :, :-1], solved[:, :, -1]
         turned = np.swapaxes(follow, 1, 2)
         moved = _times(inner_slope[0], solved) if inner_slope else self._inner_slope(s, solved)
@@ -161,12 +163,44 @@ class Condensation:
 
     def solve(self, s: np.ndarray, right: np.ndarray, inner: Any = None) -> np.ndarray:
         """Z_ll⁻¹ times right-hand sides (orders, l, columns)."""
-        inner = self._inner(s) if inner is None else inner
-        if isinstance(inner, list):
-            return np.stack([splu(matrix).solve(columns) for matrix, columns in zip(inner, right, strict=True)])
-        if inner.ndim == 2:
+        inner = self._off_resonance(s, self._inner(s)) if inner is None else inner
+        if not isinstance(inner, list) and inner.ndim == 2:
             return right / inner[:, :, None]
-        return np.linalg.solve(inner, right)
+        try:
+            if isinstance(inner, list):
+                return np.stack([splu(matrix).solve(columns) for matrix, columns in zip(inner, right, strict=True)])
+            return np.linalg.solve(inner, right)
+        except (RuntimeError, np.linalg.LinAlgError):
+            raise _resonance(s, "") from None
+
+    @cached_property
+    def _resonant(self) -> np.ndarray:
+        """Dynamic stiffness of each interior mode (l,) that is rounding of its stiffness and inertia."""
+        return 2 * FLOATING * np.abs(self.inner[0])
+
+    def _off_resonance(self, s: np.ndarray, inner: Any, right: np.ndarray | None = None) -> Any:
+        """Dynamic stiffness of the interior modes, a little of it where there is none.
+
+        That is exact where nothing moves such a mode, and close to it where the retained coordinates hold it.
+
+        Raises
+        ------
+        SolveError
+            Where forces, the last of the right-hand sides, move one that the retained coordinates do not hold.
+        """
+        if isinstance(inner, list) or inner.ndim > 2:
+            return inner
+        still = np.abs(inner) <= self._resonant
+        if not still.any():
+            return inner
+        if right is not None:
+            sizes = np.abs(right)
+            held = sizes[:, :, :-1].max(axis=2, initial=0.0) > FLOATING * sizes[:, :, :-1].max(initial=0.0)
+            free = still & ~held & (sizes[:, :, -1] > FLOATING * sizes[:, :, -1].max())
+            if free.any():
+                order, mode = np.argwhere(free)[0]
+                raise _resonance(s[order : order + 1], f", at {_moving(self.names, np.abs(self.back[:, mode]))},")
+        return np.where(still, NEARLY * np.abs(self.inner[0]), inner)
 
     def interior_slope(self, point: Point, retained: np.ndarray) -> np.ndarray:
         """Derivative of the interior coordinates by ω where the retained ones (orders, q) are held, (orders, l)."""
@@ -257,12 +291,25 @@ def _require_held(stiffness: Any, back: Any, names: tuple[str, ...]) -> None:
     motion = np.abs(back @ _free_motion(stiffness)) if stiffness.shape[0] else np.zeros(0)
     if not motion.any():
         return
+    raise ModelError(
+        f"the structure can move freely, at {_moving(names, motion)}, without a spring or a contact that holds it, so its mean "
+        "position is not determined; clamp it, or keep odd harmonics only (odd_only=True) where the motion is symmetric"
+    )
+
+
+def _moving(names: tuple[str, ...], motion: np.ndarray) -> str:
+    """Names of the degrees of freedom that move in a motion (n,) of sizes."""
     moving = [repr(name) for name, size in zip(names, motion / motion.max(), strict=True) if size > MOVING]
     if len(moving) > NAMED:
         moving = [*moving[:NAMED], f"{len(moving) - NAMED} more degrees of freedom"]
-    raise ModelError(
-        f"the structure can move freely, at {listed(moving)}, without a spring or a contact that holds it, so its mean "
-        "position is not determined; clamp it, or keep odd harmonics only (odd_only=True) where the motion is symmetric"
+    return listed(moving)
+
+
+def _resonance(s: np.ndarray, where: str) -> SolveError:
+    frequencies = listed([f"{value / (2 * np.pi):.9g}" for value in s if value])
+    return SolveError(
+        f"the structure resonates without damping{where} at {frequencies} Hz, where its motion has no bound; give it "
+        "damping, or choose another frequency"
     )
 
 

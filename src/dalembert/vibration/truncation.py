@@ -84,7 +84,7 @@ def _heavy(problem: Equations, omega: float) -> tuple[bool, ...]:
 
     They do if the highest harmonic meets more inertia than stiffness, with everything else held.
     """
-    lowered, (stiffness, mass, _) = problem.lowered, problem.condensation.outer
+    lowered, (stiffness, mass, *_) = problem.lowered, problem.condensation.outer
     inertia = np.diag(mass) * (problem.method.harmonics * omega) ** 2
     place = {row: number for number, row in enumerate(lowered.coordinates.rows.tolist())}
     rows = [[place[row] for row in block.rows.ravel().tolist() if row in place] for block in lowered.blocks]

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from scipy.sparse import csc_array, issparse
 
+from dalembert.arguments import takes_checked
 from dalembert.errors import InputError
 from dalembert.structure.dofs import Dofs
 from dalembert.structure.eigenmodes import DENSE, all_modes, eigenmodes, lanczos, real_part, similarity
@@ -129,6 +130,7 @@ class ReducedStructure(Structure):
         return ReductionErrors(theirs.frequencies[: len(alike)], ours.frequencies, np.sum(alike * near, axis=1))
 
 
+@takes_checked("masters")
 def craig_bampton(structure: Structure, masters: str | Sequence[str], modes: int = 50) -> ReducedStructure:
     r"""A structure in its master degrees of freedom and the lowest modes with these held.
 

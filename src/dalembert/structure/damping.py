@@ -7,6 +7,7 @@ import numpy as np
 from scipy.linalg import eigh
 from scipy.sparse import issparse
 
+from dalembert.arguments import Checked
 from dalembert.errors import InputError
 
 LARGEST = 5000
@@ -14,7 +15,7 @@ LARGEST = 5000
 
 
 @dataclass(frozen=True)
-class Rayleigh:
+class Rayleigh(Checked):
     r"""Damping in proportion to mass and stiffness, :math:`C = \alpha M + \beta K`.
 
     A mode of angular frequency :math:`\omega` gets the ratio :math:`(\alpha / \omega + \beta \omega) / 2`.
@@ -27,8 +28,8 @@ class Rayleigh:
         :math:`\beta`, s.
     """
 
-    mass: float = field(default=0.0, metadata={"unit": "1/s"})
-    stiffness: float = field(default=0.0, metadata={"unit": "s"})
+    mass: float | complex = field(default=0.0, metadata={"unit": "1/s"})
+    stiffness: float | complex = field(default=0.0, metadata={"unit": "s"})
 
     def matrix(self, mass: Any, stiffness: Any) -> Any:
         """The damping matrix, shape (n, n), sparse where the others are."""
@@ -36,7 +37,7 @@ class Rayleigh:
 
 
 @dataclass(frozen=True)
-class Modal:
+class Modal(Checked):
     r"""One damping ratio for all modes, :math:`C = 2 \zeta M (M^{-1} K)^{1/2}`; rigid motions are not damped.
 
     The matrix is full, so a large model is reduced first (:func:`~dalembert.structure.craig_bampton`). Derivatives by
@@ -54,7 +55,7 @@ class Modal:
         By :meth:`matrix`, for a model that is too large or whose mass matrix is not positive definite.
     """
 
-    ratio: float = field(metadata={"unit": ""})
+    ratio: float | complex = field(metadata={"unit": ""})
 
     def matrix(self, mass: Any, stiffness: Any) -> np.ndarray:
         """The damping matrix, shape (n, n)."""

@@ -4,6 +4,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 
+from dalembert.arguments import names_of
 from dalembert.errors import InputError, unknown
 from dalembert.units import OF_DIRECTION
 
@@ -38,7 +39,7 @@ class Dofs:
     names: tuple[str, ...]
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "names", tuple(self.names))
+        object.__setattr__(self, "names", names_of(self.names, "Dofs", "names"))
         for name in self.names:
             if name.rpartition(".")[2] not in DIRECTIONS or not name.rpartition(".")[0]:
                 raise InputError(

@@ -9,6 +9,7 @@ from scipy.linalg import eigh
 from scipy.sparse import csc_array, issparse
 from scipy.sparse.linalg import LinearOperator, eigsh
 
+from dalembert.arguments import takes_checked
 from dalembert.errors import InputError
 from dalembert.structure.factorise import factorise
 from dalembert.structure.structure import Matrix, Structure
@@ -33,6 +34,7 @@ class EigenModes:
     shapes: np.ndarray
 
 
+@takes_checked()
 def eigenmodes(structure: Structure, count: int = 10, shift: float = 0.0) -> EigenModes:
     """The modes whose frequencies are nearest to a shift, by Lanczos iteration on the inverse; dense if small.
 

@@ -7,6 +7,7 @@ import numpy as np
 from scipy.sparse import block_diag, csc_array, issparse
 from scipy.spatial import KDTree
 
+from dalembert.arguments import takes_checked
 from dalembert.errors import InputError
 from dalembert.structure.dofs import Dofs
 from dalembert.structure.nodes import Nodes
@@ -15,6 +16,7 @@ from dalembert.structure.structure import Matrix, Structure
 Pairs = tuple[tuple[str, str], ...]
 
 
+@takes_checked()
 def combine(parts: Mapping[str, Structure]) -> Structure:
     """Several structures as one, not yet connected.
 
@@ -36,6 +38,8 @@ def combine(parts: Mapping[str, Structure]) -> Structure:
     (('left/a.x', 'right/a.x'), array([1., 2.]))
     """
     structures = list(parts.values())
+    if not structures:
+        raise InputError("combine: there are no parts; expected at least one")
 
     def whole(name: str) -> csc_array:
         return csc_array(block_diag([csc_array(getattr(one, name)) for one in structures], format="csc"))
@@ -53,6 +57,7 @@ def combine(parts: Mapping[str, Structure]) -> Structure:
     )
 
 
+@takes_checked()
 def pairs(structure: Structure, first: str, second: str, tolerance: float) -> Pairs:
     """Nodes of one set with their nearest nodes of another, for contacts or ties.
 
@@ -93,6 +98,7 @@ def pairs(structure: Structure, first: str, second: str, tolerance: float) -> Pa
     return tuple((str(node), str(theirs[other])) for node, other in zip(ours, np.ravel(nearest), strict=True))
 
 
+@takes_checked()
 def tie(structure: Structure, joined: Sequence[tuple[str, str]]) -> Structure:
     """The structure with pairs of nodes made one.
 

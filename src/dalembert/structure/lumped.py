@@ -4,13 +4,15 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from dalembert.errors import InputError, unknown
+from dalembert.arguments import takes_checked
+from dalembert.errors import InputError, shown, unknown
 from dalembert.structure.dofs import DIRECTIONS, Dofs
 from dalembert.structure.springs import Spring, with_springs
 from dalembert.structure.structure import Structure
 
 
-def lumped(masses: Mapping[str, float], springs: Sequence[Spring]) -> Structure:
+@takes_checked("springs")
+def lumped(masses: Mapping[str, float | complex], springs: Sequence[Spring]) -> Structure:
     """A structure of masses that move along x, and springs with dampers between them or to the ground.
 
     Parameters
@@ -33,9 +35,11 @@ def lumped(masses: Mapping[str, float], springs: Sequence[Spring]) -> Structure:
     >>> chain.stiffness.tolist(), chain.dofs.names
     ([[4.0, -1.0], [-1.0, 1.0]], ('a.x', 'b.x'))
     """
+    if not isinstance(springs, Sequence):
+        raise InputError(f"lumped: springs is {shown(springs)}; expected a list, such as [('a', None, 3.0, 0.1)]")
     names = list(masses)
     for number, spring in enumerate(springs):
-        for end in spring[:2]:
+        for end in spring[:2] if isinstance(spring, Sequence) else ():
             if end is not None and end not in masses:
                 raise InputError(unknown("mass", end, names, f"lumped: spring {number + 1}"))
     dofs = Dofs(tuple(name if name.rpartition(".")[2] in DIRECTIONS else f"{name}.x" for name in names))

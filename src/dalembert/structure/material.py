@@ -1,13 +1,13 @@
 """Elastic materials."""
 
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, field
 
+from dalembert.arguments import Checked
 from dalembert.errors import InputError
 
 
 @dataclass(frozen=True)
-class Material:
+class Material(Checked):
     """An isotropic elastic material.
 
     Parameters
@@ -30,9 +30,9 @@ class Material:
     (80000000000.0, 80000000000.0)
     """
 
-    youngs_modulus: Any
-    poisson_ratio: Any
-    density: Any
+    youngs_modulus: float | complex = field(metadata={"unit": "Pa"})
+    poisson_ratio: float | complex
+    density: float | complex = field(metadata={"unit": "kg/m^3"})
 
     def __post_init__(self) -> None:
         for name, unit in (("youngs_modulus", " Pa"), ("density", " kg/m³")):
@@ -44,7 +44,7 @@ class Material:
             )
 
     @property
-    def lame(self) -> tuple[Any, Any]:
+    def lame(self) -> tuple[float | complex, float | complex]:
         """Lamé's constants λ and μ, Pa."""
         modulus, ratio = self.youngs_modulus, self.poisson_ratio
         return modulus * ratio / ((1 + ratio) * (1 - 2 * ratio)), modulus / (2 * (1 + ratio))

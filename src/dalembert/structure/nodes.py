@@ -43,6 +43,7 @@ class Nodes:
     faces: np.ndarray | None = None
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "names", tuple(map(str, self.names)))  # not those of NumPy, which print their type
         places = np.asarray(self.places, dtype=float)
         if places.shape != (len(self.names), 3):
             raise InputError(
@@ -50,7 +51,9 @@ class Nodes:
                 f"x, y and z of each of the {len(self.names)} nodes"
             )
         object.__setattr__(self, "places", places)
-        object.__setattr__(self, "sets", MappingProxyType({name: tuple(own) for name, own in self.sets.items()}))
+        object.__setattr__(
+            self, "sets", MappingProxyType({name: tuple(map(str, own)) for name, own in self.sets.items()})
+        )
         for name, own in self.sets.items():
             for node in own:
                 if node not in self._rows:

@@ -6,8 +6,10 @@ from typing import Any
 import numpy as np
 from scipy.sparse import csc_array
 
+from dalembert.arguments import takes_checked
 from dalembert.errors import InputError
 from dalembert.structure.assembly import assemble, library
+from dalembert.structure.counts import require_counts, require_lengths
 from dalembert.structure.dofs import Dofs
 from dalembert.structure.material import Material
 from dalembert.structure.nodes import Nodes
@@ -16,6 +18,7 @@ from dalembert.structure.structure import Structure
 DIRECTIONS = ("z", "rx", "ry", "rxy")
 
 
+@takes_checked("thickness")
 def plate(size: Sequence[float], thickness: Any, material: Material, elements: Sequence[int] = (20, 20)) -> Structure:
     r"""A rectangular plate in the plane of x and y by Kirchhoff's theory, of Bogner–Fox–Schmit elements.
 
@@ -62,6 +65,8 @@ def plate(size: Sequence[float], thickness: Any, material: Material, elements: S
         for value in values:
             if not value.real > 0:
                 raise InputError(f"plate: {name} is {value}{unit}; expected a positive number")
+    require_lengths("plate", "size", size, 2)
+    require_counts("plate", elements, 2)
     skfem = library("skfem", "plate")
     lines = [np.linspace(0.0, length, count + 1) for length, count in zip(size, elements, strict=True)]
     mesh = skfem.MeshQuad.init_tensor(*lines)

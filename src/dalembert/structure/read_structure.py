@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 from scipy.sparse import csc_array, issparse
 
-from dalembert.errors import DataError, InputError, unknown
+from dalembert.errors import DataError, InputError, shown, unknown
 from dalembert.files import replacing
 from dalembert.structure.dofs import Dofs
 from dalembert.structure.matrix_files import NamedMatrix, matrices
@@ -74,6 +74,8 @@ def read_structure(
     ...     read_structure(Path(folder) / "bob.npz").dofs.names
     ('a.x',)
     """
+    if not isinstance(path, str | Path | Mapping):
+        raise InputError(f"read_structure: path is {shown(path)}; expected a path, or a mapping from matrices to paths")
     files = path if isinstance(path, Mapping) else dict.fromkeys(ROLES, path)
     names = names or {}
     for role in (*files, *names):

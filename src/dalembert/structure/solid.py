@@ -5,9 +5,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from scipy.spatial import KDTree
 
-from dalembert.errors import InputError, unknown
+from dalembert.arguments import takes_checked
+from dalembert.errors import DataError, InputError, shown, told, unknown
 from dalembert.structure.assembly import assemble, library
+from dalembert.structure.counts import require_counts, require_lengths
 from dalembert.structure.dofs import Dofs
 from dalembert.structure.material import Material
 from dalembert.structure.nodes import Nodes
@@ -21,9 +24,12 @@ ELEMENTS = {
 }
 """Kinds of elements: shape functions, and the degrees that the quadratures of stiffness and mass integrate exactly."""
 
+SAME = 1e-9
+"""Distance of a node from a point of a file, as part of the structure's size, within which they are the same."""
 SIDES = ("left", "right", "front", "back", "bottom", "top")
 
 
+@takes_checked()
 def box(size: Sequence[float], elements: Sequence[int], corner: Sequence[float] = (0.0, 0.0, 0.0)) -> Any:
     """A mesh of bricks for :func:`solid`.
 
@@ -41,6 +47,10 @@ def box(size: Sequence[float], elements: Sequence[int], corner: Sequence[float] 
     skfem.MeshHex
         With the named boundaries left, right (x), front, back (y), bottom, top (z) and edge (the first four).
     """
+    require_lengths("box", "size", size, 3)
+    require_counts("box", elements, 3)
+    if len(corner) != 3:
+        raise InputError(f"box: corner is {shown(corner)}; expected three numbers in m")
     return grid(
         *(
             start + np.linspace(0.0, length, count + 1)
@@ -62,6 +72,7 @@ def _at(axis: int, place: float) -> Callable[[np.ndarray], np.ndarray]:
     return lambda x: np.isclose(x[axis], place, rtol=1e-12, atol=0.0)
 
 
+@takes_checked()
 def solid(mesh: Any, material: Material | Mapping[str, Material], element: str | None = None) -> Structure:
     r"""An elastic solid, of finite elements that are good for thin parts too.
 
@@ -72,7 +83,8 @@ def solid(mesh: Any, material: Material | Mapping[str, Material], element: str |
     ----------
     mesh : skfem mesh or path
         Hexahedra or tetrahedra with straight edges, made by :func:`box`, by scikit-fem, or read by meshio from a file
-        (Gmsh, VTK, Abaqus, Nastran and others). Its named boundaries become sets of nodes.
+        (Gmsh, VTK, Abaqus, Nastran and others). Its named boundaries become sets of nodes, and so do sets of nodes in
+        the file (``*NSET`` of Abaqus): all nodes at the places of theirs.
     material : Material, or mapping of str to Material
         One for all, or one for each named subdomain of the mesh; where subdomains overlap the last one holds.
     element : str, optional
@@ -88,6 +100,8 @@ def solid(mesh: Any, material: Material | Mapping[str, Material], element: str |
 
     Raises
     ------
+    DataError
+        For a file that is missing or cannot be read.
     InputError
         For an unknown kind of element or one that does not fit the mesh, an unknown subdomain, elements without
         material, flat or folded ones, or if scikit-fem is not installed.
@@ -106,9 +120,11 @@ def solid(mesh: Any, material: Material | Mapping[str, Material], element: str |
     True
     """
     skfem = library("skfem", "solid")
+    points, sets = np.zeros((0, 3)), {}
     if isinstance(mesh, (str, Path)):
-        library("meshio", "solid")
-        mesh = skfem.Mesh.load(mesh)
+        mesh, points, sets = _from_file(mesh)
+    if not isinstance(mesh, skfem.Mesh):
+        raise InputError(f"solid: mesh is {shown(mesh)}; expected a mesh of scikit-fem, such as box(...), or a path")
     kind = element or ("tetrahedron 10" if isinstance(mesh, skfem.MeshTet) else "brick 20")
     if kind not in ELEMENTS:
         raise InputError(unknown("element", kind, ELEMENTS, "solid"))
@@ -133,12 +149,36 @@ def solid(mesh: Any, material: Material | Mapping[str, Material], element: str |
         name: tuple(map(str, np.unique(basis.get_dofs(facets).all())))
         for name, facets in (mesh.boundaries or {}).items()
     }
+    node_sets = {name: _nodes_at(places, points[own]) for name, own in sets.items()}
     return Structure(
         assemble(_mass(weighing, density), dofs, size),
         assemble(_stiffness(basis, first, second), dofs, size),
         Dofs(tuple(f"{name}.{direction}" for name in names for direction in "xyz")),
-        nodes=Nodes(names, places, boundaries, mesh.facets[:, mesh.boundary_facets()].T),
+        nodes=Nodes(names, places, boundaries | node_sets, mesh.facets[:, mesh.boundary_facets()].T),
     )
+
+
+def _from_file(path: str | Path) -> tuple[Any, np.ndarray, dict[str, np.ndarray]]:
+    """Mesh of a file, its points (points, 3), and rows of these in the sets of nodes that it names."""
+    meshio = library("meshio", "solid")
+    from skfem.io.meshio import from_meshio
+
+    if not Path(path).is_file():
+        raise DataError(f"{path}: there is no such file")
+    try:
+        read = meshio.read(path)
+        mesh = from_meshio(read)
+    except (Exception, SystemExit) as error:  # meshio ends the process for an ending that it does not know
+        raise DataError(f"{path}: no mesh can be read from it: {told(error)}") from error
+    sets = {name: np.unique(np.asarray(own, dtype=int)) for name, own in (read.point_sets or {}).items()}
+    return mesh, read.points, sets
+
+
+def _nodes_at(places: np.ndarray, points: np.ndarray) -> tuple[str, ...]:
+    """Names of the nodes at points; points without a node, such as those of other parts of a file, have none."""
+    near = SAME * np.ptp(places, axis=0).max()
+    found = KDTree(places).query_ball_point(points, near)
+    return tuple(map(str, sorted({node for own in found for node in own})))
 
 
 def _materials(mesh: Any, material: Material | Mapping[str, Material]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

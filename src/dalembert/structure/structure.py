@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from scipy.sparse import csc_array, issparse
 
-from dalembert.arguments import is_number
+from dalembert.arguments import is_number, names_of
 from dalembert.errors import InputError, shown
 from dalembert.structure.damping import Modal, Rayleigh
 from dalembert.structure.dofs import Dofs
@@ -137,7 +137,7 @@ class Structure:
             For an unknown name, with the nearest ones.
         """
         sets = self.nodes.sets if self.nodes else {}
-        names = [names] if isinstance(names, str) else names
+        names = names_of(names, "Structure", "a list of degrees of freedom, nodes or sets")
         single = [
             name for given in names for name in (filter(self.dofs.has_node, sets[given]) if given in sets else [given])
         ]

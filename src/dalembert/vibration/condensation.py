@@ -292,8 +292,9 @@ def _require_held(stiffness: Any, back: Any, names: tuple[str, ...]) -> None:
     if not motion.any():
         return
     raise ModelError(
-        f"the structure can move freely, at {_moving(names, motion)}, without a spring or a contact that holds it, so its mean "
-        "position is not determined; clamp it, or keep odd harmonics only (odd_only=True) where the motion is symmetric"
+        f"the structure can move freely, at {_moving(names, motion)}, without a spring or a contact that holds it, so "
+        "its mean position is not determined; clamp it, or keep odd harmonics only (odd_only=True) where the motion is "
+        "symmetric"
     )
 
 

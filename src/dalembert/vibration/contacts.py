@@ -5,7 +5,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from dalembert.errors import InputError, unknown
+from dalembert.arguments import Checked
+from dalembert.errors import InputError, shown, unknown
 
 Number = float | complex
 """A float, or a complex number whose imaginary part is a direction of differentiation."""
@@ -27,7 +28,7 @@ def require_positive(what: str, unit: str, value: Number | None) -> None:
 
 
 @dataclass(frozen=True)
-class Elastic:
+class Elastic(Checked):
     """Contact with springs in series with the slider (Jenkins), and in the normal direction.
 
     Parameters
@@ -46,7 +47,7 @@ class Elastic:
 
 
 @dataclass(frozen=True)
-class Iwan:
+class Iwan(Checked):
     """Several sliders side by side (Iwan), which give way one after the other: microslip.
 
     Parameters
@@ -69,6 +70,8 @@ class Iwan:
     def __post_init__(self) -> None:
         object.__setattr__(self, "stiffnesses", tuple(self.stiffnesses))
         object.__setattr__(self, "shares", tuple(self.shares))
+        for share in self.shares:
+            require_not_negative("Iwan: a share", "", share)
         total = sum(self.shares)
         if len(self.stiffnesses) != len(self.shares) or not self.shares or abs(total - 1) > 1e-9:
             raise InputError(
@@ -78,7 +81,7 @@ class Iwan:
 
 
 @dataclass(frozen=True)
-class Rigid:
+class Rigid(Checked):
     """Coulomb friction and unilateral contact without compliance, by the dynamic Lagrangian method (DLFT).
 
     Parameters
@@ -113,7 +116,7 @@ Law = Elastic | Iwan | Rigid
 
 
 @dataclass(frozen=True)
-class FrictionContact:
+class FrictionContact(Checked):
     """Dry friction between two nodes, or a node and the ground.
 
     The relative displacement is that of ``first`` less that of ``second``; along the normal it is penetration.
@@ -154,15 +157,21 @@ class FrictionContact:
     name: str
     first: str
     second: str | None = None
-    tangential: Sequence[str] = ("x",)
+    tangential: Sequence[str] = field(default=("x",), metadata={"checked": False})
     normal: str | None = None
     friction: Number = field(kw_only=True, metadata={"unit": ""})
     preload: Number = field(default=0.0, kw_only=True, metadata={"unit": "N"})
-    law: Law = field(default=Rigid(), kw_only=True)
+    law: Law = field(default=Rigid(), kw_only=True, metadata={"checked": False})
 
     def __post_init__(self) -> None:
         where = f"contact {self.name!r}"
-        object.__setattr__(self, "tangential", tuple(self.tangential))
+        _require_law(where, self.law)
+        object.__setattr__(self, "tangential", _directions(where, self.tangential))
+        if self.first == self.second:
+            raise InputError(
+                f"{where} is between the node {self.first!r} and itself; expected two nodes, or one and the ground "
+                "(second=None)"
+            )
         axes = [
             direction.removeprefix("-") for direction in (*self.tangential, *([self.normal] if self.normal else []))
         ]
@@ -182,3 +191,25 @@ class FrictionContact:
             if self.law.normal_stiffness is None:
                 raise InputError(f"{where} has a normal direction; give its law a normal_stiffness in N/m")
             require_positive(f"{where}: the normal stiffness", "N/m", self.law.normal_stiffness)
+
+
+def _require_law(where: str, law: object) -> None:
+    """Refuse what is no law of a contact, functions in words of their own."""
+    if isinstance(law, Law):
+        return
+    if callable(law) and not isinstance(law, type):
+        raise InputError(
+            f"{where}: law is a function; expected Elastic, Iwan or Rigid. Functions can be laws without internal "
+            "state only (UserElement); a law with internal state, such as friction, cannot be a function"
+        )
+    raise InputError(f"{where}: law is {shown(law)}; expected Elastic(...), Iwan(...) or Rigid(...)")
+
+
+def _directions(where: str, given: object) -> tuple[str, ...]:
+    """Names of directions."""
+    if not isinstance(given, Sequence) or not all(isinstance(one, str) for one in given):
+        raise InputError(
+            f"{where}: tangential is {shown(given)}; expected names of directions, such as ('x', 'y'). Directions "
+            "across the axes need a structure in turned coordinates"
+        )
+    return tuple(given)

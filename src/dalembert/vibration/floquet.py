@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from dalembert.arguments import takes_checked
 from dalembert.errors import InputError, unknown
 from dalembert.vibration.curve import FrequencyCurve
 from dalembert.vibration.equations import equations
@@ -12,6 +13,7 @@ from dalembert.vibration.system import VibrationSystem
 from dalembert.vibration.threads import one_thread
 
 
+@takes_checked("way")
 def floquet_multipliers(system: VibrationSystem, curve: FrequencyCurve, point: int, way: str = AUTOMATIC) -> np.ndarray:
     """Factors by which small disturbances of a periodic motion grow over a period.
 

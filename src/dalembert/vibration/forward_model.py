@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from dalembert.arguments import names_of
+from dalembert.arguments import names_of, samples_of
 from dalembert.errors import InputError, ModelError, SolveError, told, unknown
 from dalembert.forward import Channel, Coordinate, Refinement, Responses, ensemble, error_factor
 from dalembert.forward.builders import built, check_function, cores, inexact, restructured
@@ -87,7 +87,7 @@ class FrequencyResponse:
     ) -> None:
         if derivative not in DERIVATIVES:
             raise InputError(unknown("derivative", derivative, DERIVATIVES, "FrequencyResponse"))
-        frequencies = np.asarray(frequencies, dtype=float)
+        frequencies = samples_of(frequencies, "FrequencyResponse", "frequencies")
         if frequencies.ndim != 1 or not len(frequencies) or not np.all(np.isfinite(frequencies) & (frequencies > 0)):
             raise InputError("FrequencyResponse: expected one or more frequencies, positive numbers in Hz")
         channels = names_of(channels, "FrequencyResponse", "channels")

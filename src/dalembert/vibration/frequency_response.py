@@ -8,6 +8,7 @@ import numpy as np
 import scipy
 
 import dalembert
+from dalembert.arguments import numbers_of, takes_checked
 from dalembert.errors import InputError, unknown
 from dalembert.forward import Checkpoint
 from dalembert.vibration.bifurcations import Judged, judged, unjudged
@@ -55,6 +56,7 @@ class FollowedPoint:
 OnPoint = Callable[[FollowedPoint], object]
 
 
+@takes_checked("frequencies", "continuation", "observe")
 def frequency_response(
     system: VibrationSystem,
     frequencies: np.ndarray | tuple[float, float],
@@ -126,7 +128,12 @@ def frequency_response(
     """
     method = method or HarmonicBalance()
     ends = isinstance(frequencies, tuple)
-    omegas = 2 * np.pi * np.atleast_1d(np.asarray(frequencies, dtype=float))
+    if not system.forces:
+        raise InputError(
+            "frequency_response: no force acts on the system, so that it stands still; add a HarmonicForce, or use "
+            "backbone for motions without force"
+        )
+    omegas = 2 * np.pi * np.atleast_1d(numbers_of(frequencies, "frequency_response", "frequencies"))
     if omegas.ndim != 1 or not len(omegas) or not np.all(np.isfinite(omegas) & (omegas > 0)):
         raise InputError(f"frequency_response: the frequencies are {frequencies}; expected positive numbers in Hz")
     if ends and (len(omegas) != 2 or omegas[0] == omegas[1]):
@@ -169,6 +176,10 @@ def _followed(
 
 def restarted(problem: Equations, curve: FrequencyCurve, point: int, where: str) -> Solution:
     """The point of a curve, solved again; ``where`` says whose start it is if the curve is another system's."""
+    if not -len(curve) <= point < len(curve):
+        raise InputError(
+            f"{where}: the point is {point}; expected a number below {len(curve)}, the points of the curve"
+        )
     unknowns, samples = curve.unknowns[point], int(curve.samples[point])
     if unknowns.shape != problem.balance(samples).shape or curve.orders != problem.method.orders:
         raise InputError(

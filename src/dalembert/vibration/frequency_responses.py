@@ -10,8 +10,10 @@ from typing import Any
 
 import numpy as np
 
+from dalembert.arguments import numbers_of, takes_checked
 from dalembert.errors import DalembertError, InputError, SolveError, StorageError, told
 from dalembert.forward import Checkpoint, Executor, ensemble
+from dalembert.forward.builders import check_function
 from dalembert.vibration.curve import FrequencyCurve
 from dalembert.vibration.curve_family import CurveFamily
 from dalembert.vibration.fingerprint import fingerprint
@@ -26,6 +28,7 @@ Found = tuple[FrequencyCurve | None, DalembertError | None, float]
 """A curve or why there is none, and the seconds that it took."""
 
 
+@takes_checked("frequencies", "values", "executor")
 def frequency_responses(
     builder: Callable[..., VibrationSystem],
     parameter: str,
@@ -91,7 +94,8 @@ def frequency_responses(
     >>> family.best("m"), family.reduction("m").round(2).tolist()
     (2.0, [0.0, 0.59, 0.85, 0.72])
     """
-    given = np.asarray(values, dtype=float)
+    check_function("frequency_responses", builder, [parameter])
+    given = numbers_of(values, "frequency_responses", "values")
     if given.ndim != 1 or not len(given):
         raise InputError(f"frequency_responses: the values of {parameter} are {values}; expected one or more numbers")
     one = _One(builder, parameter, frequencies, method or HarmonicBalance(), options)

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 from dalembert.arguments import Checked
 from dalembert.errors import InputError
-from dalembert.settings import expect
+from dalembert.settings import expect, expect_at_least
 
 AUTOMATIC = "automatic"
 
@@ -81,6 +81,8 @@ class HarmonicBalance(Checked):
             raise InputError(
                 f"HarmonicBalance: {self.samples} samples of a period were asked for; expected at most {MOST_GIVEN}"
             )
+        expect_at_least(self, 1, "iterations")
+        expect_at_least(self, 0, "halvings")
         expect(self, "a number between 0 and 1", lambda given: 0 < given < 1, "sampling", "tolerance", "resolution")
 
     def refined(self) -> "HarmonicBalance | None":

@@ -185,7 +185,12 @@ class _Rows:
         """Row of the difference of two degrees of freedom."""
         entries = {_place(self.structure, first, where): 1.0}
         if second is not None:
-            entries[_place(self.structure, second, where)] = -1.0
+            end = _place(self.structure, second, where)
+            if end in entries:
+                raise InputError(
+                    f"{where} is between {first!r} and itself; expected two degrees of freedom, or one and the ground"
+                )
+            entries[end] = -1.0
         return self.add(name, entries)
 
     def matrix(self) -> csc_array:

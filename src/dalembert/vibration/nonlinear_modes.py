@@ -7,6 +7,7 @@ import numpy as np
 import scipy
 
 import dalembert
+from dalembert.arguments import numbers_of, takes_checked
 from dalembert.errors import InputError
 from dalembert.forward import Checkpoint
 from dalembert.vibration.backbone import Backbone
@@ -28,6 +29,7 @@ SAME = 0.7
 """Cosine of the angle between two motions, weighted by the mass, below which they belong to different modes."""
 
 
+@takes_checked("amplitudes")
 def backbone(
     system: VibrationSystem,
     amplitudes: np.ndarray | Sequence[float] | tuple[float, float],
@@ -90,7 +92,7 @@ def backbone(
     ([1.342, 1.028, 1.0], [0.0, 0.053, 0.001])
     """
     method = method or HarmonicBalance()
-    sizes = np.atleast_1d(np.asarray(amplitudes, dtype=float))
+    sizes = np.atleast_1d(numbers_of(amplitudes, "backbone", "amplitudes"))
     if sizes.ndim != 1 or not len(sizes) or not np.all(np.isfinite(sizes) & (sizes > 0)):
         raise InputError(f"backbone: the amplitudes are {amplitudes}; expected positive numbers in m")
     ends = isinstance(amplitudes, tuple)

@@ -15,8 +15,10 @@ import scipy
 from scipy.optimize import brentq
 
 import dalembert
+from dalembert.arguments import numbers_of, takes_checked
 from dalembert.errors import InputError
 from dalembert.forward import Checkpoint
+from dalembert.forward.builders import check_function
 from dalembert.vibration.amplitudes import Amplitude
 from dalembert.vibration.continuation import Path, direction_at
 from dalembert.vibration.curve import FrequencyCurve
@@ -41,6 +43,7 @@ NARROW = 1e-6
 """Length along the path to which a peak is found."""
 
 
+@takes_checked("values")
 def track_resonance(
     builder: Callable[..., VibrationSystem],
     parameter: str,
@@ -104,7 +107,8 @@ def track_resonance(
     >>> track.amplitudes.round(2).tolist(), track.best()
     ([3.63, 3.68, 5.79], 2.0)
     """
-    method, numbers = method or HarmonicBalance(), np.asarray(values, dtype=float)
+    method, numbers = method or HarmonicBalance(), numbers_of(values, "track_resonance", "values")
+    check_function("track_resonance", builder, [parameter])
     if numbers.ndim != 1 or not len(numbers) or not np.all(np.isfinite(numbers)):
         raise InputError(f"track_resonance: the values of {parameter!r} are {values}; expected one or more numbers")
 

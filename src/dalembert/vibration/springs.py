@@ -1,18 +1,20 @@
 """Springs without memory: cubic, unilateral, bilinear, and laws of the user's."""
 
+import inspect
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 
 import numpy as np
 
-from dalembert.errors import InputError
+from dalembert.arguments import Checked
+from dalembert.errors import InputError, shown
 from dalembert.forward.complex_steps import DROPPING, attempted, lost_step
-from dalembert.vibration.contacts import Number, require_positive
+from dalembert.vibration.contacts import Number, require_not_negative, require_positive
 
 
 @dataclass(frozen=True)
-class CubicSpring:
+class CubicSpring(Checked):
     """Force k u³ between two degrees of freedom, or one and the ground.
 
     Parameters
@@ -37,7 +39,7 @@ class CubicSpring:
 
 
 @dataclass(frozen=True)
-class Gap:
+class Gap(Checked):
     """A stop on one side: force k (u - gap) where u exceeds the gap, else none.
 
     Parameters
@@ -69,7 +71,7 @@ class Gap:
 
 
 @dataclass(frozen=True)
-class BilinearStop:
+class BilinearStop(Checked):
     """A stop on both sides: force k (u ∓ gap) where u exceeds the gap upwards or downwards, else none.
 
     Parameters
@@ -93,6 +95,7 @@ class BilinearStop:
 
     def __post_init__(self) -> None:
         require_positive(f"stop {self.name!r}: the stiffness", "N/m", self.stiffness)
+        require_not_negative(f"stop {self.name!r}: the gap", "m", self.gap)
 
     def law(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Force and its derivative at displacements."""
@@ -103,7 +106,7 @@ class BilinearStop:
 
 
 @dataclass(frozen=True)
-class UserElement:
+class UserElement(Checked):
     """A law of the user's without memory, of several degrees of freedom.
 
     Parameters
@@ -134,7 +137,7 @@ class UserElement:
 
     def law(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Forces (dofs, samples) and their derivatives (dofs, dofs, samples), the latter of real displacements only."""
-        values = np.asarray(self.function(u))
+        values = self._forces(u)
         if np.iscomplexobj(u):
             return values, np.zeros(0)
         if not self._compared and np.any(u) and not np.iscomplexobj(values):  # where no parameter is moved
@@ -143,8 +146,42 @@ class UserElement:
         for column in range(len(u)):
             moved = u.astype(complex)
             moved[column] += 1e-30j
-            slopes[:, column] = np.imag(self.function(moved)) / 1e-30
+            slopes[:, column] = np.imag(self._forces(moved)) / 1e-30
         return values, slopes
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "dofs", (self.dofs,) if isinstance(self.dofs, str) else tuple(self.dofs))
+        if not self.dofs or len(set(self.dofs)) < len(self.dofs):
+            raise InputError(
+                f"element {self.name!r}: dofs is {shown(list(self.dofs))}; expected one or more different names"
+            )
+        try:
+            inspect.signature(self.function).bind(None)
+        except TypeError as error:
+            raise InputError(
+                f"element {self.name!r}: its function cannot be called with displacements alone: {error}. A law with "
+                "internal state cannot be a function, only contacts (FrictionContact) have one"
+            ) from None
+        except ValueError:  # a function that does not say what it takes
+            pass
+
+    def _forces(self, u: np.ndarray) -> np.ndarray:
+        """What the function returns, as an array like the displacements."""
+        where = f"element {self.name!r}"
+        given = self.function(u.copy())
+        if isinstance(given, tuple):
+            raise InputError(
+                f"{where}: its function returned {len(given)} values; expected the forces alone. A law with internal "
+                "state cannot be a function, only contacts (FrictionContact) have one"
+            )
+        values = np.asarray(given)
+        if values.shape != u.shape or values.dtype.kind not in "iufc":
+            what = shown(given) if values.ndim == 0 else f"an array of shape {values.shape}"
+            raise InputError(
+                f"{where}: its function returned {what} for displacements of shape {u.shape}; expected forces of that "
+                "shape"
+            )
+        return values
 
     @cached_property
     def _compared(self) -> list[bool]:

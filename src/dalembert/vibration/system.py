@@ -3,14 +3,15 @@
 from dataclasses import dataclass, field
 from typing import TypeVar
 
-from dalembert.errors import InputError, ModelError
+from dalembert.arguments import Checked
+from dalembert.errors import InputError, ModelError, shown
 from dalembert.structure import Structure
 from dalembert.vibration.contacts import FrictionContact, Number
 from dalembert.vibration.springs import BilinearStop, CubicSpring, Gap, UserElement
 
 
 @dataclass(frozen=True)
-class HarmonicForce:
+class HarmonicForce(Checked):
     """Force amplitude · cos(harmonic · ω t + phase) on a degree of freedom.
 
     Parameters
@@ -38,7 +39,7 @@ class HarmonicForce:
 
 
 @dataclass(frozen=True)
-class StaticForce:
+class StaticForce(Checked):
     """A constant force on a degree of freedom.
 
     Parameters
@@ -63,6 +64,11 @@ class VibrationSystem:
     ----------
     structure : Structure
 
+    Raises
+    ------
+    InputError
+        For anything else than a structure.
+
     Examples
     --------
     >>> from dalembert.structure import lumped
@@ -74,6 +80,11 @@ class VibrationSystem:
     """
 
     def __init__(self, structure: Structure) -> None:
+        if not isinstance(structure, Structure):
+            raise InputError(
+                f"VibrationSystem: structure is {shown(structure)}; expected a Structure, such as lumped(...) or "
+                "Structure(mass, stiffness, dofs)"
+            )
         self.structure = structure
         self.forces: list[HarmonicForce | StaticForce] = []
         self.elements: list[Element] = []
@@ -87,5 +98,5 @@ class VibrationSystem:
                 raise ModelError(f"{type(part).__name__} {part.name!r}: the name is taken; give each element its own")
             self.elements.append(part)
         else:
-            raise InputError(f"{part!r} was added to a vibrating system; expected a force, a contact or a spring")
+            raise InputError(f"{shown(part)} was added to a vibrating system; expected a force, a contact or a spring")
         return part

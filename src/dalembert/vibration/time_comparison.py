@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from dalembert.arguments import takes_checked
 from dalembert.contents import Contents
 from dalembert.errors import InputError
 from dalembert.forward import Checkpoint, ensemble
@@ -106,6 +107,7 @@ class TimeComparison(Result):
         return cls(**fields_of(dataset, _DIMENSIONS, ("converged",)))
 
 
+@takes_checked("points", "frequencies", "way", "kind")
 def compare_in_time(
     system: VibrationSystem,
     curve: FrequencyCurve,

@@ -8,6 +8,7 @@ import numpy as np
 import scipy
 
 import dalembert
+from dalembert.arguments import takes_checked
 from dalembert.errors import InputError, SolveError, unknown
 from dalembert.vibration.curve import FrequencyCurve
 from dalembert.vibration.equations import equations
@@ -30,6 +31,7 @@ WARMING = 5
 """Periods before shooting begins, after which motions without memory of the start are gone."""
 
 
+@takes_checked("way", "observe")
 def steady_state(
     system: VibrationSystem,
     frequency: float,

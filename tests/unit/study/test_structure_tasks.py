@@ -549,3 +549,14 @@ def test_a_mechanism_is_told_apart_from_a_structure(write):
         ),
     ):
         plan(load(write(text.replace("system", "structure").replace(", mu = 0.0", "") + CURVE)))
+
+
+def test_a_law_that_drops_the_imaginary_part_is_refused_in_a_study(write, tmp_path):
+    (tmp_path / "law.py").write_text("import numpy as np\ndef drag(u):\n    return 0.1 * np.abs(u) * u\n")
+    text = WHOLE.replace(
+        "[harmonic_balance]\n",
+        '[[model.spring]]\nkind = "UserElement"\nname = "drag"\ndofs = ["m1"]\nfunction = "law.py:drag"\n'
+        "[harmonic_balance]\n",
+    )
+    with pytest.raises(InputError, match=r"element 'drag': the derivative of its force by the displacements is .* abs"):
+        run_study(load(write(text)), tmp_path / "run")

@@ -1,20 +1,26 @@
-"""What an identification from bands concludes about the bands and its own search, as findings."""
+"""What an identification from bands concludes beyond the box."""
 
 from dalembert.findings import Finding
+from dalembert.inverse.bands.band_problem import BandProblem
 from dalembert.inverse.bands.found import Found
-from dalembert.inverse.doubts import NO_BOX
+from dalembert.inverse.bands.status import inconsistency
+
+CLEAR = 5e-2
+"""Rms difference of reproduced and given bands, as part of their mean width, from which the box is not to be used."""
 
 
-def conclusions(found: Found, status: str) -> tuple[Finding, ...]:
+def conclusions(problem: BandProblem, found: Found) -> tuple[Finding, ...]:
     """Return the findings: bands that no box has, and a best end that only one of the descents reached."""
     findings = []
-    if NO_BOX in status:
+    share = inconsistency(problem, found)
+    if share:
         findings.append(
             Finding(
                 "inconsistent-bands",
-                "error",
-                {},
-                "The bands are inconsistent: no box of the parameters has them.",
+                "error" if share > CLEAR else "warning",
+                {"share": share},
+                "The bands are inconsistent: no box of the parameters has them. The best box differs by "
+                f"{100 * share:.2g} % of their mean width.",
                 "Check the bands, the model and the bounds of the parameters.",
             )
         )

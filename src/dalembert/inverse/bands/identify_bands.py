@@ -107,7 +107,7 @@ def identify_bands(
     found = chosen.search(problem, seed)
     at, checked = found.candidate, found.check
     text = status(problem, found)
-    concluded = conclusions(found, text)
+    concluded = conclusions(problem, found)
     ends = tuple(unknowns.search.vectors(end) for end in (at.lower, at.upper))
     told = _told(problem, found)
     d = len(model.parameters)

@@ -35,7 +35,7 @@ FIXED = [
 ACCEPTED = 1e-8
 TABLE = Path(__file__).parent / "verification" / "references" / "random_vibrations.csv"
 SAMPLES = 2**14
-ROUNDS, PARTS = 3, 16
+ROUNDS, PARTS = 4, 16
 """How often an interval in which a state changes is divided, and into how many parts."""
 GAUSS = np.array([0.5 - np.sqrt(1 / 12), 0.5 + np.sqrt(1 / 12)])
 OPEN, STICKS, SLIPS_UP, SLIPS_DOWN = range(4)

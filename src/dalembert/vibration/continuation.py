@@ -52,7 +52,7 @@ class Found:
     ----------
     solution : Solution
     fold : bool
-        Whether the curve turns back here.
+        Whether the curve turns back here, or where the turn is sharp, just before.
     returned : bool
         Whether the curve comes back here to the frequencies that were asked for.
     """
@@ -151,9 +151,8 @@ def along(equations: Problem, begin: float, end: float, start: Solution | None, 
         if direction is None and step <= SHARP * longest:
             beyond = path.turned(equations, solution, step)
             if beyond is not None:
-                path = beyond
-                yield Found(path.known)
-                points += 1
+                yield Found(beyond.known, fold=bool(beyond.direction[-1] * path.direction[-1] < 0))
+                path, points = beyond, points + 1
                 continue
         bent = direction is not None and float(path.direction @ direction) < STEADY
         if direction is None or (bent and step > longest * 1e-2):
@@ -167,11 +166,11 @@ def along(equations: Problem, begin: float, end: float, start: Solution | None, 
             last = equations.solve(*_on_border(path.known, solution, border), solution.samples)
             yield Found(last)
             return
-        if direction[-1] * path.direction[-1] < 0:
-            fold = _fold(equations, path, step)
-            if fold is not None:
-                yield Found(fold, fold=True)
-        yield Found(solution)
+        folds = bool(direction[-1] * path.direction[-1] < 0)
+        fold = _fold(equations, path, step) if folds else None
+        if fold is not None:
+            yield Found(fold, fold=True)
+        yield Found(solution, fold=folds and fold is None)
         points += 1
         path = Path(solution, direction_at(solution, direction, width), width)
         step = min(longest, step * (1.5 if solution.iterations <= EASY else 0.7))

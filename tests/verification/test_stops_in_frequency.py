@@ -1,0 +1,100 @@
+"""Whole paths of two published systems with stops and friction, with their turning points and their stability.
+
+The systems are examples 03 and 07 of NLvib (Krack, Gross: "Harmonic Balance for Nonlinear Vibration Problems", 2019).
+"""
+
+import numpy as np
+import pytest
+
+from dalembert.structure import lumped
+from dalembert.vibration import Gap, HarmonicBalance, HarmonicForce, VibrationSystem, frequency_response
+from random_vibrations import ACCEPTED, Law, RandomSystem, unbalanced
+from stops_in_time import Stops
+from vibrating_systems import chain
+
+TOPIC = "Friction in frequency"
+TIME = "shooting with exact flows between the instants at which the stop changes"
+TURN = 2 * np.pi
+NEAR = 0.02
+"""Distance of the largest Floquet multiplier from the unit circle within which 21 harmonics do not decide."""
+
+
+def stopped() -> tuple[VibrationSystem, Stops]:
+    """Two masses, the first of which meets a stop."""
+    system = VibrationSystem(lumped({"m1": 1.0, "m2": 1.0}, [("m1", "m2", 1.0, 0.03), ("m2", None, 1.0, 0.03)]))
+    system.add(HarmonicForce("m2", 0.1))
+    system.add(Gap("stop", "m1", stiffness=100.0, gap=1.0))
+    own, stop = system.structure, (np.array([1.0, 0.0]), 100.0, 1.0)
+    return system, Stops(own.mass, own.damping, own.stiffness, np.array([0.0, 0.1]), (stop,))
+
+
+def state(curve, point: int) -> np.ndarray:
+    """Displacements and velocities where the force is largest."""
+    orders, x = np.arange(1, len(curve.orders)), curve.response[point]
+    return np.append(x[:, 0] + x[:, 1::2].sum(axis=1), TURN * curve.frequencies[point] * (x[:, 2::2] @ orders))
+
+
+def test_the_path_of_a_mass_that_meets_a_stop_has_two_turning_points(record_evidence) -> None:
+    system, reference = stopped()
+    curve = frequency_response(system, (0.8 / TURN, 0.5 / TURN), HarmonicBalance(21), continuation="arc-length")
+    assert curve.converged.all()
+    np.testing.assert_allclose(curve.frequencies[-1] * TURN, 0.5)
+    grazing, last = TURN * curve.folds
+    touching = next(omega for omega in np.linspace(0.66, 0.64, 20_001) if _linear(reference, omega) >= 1.0)
+    record_evidence(
+        "two masses with a stop: frequency at which it is touched and the path turns, rad/s", touching, grazing,
+        tolerance=2e-6, topic=TOPIC, source="closed form of the motion without contact",
+    )  # fmt: skip
+    # Beyond the last turning point shooting finds none of the motions on the branch, and before it all.
+    found = [reference.periodic(state(curve, point), TURN * curve.frequencies[point]) for point in range(len(curve))]
+    kept = np.array([one is not None for one in found])
+    assert np.all(np.abs(TURN * curve.frequencies[~kept] - last) < 1e-5)
+    signs = [np.linalg.slogdet(np.eye(4) - one[1])[0] for one in found if one is not None]
+    assert np.sum(np.diff(signs) != 0) == 2
+
+
+def _linear(reference: Stops, omega: float) -> float:
+    """Largest displacement of the first mass without contact."""
+    stiffness = reference.stiffness - omega**2 * reference.mass + 1j * omega * reference.damping
+    return float(np.abs(np.linalg.solve(stiffness, reference.force)[0]))
+
+
+@pytest.mark.slow
+def test_stability_of_a_mass_that_meets_a_stop_is_that_of_shooting(record_evidence) -> None:
+    system, reference = stopped()
+    curve = frequency_response(
+        system, (0.8 / TURN, 0.5 / TURN), HarmonicBalance(21), continuation="arc-length", stability=True
+    )
+    kinds = [kind for kind, _ in curve.markers]
+    assert kinds == ["fold", "fold", "period doubling", "period doubling", "torus", "torus"]
+    judged = right = 0
+    for point in np.flatnonzero(~curve.fold):
+        found = reference.periodic(state(curve, point), TURN * curve.frequencies[point])
+        largest = 1.0 if found is None else np.abs(np.linalg.eigvals(found[1])).max()
+        if abs(largest - 1.0) > NEAR:
+            judged, right = judged + 1, right + int((curve.stable[point] == 1) == (largest < 1))
+    assert judged > 150
+    record_evidence(
+        "two masses with a stop: share of points with the right stability", 1.0, right / judged, tolerance=0.0,
+        topic=TOPIC, source=TIME,
+    )  # fmt: skip
+
+
+def test_the_path_of_a_chain_with_sliders_and_a_stop_has_four_turning_points(record_evidence) -> None:
+    rows = {"m1": [1.0, 0, 0], "12": [1.0, -1, 0], "m2": [0, 1.0, 0], "23": [0, 1.0, -1], "m3": [0, 0, 1.0]}
+    way = {name: np.array(row) for name, row in rows.items()}
+    own = RandomSystem(chain(), np.zeros(0), laws=[
+        Law(way["m1"], None, stiffness=20.0, friction=1.0, load=1.0),
+        Law(way["12"], None, stiffness=20.0, friction=1.0, load=1.0),
+        Law(None, way["m3"], normal_stiffness=1.0, gap=0.25),
+    ], cubic=[(way["m2"], 1.0), (way["23"], 1.0)])  # fmt: skip
+    method = HarmonicBalance(7, sampling=1e-9)
+    curve = frequency_response(own.system, (0.5 / TURN, 2 / TURN), method, continuation="arc-length")
+    assert curve.converged.all()
+    np.testing.assert_allclose(curve.frequencies[-1] * TURN, 2.0)
+    assert len(curve.folds) == 4
+    worst = max(unbalanced(own, curve, point) for point in (*range(0, len(curve), 10), *np.flatnonzero(curve.fold)))
+    record_evidence(
+        "three masses with sliders and a stop: largest residual of the path, as part of the forces", 0.0, worst,
+        tolerance=ACCEPTED, topic=TOPIC, source="the balance of forces in plain NumPy",
+    )  # fmt: skip

@@ -192,13 +192,13 @@ def waves(angles: np.ndarray, harmonics: int) -> np.ndarray:
     return result
 
 
-def contact_force(law: Law, u: np.ndarray) -> np.ndarray:
+def contact_force(law: Law, u: np.ndarray, samples: int = SAMPLES) -> np.ndarray:
     """Coefficients of a contact's forces from those of its relative displacements, (rows, coefficients).
 
     States on a grid that is refined where they change; between, the forces are integrated by Gauss' rule.
     """
     harmonics = (u.shape[1] - 1) // 2
-    angles = np.linspace(0.0, 2 * np.pi, SAMPLES + 1)
+    angles = np.linspace(0.0, 2 * np.pi, samples + 1)
     for last in (False,) * ROUNDS + (True,):
         states, sliders = _states(law, waves(angles, harmonics) @ u.T)
         changed = np.flatnonzero(states[1:] != states[:-1])
@@ -258,7 +258,7 @@ def _force(law: Law, d: np.ndarray, states: np.ndarray, sliders: np.ndarray) -> 
     return np.array(rows)
 
 
-def unbalanced(own: RandomSystem, curve: FrequencyCurve, point: int) -> float:
+def unbalanced(own: RandomSystem, curve: FrequencyCurve, point: int, samples: int = SAMPLES) -> float:
     """Residual of the whole structure at a point of a curve, as part of the forces."""
     structure, x = own.system.structure, curve.response[point]
     harmonics, omega = (x.shape[1] - 1) // 2, 2 * np.pi * curve.frequencies[point]
@@ -288,7 +288,7 @@ def unbalanced(own: RandomSystem, curve: FrequencyCurve, point: int) -> float:
         scale += np.linalg.norm(force)
     for law in own.laws:
         if not law.rigid:
-            force = contact_force(law, law.rows @ x)
+            force = contact_force(law, law.rows @ x, samples)
             missing -= law.rows.T @ force
             scale += np.linalg.norm(force)
     rigid = [law for law in own.laws if law.rigid]
@@ -299,7 +299,7 @@ def unbalanced(own: RandomSystem, curve: FrequencyCurve, point: int) -> float:
     errors, first = [missing - rows.T @ needed], 0
     for law in rigid:
         own_rows = slice(first, first + len(law.rows))
-        force = contact_force(law, law.rows @ x + needed[own_rows] / law.stiffness)
+        force = contact_force(law, law.rows @ x + needed[own_rows] / law.stiffness, samples)
         errors.append(force - needed[own_rows])
         scale += np.linalg.norm(force)
         first += len(law.rows)
@@ -327,19 +327,25 @@ class Outcome:
 
 def at_frequencies(own: RandomSystem, method: HarmonicBalance = METHOD) -> Outcome:
     """The points of a system, each judged."""
-    curve = frequency_response(own.system, own.frequencies, method)
-    residuals = [unbalanced(own, curve, point) for point in np.flatnonzero(curve.converged)]
+    curve = frequency_response(own.system, own.frequencies, method, check=False)
+    residuals = [_judged(own, curve, point) for point in np.flatnonzero(curve.converged)]
     missing = ~curve.converged
     others = np.zeros(len(curve), dtype=bool)
     for fixed in FIXED if missing.any() else []:
-        others |= frequency_response(own.system, own.frequencies, fixed).converged
+        others |= frequency_response(own.system, own.frequencies, fixed, check=False).converged
     return Outcome(residuals, int(np.sum(missing & others)), int(np.sum(missing & ~others)))
+
+
+def _judged(own: RandomSystem, curve: FrequencyCurve, point: int) -> float:
+    """Residual of a point, on a finer grid where a state between two instants of the coarse one may be missing."""
+    residual = unbalanced(own, curve, point)
+    return residual if residual < ACCEPTED / 3 else unbalanced(own, curve, point, 4 * SAMPLES)
 
 
 def path_end(own: RandomSystem, method: HarmonicBalance = PATHS) -> tuple[float, FrequencyCurve]:
     """Part of the range at which a path by arc length ends, and the path."""
     low, high = own.frequencies[[0, -1]]
-    path = frequency_response(own.system, (low, high), method, continuation="arc-length")
+    path = frequency_response(own.system, (low, high), method, continuation="arc-length", check=False)
     last = path.frequencies[path.converged][-1:] if path.converged.any() else np.array([low])
     return float((last[0] - low) / (high - low)), path
 

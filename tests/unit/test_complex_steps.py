@@ -19,7 +19,18 @@ LOSING: dict[str, Callable] = {
     "six decimals": lambda x: np.round(x, 6),
     "beside large numbers": lambda x: 1e9 + abs(x) * 1e3,
 }
+
+
+def logistic(x: complex) -> np.ndarray:
+    """A map that doubles small changes in each of its 80 steps."""
+    values = [0.25 * x]
+    for _ in range(80):
+        values.append(3.9 * values[-1] * (1 - values[-1]))
+    return np.array(values)
+
+
 CARRYING: dict[str, Callable] = {
+    "chaotic": logistic,
     "power": lambda x: x**3,
     "exponential": lambda x: np.exp(3 * x),
     "fast": lambda x: np.sin(400 * x),

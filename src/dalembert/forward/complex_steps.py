@@ -27,6 +27,7 @@ _INTERVALS = 6  # side by side
 _MOST, _ALL_FLAT = 4, 2  # intervals with jumps, of any number, and of one that is constant between
 _DIFFERS = 1e-2  # relative, of an increment and the integral of the derivative
 _TINY = 1e-9  # shifts at which rounding is measured, in scales
+_STEEP = 0.3  # derivative times step, in parts of the largest number, from which differences cannot follow it
 _NOISY = 16.0  # times the rounding that a difference must be
 _ENTRIES = 2  # that are halved at most
 _HALVINGS = 40  # until a steep function changes by less than _JUMP of the difference
@@ -66,6 +67,9 @@ def lost_step(numbers: Callable[[complex], np.ndarray], scale: float) -> Lost | 
     sizes = np.maximum(np.abs(by_step), np.abs(slope))
     excess = np.abs(by_step - slope) - error - _AGREES * sizes - _CANCELLED * _largest(sizes)
     excess[~np.isfinite(excess)] = 0.0
+    width = DIFFERENCE * scale  # of the differences, over which a chaotic response is no line
+    size = _largest(np.abs(here))
+    excess[np.abs(by_step) * width > (_STEEP * size or np.inf)] = 0.0
     if np.any(excess > 0):
         excess[excess * DIFFERENCE * scale < _NOISY * _noise(numbers, 0.0, scale)] = 0.0
     if np.max(excess, initial=0.0) <= 0:

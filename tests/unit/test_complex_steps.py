@@ -30,7 +30,6 @@ def logistic(x: complex) -> np.ndarray:
 
 
 CARRYING: dict[str, Callable] = {
-    "chaotic": logistic,
     "power": lambda x: x**3,
     "exponential": lambda x: np.exp(3 * x),
     "fast": lambda x: np.sin(400 * x),
@@ -82,6 +81,11 @@ def test_a_lost_step_is_found(name: str) -> None:
 @pytest.mark.filterwarnings("ignore:invalid value encountered in sqrt:RuntimeWarning")
 def test_a_function_that_carries_the_step_is_accepted(name: str, scale: float) -> None:
     assert lost_step(numbers({**CARRYING, **SMOOTH_OR_KINKED}[name]), scale) is None
+
+
+def test_a_chaotic_function_carries_the_step_though_differences_cannot_follow_it() -> None:
+    for at in (1.2, 1.2345, 0.77):
+        assert lost_step(lambda shift, at=at: logistic(at + shift), 1.0) is None
 
 
 def test_a_python_model_names_parameter_channel_and_sample() -> None:

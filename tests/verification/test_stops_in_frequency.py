@@ -15,8 +15,10 @@ from vibrating_systems import chain
 TOPIC = "Friction in frequency"
 TIME = "shooting with exact flows between the instants at which the stop changes"
 TURN = 2 * np.pi
+CLOSE = 0.01
+"""Distance of the largest multiplier from the unit circle within which a point may be judged wrongly."""
 NEAR = 0.02
-"""Distance of the largest Floquet multiplier from the unit circle within which 21 harmonics do not decide."""
+"""Distance of the largest Floquet multiplier from the unit circle within which points are not judged."""
 
 
 def stopped() -> tuple[VibrationSystem, Stops]:
@@ -71,8 +73,9 @@ def test_stability_of_a_mass_that_meets_a_stop_is_that_of_shooting(record_eviden
     for point in np.flatnonzero(~curve.fold):
         found = reference.periodic(state(curve, point), TURN * curve.frequencies[point])
         largest = 1.0 if found is None else np.abs(np.linalg.eigvals(found[1])).max()
-        if abs(largest - 1.0) > NEAR:
+        if curve.stable[point] >= 0 and abs(largest - 1.0) > CLOSE:
             judged, right = judged + 1, right + int((curve.stable[point] == 1) == (largest < 1))
+        assert curve.stable[point] >= 0 or abs(largest - 1.0) < NEAR
     assert judged > 150
     record_evidence(
         "two masses with a stop: share of points with the right stability", 1.0, right / judged, tolerance=0.0,

@@ -82,6 +82,8 @@ def judged(problem: Equations, path: Iterable[Found], located: bool) -> Iterator
 
 
 def _said(own: Exponents) -> int:
+    if not own.judged:
+        return NOT_ASKED
     return UNSTABLE if own.unstable else STABLE
 
 

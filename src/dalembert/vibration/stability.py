@@ -8,6 +8,7 @@ from dalembert.vibration.equations import Equations
 from dalembert.vibration.fourier import Fourier
 from dalembert.vibration.hill import hill
 from dalembert.vibration.newton import Solution
+from dalembert.vibration.springs import BilinearStop, Gap
 from dalembert.vibration.time_map import monodromy
 from dalembert.vibration.uncondensed import Uncondensed
 
@@ -16,6 +17,12 @@ NEUTRAL = 1e-8
 """Growth, in parts of ω, that is none: rounding of undamped motions."""
 FEWEST = 512
 """Steps of the map over a period, if the motion does not have more samples."""
+TRUNCATED = 0.02 / (2 * np.pi)
+"""Error of Hill's method in parts of ω where a stop is touched, whose stiffness has harmonics beyond those kept.
+
+Measured: of 166 points of two masses with a stop, judged so with 21 harmonics, one has the wrong label; its largest
+multiplier is 1.006.
+"""
 FORGOTTEN = 1e-12
 """Multiplier that is zero: what a slider that slips once in a period forgets."""
 
@@ -28,9 +35,17 @@ class Exponents:
     ----------
     values : array, shape (exponents,), complex
         In parts of ω, those that grow fastest first.
+    error : float
+        Of their real parts, in parts of ω.
     """
 
     values: np.ndarray
+    error: float = 0.0
+
+    @property
+    def judged(self) -> bool:
+        """Whether the fastest growth is beyond its error."""
+        return bool(abs(np.max(np.real(self.values), initial=-np.inf)) >= self.error)
 
     @property
     def unstable(self) -> int:
@@ -46,8 +61,15 @@ def remembers(problem: Equations) -> bool:
 def exponents(problem: Equations, solution: Solution, way: str = AUTOMATIC) -> Exponents:
     """Floquet exponents at a solution: by Hill's method, or by the time map where there are contacts with friction."""
     if way == HILL or (way == AUTOMATIC and not remembers(problem)):
-        return Exponents(problem.once(HILL, solution, lambda: hill(problem, solution)))
+        values = problem.once(HILL, solution, lambda: hill(problem, solution))
+        return Exponents(values, TRUNCATED if _touches(problem, solution) else 0.0)
     return Exponents(problem.once(TIME_MAP, solution, lambda: _by_time_map(problem, solution)))
+
+
+def _touches(problem: Equations, solution: Solution) -> bool:
+    """Whether a stop acts at some time."""
+    stops = [rows for rows, element in problem.lowered.springs if isinstance(element, Gap | BilinearStop)]
+    return bool(stops) and bool(np.any(solution.evaluation.forces[np.concatenate(stops)]))
 
 
 def _by_time_map(problem: Equations, solution: Solution) -> np.ndarray:

@@ -19,6 +19,7 @@ NAMES = (
     "collocation",
     "digits",
     "vibration",
+    "events",
     "plate",
     "startup",
 )

@@ -57,6 +57,8 @@ class Point:
         Z_ll⁻¹ f_l: the interior with q held.
     kept : dict
         Factors that serve all iterations here.
+    shared : dict
+        What all frequencies have in common.
     """
 
     frequencies: np.ndarray
@@ -67,6 +69,7 @@ class Point:
     follow: np.ndarray
     free: np.ndarray
     kept: dict[str, Any] = field(default_factory=dict, repr=False)
+    shared: dict[str, np.ndarray] = field(default_factory=dict, repr=False)
 
     @cached_property
     def load(self) -> float:
@@ -78,9 +81,14 @@ class Point:
         """Largest entry of the stiffness."""
         return float(np.abs(self.stiffness).max(initial=0.0))
 
-    @cached_property
+    @property
     def free_motions(self) -> np.ndarray:
         """Mean motions (q, motions) that the stiffness does not hold: only contacts can, and perhaps none does."""
+        if "free motions" not in self.shared:
+            self.shared["free motions"] = self._free_motions()
+        return self.shared["free motions"]
+
+    def _free_motions(self) -> np.ndarray:
         if not len(self.frequencies) or self.frequencies[0] != 0 or not self.stiffness.shape[1]:
             return np.zeros((self.stiffness.shape[1], 0))
         values, vectors = np.linalg.eigh(np.real(self.stiffness[0]))
@@ -128,6 +136,7 @@ class Condensation:
         self.across = [np.asarray(self.back.T @ (matrix @ self.retained)).T for matrix in matrices]
         self.loads, self.names = loads, structure.dofs.names
         self.outer_loads, self.inner_loads = loads @ self.retained, np.asarray((self.back.T @ loads.T).T)
+        self._shared: dict[str, np.ndarray] = {}
         if self.orders[0] == 0:
             _require_held(self.inner[0], self.back, structure.dofs.names)
 
@@ -138,8 +147,9 @@ class Condensation:
         if not self.inner_loads.shape[1]:
             nothing = self.inner_loads
             return Point(
-                s, outer, outer_slope, self.outer_loads, 0 * self.outer_loads, np.swapaxes(across, 1, 2), nothing
-            )
+                s, outer, outer_slope, self.outer_loads, 0 * self.outer_loads, np.swapaxes(across, 1, 2), nothing,
+                shared=self._shared,
+            )  # fmt: skip
         inner = inner[0] if inner else self._inner(s)
         right = np.concatenate([np.swapaxes(across, 1, 2), self.inner_loads[:, :, None]], axis=2)
         solved = self.solve(s, right, self._off_resonance(s, inner, right))
@@ -155,6 +165,7 @@ class Condensation:
             force_slope=-crossed[:, :, -1] + (turned @ moved[:, :, -1:])[:, :, 0],
             follow=follow,
             free=free,
+            shared=self._shared,
         )
 
     def full(self, retained: np.ndarray, interior: np.ndarray) -> np.ndarray:

@@ -20,15 +20,23 @@ def check_function(owner: str, function: Any, names: Sequence[str]) -> None:
     """
     if not callable(function):
         raise InputError(f"{owner}: {shown(function)} was given as the model's function; expected a function")
-    try:
-        inspect.signature(function).bind(**dict.fromkeys(names))
-    except TypeError as error:
+    error = call_error(function, **dict.fromkeys(names))
+    if error is not None:
         raise InputError(
             f"{owner}: {named(function)} cannot be called with {', '.join(names) or 'no parameters'}: {error}. "
             "Name its arguments as the parameters"
-        ) from None
-    except ValueError:  # a function that does not say what it takes
-        pass
+        )
+
+
+def call_error(function: Callable[..., Any], *positions: Any, **names: Any) -> TypeError | None:
+    """Why a function cannot be called with these arguments; None if it can, or does not say what it takes."""
+    try:
+        inspect.signature(function).bind(*positions, **names)
+    except TypeError as error:
+        return error
+    except ValueError:
+        return None
+    return None
 
 
 def built(builder: Callable[..., Any], arguments: Mapping[str, Any], kind: type[Built]) -> Built:

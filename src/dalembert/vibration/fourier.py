@@ -98,6 +98,23 @@ def synthesis(orders: tuple[int, ...], angles: np.ndarray) -> np.ndarray:
     return np.stack([column for pair in columns for column in pair], axis=1)
 
 
+def in_orders(coefficients: np.ndarray, orders: tuple[int, ...], others: tuple[int, ...]) -> np.ndarray:
+    """Coefficients (rows, coefficients) of a series with other orders, which contain its own; the rest is 0.
+
+    >>> in_orders(np.array([[1.0, 2.0]]), (1,), (0, 1, 2)).tolist()
+    [[0.0, 1.0, 2.0, 0.0, 0.0]]
+    """
+    columns = _columns(others)
+    result = np.zeros((len(coefficients), len(columns)))
+    result[:, np.searchsorted(columns, _columns(orders))] = coefficients
+    return result
+
+
+def _columns(orders: tuple[int, ...]) -> np.ndarray:
+    """Numbers of the coefficients in a series with all orders."""
+    return np.array([column for order in orders for column in ((0,) if order == 0 else (2 * order - 1, 2 * order))])
+
+
 def real_blocks(matrices: np.ndarray, mean: int) -> np.ndarray:
     """Matrices on phasors (orders, q, r) as one on real coefficients, (q, coefficients, r, coefficients)."""
     orders, q, r = matrices.shape

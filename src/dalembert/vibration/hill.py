@@ -18,7 +18,7 @@ import numpy as np
 from scipy.linalg import eig
 
 from dalembert.vibration.equations import Equations
-from dalembert.vibration.fourier import Fourier
+from dalembert.vibration.fourier import Fourier, in_orders
 from dalembert.vibration.newton import Solution
 from dalembert.vibration.uncondensed import Uncondensed
 
@@ -43,21 +43,12 @@ def hill(problem: Equations, solution: Solution) -> np.ndarray:
     own = problem.balance(solution.samples)
     linear = own.linear(solution.point.stiffness, solution.point.force, solution.unknowns)
     system = Uncondensed(problem.lowered, problem.condensation, every, problem.method.events)
-    pencil = _pencil(system, _padded(linear, own.series), _padded(solution.unknowns, own.series), solution.omega)
+    # All harmonics up to the highest: disturbances of a symmetric motion need not be symmetric.
+    linear, unknowns = (in_orders(own, orders, every.orders) for own in (linear, solution.unknowns))
+    pencil = _pencil(system, linear, unknowns, solution.omega)
     values, vectors = _eigenvalues(pencil)
     centres = _centres(vectors.reshape(-1, every.count, len(values)), system.matrices[1])
     return _distinct(values, centres, 2 * int(np.linalg.matrix_rank(system.matrices[1], hermitian=True)))
-
-
-def _padded(coefficients: np.ndarray, series: Fourier) -> np.ndarray:
-    """With all harmonics up to the highest, since disturbances of a symmetric motion need not be symmetric."""
-    result = np.zeros((len(coefficients), 2 * series.orders[-1] + 1))
-    for order in series.orders:
-        place = int(series.cosines[series.orders.index(order)])
-        result[:, max(2 * order - 1, 0)] = coefficients[:, place]
-        if order:
-            result[:, 2 * order] = coefficients[:, place + 1]
-    return result
 
 
 def _pencil(system: Uncondensed, linear: np.ndarray, unknowns: np.ndarray, omega: float) -> list[np.ndarray]:

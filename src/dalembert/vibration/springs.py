@@ -1,6 +1,5 @@
 """Springs without memory: cubic, unilateral, bilinear, and laws of the user's."""
 
-import inspect
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
@@ -9,6 +8,7 @@ import numpy as np
 
 from dalembert.arguments import Checked
 from dalembert.errors import InputError, shown
+from dalembert.forward.builders import call_error
 from dalembert.forward.complex_steps import DROPPING, attempted, lost_step
 from dalembert.vibration.contacts import Number, require_not_negative, require_positive
 
@@ -155,15 +155,12 @@ class UserElement(Checked):
             raise InputError(
                 f"element {self.name!r}: dofs is {shown(list(self.dofs))}; expected one or more different names"
             )
-        try:
-            inspect.signature(self.function).bind(None)
-        except TypeError as error:
+        error = call_error(self.function, None)
+        if error is not None:
             raise InputError(
                 f"element {self.name!r}: its function cannot be called with displacements alone: {error}. A law with "
                 "internal state cannot be a function, only contacts (FrictionContact) have one"
-            ) from None
-        except ValueError:  # a function that does not say what it takes
-            pass
+            )
 
     def _forces(self, u: np.ndarray) -> np.ndarray:
         """What the function returns, as an array like the displacements."""

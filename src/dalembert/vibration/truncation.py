@@ -9,7 +9,7 @@ from dalembert.findings import Finding
 from dalembert.vibration.condensation import norm
 from dalembert.vibration.contacts import RIGID_KINDS
 from dalembert.vibration.equations import Equations
-from dalembert.vibration.fourier import Fourier
+from dalembert.vibration.fourier import Fourier, in_orders
 from dalembert.vibration.lowering import ELASTIC, Lowered
 from dalembert.vibration.newton import Solution
 
@@ -63,9 +63,7 @@ def _error(problem: Equations, solution: Solution) -> float:
         return 0.0
     finer = Equations(_robust(problem, solution.omega), method)
     samples = max(method.first_samples, solution.samples)
-    begin = np.zeros(finer.balance(samples).shape)
-    places = np.searchsorted(_columns(method.orders), _columns(problem.method.orders))
-    begin[:, places] = solution.unknowns
+    begin = in_orders(solution.unknowns, problem.method.orders, method.orders)
     better = finer.solve(begin, solution.omega, samples)
     if not better.converged:
         better = finer.first(solution.omega)
@@ -101,11 +99,6 @@ def _robust(problem: Equations, omega: float) -> Lowered:
         for block, heavy in zip(problem.lowered.blocks, _heavy(problem, omega), strict=True)
     )
     return replace(problem.lowered, blocks=blocks)
-
-
-def _columns(orders: tuple[int, ...]) -> np.ndarray:
-    """Numbers of coefficients, cosine and sine of each harmonic, in a series with all harmonics."""
-    return np.array([column for order in orders for column in ((0,) if order == 0 else (2 * order - 1, 2 * order))])
 
 
 def largest(best: Solution | None, solution: Solution) -> Solution | None:

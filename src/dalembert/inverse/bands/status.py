@@ -6,7 +6,6 @@ from scipy.special import ndtri
 from dalembert.inverse.bands.band_problem import BandProblem
 from dalembert.inverse.bands.check import scale
 from dalembert.inverse.bands.found import Found
-from dalembert.inverse.doubts import NO_BOX
 from dalembert.inverse.matching import place
 from dalembert.inverse.noise import quantum, random_residuals
 
@@ -60,7 +59,7 @@ def _misfit(problem: BandProblem, found: Found) -> str:
         parts.append("What remains looks like noise.")
     elif share.max() > SMALL:
         parts.append(
-            f"{NO_BOX}: look at the residuals, whether the model lacks something, or "
+            "No box of these parameters has these bands: look at the residuals, whether the model lacks something, or "
             "whether the bounds leave the true intervals out."
         )
     return " ".join(parts)

@@ -139,7 +139,7 @@ def _test(kind: Any) -> Callable[[Any], bool]:
 
 
 def _is_runtime(protocol: Any) -> bool:
-    """Whether instances of a protocol can be told by their members."""
+    """Whether instances of a protocol can be recognised by their members."""
     return getattr(protocol, "_is_runtime_protocol", False)
 
 

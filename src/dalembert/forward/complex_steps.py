@@ -67,7 +67,7 @@ def lost_step(numbers: Callable[[complex], np.ndarray], scale: float) -> Lost | 
     sizes = np.maximum(np.abs(by_step), np.abs(slope))
     excess = np.abs(by_step - slope) - error - _AGREES * sizes - _CANCELLED * _largest(sizes)
     excess[~np.isfinite(excess)] = 0.0
-    width = DIFFERENCE * scale  # of the differences, over which a chaotic response is no line
+    width = DIFFERENCE * scale  # of the differences, over which a chaotic response is not linear
     size = _largest(np.abs(here))
     excess[np.abs(by_step) * width > (_STEEP * size or np.inf)] = 0.0
     if np.any(excess > 0):

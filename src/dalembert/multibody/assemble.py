@@ -1,4 +1,4 @@
-"""Initial states that satisfy the joints: closed loops, consistent velocities, and refusal of redundant constraints.
+"""Initial states that satisfy the joints: closed loops, rest, consistent velocities; redundant constraints are refused.
 
 Bodies are moved rigidly: an assembled mechanism is not strained. The unknowns are the frames of the bodies, position of
 the placed point and angle; corrections are the smallest ones. In complex numbers each of Newton's steps is exact along
@@ -14,13 +14,15 @@ from scipy.linalg import qr
 
 from dalembert.errors import InputError, ModelError, unknown
 from dalembert.multibody.components.planar.body import Body
+from dalembert.multibody.equilibrium_start import begin_at_rest, unstable_body
 from dalembert.multibody.evaluate import constraint_jacobian, residual
 from dalembert.multibody.initial_velocities import initial_velocities
 from dalembert.multibody.kernels.dual import STEP
 from dalembert.multibody.kernels.model import Model
 from dalembert.multibody.lowering import Lowered, lower
 from dalembert.multibody.rigid_motions import CLOSED, coordinates_of, modes_of, size_of, smallest, spread, unknowns
-from dalembert.multibody.system import System
+from dalembert.multibody.scales import scales
+from dalembert.multibody.system import EQUILIBRIUM, System
 
 _MOST_ITERATIONS = 60
 _FRAME = {"x": 0, "y": 1, "angle": 2}
@@ -29,6 +31,8 @@ _FRAME = {"x": 0, "y": 1, "angle": 2}
 def assembled(system: System, tilted: bool = False, placed: Lowered | None = None) -> Lowered:
     """Arrays of a system whose joints are closed and whose velocities are consistent, at the start.
 
+    A system that starts at its equilibrium is moved there once its joints are closed.
+
     A ``tilted`` system is treated in complex numbers even if only functions of the user's hold the imaginary step;
     ``placed`` are the arrays of the system as `lower` makes them, where they are there already.
 
@@ -36,10 +40,13 @@ def assembled(system: System, tilted: bool = False, placed: Lowered | None = Non
     ------
     ModelError
         Where the mechanism cannot be assembled, its driving coordinates contradict its joints, or stated velocities do.
+    SolveError
+        Where a system that starts at its equilibrium has none near its first placement.
     """
     lowered = placed or lower(system)
+    rests = system.start == EQUILIBRIUM
     if lowered.structure.size == lowered.structure.n:
-        return lowered
+        return begin_at_rest(lowered) if rests else lowered
     model = lowered.real
     if lowered.is_complex or tilted:
         model = lowered.dual
@@ -49,18 +56,8 @@ def assembled(system: System, tilted: bool = False, placed: Lowered | None = Non
     free = _free(system)
     frames, x = _close(system.bodies, lowered, model, free)
     lowered = replace(lowered, frames=frames, x=x)
+    lowered = begin_at_rest(lowered) if rests else lowered
     return replace(lowered, v=initial_velocities(system.bodies, lowered, model))
-
-
-def scales(lowered: Lowered) -> np.ndarray:
-    """Typical size of each unknown, (N + 1,): the mechanism's extent for positions, one for angles and gradients."""
-    n, kinds = lowered.structure.n, np.array(lowered.structure.kinds)
-    places = np.real(lowered.x)[:n][kinds == "position"].reshape(-1, 2)
-    lengths = (np.real(data[:, kind.columns(kind.lengths)]) for kind, data in lowered.data.items())
-    extent = max(np.ptp(places, axis=0).max(initial=0.0), *(np.abs(entry).max(initial=0.0) for entry in lengths))
-    scale = np.ones(lowered.structure.size + 1)
-    scale[:n][kinds == "position"] = extent if extent > 0 else 1.0
-    return scale
 
 
 def refuse_kinks(lowered: Lowered, end: float) -> None:
@@ -78,6 +75,22 @@ def refuse_kinks(lowered: Lowered, end: float) -> None:
                 f"of {end:g} s, so its velocity would jump, which no mechanism can follow; give values for all of the "
                 "motion, or let them come to rest"
             )
+
+
+def refuse_unstable_start(system: System, lowered: Lowered) -> None:
+    """Raise where a system that starts at its equilibrium would fall away from it.
+
+    Raises
+    ------
+    ModelError
+        With the body that moves most.
+    """
+    body = unstable_body(lowered) if system.start == EQUILIBRIUM else None
+    if body is not None:
+        raise ModelError(
+            f"the equilibrium at the start is unstable: {body!r} falls away from it, as an inverted pendulum does. "
+            "Place the bodies nearer to the equilibrium that is meant"
+        )
 
 
 class Redundancy(NamedTuple):

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 from dalembert.arguments import is_number, takes_checked
 from dalembert.errors import InputError, SolveError, shown, unknown
 from dalembert.kernels.preparation import prepare
-from dalembert.multibody.assemble import assembled, refuse_kinks, refuse_redundancy
+from dalembert.multibody.assemble import assembled, refuse_kinks, refuse_redundancy, refuse_unstable_start
 from dalembert.multibody.callbacks import in_complex_numbers
 from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha
 from dalembert.multibody.integrators.integrator import Integrator
@@ -131,6 +131,7 @@ def prepared(system: System, end: float, solver: Integrator) -> tuple[Lowered, I
     placed = lower(system)
     prepare([*placed.kernels(False), *solver.suiting(placed, end).kernels(placed.structure, False)])
     lowered = assembled(system, placed=placed)
+    refuse_unstable_start(system, lowered)
     solver = solver.suiting(lowered, end)
     if not solver.takes_redundancy:
         refuse_redundancy(lowered)

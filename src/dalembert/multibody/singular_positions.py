@@ -2,9 +2,10 @@
 
 import numpy as np
 
-from dalembert.multibody.assemble import redundancy, scales
+from dalembert.multibody.assemble import redundancy
 from dalembert.multibody.evaluate import constraint_jacobian
 from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.scales import scales
 
 SINGULAR_POSITION = "singular position"
 _NEAR = 1e-3  # of the smallest singular value at the start

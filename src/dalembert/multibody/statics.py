@@ -6,25 +6,20 @@ from typing import cast
 
 import numpy as np
 from scipy.linalg import eig, eigh, null_space
-from scipy.sparse import csr_matrix
-from scipy.sparse.linalg import lsqr, splu
 
 from dalembert.arguments import names_of, takes_checked
-from dalembert.errors import SolveError
 from dalembert.forward.complex_steps import SAFE
 from dalembert.kernels.preparation import prepare
-from dalembert.multibody.assemble import assembled, refuse_redundancy, scales
+from dalembert.multibody.assemble import assembled, refuse_redundancy
 from dalembert.multibody.complex_steps import Along, check_forces
 from dalembert.multibody.drawing import Drawing, draw
-from dalembert.multibody.evaluate import residual, tangent
+from dalembert.multibody.equilibrium_start import resting_place
+from dalembert.multibody.evaluate import tangent
 from dalembert.multibody.kernels.motion import Motion
 from dalembert.multibody.lowering import Lowered, lower
 from dalembert.multibody.observe import Observer, observer
+from dalembert.multibody.scales import scales
 from dalembert.multibody.system import System
-
-_MOST_ITERATIONS = 30
-_LAST_ITERATIONS = 300  # where loads in steps lead nowhere, as a torque that rolls a beam up
-_SMALLEST_FRACTION = 1 / 1024
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,59 +102,8 @@ def equilibrium(system: System) -> Equilibrium:
     prepare(placed.kernels(False))
     lowered = assembled(system, placed=placed)
     refuse_redundancy(lowered)
-    still = np.zeros_like(np.real(lowered.x))
-
-    def forces(x: np.ndarray) -> np.ndarray:
-        return residual(lowered, lowered.real, x, still, still)
-
-    x = np.real(lowered.x).astype(float)
-    start = forces(x)
-    total, reached, fraction = 0, 0.0, 1.0
-    while reached < 1.0:
-        aim = min(1.0, reached + fraction)
-        found, iterations = _newton(lowered, lambda y, aim=aim: forces(y) - (1.0 - aim) * start, x)
-        total += iterations
-        if found is None:
-            fraction /= 2
-            if fraction < _SMALLEST_FRACTION:
-                x, iterations = _newton(lowered, forces, np.real(lowered.x).astype(float), _LAST_ITERATIONS)
-                if x is not None:
-                    return Equilibrium(system, lowered, x, total + iterations)
-                raise SolveError(
-                    f"no equilibrium was found: Newton's method stopped at {100 * reached:.3g} % of the loads. A "
-                    "motion may be free of stiffness (add a joint or a spring), or the first placement is far from "
-                    "the equilibrium"
-                )
-            continue
-        x, reached, fraction = found, aim, 2 * fraction
-    return Equilibrium(system, lowered, x, total)
-
-
-def _newton(lowered: Lowered, forces, x: np.ndarray, most: int = _MOST_ITERATIONS) -> tuple[np.ndarray | None, int]:
-    """Newton's method on coordinates and multipliers; None where it does not converge."""
-    n, still, scale = lowered.structure.n, np.zeros_like(x), scales(lowered)[:-1]
-    x = x.copy()
-    for iteration in range(1, most + 1):
-        step = _solution(tangent(lowered, x, still, (1.0, 0.0, 0.0)), forces(x))
-        if step is None:
-            return None, iteration
-        size = np.max(np.abs(step[:n]) / scale[:n])
-        if not np.isfinite(size) or size > 1e3:
-            return None, iteration
-        x[:-1] -= step * (0.5 / max(size, 0.5))  # at most half the scale at a time
-        if size < 1e-11:
-            return x, iteration
-    return None, most
-
-
-def _solution(matrix: csr_matrix, forces: np.ndarray) -> np.ndarray | None:
-    """Newton step; the smallest one where a motion without stiffness is not loaded; None where it is loaded."""
-    try:
-        return splu(matrix.tocsc()).solve(forces)
-    except RuntimeError:  # exactly singular, as beside a spring at its free length
-        step = lsqr(matrix, forces, atol=1e-14, btol=1e-14)[0]
-        balanced = np.linalg.norm(matrix @ step - forces) <= 1e-9 * np.linalg.norm(forces)
-        return step if balanced else None
+    x, iterations = resting_place(lowered)
+    return Equilibrium(system, lowered, x, iterations)
 
 
 @takes_checked()

@@ -12,6 +12,9 @@ from dalembert.multibody.components.planar.joint import Joint
 from dalembert.multibody.components.planar.load import Load
 from dalembert.multibody.components.points import Ground
 
+PLACED, EQUILIBRIUM = STARTS = "placed", "equilibrium"
+"""Where a motion begins: as the bodies are placed, or at rest under gravity and the loads."""
+
 Component = TypeVar("Component", bound=Body | Joint | Load)
 
 
@@ -26,6 +29,9 @@ class System:
         Placement coordinates that are kept as given while a closed loop is assembled, ``"<body>.angle"``,
         ``"<body>.x"`` or ``"<body>.y"`` (of its placed point); the other bodies are moved, without deformation, until
         the joints close. Velocities that bodies state are kept in any case.
+    start : {"placed", "equilibrium"}
+        Where a motion begins: as the bodies are placed, or at rest in the static equilibrium nearest to that, under
+        gravity and the loads at time 0. The equilibrium follows the parameters, with exact derivatives.
 
     Examples
     --------
@@ -37,7 +43,9 @@ class System:
     ['rod', 'pin']
     """
 
-    def __init__(self, gravity: tuple[Number, Number] = (0.0, -9.81), driving: Sequence[str] = ()) -> None:
+    def __init__(
+        self, gravity: tuple[Number, Number] = (0.0, -9.81), driving: Sequence[str] = (), start: str = PLACED
+    ) -> None:
         try:
             usable = len(gravity) == 2 and all(map(is_number, gravity))
         except TypeError:
@@ -49,6 +57,9 @@ class System:
             )
         self.gravity = gravity
         self.driving = names_of(driving, "System", "driving")
+        if start not in STARTS:
+            raise InputError(unknown("start", str(start), STARTS, "System"))
+        self.start = start
         self.ground = Ground()
         self.bodies: list[Body] = []
         self.joints: list[Joint] = []

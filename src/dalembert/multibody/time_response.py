@@ -15,7 +15,7 @@ from dalembert.forward.builders import built, check_function, cores, inexact, re
 from dalembert.forward.complex_steps import Compared
 from dalembert.forward.differences import COMPLEX_STEP, DERIVATIVES, central_differences
 from dalembert.kernels.preparation import prepare
-from dalembert.multibody.assemble import assembled, refuse_kinks, refuse_redundancy
+from dalembert.multibody.assemble import assembled, refuse_kinks, refuse_redundancy, refuse_unstable_start
 from dalembert.multibody.callbacks import in_complex_numbers
 from dalembert.multibody.complex_steps import Along, check_closures, check_forces, check_numbers
 from dalembert.multibody.fingerprint import fingerprint
@@ -281,6 +281,7 @@ class TimeResponse:
         placed = lower(system)
         self._prepare(placed, observer(system, placed, self.channel_names), derivatives=False)
         lowered = assembled(system, placed=placed)
+        refuse_unstable_start(system, lowered)
         if not self.solver.suiting(lowered, float(self.times[-1])).takes_redundancy:
             refuse_redundancy(lowered)
         refuse_kinks(lowered, float(self.times[-1]))

@@ -38,7 +38,10 @@ class SystemBuilder:
 
         values = named_values(self.constants, parameters)
         gravity = self.model.gravity
-        options: dict[str, Any] = {"driving": self.model.driving}
+        options: dict[str, Any] = {
+            "driving": self.model.driving,
+            **({"start": self.model.start} if self.model.start else {}),
+        }
         if gravity is not None:
             options["gravity"] = tuple(resolved(one, values, "[model], gravity") for one in gravity)
         system = System(**options)

@@ -1,7 +1,7 @@
 """The table of a study file that describes its model: components as data, or a Python function."""
 
 from functools import lru_cache
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, create_model, model_validator
 
@@ -32,6 +32,9 @@ class ModelTable(StudyTable):
     gravity: Annotated[list[Annotated[Any, Read(number("m/s^2"))]], Field(min_length=2, max_length=2)] | None = None
     driving: list[str] = Field(
         [], description="placement coordinates kept while a closed loop is assembled: 'AB.angle'"
+    )
+    start: Literal["placed", "equilibrium"] | None = Field(
+        None, description="where a mechanism begins: as it is placed, or at rest in its equilibrium under the loads"
     )
     body: list[Any] = []
     joint: list[Any] = []
@@ -90,9 +93,11 @@ class ModelTable(StudyTable):
                 "structure, spring, force and contact belong to a structure of [[model.mass]] tables or of matrices in "
                 f"[model.structure]; {given}"
             )
-        if "body" not in ways and (self.joint or self.load or self.gravity or self.driving):
+        if "body" not in ways and (self.joint or self.load or self.gravity or self.driving or self.start):
             given = "this is a structure" if self.is_structure else "here a function gives it"
-            raise problem(f"joint, load, gravity and driving belong to a model of [[model.body]] tables; {given}")
+            raise problem(
+                f"joint, load, gravity, driving and start belong to a model of [[model.body]] tables; {given}"
+            )
         if ("body" in ways or self.is_structure) and self.arguments:
             raise problem("arguments are for a function, and there is none")
         wrong = [*_repeated(self.components), *_dangling(self.components), *wrong_structure(self)]

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import dalembert.multibody as mb
-from dalembert.multibody.assemble import scales
 from dalembert.multibody.evaluate import constraint_jacobian
+from dalembert.multibody.scales import scales
 
 SOLVERS = {
     "RK4": mb.RungeKutta4(2e-3),

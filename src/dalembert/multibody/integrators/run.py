@@ -5,11 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dalembert.multibody.assemble import scales
 from dalembert.multibody.integrators.problem import DIVERGED, SINGULAR, TOO_MANY_STEPS, Problem, Reduced
 from dalembert.multibody.kernels.dual import STEP
 from dalembert.multibody.kernels.motion import Motion, resting
 from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.scales import scales
 
 
 @dataclass(frozen=True)

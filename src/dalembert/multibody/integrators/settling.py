@@ -18,6 +18,7 @@ from dalembert.multibody.kernels.motion import Motion
 COORDINATES, VELOCITIES, ACCELERATIONS = range(3)  # levels from which a state is settled
 _MOST_ITERATIONS = 25
 _ROUNDING = 2e-16  # of the largest entry, below which an error is left
+_LOOSE = 1e-9  # the same where corrections stop to shrink
 _ROUGH = 1e-5  # the same of a correction, after which the error is smaller by the contraction
 
 
@@ -87,8 +88,24 @@ def _finished(iteration, norm, before, size):
     if iteration == 0:
         return False
     if norm >= 0.5 * before:
-        return iteration > 1 and norm <= 1e-9 * size
+        return iteration > 1 and norm <= _LOOSE * size
     return norm * norm <= (before - norm) * _ROUNDING * size
+
+
+@inner
+def _balanced(model, n, state, work, moved):
+    """Whether what is left of the equations of motion is rounding against their forces, as of a mechanism at rest.
+
+    Its accelerations are nothing but rounding, so that no correction is small against them.
+    """
+    f, unheld, at = moved[2], moved[3], moved[4]
+    for i in range(len(at)):
+        at[i] = state.x[i] if i < n else 0.0
+    residual(model, n, at, state.v, state.a, work, 1.0, unheld)
+    left, largest = 0.0, 0.0
+    for i in range(n):
+        left, largest = max(left, abs(f[i])), max(largest, abs(unheld[i]))
+    return left <= _LOOSE * largest
 
 
 @kernel
@@ -123,7 +140,7 @@ def settle(
             if done or not norm < 1e100:
                 break
             before = norm
-        if not done and not before <= 1e-9 * size:
+        if not done and not before <= _LOOSE * size and not (level == 2 and _balanced(model, n, state, work, moved)):
             return False
     return True
 

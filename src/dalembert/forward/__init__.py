@@ -12,7 +12,7 @@ from dalembert.forward.recorded import Recorded
 from dalembert.forward.refinement import Refinable, Refinement, error_factor, refined
 from dalembert.forward.responses import Responses
 from dalembert.forward.sensors import Sensor, Sensors
-from dalembert.forward.wrapped import clock, findings_at
+from dalembert.forward.wrapped import clock, findings_at, starting
 
 __all__ = [
     "Channel",
@@ -37,5 +37,6 @@ __all__ = [
     "on_cluster",
     "prefetched",
     "refined",
+    "starting",
     "takes_executor",
 ]

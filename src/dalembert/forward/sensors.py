@@ -14,6 +14,7 @@ from dalembert.forward.complex_steps import check_derivatives
 from dalembert.forward.model import Channel, Coordinate, ForwardModel
 from dalembert.forward.refinement import Refinement, refined
 from dalembert.forward.responses import Responses
+from dalembert.forward.wrapped import starting
 from dalembert.parameters import Parameter, Parameters
 
 QUANTITIES = {"delay": 0.0, "gain": 1.0, "offset": 0.0}
@@ -158,6 +159,10 @@ class Sensors:
     def check_derivatives(self, vector: np.ndarray) -> None:
         """Compare the complex step of the model with differences at a vector (parameters,)."""
         check_derivatives(self.model, vector[: len(self.model.parameters)])
+
+    def starting(self, values: Mapping[str, float]) -> "Sensors":
+        """The same readings of the model first built at these values of its parameters."""
+        return Sensors(starting(self.model, values), self.sensors, self.coordinate.values)
 
     def first(self, samples: int) -> "Sensors":
         """The same readings, cut to their first ``samples`` samples; the model is cut where they no longer need it."""

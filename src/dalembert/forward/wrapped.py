@@ -1,5 +1,6 @@
 """What models around another model have in common: they answer for it in all that they do not change."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from time import perf_counter
 from typing import Self
@@ -66,6 +67,10 @@ class Wrapped:
         """Findings on the other model at a parameter vector (parameters,)."""
         return findings_at(self.model, vector)
 
+    def starting(self, values: Mapping[str, float]) -> Self:
+        """The same around the model first built at these values of its parameters."""
+        return replace(self, model=starting(self.model, values))
+
     def first(self, samples: int) -> Self:
         """The same around the model cut to its first ``samples`` samples."""
         return replace(self, model=self.model.first(samples))
@@ -74,6 +79,12 @@ class Wrapped:
         """Return the same around a more exact model, or None."""
         finer = refined(self.model)
         return None if finer is None else replace(finer, model=replace(self, model=finer.model))
+
+
+def starting(model: ForwardModel, values: Mapping[str, float]) -> ForwardModel:
+    """The model first built at these values of its parameters, by name; as it is where it does not matter to it."""
+    offered = getattr(model, "starting", None)
+    return model if offered is None else offered(values)
 
 
 def findings_at(model: ForwardModel, vector: np.ndarray) -> tuple[Finding, ...]:

@@ -23,6 +23,7 @@ from dalembert.forward import (
     findings_at,
     on_cluster,
     refined,
+    starting,
 )
 from dalembert.inverse.matching import check_finite, check_samples, columns_of, weights_of
 from dalembert.parameters import Parameter, Parameters
@@ -74,6 +75,10 @@ class Experiment:
     def fixed(self) -> tuple[Parameter, ...]:
         """Fixed parameters as the fit names them."""
         return tuple(map(self._named, self.model.parameters.fixed))
+
+    def values(self, joint: Mapping[str, float]) -> dict[str, float]:
+        """Values of the model's parameters, out of those of the fit by name."""
+        return {item.name: joint[self._named(item).name] for item in self.model.parameters.declared}
 
     def _named(self, item: Parameter) -> Parameter:
         return replace(item, name=f"{self.name}.{item.name}") if item.name in self.own else item
@@ -287,6 +292,23 @@ def placed(model: ForwardModel | Sequence[Experiment], executor: Executor) -> Fo
     if isinstance(model, Sequence):
         return [replace(item, model=on_cluster(item.model, executor)) for item in model]
     return on_cluster(model, executor)
+
+
+def begun(
+    model: ForwardModel | Sequence[Experiment], start: Mapping[str, float] | ArrayLike | None
+) -> ForwardModel | Sequence[Experiment]:
+    """The model, or the model of each experiment, first built where a search starts."""
+    if start is None:
+        return model
+    if not isinstance(model, Sequence):
+        return starting(model, _values(model.parameters, start))
+    _check_names(model)
+    values = _values(_parameters(model), start)
+    return [replace(item, model=starting(item.model, item.values(values))) for item in model]
+
+
+def _values(parameters: Parameters, start: Mapping[str, float] | ArrayLike) -> dict[str, float]:
+    return parameters.mapping(parameters.real_vector(start))
 
 
 def joint_weights(model: JointModel, given: Mapping[str, ArrayLike] | None) -> np.ndarray | None:

@@ -14,7 +14,7 @@ from dalembert.forward.provenance import provenance
 from dalembert.inverse.correlation import CorrelatedResiduals, correlation, correlation_findings
 from dalembert.inverse.estimate import Estimate, estimate, unknown_estimate
 from dalembert.inverse.events import Finished, OnEvent
-from dalembert.inverse.experiments import Experiment, JointModel, Part, joint, joint_weights, placed
+from dalembert.inverse.experiments import Experiment, JointModel, Part, begun, joint, joint_weights, placed
 from dalembert.inverse.explained import explained_findings
 from dalembert.inverse.fit import Fit
 from dalembert.inverse.integration import integration_bias, integration_findings
@@ -34,7 +34,7 @@ from dalembert.inverse.spread import SPREADS
 from dalembert.inverse.status import status
 from dalembert.inverse.suspect_units import unit_findings
 from dalembert.inverse.too_few import too_few_findings
-from dalembert.inverse.validation import split
+from dalembert.inverse.validation import HeldOut, split
 from dalembert.optimize import LeastSquares, Minimiser, Squares
 
 
@@ -56,7 +56,7 @@ def identify(
     spread: str = "latin-hypercube",
     loss: str = "linear",
     loss_scale: float | None = None,
-    validation: float | str | Sequence[str] | None = None,
+    validation: HeldOut = None,
     shooting: MultipleShooting | None = None,
     on_event: OnEvent | None = None,
     executor: Executor = None,
@@ -78,7 +78,7 @@ def identify(
     seed : int
         All random numbers follow from it.
     start : mapping by name, or array of shape (parameters,), optional
-        Where the first start begins; for a swarm its first particle.
+        Where the first start begins; for a swarm its first particle. Mechanisms are first built there.
     weights : array, shape (channels,) or (samples, channels), optional
         W; 1/deviation² of each channel if the data have deviations, else 1. With experiments a mapping from their
         names to such arrays; 1 for those that it leaves out.
@@ -96,8 +96,10 @@ def identify(
     loss_scale : float, optional
         The weighted residual from which one counts as an outlier; if the data have deviations and no weights are
         given, 1.345, 1.287 and 2.385, which cost 5 % of the efficiency where there are no outliers.
-    validation : float, or name or names of experiments, optional
-        Share of the samples, those at the end, or experiments that are not fitted, but predicted.
+    validation : float, name or names of experiments, or mapping of name to float, optional
+        Share of the samples, those at the end, or experiments that are not fitted, but predicted. A mapping gives the
+        length of the first part of each experiment that is fitted all the same, in the unit of its coordinate (s): the
+        parameters of its own, such as its initial state, come from there. 0 fits none of it.
     shooting : MultipleShooting, optional
         Least squares in segments that must meet, in place of the growing horizon: for chaotic motion.
     on_event : callable, optional
@@ -157,7 +159,7 @@ def identify(
         raise InputError(unknown("horizon", str(horizon), [name for name in HORIZONS if name]))
     if spread not in SPREADS:
         raise InputError(unknown("spread", str(spread), SPREADS))
-    model, data, weights, parts = _joined(placed(model, executor), data, weights)
+    model, data, weights, parts = _joined(begun(placed(model, executor), start), data, weights)
     given = data.deviations is not None and weights is None
     journal = Journal(len(data.coordinate.values), on_event)
     posed = replace(pose(model, data, weights, journal), loss=loss_of(loss, loss_scale, known=given))
@@ -354,10 +356,17 @@ def _check_shooting(method: Squares | Method, validation: object) -> None:
         )
 
 
+def _plain(validation: float | str | Sequence[str] | Mapping[str, float]) -> object:
+    """What is held out, as JSON can hold it."""
+    if isinstance(validation, Mapping):
+        return dict(validation)
+    return validation if isinstance(validation, (float, int, str)) else list(validation)
+
+
 def _beyond(
     loss: str,
     posed: Problem,
-    validation: float | str | Sequence[str] | None,
+    validation: HeldOut,
     shooting: MultipleShooting | None,
 ) -> dict[str, object]:
     """Settings of the provenance that are not the usual ones."""
@@ -367,7 +376,7 @@ def _beyond(
     if posed.loss is not None:
         told["loss"] = {"name": loss, "scale": posed.loss.scale}
     if validation is not None:
-        told["validation"] = validation if isinstance(validation, (float, int, str)) else list(validation)
+        told["validation"] = _plain(validation)
     if isinstance(posed.model, JointModel):
         told["experiments"] = [part.name for part in posed.model.parts]
     return told

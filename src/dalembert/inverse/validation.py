@@ -1,14 +1,17 @@
 """Samples or experiments that are not fitted, but predicted."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from dalembert.errors import InputError, unknown
-from dalembert.inverse.experiments import JointModel
+from dalembert.inverse.experiments import JointModel, Part
 from dalembert.inverse.explained import WORSE, Explained, explained, percentages
 from dalembert.inverse.problem import Problem
+
+HeldOut = float | str | Sequence[str] | Mapping[str, float] | None
+"""Share of the samples, names of experiments, or lengths of their first parts by name, in their coordinate's unit."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,20 +76,24 @@ class Split:
         return Validation(self.what, weights, misfit, fitted, explained(self.whole, response, weights, fitted))
 
 
-def split(problem: Problem, validation: float | str | Sequence[str] | None) -> Split:
-    """A problem without a share of its samples at the end, or without some of its experiments.
+def split(problem: Problem, validation: HeldOut) -> Split:
+    """A problem without a share of its samples at the end, or without some of its experiments after their first parts.
 
     Raises
     ------
     InputError
-        For a share that leaves nothing on one side, an unknown experiment, one with parameters of its own.
+        For a share that leaves nothing on one side, an unknown experiment, one with parameters of its own of which no
+        part is fitted, a part that holds no sample or all of them.
     """
     everything = np.ones(problem.weights.shape, dtype=bool)
     if validation is None:
         return Split(problem, problem, everything, "nothing")
     if isinstance(validation, (int, float)):
         return _ends(problem, float(validation), everything)
-    return _experiments(problem, (validation,) if isinstance(validation, str) else tuple(validation), everything)
+    if isinstance(validation, str):
+        validation = (validation,)
+    lengths = dict(validation) if isinstance(validation, Mapping) else dict.fromkeys(validation, 0.0)
+    return _experiments(problem, lengths, everything)
 
 
 def _ends(problem: Problem, share: float, fitted: np.ndarray) -> Split:
@@ -108,8 +115,9 @@ def _ends(problem: Problem, share: float, fitted: np.ndarray) -> Split:
     return Split(problem, problem.first(kept), fitted, what)
 
 
-def _experiments(problem: Problem, names: tuple[str, ...], fitted: np.ndarray) -> Split:
-    model = problem.model
+def _experiments(problem: Problem, lengths: Mapping[str, float], fitted: np.ndarray) -> Split:
+    """The problem without experiments but for first parts of these lengths, in the unit of their coordinate."""
+    model, names = problem.model, tuple(lengths)
     if not isinstance(model, JointModel):
         raise InputError(
             f"validation is {', '.join(map(repr, names))}, but there is one experiment; expected a share such as 0.25"
@@ -118,37 +126,72 @@ def _experiments(problem: Problem, names: tuple[str, ...], fitted: np.ndarray) -
     for name in names:
         if name not in known:
             raise InputError(unknown("experiment", name, known, "validation"))
-    kept = [name for name in known if name not in names]
-    if not kept or not names:
+    if not names or len(names) == len(known):
         raise InputError("validation: expected at least one experiment to be fitted, and one to be predicted")
+    kept = [name for name in known if name not in names or lengths[name] > 0]
+    missing = np.zeros_like(fitted)
+    for part in (part for part in model.parts if part.name in names):
+        begun = _samples_until(part, lengths[part.name])
+        missing[part.rows[begun:, None], part.columns] = True
+    fitted &= ~missing
     told = {
         index for part, wiring in zip(model.parts, model.wiring, strict=True) if part.name in kept for index in wiring
     }
     for index, name in enumerate(model.parameters.names):
         if index not in told:
             raise InputError(
-                f"parameter {name!r} belongs to experiments for validation alone, so that nothing tells it; fit one of "
-                "them, or fix the parameter"
+                f"parameter {name!r} belongs to experiments for validation alone, so that nothing determines it. Fit "
+                f"the first part of one of them, as by validation={{{names[0]!r}: 0.5}}, or fix the parameter"
             )
     columns = np.concatenate([part.columns for part in model.parts if part.name in kept])
-    fitted[:, [column for column in range(fitted.shape[1]) if column not in columns]] = False
-    data = problem.data
+    data, weights = problem.data, np.where(missing, 0.0, problem.weights)
+    values = np.where(missing, np.nan, data.values)
     channels = tuple(data.channels[column] for column in columns)
     part = replace(
         problem,
         model=model.only(kept),
         columns=problem.columns[columns],
-        weights=problem.weights[:, columns],
+        weights=weights[:, columns],
         data=replace(
             data,
             channels=channels,
-            values=data.values[:, columns],
+            values=values[:, columns],
             deviations=None if data.deviations is None else data.deviations[columns],
             wraps=tuple(name for name in data.wraps if name in channels),
         ),
     )
-    plural = "s" if len(names) > 1 else ""
-    return Split(problem, part, fitted, f"the experiment{plural} {', '.join(map(repr, names))}")
+    return Split(problem, part, fitted, _in_words(model, lengths))
+
+
+def _samples_until(part: Part, length: float) -> int:
+    """Number of samples of an experiment that is predicted which belong to its first part, which is fitted.
+
+    Raises
+    ------
+    InputError
+        For a length that leaves no sample, or only one, on one side.
+    """
+    along = part.coordinate
+    if length == 0:
+        return 0
+    count = int(np.searchsorted(along.values, along.values[0] + length, side="right"))
+    if not (np.isfinite(length) and 2 <= count < len(along.values)):
+        raise InputError(
+            f"validation: the first {length:g} {along.unit} of experiment {part.name!r} are to be fitted, which are "
+            f"{max(0, count)} of its {len(along.values)} samples. Give a length between "
+            f"{along.values[1] - along.values[0]:.6g} and {along.values[-1] - along.values[0]:.6g} {along.unit}"
+        )
+    return count
+
+
+def _in_words(model: JointModel, lengths: Mapping[str, float]) -> str:
+    """What is not fitted."""
+    units = {part.name: part.coordinate.unit for part in model.parts}
+    told = [
+        repr(name) + (f" after its first {length:g} {units[name]}" if length else "")
+        for name, length in lengths.items()
+    ]
+    return f"the experiment{'s' if len(told) > 1 else ''} {', '.join(told)}"
 
 
 def _rms(squares: np.ndarray, weights: np.ndarray) -> float:

@@ -1,6 +1,7 @@
 """The response of a mechanism in time as a forward model."""
 
 from collections.abc import Callable, Mapping, Sequence
+from copy import copy
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
@@ -77,6 +78,7 @@ class TimeResponse:
     solver: Integrator
     workers: int = field(default=1, compare=False)
     derivative: str = COMPLEX_STEP
+    built_at: np.ndarray | None = field(default=None, compare=False)
 
     def __init__(
         self,
@@ -108,6 +110,7 @@ class TimeResponse:
             ("solver", solver),
             ("workers", workers or cores()),
             ("derivative", derivative),
+            ("built_at", None),
         ):
             object.__setattr__(self, name, value)
 
@@ -118,7 +121,7 @@ class TimeResponse:
     @property
     def channels(self) -> tuple[Channel, ...]:
         """Channels with their units."""
-        return self._frame.observer.channels
+        return self._observer.channels
 
     @property
     def coordinate(self) -> Coordinate:
@@ -127,7 +130,7 @@ class TimeResponse:
 
     @property
     def fingerprint(self) -> str:
-        """Hash of the mechanism at the parameters' first guesses, the channels, the times and the solver."""
+        """Hash of the mechanism where it is built first, the channels, the times and the solver."""
         return self._fingerprint
 
     @cached_property
@@ -204,13 +207,25 @@ class TimeResponse:
             jacobian[:, :, column] = np.imag(response) / (STEP * self.parameters.scale[column])
         return values, jacobian
 
+    def starting(self, values: Mapping[str, float]) -> "TimeResponse":
+        """The same model, first built at these values of its parameters and not at their first guesses.
+
+        What all samples share comes from there: the structure and typical sizes. So a mechanism that cannot be
+        assembled at the first guesses can be identified from a start where it can.
+        """
+        own = copy(self)
+        for name in ("_observer", "_frame", "_fingerprint"):
+            vars(own).pop(name, None)
+        vars(own)["built_at"] = self.parameters.real_vector({name: values[name] for name in self.parameters.names})
+        return own
+
     def first(self, samples: int) -> "TimeResponse":
         """The same model, cut to its first ``samples`` samples; its simulations end earlier."""
         own = TimeResponse(
             self.builder, self.parameters, self.channel_names, self.times[:samples], self.solver, self.workers,
             self.derivative,
         )  # fmt: skip
-        vars(own)["_compared"] = self._compared
+        vars(own)["_compared"], vars(own)["built_at"] = self._compared, self.built_at
         return own
 
     def part(self, share: float) -> "tuple[TimeResponse, float]":
@@ -218,6 +233,7 @@ class TimeResponse:
         end = share * self.times[-1]
         times = np.concatenate([[0.0], self.times[(self.times > 0) & (self.times < end)], [end]])
         own = TimeResponse(self.builder, self.parameters, self.channel_names, times, self.solver, self.workers)
+        vars(own)["built_at"] = self.built_at
         return own, share
 
     def refined(self) -> Refinement | None:
@@ -229,6 +245,7 @@ class TimeResponse:
         model = TimeResponse(
             self.builder, self.parameters, self.channel_names, self.times, solver, self.workers, self.derivative
         )
+        vars(model)["built_at"] = self.built_at
         how = "at a tolerance 100 times tighter" if order is None else "at half the step"
         return Refinement(model, error_factor(order), how)
 
@@ -275,11 +292,22 @@ class TimeResponse:
             check_closures(self.builder, self.parameters, vector, at)
             self._compared.functions = True
 
+    @property
+    def _first_system(self) -> System:
+        """The mechanism that all samples share their structure with."""
+        return self.system(self.parameters.start if self.built_at is None else self.built_at)
+
+    @cached_property
+    def _observer(self) -> Observer:
+        """The channels of the mechanism as it is placed: joints may not be closed yet."""
+        system = self._first_system
+        return observer(system, lower(system), self.channel_names)
+
     @cached_property
     def _frame(self) -> "_Frame":
-        system = self.system(self.parameters.start)
+        system = self._first_system
         placed = lower(system)
-        self._prepare(placed, observer(system, placed, self.channel_names), derivatives=False)
+        self._prepare(placed, self._observer, derivatives=False)
         lowered = assembled(system, placed=placed)
         refuse_unstable_start(system, lowered)
         if not self.solver.suiting(lowered, float(self.times[-1])).takes_redundancy:
@@ -326,7 +354,7 @@ class TimeResponse:
 
 @dataclass(frozen=True)
 class _Frame:
-    """What all samples share, from the system at the parameters' first guesses."""
+    """What all samples share, from the system where it is built first."""
 
     lowered: Lowered
     problem: Problem

@@ -1,16 +1,17 @@
 """The tables of several experiments and of sensors, and the models and data that they make."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import Field, ValidationError, model_validator
 
 from dalembert.errors import unknown
 from dalembert.forward import ForwardModel, Sensor, Sensors
 from dalembert.forward.sensors import QUANTITIES
 from dalembert.study.data_table import DataTable
 from dalembert.study.numbers import fixed
+from dalembert.study.parameters import OwnParameterTable, ParameterTable
 from dalembert.study.table import Name, Read, StudyTable, problem
 
 if TYPE_CHECKING:
@@ -58,11 +59,24 @@ class ExperimentTable(DataTable):
     """One of several experiments: its data, and what differs from the others."""
 
     name: Name
-    own: list[str] = Field([], description="parameters that are not shared with the other experiments")
+    own: list[str] | dict[str, OwnParameterTable] = Field(
+        [],
+        description="parameters that are not shared with the other experiments: names, or a table with the bounds and "
+        "first guesses that differ here",
+    )
     constants: dict[str, Annotated[float, Read(fixed(None))]] = Field(
         {}, description="constants that have another value in this experiment"
     )
     arguments: dict[str, Any] = Field({}, description="arguments of the model's function in this experiment")
+
+    def variant(self, study: "Study") -> "Study":
+        """The study as it is in this experiment."""
+        return study.varied(self.constants, self.arguments, self.parameters(study.file.parameters))
+
+    def parameters(self, shared: Mapping[str, ParameterTable]) -> dict[str, ParameterTable]:
+        """The parameters' tables as they are in this experiment."""
+        given = self.own if isinstance(self.own, dict) else {}
+        return {name: given[name].over(table) if name in given else table for name, table in shared.items()}
 
 
 def wrong_experiments(file: Any) -> list[str]:
@@ -87,9 +101,23 @@ def wrong_experiments(file: Any) -> list[str]:
         wrong += [
             unknown("constant", name, file.constants, where) for name in table.constants if name not in file.constants
         ]
+        where = f"[[experiments]] {table.name!r}, own"
+        wrong += [
+            unknown("parameter", name, file.parameters, where) for name in table.own if name not in file.parameters
+        ]
+        wrong += _wrong_own(table, file.parameters, where)
         if table.arguments and not (file.model.function or file.model.forward):
             wrong.append(f"[[experiments]] {table.name!r}: arguments are for a function, and there is none")
     return wrong
+
+
+def _wrong_own(table: ExperimentTable, shared: Mapping[str, ParameterTable], where: str) -> list[str]:
+    """Sentences about bounds and first guesses of a single experiment that do not fit to each other."""
+    try:
+        table.parameters(shared)
+    except ValidationError as error:
+        return [f"{where}: {one['msg']}" for one in error.errors()]
+    return []
 
 
 def measured_channels(file: Any) -> tuple[str, ...]:
@@ -135,7 +163,7 @@ def posed(study: "Study") -> "tuple[ForwardModel | list[Experiment], Measurement
         return study.forward(channels, data.coordinate.values), data
     experiments = []
     for table in study.file.experiments:
-        data, variant = table.read(), study.varied(table.constants, table.arguments)
+        data, variant = table.read(), table.variant(study)
         experiments.append(Experiment(table.name, _model(variant, data), data, tuple(table.own)))
     return experiments, None
 

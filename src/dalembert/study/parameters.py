@@ -72,6 +72,20 @@ class ParameterTable(StudyTable):
         return Parameter(name, unit=self.symbol or "", log=self.log, **{key: self.number(key) for key in _NUMBERS})  # type: ignore[arg-type]
 
 
+class OwnParameterTable(StudyTable):
+    """What differs of a parameter that one experiment has for itself; the rest is as in [parameters]."""
+
+    lower: float | str | None = None
+    upper: float | str | None = None
+    start: float | str | None = None
+    deviation: float | str | None = None
+
+    def over(self, shared: ParameterTable) -> ParameterTable:
+        """The parameter's table with these keys in place of its."""
+        given = {table: table.model_dump(exclude_none=True) for table in (shared, self)}
+        return ParameterTable.model_validate({**given[shared], **given[self]})
+
+
 def check_names(names: Any) -> Any:
     """Names of parameters or constants, which expressions and Python functions must be able to use."""
     wrong = [

@@ -14,6 +14,7 @@ from dalembert.forward import Checkpoint, Executor, ForwardModel, Recorded, on_c
 from dalembert.parameters import Parameters
 from dalembert.study.builder import FunctionBuilder, SystemBuilder
 from dalembert.study.experiments import measured_channels
+from dalembert.study.parameters import ParameterTable
 from dalembert.study.schema import StudyFile
 from dalembert.study.structure_builder import StructureBuilder
 from dalembert.study.table import StudyTable, placed
@@ -228,10 +229,12 @@ class Study:
             )
         return model
 
-    def varied(self, constants: Mapping[str, float], arguments: Mapping[str, Any]) -> "Study":
-        """The same study with other values of some constants, and other arguments of the model's function."""
+    def varied(
+        self, constants: Mapping[str, float], arguments: Mapping[str, Any], parameters: Mapping[str, ParameterTable]
+    ) -> "Study":
+        """The same study with other constants, arguments of the model's function, and tables of its parameters."""
         model = self.file.model.model_copy(update={"arguments": {**self.file.model.arguments, **arguments}})
-        update = {"constants": {**self.file.constants, **constants}, "model": model}
+        update = {"constants": {**self.file.constants, **constants}, "model": model, "parameters": dict(parameters)}
         return replace(self, file=self.file.model_copy(update=update))
 
     def data(self) -> "Measurements":

@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 
 from dalembert.data import Measurements
-from dalembert.errors import DataError, InputError, SolveError
-from dalembert.forward import PythonModel
+from dalembert.errors import DataError, InputError, ModelError, SolveError
+from dalembert.forward import PythonModel, Sensor, Sensors
 from dalembert.inverse import Experiment, Fit, identify
 from dalembert.inverse.experiments import joint
+from dalembert.multibody import DistanceJoint, RevoluteJoint, RigidBar, System, TimeResponse
 from dalembert.optimize import ParticleSwarm
 from support import says
 
@@ -258,3 +259,35 @@ def test_a_model_that_always_fails_names_its_experiment():
     experiments = [*pair(), Experiment("third", PythonModel(broken, BOUNDS, ["x"], SHORT), X, ("size",))]
     with pytest.raises(SolveError, match="the first failure: experiment 'third': RuntimeError: no"):
         identify(experiments, method=ParticleSwarm(4, 2))
+
+
+def loop(rod, mass):
+    """A closed loop that no crank angle closes where the rod is shorter than 0.9 m."""
+    system = System()
+    crank = system.add(RigidBar("crank", length=0.3, mass=1.0, angle=0.8))
+    system.add(RevoluteJoint("pin", system.ground, crank.start))
+    bar = system.add(RigidBar("rod", length=rod, mass=mass, start=crank.end, angle=-0.3))
+    system.add(RevoluteJoint("joint", crank.end, bar.start))
+    system.add(DistanceJoint("link", system.ground.point(1.4, 0.0), bar.end, length=0.2))
+    return system
+
+
+def test_mechanisms_are_built_first_where_the_search_starts():
+    """At the middle of the bounds the loop cannot be closed."""
+    times = np.linspace(0.0, 0.3, 16)
+
+    def model(lower):
+        return TimeResponse(loop, {"rod": (lower, 1.15), "mass": (0.5, 3.0)}, ["crank.end.angle"], times)
+
+    exact = model(1.0).evaluate(np.array([[1.05, 2.0]])).only()[0, :, 0]
+    data = Measurements.of(times, {"crank.end.angle": exact}, 1e-4)
+    with pytest.raises(ModelError, match="the mechanism cannot be assembled"):
+        identify(model(0.3), data)
+    fit = identify(model(0.3), data, start={"rod": 1.1, "mass": 1.0})
+    np.testing.assert_allclose(fit.values, [1.05, 2.0], rtol=1e-5)
+    several = [Experiment(name, model(0.3), data, own=("mass",)) for name in "ab"]
+    fit = identify(several, start={"rod": 1.1, "a.mass": 1.0, "b.mass": 1.5})
+    np.testing.assert_allclose(fit.values, [1.05, 2.0, 2.0], rtol=1e-5)
+    seen = Sensors(model(0.3), {"crank.end.angle": Sensor(offset=(-0.1, 0.1))})
+    fit = identify(seen, data, start={"rod": 1.1, "mass": 1.0, "crank.end.angle offset": 0.0})
+    np.testing.assert_allclose(fit.values, [1.05, 2.0, 0.0], atol=1e-4)

@@ -131,6 +131,27 @@ def test_a_record_that_does_not_vary_has_no_share():
     assert "undefined (constant data)" in fit.summary()
 
 
+def test_own_parameters_come_from_the_first_part_of_a_record_that_is_predicted(tmp_path):
+    sizes = {"a": 2.0, "b": 3.0}
+    items = [
+        Experiment(name, DECAY, measured(DECAY, [size, 0.8], 0.02, seed, deviations=0.02), own=("size",))
+        for seed, (name, size) in enumerate(sizes.items())
+    ]
+    fit = identify(items, validation={"b": 1.0})
+    assert abs(fit.estimates["b.size"] - 3.0) < 0.05
+    shorter = [items[0], Experiment("b", DECAY.first(11), items[1].data.first(11), own=("size",))]
+    np.testing.assert_allclose(fit.values, identify(shorter).values, rtol=1e-6)
+    assert fit.validation.what == "the experiment 'b' after its first 1 s"
+    weights = fit.experiments[1].weights
+    assert weights[:11].all()
+    assert not weights[11:].any()
+    rest = fit.experiments[1].residuals[11:] / 0.02
+    assert fit.validation.misfit == pytest.approx(np.sqrt(np.mean(rest**2)))
+    assert fit.validation.misfit < 1.5
+    fit.save(tmp_path / "fit")
+    assert Fit.load(tmp_path / "fit").validation.what == fit.validation.what
+
+
 @pytest.mark.parametrize(
     ("given", "validation", "sentence"),
     [
@@ -152,9 +173,28 @@ def test_a_record_that_does_not_vary_has_no_share():
         (
             "own",
             "b",
-            "parameter 'b.size' belongs to experiments for validation alone, so that nothing tells it; fit one of "
-            "them, or fix the parameter",
+            "parameter 'b.size' belongs to experiments for validation alone, so that nothing determines it. Fit the "
+            "first part of one of them, as by validation={'b': 0.5}, or fix the parameter",
         ),
+        (
+            "own",
+            {"b": 0.01},
+            "validation: the first 0.01 s of experiment 'b' are to be fitted, which are 1 of its 41 samples. Give a "
+            "length between 0.1 and 4 s",
+        ),
+        (
+            "own",
+            {"b": 4.5},
+            "validation: the first 4.5 s of experiment 'b' are to be fitted, which are 41 of its 41 samples. Give a "
+            "length between 0.1 and 4 s",
+        ),
+        (
+            "own",
+            {"b": 0.0},
+            "parameter 'b.size' belongs to experiments for validation alone, so that nothing determines it. Fit the "
+            "first part of one of them, as by validation={'b': 0.5}, or fix the parameter",
+        ),
+        ("own", {"d": 1.0}, "validation: unknown experiment 'd'; known: a, b"),
     ],
 )
 def test_what_cannot_be_kept_for_validation_is_told(given, validation, sentence):

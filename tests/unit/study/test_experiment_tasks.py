@@ -67,6 +67,11 @@ step = "2 ms"
 """
 
 
+OWN = TWO.replace('own = ["size"]', "own = { size = { lower = 1.0, upper = 1.7, start = 1.2 } }").replace(
+    "own = { size = { lower = 1.0, upper = 1.7, start = 1.2 } }", 'own = ["size"]', 1
+)
+
+
 def table(path, times, values):
     path.write_text("\n".join(["t,x", *(f"{t!r},{x!r}" for t, x in zip(times.tolist(), values.tolist(), strict=True))]))
 
@@ -220,3 +225,32 @@ def test_what_does_not_fit_together_is_told(write, text, sentence):
     with pytest.raises(InputError) as error:
         load(write(text))
     assert sentence in str(error.value)
+
+
+def test_an_own_parameter_has_bounds_and_a_first_guess_for_one_experiment(write, tmp_path):
+    _, outcome = run_study(load(write(OWN + "[identify]\n")), tmp_path / "run")
+    bounds = {item.name: (item.lower, item.upper, item.start) for item in outcome.fit.parameters}
+    assert bounds["short.size"] == (0.5, 4.0, None)
+    assert bounds["long.size"] == (1.0, 1.7, 1.2)
+    assert outcome.best["values"]["long.size"] == pytest.approx(1.5)
+
+
+@pytest.mark.parametrize(
+    ("own", "sentence"),
+    [
+        ("{ size = { lower = 5.0 } }", "[[experiments]] 'long', own: bounds are (5.0, 4.0)"),
+        ("{ sice = { lower = 1.0 } }", "[[experiments]] 'long', own: unknown parameter 'sice'; did you mean 'size'?"),
+        ('["sice"]', "[[experiments]] 'long', own: unknown parameter 'sice'; did you mean 'size'?"),
+    ],
+)
+def test_what_is_wrong_with_own_parameters(write, own, sentence):
+    text = OWN.replace("{ size = { lower = 1.0, upper = 1.7, start = 1.2 } }", own) + "[identify]\n"
+    with pytest.raises(InputError) as raised:
+        load(write(text))
+    assert sentence in str(raised.value)
+
+
+def test_the_first_part_of_a_record_that_is_predicted_is_fitted(write, tmp_path):
+    _, outcome = run_study(load(write(TWO + '[identify]\nvalidation = { long = "1 s" }\n')), tmp_path / "run")
+    assert outcome.fit.validation.what == "the experiment 'long' after its first 1 s"
+    assert outcome.best["values"]["long.size"] == pytest.approx(1.5)

@@ -41,6 +41,7 @@ TABLES = {
     "BackboneTable": ["backbone"],
     "ModesTable": ["modes"],
     "HarmonicBalance": ["harmonic_balance"],
+    "OwnParameterTable": [r"parameters\.NAME", "experiments"],
     "StructureTable": [r"model\.structure"],
     "ReductionTable": [r"model\.structure"],
     "WorkPrecision": ["work_precision"],

@@ -36,6 +36,9 @@ MOST_MOTIONS = 4
 """Experiments whose motion the report draws: each drawing adds to the size of its page."""
 
 
+Length = Annotated[float, Read(fixed("s"))]
+
+
 class IdentifyTable(StudyTable):
     """Identify the parameters from the data."""
 
@@ -60,8 +63,10 @@ class IdentifyTable(StudyTable):
         "linear", description="what is summed of the residuals: squares, or less of those that are large"
     )
     loss_scale: float | None = Field(None, gt=0, description="weighted residual from which one counts as an outlier")
-    validation: Annotated[float, Field(gt=0, lt=1)] | list[str] | None = Field(
-        None, description="share of the samples at the end, or names of experiments, that are predicted, not fitted"
+    validation: Annotated[float, Field(gt=0, lt=1)] | list[str] | dict[str, Length] | None = Field(
+        None,
+        description="share of the samples at the end, or names of experiments, that are predicted, not fitted; a table "
+        "gives the length of the first part of each experiment that is fitted",
     )
     shooting: ShootingTable | None = Field(
         None, description="segments that must meet, in place of the growing horizon: for chaotic motion"
@@ -199,7 +204,7 @@ class Identification(Outcome):
         found = {}
         for table, item in list(zip(study.file.experiments, fit.experiments, strict=True))[:MOST_MOTIONS]:
             names = [f"{table.name}.{name}" if name in table.own else name for name in study.parameters.names]
-            variant = study.varied(table.constants, table.arguments)
+            variant = table.variant(study)
             values = np.array([fit.estimates[name] for name in names])
             found[table.name] = variant.motion(float(item.data.coordinate.values[-1]), values)
         return found

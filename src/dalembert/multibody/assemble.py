@@ -28,8 +28,8 @@ _MOST_ITERATIONS = 60
 _FRAME = {"x": 0, "y": 1, "angle": 2}
 
 
-def assembled(system: System, tilted: bool = False, placed: Lowered | None = None) -> Lowered:
-    """Arrays of a system whose joints are closed and whose velocities are consistent, at the start.
+def assembled(system: System, tilted: bool = False, placed: Lowered | None = None, begin: float = 0.0) -> Lowered:
+    """Arrays of a system whose joints are closed and whose velocities are consistent, at the time ``begin`` (s).
 
     A system that starts at its equilibrium is moved there once its joints are closed.
 
@@ -43,7 +43,7 @@ def assembled(system: System, tilted: bool = False, placed: Lowered | None = Non
     SolveError
         Where a system that starts at its equilibrium has none near its first placement.
     """
-    lowered = placed or lower(system)
+    lowered = placed or lower(system, begin)
     rests = system.start == EQUILIBRIUM
     if lowered.structure.size == lowered.structure.n:
         return begin_at_rest(lowered) if rests else lowered

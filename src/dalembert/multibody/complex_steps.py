@@ -38,11 +38,14 @@ class Along:
     observer : Observer
     times : array (samples,)
     states : Motion of arrays (samples, N + 1)
+    begin : float
+        Time of the signals at which the motion starts, s.
     """
 
     observer: Observer
     times: np.ndarray
     states: Motion
+    begin: float = 0.0
 
     @cached_property
     def samples(self) -> np.ndarray:
@@ -141,7 +144,7 @@ class _Answers:
 
     @classmethod
     def of(cls, system: System, along: Along) -> "_Answers":
-        return cls((*_of_signals(system, along), *_of_components(lower(system), along)))
+        return cls((*_of_signals(system, along), *_of_components(lower(system, along.begin), along)))
 
     @property
     def numbers(self) -> np.ndarray:
@@ -159,7 +162,7 @@ def _of_signals(system: System, along: Along) -> Iterator[tuple[str, np.ndarray]
         for name, signal in vars(component).items():
             if isinstance(signal, Custom):
                 for function in filter(None, (signal.function, signal.rate, signal.second)):
-                    values = [_plain(function)(float(t)) for t in along.times[along.samples]]
+                    values = [_plain(function)(float(t)) for t in along.begin + along.times[along.samples]]
                     yield f"the function of time {name!r} of {component.name!r}", np.array(values)
 
 

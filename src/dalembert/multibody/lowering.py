@@ -28,6 +28,7 @@ from dalembert.multibody.structure import Structure
 from dalembert.multibody.system import System
 
 _ABSENT = -1
+_ROUNDING = 1e-14  # relative, of differences of times
 
 
 class Pair(NamedTuple):
@@ -63,7 +64,7 @@ class Lowered:
     x, v : array, shape (N + 1,)
         First unknowns and velocities, as placed: joints may not be closed yet.
     jumps : tuple of float
-        Times, s, at which loads jump.
+        Times, s, at which loads jump; these and those of kinks are measured from the start of the motion.
     kinks : tuple of (time, joint)
         Times, s, at which the velocity of a prescribed motion would jump.
     failures : Failures
@@ -145,7 +146,7 @@ def _cast(array: np.ndarray, dtype: type) -> np.ndarray:
 class Lowering:
     """Collects the rows of the kernels while the components write them."""
 
-    def __init__(self, system: System) -> None:
+    def __init__(self, system: System, begin: float = 0.0) -> None:
         self.gravity = system.gravity
         self.kinks: list[tuple[float, str]] = []
         self._system = system
@@ -155,7 +156,8 @@ class Lowering:
         self._parts: dict[Kind, list[str]] = {}
         self._rows: dict[str, tuple[Kind, int]] = {}
         self._signals: list[tuple[int, int, int, int]] = [(signal_kinds.TIME, 0, 0, 0)]
-        self._signal_data: list[Number] = [0.0]
+        self._begin = float(begin)
+        self._signal_data: list[Number] = [self._begin]
         self._knots: list[float] = [0.0]
         self._callbacks: list[Callback] = []
         self._jumps: set[float] = set()
@@ -289,6 +291,11 @@ class Lowering:
                 if not _finite(list(vars(value).values()) if isinstance(value, GroundPoint) else numbers):
                     raise ModelError(f"{owner}: {name} is {value}; expected finite numbers")
 
+    def _since(self, time: float) -> float:
+        """Time from the start of the motion; zero where the two differ by rounding alone."""
+        since = time - self._begin
+        return since if abs(since) > _ROUNDING * abs(self._begin) else 0.0
+
     def run(self) -> Lowered:
         """Place the bodies, let every component write its rows, and pack them."""
         system = self._system
@@ -342,8 +349,8 @@ class Lowering:
             stated=stated(system.bodies),
             x=x,
             v=np.concatenate([*velocities, tail]),
-            jumps=tuple(sorted(time for time in self._jumps if np.isfinite(time))),
-            kinks=tuple(self.kinks),
+            jumps=tuple(sorted(self._since(time) for time in self._jumps if np.isfinite(time))),
+            kinks=tuple((self._since(time), name) for time, name in self.kinks),
             failures=self._failures,
             parts={kind: tuple(names) for kind, names in self._parts.items()},
         )
@@ -352,8 +359,8 @@ class Lowering:
         return lowered
 
 
-def lower(system: System) -> Lowered:
-    """Arrays of a system, with its bodies as placed.
+def lower(system: System, begin: float = 0.0) -> Lowered:
+    """Arrays of a system, with its bodies as placed; its motion starts at the time ``begin`` (s) of its signals.
 
     Raises
     ------
@@ -363,7 +370,7 @@ def lower(system: System) -> Lowered:
     if not isinstance(system, System):
         own = "; give its system, in which the bodies are placed as they begin" if hasattr(system, "system") else ""
         raise InputError(f"{shown(system)} was given as the mechanism; expected a System{own}")
-    return Lowering(system).run()
+    return Lowering(system, begin).run()
 
 
 def _finite(value: object) -> bool:

@@ -1,6 +1,7 @@
 """Motion of a system in time."""
 
 import os
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -30,8 +31,9 @@ def simulate(
     times: np.ndarray | None = None,
     *,
     most_steps: float = MOST_STEPS,
+    begin: float = 0.0,
 ) -> Trajectory:
-    """Integrate the motion of a system from time 0.
+    """Integrate the motion of a system from its placement.
 
     Parameters
     ----------
@@ -48,6 +50,9 @@ def simulate(
     most_steps : float
         Fixed steps from which the simulation is refused. Methods that choose their steps have the setting
         ``most_steps``.
+    begin : float
+        Time of the signals at which the motion starts, s: loads and prescribed motions are read at ``begin + t``. The
+        times of the motion, ``end`` included, are measured from there.
 
     Returns
     -------
@@ -73,7 +78,7 @@ def simulate(
     array([0.986])
     """
     with in_complex_numbers(strict=False):
-        lowered, chosen, times, grid = posed(system, end, solver, times, most_steps)
+        lowered, chosen, times, grid = posed(system, end, solver, times, most_steps, begin)
         check_pace(lowered, chosen, end)
         problem = make_problem(lowered, grid)
         (result,) = chosen.integrate([lowered], (), problem, end)
@@ -86,7 +91,12 @@ def simulate(
 
 
 def posed(
-    system: System, end: float, solver: Integrator | str | None, times: np.ndarray | None, most_steps: float = np.inf
+    system: System,
+    end: float,
+    solver: Integrator | str | None,
+    times: np.ndarray | None,
+    most_steps: float = np.inf,
+    begin: float = 0.0,
 ) -> tuple[Lowered, Integrator, np.ndarray, np.ndarray]:
     """Return what :func:`simulate` integrates, after all its checks.
 
@@ -96,7 +106,7 @@ def posed(
         raise InputError(f"simulate: end is {shown(end)}; expected a positive number of seconds")
     given = integrator(solver, end)
     check_steps("simulate", given, end, most_steps, advice=", or raise most_steps")
-    lowered, chosen = prepared(system, end, given)
+    lowered, chosen = prepared(system, end, given, begin_time("simulate", begin))
     count = _ADAPTIVE_OUTPUTS if chosen.fixed_step is None else end / chosen.fixed_step
     worked = works(lowered) and count * len(lowered.x) < _ROOM
     if times is None:
@@ -126,9 +136,16 @@ def memory() -> float:
         return np.inf
 
 
-def prepared(system: System, end: float, solver: Integrator) -> tuple[Lowered, Integrator]:
+def begin_time(where: str, begin: Any) -> float:
+    """The time of the signals at which a motion starts, refused where it is no number of seconds."""
+    if not is_number(begin) or np.iscomplexobj(begin):
+        raise InputError(f"{where}: begin is {shown(begin)}; expected a number of seconds")
+    return float(begin)
+
+
+def prepared(system: System, end: float, solver: Integrator, begin: float = 0.0) -> tuple[Lowered, Integrator]:
     """The assembled mechanism and the integrator that suits it, once nothing speaks against the two."""
-    placed = lower(system)
+    placed = lower(system, begin)
     prepare([*placed.kernels(False), *solver.suiting(placed, end).kernels(placed.structure, False)])
     lowered = assembled(system, placed=placed)
     refuse_unstable_start(system, lowered)

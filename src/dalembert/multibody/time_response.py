@@ -4,9 +4,10 @@ from collections.abc import Callable, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from dalembert.arguments import names_of
 from dalembert.errors import InputError, ModelError, SolveError, told, unknown
@@ -27,7 +28,7 @@ from dalembert.multibody.kernels.dual import STEP
 from dalembert.multibody.long_runs import check_pace, check_steps
 from dalembert.multibody.lowering import Lowered, lower
 from dalembert.multibody.observe import Observer, observer
-from dalembert.multibody.simulation import checked, integrator, simulate
+from dalembert.multibody.simulation import begin_time, checked, integrator, simulate
 from dalembert.multibody.slip_rates import rubbing
 from dalembert.multibody.system import System
 from dalembert.parameters import Parameter, Parameters
@@ -45,7 +46,7 @@ class TimeResponse:
     channels : sequence of str
         Such as ``"AB.end.x"``; see :meth:`Trajectory.channel_names`.
     times : array, shape (samples,)
-        s; the motion starts at 0 and ends at the last one.
+        s; measured from the start of the motion, which ends at the last one.
     solver : Integrator or "auto", optional
         Generalized-alpha with steps of a thousandth of the motion if not given.
     workers : int, optional
@@ -54,6 +55,8 @@ class TimeResponse:
         The complex step is exact, and needs a builder that runs in complex numbers. When it is first used, and when an
         identification starts, it is compared with differences of the model's numbers, and of what functions of the
         user's return.
+    begin : float
+        Time of the signals at which the motion starts, s: loads and prescribed motions are read at ``begin + t``.
 
     Examples
     --------
@@ -79,16 +82,18 @@ class TimeResponse:
     workers: int = field(default=1, compare=False)
     derivative: str = COMPLEX_STEP
     built_at: np.ndarray | None = field(default=None, compare=False)
+    begin: float = 0.0
 
     def __init__(
         self,
         builder: Callable[..., System],
         parameters: Parameters | Mapping[str, Parameter | tuple[float, float]],
         channels: Sequence[str],
-        times: np.ndarray,
+        times: ArrayLike,
         solver: Integrator | str | None = None,
         workers: int | None = None,
         derivative: str = COMPLEX_STEP,
+        begin: float = 0.0,
     ) -> None:
         if derivative not in DERIVATIVES:
             raise InputError(unknown("derivative", derivative, DERIVATIVES, "TimeResponse"))
@@ -111,6 +116,7 @@ class TimeResponse:
             ("workers", workers or cores()),
             ("derivative", derivative),
             ("built_at", None),
+            ("begin", begin_time("TimeResponse", begin)),
         ):
             object.__setattr__(self, name, value)
 
@@ -221,20 +227,46 @@ class TimeResponse:
 
     def first(self, samples: int) -> "TimeResponse":
         """The same model, cut to its first ``samples`` samples; its simulations end earlier."""
-        own = TimeResponse(
-            self.builder, self.parameters, self.channel_names, self.times[:samples], self.solver, self.workers,
-            self.derivative,
-        )  # fmt: skip
-        vars(own)["_compared"], vars(own)["built_at"] = self._compared, self.built_at
-        return own
+        return self._sampled(self.times[:samples])
+
+    def later(self, begin: float, times: ArrayLike) -> "TimeResponse":
+        """The same model, whose motion starts at a later time of its signals.
+
+        The initial state is what the builder makes of the parameters, as at time 0; prescribed motions place the
+        mechanism as at the new start.
+
+        Parameters
+        ----------
+        begin : float
+            s, measured from the start of this model's motion.
+        times : array, shape (samples,)
+            Samples in s, measured from the new start.
+
+        Examples
+        --------
+        The swing of a driven mass from the middle of a motion, whose state the parameters hold:
+
+        >>> import numpy as np
+        >>> from dalembert.multibody import Force, Harmonic, PointMass, System, TimeResponse
+        >>> def driven(x, rate):
+        ...     system = System()
+        ...     mass = system.add(PointMass("mass", mass=1.0, position=(x, 0.0), velocity=(rate, 0.0)))
+        ...     system.add(Force("drive", mass.centre, x=Harmonic(1.0, 2.0)))
+        ...     return system
+        >>> box, channels = {"x": (-1, 1), "rate": (-1, 1)}, ["mass.centre.x", "mass.centre.vx"]
+        >>> model = TimeResponse(driven, box, channels, [0.5, 1.0])
+        >>> whole = model.evaluate([[0.0, 0.0]]).values[0]
+        >>> rest = model.later(0.5, [0.5]).evaluate(whole[:1]).values[0]
+        >>> np.allclose(rest[0], whole[1], atol=1e-6)
+        True
+        """
+        return self._sampled(times, begin=self.begin + begin_time("TimeResponse.later", begin))
 
     def part(self, share: float) -> "tuple[TimeResponse, float]":
         """The same model until a share of its time, and that share; a simulation takes about this part of the time."""
         end = share * self.times[-1]
         times = np.concatenate([[0.0], self.times[(self.times > 0) & (self.times < end)], [end]])
-        own = TimeResponse(self.builder, self.parameters, self.channel_names, times, self.solver, self.workers)
-        vars(own)["built_at"] = self.built_at
-        return own, share
+        return self._sampled(times), share
 
     def refined(self) -> Refinement | None:
         """Return the same model at half the step, or at a tolerance 100 times tighter; None for an unknown order."""
@@ -242,10 +274,7 @@ class TimeResponse:
         if finer is None:
             return None
         solver, order = finer
-        model = TimeResponse(
-            self.builder, self.parameters, self.channel_names, self.times, solver, self.workers, self.derivative
-        )
-        vars(model)["built_at"] = self.built_at
+        model = self._sampled(self.times, solver=solver)
         how = "at a tolerance 100 times tighter" if order is None else "at half the step"
         return Refinement(model, error_factor(order), how)
 
@@ -274,9 +303,20 @@ class TimeResponse:
         """
         system = self.system(vector)
         try:
-            return simulate(system, float(self.times[-1]), self.solver).findings if rubbing(system) else system.findings
+            if not rubbing(system):
+                return system.findings
+            return simulate(system, float(self.times[-1]), self.solver, begin=self.begin).findings
         except (ModelError, SolveError, InputError):  # no motion, or one that does not fit into memory
             return system.findings
+
+    def _sampled(self, times: ArrayLike, *, begin: float | None = None, solver: Integrator | None = None) -> Self:
+        """The same model with other samples, start or solver, whose derivatives were compared if this model's were."""
+        own = type(self)(
+            self.builder, self.parameters, self.channel_names, times, solver or self.solver, self.workers,
+            self.derivative, self.begin if begin is None else begin,
+        )  # fmt: skip
+        vars(own)["_compared"], vars(own)["built_at"] = self._compared, self.built_at
+        return own
 
     @cached_property
     def _compared(self) -> Compared:
@@ -287,7 +327,7 @@ class TimeResponse:
         if not self._compared.vectors:
             self.check_derivatives(vector)
         if not self._compared.functions:
-            at = Along(self._frame.observer, self.times, run.states)
+            at = Along(self._frame.observer, self.times, run.states, self.begin)
             check_forces(lowered, at, self._frame.problem.scale)
             check_closures(self.builder, self.parameters, vector, at)
             self._compared.functions = True
@@ -301,12 +341,12 @@ class TimeResponse:
     def _observer(self) -> Observer:
         """The channels of the mechanism as it is placed: joints may not be closed yet."""
         system = self._first_system
-        return observer(system, lower(system), self.channel_names)
+        return observer(system, lower(system, self.begin), self.channel_names)
 
     @cached_property
     def _frame(self) -> "_Frame":
         system = self._first_system
-        placed = lower(system)
+        placed = lower(system, self.begin)
         self._prepare(placed, self._observer, derivatives=False)
         lowered = assembled(system, placed=placed)
         refuse_unstable_start(system, lowered)
@@ -329,7 +369,7 @@ class TimeResponse:
 
     def _lower(self, vector: np.ndarray) -> Lowered:
         """Arrays of one sample, in the structure of the first."""
-        return self._fit(assembled(self.system(vector)))
+        return self._fit(assembled(self.system(vector), begin=self.begin))
 
     def _tilt(self, vector: np.ndarray, column: int) -> Lowered:
         """Arrays of the model along one parameter, moved by a complex step of its scale."""
@@ -338,7 +378,7 @@ class TimeResponse:
         given: dict[str, complex] = dict(self.parameters.mapping(vector))
         given[self.parameters.names[column]] = complex(tilted[column])
         try:
-            return self._fit(assembled(built(self.builder, given, System), tilted=True))
+            return self._fit(assembled(built(self.builder, given, System), tilted=True, begin=self.begin))
         except (TypeError, ModelError, np.exceptions.ComplexWarning) as error:
             error = error.__cause__ if isinstance(error, ModelError) else error
             if not isinstance(error, TypeError | np.exceptions.ComplexWarning):

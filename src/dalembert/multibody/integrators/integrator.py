@@ -13,7 +13,7 @@ import numpy as np
 from dalembert.arguments import Checked
 from dalembert.kernels.kernel import Compiled
 from dalembert.multibody.integrators.problem import Problem
-from dalembert.multibody.integrators.run import Run
+from dalembert.multibody.integrators.run import Run, smooth_stretches
 from dalembert.multibody.lowering import Lowered
 from dalembert.multibody.structure import Structure
 
@@ -89,9 +89,8 @@ class Integrator(Checked, ABC):
         """Ends of the fixed steps in s, 0 included, (samples,); each smooth stretch between jumps is cut evenly."""
         if self.fixed_step is None:
             return None
-        edges = [0.0, *(time for time in jumps if 0 < time < end), end]
         parts: list[np.ndarray] = [np.zeros(1)]
-        for begin, stop in pairwise(edges):
+        for begin, stop in pairwise(smooth_stretches(jumps, end)):
             steps = max(1, int(np.ceil((stop - begin) / self.fixed_step - 1e-6)))
             parts.append(begin + (stop - begin) / steps * np.arange(1, steps + 1))
         return np.concatenate(parts)

@@ -11,6 +11,8 @@ from dalembert.multibody.kernels.motion import Motion, resting
 from dalembert.multibody.lowering import Lowered
 from dalembert.multibody.scales import scales
 
+_ROUNDING = 1e-9  # of differences of times, relative to the motion's end
+
 
 @dataclass(frozen=True)
 class Run:
@@ -38,9 +40,14 @@ class Run:
     ends: np.ndarray
 
 
+def smooth_stretches(jumps: Sequence[float], end: float) -> list[float]:
+    """Start, the jumps of loads within the motion, and its end, s; a jump that rounding parts from the end is none."""
+    return [0.0, *(time for time in jumps if 0 < time < end * (1 - _ROUNDING)), end]
+
+
 def cut(samples: Sequence[Lowered], problem: Problem, end: float) -> Problem:
     """The problem with the smooth stretches of each sample's motion, between the jumps of its loads."""
-    stretches = [[0.0, *(time for time in entry.jumps if 0 < time < end), end] for entry in samples]
+    stretches = [smooth_stretches(entry.jumps, end) for entry in samples]
     edges = np.zeros((len(samples), max(map(len, stretches))))
     for own, given in zip(edges, stretches, strict=True):
         own[: len(given)] = given

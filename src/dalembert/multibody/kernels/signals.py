@@ -1,7 +1,7 @@
 """Functions of time: the value, rate and second rate of every signal of a model at one time.
 
 Each signal has a row of `index`: kind, first entry and number of entries in `data`, first entry in `knots`.
-Signal 0 is the time itself.
+Signal 0 is the time itself. The first entry of `data` is the time of the signals at which the motion begins.
 """
 
 from dalembert.kernels.kernel import BlockKernel, inner
@@ -84,10 +84,9 @@ def _kernel(dtype: type) -> BlockKernel:
         index, out = integers2(table.signal_index, table.signal_count, 4), view2(own.signals, table.signal_count, 3)
         data, knots = view(table.signal_data, table.number_count), reals(table.knots, table.knot_count)
         callbacks = integers(table.callbacks, table.callback_count)
+        t, within = own.t + data[0].real, own.within + data[0].real
         for n in range(table.signal_count):
-            _evaluate(
-                index[n, 0], index[n, 1], index[n, 2], index[n, 3], data, knots, callbacks, own.t, own.within, out[n]
-            )
+            _evaluate(index[n, 0], index[n, 1], index[n, 2], index[n, 3], data, knots, callbacks, t, within, out[n])
 
     return BlockKernel(evaluate, f"dal_signals_{dtype.__name__}")
 

@@ -230,11 +230,15 @@ class Study:
         return model
 
     def varied(
-        self, constants: Mapping[str, float], arguments: Mapping[str, Any], parameters: Mapping[str, ParameterTable]
+        self,
+        constants: Mapping[str, float],
+        arguments: Mapping[str, Any],
+        parameters: Mapping[str, ParameterTable] | None = None,
     ) -> "Study":
-        """The same study with other constants, arguments of the model's function, and tables of its parameters."""
+        """The same study with other constants, other arguments of the model's function, and other parameters."""
         model = self.file.model.model_copy(update={"arguments": {**self.file.model.arguments, **arguments}})
-        update = {"constants": {**self.file.constants, **constants}, "model": model, "parameters": dict(parameters)}
+        parameters = self.file.parameters if parameters is None else dict(parameters)
+        update = {"constants": {**self.file.constants, **constants}, "model": model, "parameters": parameters}
         return replace(self, file=self.file.model_copy(update=update))
 
     def data(self) -> "Measurements":

@@ -129,8 +129,11 @@ def _test(kind: Any) -> Callable[[Any], bool]:
     if origin is tuple and Ellipsis not in typing.get_args(kind):
         return lambda value: _is_row(value) and len(value) == len(inner) and all(map(_holds, inner, value))
     if origin in (tuple, list, Sequence, Iterable):
-        of_text = typing.get_args(kind)[0] is str
-        return lambda value: (of_text and isinstance(value, str)) or (_is_row(value) and all(map(inner[0], value)))
+        item = typing.get_args(kind)[0]
+        many = _finite_floats if {float, complex} & set(kinds_of(item)) else lambda value: False
+        return lambda value: (
+            (item is str and isinstance(value, str)) or many(value) or (_is_row(value) and all(map(inner[0], value)))
+        )
     if origin is Mapping:
         return lambda value: isinstance(value, Mapping) and all(map(inner[1], value.values()))
     if kind is Any or not isinstance(kind, type) or (getattr(kind, "_is_protocol", False) and not _is_runtime(kind)):
@@ -141,6 +144,16 @@ def _test(kind: Any) -> Callable[[Any], bool]:
 def _is_runtime(protocol: Any) -> bool:
     """Whether instances of a protocol can be recognised by their members."""
     return getattr(protocol, "_is_runtime_protocol", False)
+
+
+def _finite_floats(value: Any) -> bool:
+    """Whether a value is an array of numbers that every test of a number accepts; one test for all of them."""
+    return (
+        isinstance(value, np.ndarray)
+        and value.ndim == 1
+        and value.dtype == float
+        and bool(np.all(np.abs(value) <= LARGEST))
+    )
 
 
 def _any_of(annotation: Any) -> Callable[[Any], bool]:

@@ -65,6 +65,8 @@ class Lowered:
         First unknowns and velocities, as placed: joints may not be closed yet.
     jumps : tuple of float
         Times, s, at which loads jump; these and those of kinks are measured from the start of the motion.
+    changes : frozenset of float
+        Those of the jumps at which nothing but the values of held tables changes.
     kinks : tuple of (time, joint)
         Times, s, at which the velocity of a prescribed motion would jump.
     failures : Failures
@@ -85,6 +87,7 @@ class Lowered:
     x: np.ndarray
     v: np.ndarray
     jumps: tuple[float, ...]
+    changes: frozenset[float]
     kinks: tuple[tuple[float, str], ...]
     failures: Failures = field(compare=False, repr=False)
     parts: dict[Kind, tuple[str, ...]] = field(compare=False, repr=False)
@@ -143,6 +146,24 @@ def _cast(array: np.ndarray, dtype: type) -> np.ndarray:
     return np.real(array).astype(float) if dtype is float else array.astype(complex)
 
 
+class _Numbers:
+    """Numbers one after the other, lists and arrays of them."""
+
+    def __init__(self, first: Sequence[Number]) -> None:
+        self._parts: list[np.ndarray] = []
+        self.count = 0
+        self.add(first)
+
+    def add(self, numbers: Sequence[Number] | np.ndarray) -> None:
+        if len(numbers):
+            self._parts.append(np.asarray(numbers))
+            self.count += len(numbers)
+
+    @property
+    def array(self) -> np.ndarray:
+        return np.concatenate(self._parts)
+
+
 class Lowering:
     """Collects the rows of the kernels while the components write them."""
 
@@ -157,10 +178,11 @@ class Lowering:
         self._rows: dict[str, tuple[Kind, int]] = {}
         self._signals: list[tuple[int, int, int, int]] = [(signal_kinds.TIME, 0, 0, 0)]
         self._begin = float(begin)
-        self._signal_data: list[Number] = [self._begin]
-        self._knots: list[float] = [0.0]
+        self._signal_data = _Numbers([self._begin])
+        self._knots = _Numbers([0.0])
         self._callbacks: list[Callback] = []
         self._jumps: set[float] = set()
+        self._changes: set[float] = set()
         self._owners: list[str] = []
         self._component = ""  # that writes its rows
         self._failures = Failures()
@@ -210,14 +232,14 @@ class Lowering:
         """Number of a function of time."""
         signal = as_signal(course)
         kind, data, knots = signal.lower(self)
-        first = len(self._callbacks) if kind == signal_kinds.CUSTOM else len(self._signal_data)
+        first = len(self._callbacks) if kind == signal_kinds.CUSTOM else self._signal_data.count
         if isinstance(signal, Custom):
             functions = signal.function, signal.rate, signal.second
             self._callbacks.append(signal_callback(*functions, self._component, self._failures))
-        self._signals.append((kind, first, len(data), len(self._knots)))
-        self._signal_data += data
-        self._knots += knots
-        self._jumps.update(signal.jumps)
+        self._signals.append((kind, first, len(data), self._knots.count))
+        self._signal_data.add(data)
+        self._knots.add(knots)
+        (self._changes if signal.steps else self._jumps).update(signal.jumps)
         return len(self._signals) - 1
 
     def callback(self, function: Callable[..., Any], owner: str) -> int:
@@ -341,15 +363,16 @@ class Lowering:
             structure=structure,
             bodies=dict(self._bodies),
             data={kind: np.array(rows).reshape(len(rows), len(kind.numbers)) for kind, rows in self._data.items()},
-            signal_data=np.array(self._signal_data),
-            knots=np.array(self._knots),
+            signal_data=self._signal_data.array,
+            knots=self._knots.array,
             callbacks=tuple(self._callbacks),
             frames=np.array(frames),
             rates=chosen,
             stated=stated(system.bodies),
             x=x,
             v=np.concatenate([*velocities, tail]),
-            jumps=tuple(sorted(self._since(time) for time in self._jumps if np.isfinite(time))),
+            jumps=tuple(sorted(self._since(time) for time in self._jumps | self._changes if np.isfinite(time))),
+            changes=frozenset(self._since(time) for time in self._changes - self._jumps),
             kinks=tuple((self._since(time), name) for time, name in self.kinks),
             failures=self._failures,
             parts={kind: tuple(names) for kind, names in self._parts.items()},

@@ -18,7 +18,7 @@ from slopes import errors
 #: Arguments that are no numbers.
 OTHERS = {
     "name", "a", "b", "at", "against", "anchor", "law", "elements", "coordinate", "follower", "function", "rate",
-    "second", "kind", "formulation",
+    "second", "kind", "formulation", "integrals",
 }  # fmt: skip
 #: Times of jumps and of tables, which are fixed numbers.
 FIXED = {(mb.Step, "start"), (mb.Step, "end"), (mb.Table, "times")}
@@ -194,8 +194,8 @@ SCENES: dict[type, tuple[Callable[..., mb.System], dict]] = {
         {"c0": 2.0, "c1": 30.0, "c2": -80.0},
     ),
     mb.Table: (
-        lambda **v: driven(mb.Table)(times=[0.0, 0.03, 0.05, 0.1], values=list(v.values())),
-        {"v0": 1.0, "v1": 2.0, "v2": -1.0, "v3": 0.5},
+        lambda v0, v1, v2, v3, **own: driven(mb.Table)(times=[0.0, 0.03, 0.05, 0.1], values=[v0, v1, v2, v3], **own),
+        {"v0": 1.0, "v1": 2.0, "v2": -1.0, "v3": 0.5, "scale": 3.0, "offset": 0.8, "delay": 0.004},
     ),
     mb.Custom: (pinned, {}),
     mb.GroundPoint: (grounded, {"x": 0.3, "y": -0.4, "angle": 0.2}),

@@ -142,7 +142,15 @@ def test_a_function_of_time_that_cannot_be_meant_is_refused(make, sentence: str)
         make()
 
 
-@pytest.mark.parametrize("motion", [mb.Step(1.0, 0.1), mb.Table([0.0, 1.0], [0.0, 1.0], "linear")])
+@pytest.mark.parametrize(
+    "motion",
+    [
+        mb.Step(1.0, 0.1),
+        mb.Table([0.0, 1.0], [0.0, 1.0], "linear"),
+        mb.Table([0.0, 1.0], [0.0, 1.0], "held"),
+        mb.Table([0.0, 1.0], [0.0, 1.0], "held", integrals=1),
+    ],
+)
 def test_a_motion_whose_velocity_jumps_is_refused(motion: mb.Signal) -> None:
     sentence = (
         f"prescribed motion 'drive': the velocity of its {type(motion).__name__} jumps, which no mechanism can follow; "

@@ -5,7 +5,8 @@ __all__ = ["Constant", "Custom", "Harmonic", "Polynomial", "Signal", "Step", "Ta
 from abc import abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -26,13 +27,18 @@ class Signal(Checked):
     IN_WORDS = "a function of time such as Harmonic(amplitude, angular_frequency)"
 
     @abstractmethod
-    def lower(self, lowering: "Lowering") -> tuple[int, Sequence[Number], Sequence[float]]:
+    def lower(self, lowering: "Lowering") -> "tuple[int, Numbers, Numbers]":
         """Kind, numbers and knots, as the kernels keep them."""
 
     @property
     def jumps(self) -> tuple[float, ...]:
-        """Times at which the value jumps; integration starts anew there."""
+        """Times at which the value jumps; integration starts anew there, unless the signal :attr:`steps`."""
         return ()
+
+    @property
+    def steps(self) -> bool:
+        """Whether it jumps so often that a method may take the mean at a jump instead of starting anew."""
+        return False
 
     @property
     def kinks(self) -> tuple[float, ...]:
@@ -46,7 +52,7 @@ class Constant(Signal):
 
     value: Number
 
-    def lower(self, lowering: "Lowering") -> tuple[int, Sequence[Number], Sequence[float]]:
+    def lower(self, lowering: "Lowering") -> "tuple[int, Numbers, Numbers]":
         return kinds.CONSTANT, [self.value], []
 
 
@@ -62,7 +68,7 @@ class Step(Signal):
         if not self.start < self.end:
             raise InputError(f"Step: start is {self.start} s and end is {self.end} s; expected start before end")
 
-    def lower(self, lowering: "Lowering") -> tuple[int, Sequence[Number], Sequence[float]]:
+    def lower(self, lowering: "Lowering") -> "tuple[int, Numbers, Numbers]":
         return kinds.STEP, [self.value], [float(self.start), float(self.end)]
 
     @property
@@ -79,7 +85,7 @@ class Harmonic(Signal):
     phase: Number = field(default=0.0, metadata={"unit": "rad"})
     offset: Number = 0.0
 
-    def lower(self, lowering: "Lowering") -> tuple[int, Sequence[Number], Sequence[float]]:
+    def lower(self, lowering: "Lowering") -> "tuple[int, Numbers, Numbers]":
         return kinds.HARMONIC, [self.amplitude, self.angular_frequency, self.phase, self.offset], []
 
 
@@ -89,30 +95,56 @@ class Polynomial(Signal):
 
     coefficients: Sequence[Number]
 
-    def lower(self, lowering: "Lowering") -> tuple[int, Sequence[Number], Sequence[float]]:
+    def lower(self, lowering: "Lowering") -> "tuple[int, Numbers, Numbers]":
         return kinds.POLYNOMIAL, list(self.coefficients), []
 
 
 @dataclass(frozen=True)
 class Table(Signal):
-    """Values at times, joined by lines or by a cubic spline, held beyond the ends.
+    """``scale * v(t - delay) + offset``, where v has values at times and is held beyond the first and the last.
 
     Parameters
     ----------
     times : sequence of float, shape (points,)
         s, increasing.
     values : sequence of float, shape (points,)
-    kind : {"cubic", "linear"}
-        A prescribed motion needs a cubic one: its velocity must not jump.
+    kind : {"cubic", "linear", "held"}
+        Between the times: a natural cubic spline, lines, or the value of the time before (zero-order hold, as
+        amplifiers and digital outputs have it). A prescribed motion needs a cubic one: its velocity must not jump.
+        Steps end at each change of a held value. Generalized-alpha takes the mean of both values there, so that the
+        error stays of second order; the other methods start anew.
+    scale, offset : float
+        Factor, and what is added: the gain and the bias of a sensor, or a torque constant for a measured current.
+    delay : float
+        s, positive where the value acts later than the times say. A held table has no derivative by its delay.
+    integrals : {0, 1, 2}
+        How many times the values, with scale and offset, are integrated over time from 0 at the first of the times. A
+        measured acceleration of a base is a prescribed motion with two. The motion must then end with the table.
+
+    Raises
+    ------
+    InputError
+        For times that do not increase, and for a held table whose delay depends on a parameter that is varied along
+        exact derivatives.
+
+    Examples
+    --------
+    >>> drive = Table([0.0, 0.1, 0.2], [0.0, 2.0, 1.0], "linear", scale=0.35, delay=7e-3)
+    >>> drive.scale
+    0.35
     """
 
-    times: Sequence[float]
+    times: Sequence[float] = field(metadata={"unit": "s"})
     values: Sequence[Number]
     kind: str = "cubic"
+    scale: Number = 1.0
+    offset: Number = 0.0
+    delay: Number = field(default=0.0, metadata={"unit": "s"})
+    integrals: int = 0
 
     def __post_init__(self) -> None:
-        if self.kind not in ("cubic", "linear"):
-            raise InputError(unknown("kind", self.kind, ("cubic", "linear"), "Table"))
+        if self.kind not in TABLE_KINDS:
+            raise InputError(unknown("kind", self.kind, TABLE_KINDS, "Table"))
         if len(self.times) != len(self.values) or len(self.times) < 2:
             raise InputError(
                 f"Table: {len(self.times)} times and {len(self.values)} values were given; "
@@ -120,27 +152,120 @@ class Table(Signal):
             )
         if not np.all(np.diff(self.times) > 0):
             raise InputError("Table: times must increase; sort them and remove repeated ones")
+        if self.integrals not in range(3):
+            raise InputError(f"Table: integrals is {self.integrals}; expected 0, 1 or 2")
+        if self.steps and np.iscomplexobj(self.delay):
+            raise InputError(
+                "Table: the response to a held value has no derivative by its delay, since each change of the value "
+                "moves in time as a jump; take kind = 'linear', or a delay that depends on no parameter"
+            )
+
+    @classmethod
+    def of(cls, data: "Measured", channel: str, kind: str = "linear", **more: Any) -> "Table":
+        """A table of a measured channel.
+
+        Parameters
+        ----------
+        data : Measurements
+            Missing samples are left out: the table goes from the sample before a gap to that behind it. Angles that
+            wrap are taken without their jumps.
+        channel : str
+        kind : {"linear", "cubic", "held"}
+        **more
+            ``scale``, ``offset``, ``delay`` and ``integrals`` of the table.
+
+        Raises
+        ------
+        InputError
+            For a channel that there is not, with the nearest names.
+
+        Examples
+        --------
+        >>> from dalembert.data import Measurements
+        >>> data = Measurements.of([0.0, 0.1, 0.2], {"current": [0.0, 2.0, 1.0]})
+        >>> Table.of(data, "current", scale=0.35).values.tolist()
+        [0.0, 2.0, 1.0]
+        """
+        if channel not in data.channels:
+            raise InputError(unknown("channel", channel, data.channels, "Table.of"))
+        values = data.continuous[:, data.channels.index(channel)]
+        there = np.isfinite(values)
+        own: Any = cls
+        return own(data.coordinate.values[there], values[there], kind, **more)
+
+    @property
+    def steps(self) -> bool:
+        return self.kind == "held" and self.integrals == 0
+
+    @property
+    def is_smooth(self) -> bool:
+        """Whether the rate does not jump, so that a motion can follow it."""
+        return self.kind == "cubic" or self.integrals > (self.kind == "held")
+
+    @property
+    def jumps(self) -> tuple[float, ...]:
+        """Times at which a held value changes."""
+        if not self.steps:
+            return ()
+        changes = 1 + np.flatnonzero(np.diff(np.real(self.values)))
+        return tuple((np.asarray(self.times, dtype=float)[changes] + np.real(self.delay)).tolist())
 
     @property
     def kinks(self) -> tuple[float, ...]:
-        """The ends at which the spline comes or goes with a slope."""
+        """The ends at which the spline comes or goes with a slope; the end of a table that is integrated."""
         times, values = np.asarray(self.times, dtype=float), np.real(self.values)
         ends = times[[0, -1]]
-        slopes = np.abs(self._spline(times, values)(ends, 1)) * (ends[1] - ends[0])
-        return tuple(float(end) for end, slope in zip(ends, slopes, strict=True) if slope > 1e-6 * np.ptp(values))
+        slopes = np.array([0.0, np.inf])
+        if self.integrals == 0:
+            slopes = np.abs(CubicSpline(times, values, bc_type="natural")(ends, 1)) * (ends[1] - ends[0])
+        steep = slopes > 1e-6 * np.ptp(values)
+        return tuple(float(end + np.real(self.delay)) for end in ends[steep])
 
-    @staticmethod
-    def _spline(times: np.ndarray, values: np.ndarray) -> CubicSpline:
-        return CubicSpline(times, values, bc_type="natural")
-
-    def lower(self, lowering: "Lowering") -> tuple[int, Sequence[Number], Sequence[float]]:
+    def lower(self, lowering: "Lowering") -> "tuple[int, Numbers, Numbers]":
         times, values = np.asarray(self.times, dtype=float), np.asarray(self.values)
-        if self.kind == "cubic":
-            pieces = self._spline(times, values).c[::-1].T
-        else:
-            pieces = np.zeros((len(times) - 1, 4), dtype=values.dtype if values.dtype == complex else float)
-            pieces[:, 0], pieces[:, 1] = values[:-1], np.diff(values) / np.diff(times)
-        return kinds.PIECEWISE, pieces.ravel().tolist(), times.tolist()
+        values = values if np.iscomplexobj(values) else values.astype(float)
+        head = [self.scale, self.offset, self.delay, float(self.integrals)]
+        if self.steps:
+            return kinds.HELD, np.concatenate([[*head, 1.0], values]), times
+        pieces = _pieces(times.tobytes(), values.tobytes(), values.dtype.char, self.kind, self.integrals)
+        return kinds.PIECEWISE, np.concatenate([[*head, float(pieces.shape[1])], pieces.ravel()]), times
+
+
+#: What a table does between its times.
+TABLE_KINDS = ("cubic", "linear", "held")
+
+
+class Measured(Protocol):
+    """What a table takes of measurements."""
+
+    coordinate: Any
+    channels: tuple[str, ...]
+
+    @property
+    def continuous(self) -> np.ndarray: ...
+
+
+@lru_cache(maxsize=32)
+def _pieces(times: bytes, values: bytes, char: str, kind: str, integrals: int) -> np.ndarray:
+    """Coefficients of a table's polynomials, from each knot on, rising powers first, shape (points - 1, order).
+
+    Kept for tables that a builder makes of the same samples again and again.
+    """
+    x, y = np.frombuffer(times), np.frombuffer(values, dtype=char)
+    if kind == "cubic":
+        pieces = CubicSpline(x, y, bc_type="natural").c[::-1].T
+    elif kind == "linear":
+        pieces = np.stack([y[:-1], np.diff(y) / np.diff(x)], axis=1)
+    else:
+        pieces = y[:-1, None]
+    for _ in range(integrals):
+        raised = pieces / np.arange(1, pieces.shape[1] + 1)
+        lasted = np.diff(x)[:, None] ** np.arange(1, raised.shape[1] + 1)
+        begins = np.concatenate([[0.0], np.cumsum((raised * lasted).sum(axis=1))[:-1]])
+        pieces = np.column_stack([begins, raised])
+    pieces = np.ascontiguousarray(pieces)
+    pieces.flags.writeable = False
+    return pieces
 
 
 @dataclass(frozen=True)
@@ -160,10 +285,12 @@ class Custom(Signal):
     rate: Callable[[float], Any] | None = None
     second: Callable[[float], Any] | None = None
 
-    def lower(self, lowering: "Lowering") -> tuple[int, Sequence[Number], Sequence[float]]:
+    def lower(self, lowering: "Lowering") -> "tuple[int, Numbers, Numbers]":
         return kinds.CUSTOM, [], []
 
 
+#: Numbers of a signal as kernels keep them.
+Numbers = Sequence[Number] | np.ndarray
 #: What a load or a motion takes: a number, or a function of time.
 Course = Number | Signal
 

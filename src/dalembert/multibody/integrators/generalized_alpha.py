@@ -10,13 +10,13 @@ import numpy as np
 
 from dalembert.errors import InputError, unknown
 from dalembert.kernels.kernel import Compiled, inlined, inner, kernel
-from dalembert.kernels.words import Address, Integers, Reals2
+from dalembert.kernels.words import Address, Integers, Integers2, Reals2
 from dalembert.multibody.integrators.consistent import Consistency, accelerate, accelerate_along, consistency
 from dalembert.multibody.integrators.derivatives import Differentiation, differentiate, differentiation
 from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.newton import Newton, converge, learn, newton
 from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR, TOO_MANY_STEPS, Log, Problem
-from dalembert.multibody.integrators.run import Run, cut, explain, starts
+from dalembert.multibody.integrators.run import Run, cut, explain, restarts, starts
 from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.model import Call, addresses
 from dalembert.multibody.kernels.motion import (
@@ -132,8 +132,8 @@ class GeneralizedAlpha(Integrator):
         directions = addresses(entry.dual.need("rates").reduced() for entry in tilted)
         calls = models[0][0].call(), models[1][0].call()
         integrate(
-            problem, self._settings(), addresses(models[0]), addresses(models[1]), directions, states, dstates, out,
-            dout, log, ends, _workspace(problem, *calls, len(tilted)),
+            problem, restarts(samples, problem), self._settings(), addresses(models[0]), addresses(models[1]),
+            directions, states, dstates, out, dout, log, ends, _workspace(problem, *calls, len(tilted)),
         )  # fmt: skip
         taken = min(int(log.counts[0]), room)
         runs = []
@@ -202,14 +202,16 @@ def _workspace(problem: Problem, call: Call, dual_call: Call, directions: int) -
 
 @kernel
 def integrate(
-    problem: Problem, settings: Settings, models: Integers, duals: Integers, directions: Integers, states: Motions,
-    dstates: Motions, out: Histories, dout: Histories, log: Log, ends: Reals2, room: Workspace,
+    problem: Problem, opens: Integers2, settings: Settings, models: Integers, duals: Integers, directions: Integers,
+    states: Motions, dstates: Motions, out: Histories, dout: Histories, log: Log, ends: Reals2, room: Workspace,
 ) -> None:  # fmt: skip
     """Run a stack of samples from ``problem.edges[sample, 0]`` to the last edge; fill the states at the output times.
 
     Parameters
     ----------
     problem, settings : Problem, Settings
+    opens : array (samples, -)
+        Whether each stretch starts anew; else the motion goes on, and held tables have their mean where it begins.
     models, duals : array of addresses, shape (samples,)
         Models in real and in complex numbers.
     directions : array of addresses
@@ -230,13 +232,13 @@ def integrate(
             log.counts[i] = 0
         edges = problem.edges[sample, : problem.stretches[sample] + 1]
         ends[sample, 0], ends[sample, 1], ends[sample, 2] = _integrate(
-            problem, edges, settings, models[sample], duals[sample], directions, row(states, sample), dstates,
-            rows(out, sample), dout, log, room,
+            problem, edges, opens[sample], settings, models[sample], duals[sample], directions, row(states, sample),
+            dstates, rows(out, sample), dout, log, room,
         )  # fmt: skip
 
 
 @inner
-def _integrate(problem, edges, settings, model, dual, directions, state, dstates, out, dout, log, room):
+def _integrate(problem, edges, opens, settings, model, dual, directions, state, dstates, out, dout, log, room):
     """Run one sample: status, time reached, and the unknown that moved most."""
     n, width = problem.n, len(state.x)
     old, new, dolds, own = room.old, room.new, room.dolds, room.newton
@@ -248,8 +250,10 @@ def _integrate(problem, edges, settings, model, dual, directions, state, dstates
     for stretch in range(len(edges) - 1):
         begin, end = edges[stretch], edges[stretch + 1]
         within = 0.5 * (begin + end)
-        clear(own.slope)
-        if stretch > 0 or settings.consistent:
+        fresh, ends = opens[stretch] == 1, stretch + 2 == len(edges) or opens[stretch + 1] == 1
+        if fresh:
+            clear(own.slope)
+        if fresh and (stretch > 0 or settings.consistent):
             if not accelerate(problem, model, dual, directions, begin, within, new, dstates, room.consistency):
                 return SINGULAR, begin, 0
         if stretch == 0:
@@ -273,9 +277,10 @@ def _integrate(problem, edges, settings, model, dual, directions, state, dstates
                 target = end if unit + stride == steps * _UNITS else begin + nominal * ((unit + stride) / _UNITS)
             copy(new, old)
             c = coefficients(length, settings.spectral_radius)
-            set_signals(model, target, within, own.work)
+            side = within if ends or target < end else end
+            set_signals(model, target, side, own.work)
             status, detail = converge(
-                problem, model, dual, c, target, within, settings.newton_tolerance, old, new, own, log
+                problem, model, dual, c, target, side, settings.newton_tolerance, old, new, own, log
             )
             error = 0.0
             if status == DONE and settings.adaptive:
@@ -301,12 +306,12 @@ def _integrate(problem, edges, settings, model, dual, directions, state, dstates
             log.counts[0] += 1
             learn(n, c, old, new, own.slope)
             if differentiated and not _differentiate_at(
-                room.differentiate, problem, dual, directions, c, target, within, new, dolds, dstates,
+                room.differentiate, problem, dual, directions, c, target, side, new, dolds, dstates,
                 room.differentiation,
             ):  # fmt: skip
                 return SINGULAR, target, 0
             if problem.projected and width - 1 > n:
-                if not accelerate(problem, model, dual, directions, target, within, new, dstates, room.consistency):
+                if not accelerate(problem, model, dual, directions, target, side, new, dstates, room.consistency):
                     return SINGULAR, target, 0
             while due < len(problem.times) and problem.times[due] <= target + 1e-9 * length:
                 share = min(1.0, (problem.times[due] - t) / length)

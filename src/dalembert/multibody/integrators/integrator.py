@@ -5,7 +5,6 @@ __all__ = ["Integrator"]
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import fields, replace
-from itertools import pairwise
 from typing import Any, cast
 
 import numpy as np
@@ -89,8 +88,8 @@ class Integrator(Checked, ABC):
         """Ends of the fixed steps in s, 0 included, (samples,); each smooth stretch between jumps is cut evenly."""
         if self.fixed_step is None:
             return None
-        parts: list[np.ndarray] = [np.zeros(1)]
-        for begin, stop in pairwise(smooth_stretches(jumps, end)):
-            steps = max(1, int(np.ceil((stop - begin) / self.fixed_step - 1e-6)))
-            parts.append(begin + (stop - begin) / steps * np.arange(1, steps + 1))
-        return np.concatenate(parts)
+        edges = smooth_stretches(jumps, end)
+        lasting = np.diff(edges)
+        counts = np.maximum(1, np.ceil(lasting / self.fixed_step - 1e-6)).astype(int)
+        places = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts) + 1
+        return np.append(0.0, np.repeat(edges[:-1], counts) + np.repeat(lasting / counts, counts) * places)

@@ -40,14 +40,27 @@ class Run:
     ends: np.ndarray
 
 
-def smooth_stretches(jumps: Sequence[float], end: float) -> list[float]:
-    """Start, the jumps of loads within the motion, and its end, s; a jump that rounding parts from the end is none."""
-    return [0.0, *(time for time in jumps if 0 < time < end * (1 - _ROUNDING)), end]
+def smooth_stretches(jumps: Sequence[float], end: float) -> np.ndarray:
+    """Start, the increasing jumps of loads within the motion, and its end, s; those that rounding parts are one."""
+    times, close = np.asarray(jumps, dtype=float), _ROUNDING * end
+    times = times[(times > close) & (times < end - close)]
+    return np.concatenate([[0.0], times[np.diff(times, prepend=0.0) > close], [end]])
+
+
+def restarts(samples: Sequence[Lowered], problem: Problem) -> np.ndarray:
+    """Whether each stretch of each sample opens at the start or at a jump that is no change of a held table."""
+    opens = np.ones((len(samples), problem.edges.shape[1]), dtype=np.int64)
+    for own, edges, count, entry in zip(opens, problem.edges, problem.stretches, samples, strict=True):
+        close = _ROUNDING * edges[count]
+        kept = np.append(np.array([time for time in entry.jumps if time not in entry.changes]), np.inf)
+        inner = edges[1:count]
+        own[1:count] = kept[np.searchsorted(kept, inner - close)] <= inner + close
+    return opens
 
 
 def cut(samples: Sequence[Lowered], problem: Problem, end: float) -> Problem:
     """The problem with the smooth stretches of each sample's motion, between the jumps of its loads."""
-    stretches = [smooth_stretches(entry.jumps, end) for entry in samples]
+    stretches: list[np.ndarray] = [smooth_stretches(entry.jumps, end) for entry in samples]
     edges = np.zeros((len(samples), max(map(len, stretches))))
     for own, given in zip(edges, stretches, strict=True):
         own[: len(given)] = given

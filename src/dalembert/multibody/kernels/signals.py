@@ -9,7 +9,11 @@ from dalembert.kernels.views import call_with, complexes, complexes2, integers, 
 from dalembert.multibody.kernels.dual import sin_cos
 from dalembert.multibody.kernels.records import call_at, model_at
 
-TIME, CONSTANT, STEP, HARMONIC, POLYNOMIAL, PIECEWISE, CUSTOM = range(7)
+TIME, CONSTANT, STEP, HARMONIC, POLYNOMIAL, PIECEWISE, HELD, CUSTOM = range(8)
+
+#: Numbers of a table before those of its pieces: scale, offset, delay, integrals, coefficients of a piece.
+TABLE_HEAD = 5
+_AT_CHANGE = 1e-6  # of the interval between two times of a held table: how near to one of them is at it
 
 
 @inner
@@ -37,6 +41,32 @@ def _segment(knots, first, count, t):
 
 
 @inner
+def _table(first, count, knot, data, knots, t, out):
+    """Value, rate and second rate of scaled and delayed polynomials between knots, held beyond their ends."""
+    scale, offset, since = data[first], data[first + 1], t - data[first + 2]
+    integrals, order = int(data[first + 3].real), int(data[first + 4].real)
+    parts = (count - TABLE_HEAD) // order
+    low, high = knots[knot], knots[knot + parts]
+    inside = low <= since.real <= high
+    if not inside:
+        since = 0.0 * since + (low if since.real < low else high)
+    part = _segment(knots, knot, parts, since.real)
+    piece = first + TABLE_HEAD + order * part
+    value, rate, second = _polynomial(data, piece, order, since - knots[knot + part])
+    value, rate, second = scale * value, scale * rate, scale * second
+    lasted = since - low
+    if integrals == 0:
+        value += offset
+    elif integrals == 1:
+        value, rate = value + offset * lasted, rate + offset
+    else:
+        value, rate, second = value + 0.5 * offset * lasted * lasted, rate + offset * lasted, second + offset
+    out[0] = value
+    if inside:
+        out[1], out[2] = rate, second
+
+
+@inner
 def _evaluate(kind, first, count, knot, data, knots, callbacks, t, within, out):
     """Value, rate and second rate of one signal, into ``out`` (3,)."""
     out[0], out[1], out[2] = 0.0, 0.0, 0.0
@@ -56,14 +86,18 @@ def _evaluate(kind, first, count, knot, data, knots, callbacks, t, within, out):
     elif kind == POLYNOMIAL:
         out[0], out[1], out[2] = _polynomial(data, first, count, t)
     elif kind == PIECEWISE:
-        low, high = knots[knot], knots[knot + count // 4]
-        if low <= t <= high:
-            part = _segment(knots, knot, count // 4, t)
-            out[0], out[1], out[2] = _polynomial(data, first + 4 * part, 4, t - knots[knot + part])
-        else:  # held beyond the ends
-            part = 0 if t < low else count // 4 - 1
-            at = 0.0 if t < low else high - knots[knot + part]
-            out[0] = _polynomial(data, first + 4 * part, 4, at)[0]
+        _table(first, count, knot, data, knots, t, out)
+    elif kind == HELD:
+        since = within - data[first + 2].real
+        part = _segment(knots, knot, count - TABLE_HEAD, since)
+        value = data[first + TABLE_HEAD + part]
+        for side in range(-1, 2, 2):  # the mean of both sides, where the method means a change itself
+            other = part + side
+            if 0 <= other < count - TABLE_HEAD:
+                edge, width = knots[knot + max(part, other)], abs(knots[knot + part] - knots[knot + other])
+                if abs(since - edge) <= _AT_CHANGE * width:
+                    value = 0.5 * (value + data[first + TABLE_HEAD + other])
+        out[0] = data[first] * value + data[first + 1]
     elif kind == CUSTOM:
         given, answer = stack(data, 1), stack(data, 3)
         given[0] = t
@@ -78,7 +112,8 @@ def _kernel(dtype: type) -> BlockKernel:
         """Fill the signals of a call at its time.
 
         ``within`` is a time strictly inside the present smooth stretch of motion; it decides on which side of a jump
-        the time ``t`` lies when the two coincide.
+        the time ``t`` lies when the two coincide. Where it is the time of a change of a held table, the value is the
+        mean of both sides.
         """
         own, table = call_at(work), model_at(model)
         index, out = integers2(table.signal_index, table.signal_count, 4), view2(own.signals, table.signal_count, 3)

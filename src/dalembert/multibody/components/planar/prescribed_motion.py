@@ -97,7 +97,7 @@ class PrescribedMotion(Joint):
     def __post_init__(self) -> None:
         if self.coordinate not in _COORDINATES:
             raise InputError(unknown("coordinate", self.coordinate, _COORDINATES, f"prescribed motion {self.name!r}"))
-        if isinstance(self.motion, Step) or (isinstance(self.motion, Table) and self.motion.kind == "linear"):
+        if isinstance(self.motion, Step) or (isinstance(self.motion, Table) and not self.motion.is_smooth):
             raise InputError(
                 f"prescribed motion {self.name!r}: the velocity of its {type(self.motion).__name__} jumps, which no "
                 "mechanism can follow; expected a smooth function of time, such as a cubic Table or a Polynomial"

@@ -194,7 +194,7 @@ SCENES: dict[type, tuple[Callable[..., mb.System], dict]] = {
         {"c0": 2.0, "c1": 30.0, "c2": -80.0},
     ),
     mb.Table: (
-        lambda v0, v1, v2, v3, **own: driven(mb.Table)(times=[0.0, 0.03, 0.05, 0.1], values=[v0, v1, v2, v3], **own),
+        lambda v0, v1, v2, v3, **own: driven(mb.Table)(times=[-0.02, 0.03, 0.05, 0.1], values=[v0, v1, v2, v3], **own),
         {"v0": 1.0, "v1": 2.0, "v2": -1.0, "v3": 0.5, "scale": 3.0, "offset": 0.8, "delay": 0.004},
     ),
     mb.Custom: (pinned, {}),

@@ -1,5 +1,6 @@
 """The tables of a study file that name data: measurements, and bounds of them."""
 
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -117,7 +118,11 @@ class DataTable(FileTable):
     between: Annotated[Ends, WrapValidator(_along)] = Field(
         None, description="times, or frequencies, between which samples are kept"
     )
-    every: int | None = Field(None, ge=1, description="keep every so manyth sample")
+    lowpass: Annotated[float, Read(fixed("Hz"))] | None = Field(
+        None, description="cutoff frequency of a low-pass filter without delay: '40 Hz'"
+    )
+    decimate: int | None = Field(None, ge=2, description="keep every so manyth sample behind the low-pass filter")
+    every: int | None = Field(None, ge=1, description="keep every so manyth sample, without a filter")
     resample: Annotated[Samples, WrapValidator(_along)] = Field(
         None, description="times, or frequencies, at which splines through the samples are taken"
     )
@@ -130,8 +135,8 @@ class DataTable(FileTable):
                 wrong.append(f"derivatives: the channel {name!r} has a column already; expected another name")
             if derivative.of not in self.columns:
                 wrong.append(unknown("channel", derivative.of, self.columns, f"derivatives, {name!r}"))
-        if self.every is not None and self.resample is not None:
-            wrong.append("every and resample are both given; expected one of them")
+        thinned = [name for name in ("decimate", "every", "resample") if getattr(self, name) is not None]
+        wrong += [f"{one} and {other} are both given; expected one of them" for one, other in pairwise(thinned)]
         if wrong:
             raise problem(*wrong)
         return self
@@ -150,6 +155,7 @@ class DataTable(FileTable):
         measured = None if given is None else {name: given[name] for name in given if name not in self.derivatives}
         data = read(self.file, self.time, self.columns, measured, missing=self.missing, wraps=self.wraps, **self.how)
         with told_of(self.file):
+            data = self._filtered(data)
             for name, one in self.derivatives.items():
                 how = {"order": one.order, "window": one.window, "degree": one.degree}
                 data = data.with_derivative(one.of, name, **how, deviation=(given or {}).get(name))
@@ -158,6 +164,12 @@ class DataTable(FileTable):
             if self.every is not None:
                 data = data.every(self.every)
             return data if self.resample is None else data.resampled(self.resample)
+
+    def _filtered(self, data: "Measurements") -> "Measurements":
+        """The data behind the low-pass filter, and thinned by it."""
+        if self.decimate is not None:
+            return data.decimated(self.decimate, self.lowpass)
+        return data if self.lowpass is None else data.filtered(self.lowpass)
 
 
 class BandsTable(FileTable):

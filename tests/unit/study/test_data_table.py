@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.io import savemat
 
+from dalembert.data import read
 from dalembert.errors import DataError, InputError
 from dalembert.study.context import Context
 from dalembert.study.data_table import BandsTable
@@ -103,6 +104,27 @@ def test_samples_are_chosen_or_interpolated(study, more, times):
     data = study(GIVEN + more).data()
     np.testing.assert_allclose(data.coordinate.values, times, atol=1e-15)
     np.testing.assert_allclose(data.difference(2.5 * times[:, None])[data.present], 0, atol=1e-9)
+
+
+def test_data_are_filtered_and_decimated(study):
+    table = 'time = "t"\ncolumns = { "crank.angle" = "x" }\ndeviations = { "crank.angle" = 0.1 }\n'
+    times = np.arange(2000) / 1000
+    values = np.sin(5 * times) + np.sin(600 * times)
+    folder = study(GIVEN).path.parent
+    rows = [f"{t},{x}" for t, x in zip(times, values, strict=True)]
+    (folder / "fast.csv").write_text("\n".join(["t,x", *rows]))
+    raw = read(folder / "fast.csv", columns={"crank.angle": "x"}, deviations=0.1)
+    for more, expected_data in (
+        ('lowpass = "30 Hz"', raw.filtered(30.0)),
+        ("decimate = 5", raw.decimated(5)),
+        ('lowpass = "0.03 kHz"\ndecimate = 5\nbetween = [0.5, 1.0]', raw.decimated(5, 30.0).between(0.5, 1.0)),
+    ):
+        data = study(table + more, file="fast.csv").data()
+        np.testing.assert_array_equal(data.values, expected_data.values)
+        np.testing.assert_array_equal(data.deviations, expected_data.deviations)
+    found = study(table + 'lowpass = "30 Hz"\nderivatives = { "crank.rate" = "crank.angle" }', file="fast.csv").data()
+    inside = slice(100, -100)
+    np.testing.assert_allclose(found.values[inside, 1], 5 * np.cos(5 * times)[inside], atol=0.1)
 
 
 @pytest.fixture

@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from dalembert.arguments import is_real, is_whole
 from dalembert.data.measurements import TURN, Measurements
 from dalembert.data.stretches import stretches
 from dalembert.errors import DataError
-from dalembert.arguments import is_real, is_whole
 
 ORDER = 4  # of the Butterworth filter, which runs forward and back
 _EVEN = 0.05  # of the distance of samples: how far one of them may differ
@@ -84,7 +84,7 @@ def _sections(cutoff: float, rate: float) -> np.ndarray:
     """Second-order sections of a Butterworth filter that has half of a component at the cutoff after both runs."""
     from scipy.signal import butter
 
-    return butter(ORDER, cutoff, fs=rate, output="sos")
+    return np.asarray(butter(ORDER, cutoff, fs=rate, output="sos"))
 
 
 def _channel(

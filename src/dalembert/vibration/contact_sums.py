@@ -8,10 +8,13 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from dalembert.kernels.blas import gemm
+from dalembert.vibration import event_sums_in_plane as in_plane
 from dalembert.vibration.event_sums import sums_and_slopes, sums_complex, sums_real
 from dalembert.vibration.fourier import Fourier
+from dalembert.vibration.friction_law import FRICTION, LOAD, TANGENTIAL
 from dalembert.vibration.friction_period import forces
 from dalembert.vibration.friction_tangent import Tangent, tangent_of
+from dalembert.vibration.slip_in_plane import ROWS
 
 
 class Shape(NamedTuple):
@@ -39,7 +42,7 @@ class ContactSums(Protocol):
 
 
 def contact_sums(numbers: np.ndarray, shape: Shape, series: Fourier, events: bool) -> ContactSums:
-    """Return the sums for contacts: corrected ones if asked for, and if they slip in one direction.
+    """Return the sums for contacts: corrected ones if asked for, and if their events can be found.
 
     Parameters
     ----------
@@ -49,7 +52,21 @@ def contact_sums(numbers: np.ndarray, shape: Shape, series: Fourier, events: boo
     series : Fourier
     events : bool
     """
-    return EventSums(numbers, shape, series) if events and shape.tangents < 2 else PlainSums(numbers, shape, series)
+    if not (events and has_events(numbers, shape)):
+        return PlainSums(numbers, shape, series)
+    return (PlaneEventSums if shape.tangents == 2 else EventSums)(numbers, shape, series)
+
+
+def has_events(numbers: np.ndarray, shape: Shape) -> bool:
+    """Return True if the sums for contacts can be corrected at events.
+
+    In two directions of slip, sliders must have a place and a limit: the force's direction comes from their motion.
+    """
+    if shape.tangents < 2:
+        return True
+    real = np.real(numbers)
+    limited = (real[:, FRICTION] > 0) & (shape.normal | (real[:, LOAD] > 0))
+    return shape.memory and bool(np.all(limited & (real[:, TANGENTIAL] > 0)))
 
 
 @dataclass(frozen=True)
@@ -107,7 +124,7 @@ class EventSums:
         if not displacements.dtype == numbers.dtype == float:
             kernel, displacements, numbers = sums_complex, displacements.astype(complex), numbers.astype(complex)
         place = np.ascontiguousarray(displacements)
-        sampled, states, corrections = self._results(place)
+        sampled, states, corrections = _results(place, series)
         kernel(
             place, numbers, *self.shape, self._orders, series.mean, series.waves, *self._room(place.dtype),
             np.zeros((2, 1, 0), place.dtype), sampled, states, corrections,
@@ -119,7 +136,7 @@ class EventSums:
         series, place = self.series, np.ascontiguousarray(displacements)
         contacts, columns, count = place.shape
         unknowns = columns * count
-        sampled, states, corrections = self._results(place)
+        sampled, states, corrections = _results(place, series)
         jacobians = np.empty((contacts, columns, count, unknowns))
         self._call(
             place, *self._room(float), np.empty((columns, series.samples, unknowns)),
@@ -127,12 +144,6 @@ class EventSums:
         )  # fmt: skip
         force = sampled @ series.analysis.T + corrections * self._weights
         return force, states, jacobians.reshape(contacts, unknowns, unknowns)
-
-    def _results(self, displacements: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Room for the forces at samples, the states and the corrections."""
-        contacts, columns, _ = displacements.shape
-        sampled = np.empty((contacts, columns, self.series.samples), displacements.dtype)
-        return sampled, np.empty((contacts, self.series.samples), np.uint8), np.empty_like(displacements)
 
     def _room(self, dtype: np.dtype | type) -> tuple[np.ndarray, ...]:
         """Room for the signals' values at samples, the signals with a table of waves, and small arrays."""
@@ -148,11 +159,93 @@ class EventSums:
 
     @cached_property
     def _orders(self) -> np.ndarray:
-        return np.array(self.series.orders, dtype=np.int64)
+        return _orders(self.series)
 
     @cached_property
     def _weights(self) -> np.ndarray:
-        """From integrals over a period to coefficients."""
-        weights = np.full(self.series.count, 1 / np.pi)
-        weights[: self.series.mean] /= 2
-        return weights
+        return _weights(self.series)
+
+
+@dataclass(frozen=True)
+class PlaneEventSums:
+    """Sums of samples, corrected at the events of :mod:`dalembert.vibration.event_sums_in_plane`.
+
+    Parameters
+    ----------
+    numbers : array, shape (contacts, 5)
+    shape : Shape
+        With two directions of slip, and sliders.
+    series : Fourier
+    """
+
+    numbers: np.ndarray
+    shape: Shape
+    series: Fourier
+
+    def forces(self, displacements: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Coefficients of forces, and states; see :class:`ContactSums`."""
+        series, numbers, kernel = self.series, self.numbers, in_plane.sums_real
+        if not displacements.dtype == numbers.dtype == float:
+            kernel, displacements, numbers = (
+                in_plane.sums_complex,
+                displacements.astype(complex),
+                numbers.astype(complex),
+            )
+        place = np.ascontiguousarray(displacements)
+        sampled, states, corrections = _results(place, series)
+        kernel(
+            place, numbers, self.shape.normal, _orders(series), series.mean, series.waves, *self._room(place.dtype),
+            np.empty((ROWS, 3), place.dtype), *self._vectors(place.dtype), sampled, states, corrections,
+        )  # fmt: skip
+        return sampled @ series.analysis.T + corrections * _weights(series), states
+
+    def with_slopes(self, displacements: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Coefficients of forces, states and Jacobians; see :class:`ContactSums`."""
+        series, place = self.series, np.ascontiguousarray(displacements)
+        contacts, columns, count = place.shape
+        unknowns = columns * count
+        sampled, states, corrections = _results(place, series)
+        jacobians = np.empty((contacts, columns, count, unknowns))
+        self._call(
+            place, *self._room(float), np.empty((ROWS, unknowns + 3)), np.empty((ROWS, 3)),
+            *self._vectors(float), np.empty((columns, series.samples, unknowns + 2)),
+            np.empty((columns, count, unknowns + 2)), np.empty((count, unknowns + 2)), sampled, states, corrections,
+            jacobians,
+        )  # fmt: skip
+        force = sampled @ series.analysis.T + corrections * _weights(series)
+        return force, states, jacobians.reshape(contacts, unknowns, unknowns)
+
+    def _room(self, dtype: np.dtype | type) -> tuple[np.ndarray, ...]:
+        """Room for the signals, tables of waves, the signals' values, and the stages of a step."""
+        count = self.series.count
+        shapes = (3, count), (20, count), (35, 3), (7, 3)
+        signals, tables, small, radau = (np.empty(shape, dtype) for shape in shapes)
+        return signals, tables.reshape(4, 5, count), small.reshape(7, 5, 3), radau
+
+    def _vectors(self, dtype: np.dtype | type) -> tuple[np.ndarray, np.ndarray]:
+        return np.empty((4, 11), dtype), np.empty(11, complex)
+
+    @cached_property
+    def _call(self) -> Callable[..., None]:
+        series = self.series
+        return in_plane.sums_and_slopes.given(
+            self.numbers, self.shape.normal, _orders(series), series.mean, series.waves, series.analysis, gemm()
+        )
+
+
+def _results(displacements: np.ndarray, series: Fourier) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Room for the forces at samples, the states and the corrections."""
+    contacts, columns, _ = displacements.shape
+    sampled = np.empty((contacts, columns, series.samples), displacements.dtype)
+    return sampled, np.empty((contacts, series.samples), np.uint8), np.empty_like(displacements)
+
+
+def _orders(series: Fourier) -> np.ndarray:
+    return np.array(series.orders, dtype=np.int64)
+
+
+def _weights(series: Fourier) -> np.ndarray:
+    """From integrals over a period to coefficients."""
+    weights = np.full(series.count, 1 / np.pi)
+    weights[: series.mean] /= 2
+    return weights

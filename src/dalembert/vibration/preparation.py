@@ -5,11 +5,13 @@ from threading import Lock
 
 from dalembert.kernels.kernel import Compiled
 from dalembert.kernels.preparation import prepare
+from dalembert.vibration import event_sums_in_plane as in_plane
+from dalembert.vibration.contact_sums import Shape, has_events
 from dalembert.vibration.event_sums import sums_and_slopes, sums_complex, sums_real
 from dalembert.vibration.friction_period import forces_complex, forces_real
 from dalembert.vibration.friction_tangent import forces_and_slopes
 from dalembert.vibration.linearised_law import linearise
-from dalembert.vibration.lowering import ELASTIC, Lowered
+from dalembert.vibration.lowering import ELASTIC, FrictionBlock, Lowered
 from dalembert.vibration.springs import BilinearStop, Gap
 from dalembert.vibration.time_elements import react, settle
 from dalembert.vibration.time_steps import go_through
@@ -20,6 +22,7 @@ _TURN = Lock()
 
 _PLAIN = (forces_and_slopes, forces_real, forces_complex)
 _CORRECTED = (sums_and_slopes, sums_real, sums_complex)
+_IN_PLANE = (in_plane.sums_and_slopes, in_plane.sums_real, in_plane.sums_complex)
 """Kernels of sums with their Jacobians, of sums alone, and of their derivatives with respect to parameters."""
 
 
@@ -35,23 +38,22 @@ def prepare_balance(lowered: Lowered, events: bool, *, residuals: bool, stabilit
 
 def _kernels(lowered: Lowered, events: bool, residuals: bool, derivatives: bool) -> list[Compiled]:
     """Kernels of the sums of contacts and stops."""
+    laws = {_law(block, events) for block in lowered.blocks}
+    if events and any(isinstance(element, Gap | BilinearStop) for _, element in lowered.springs):
+        laws.add(_CORRECTED)
     return [
         kernel
-        for law, used in ((_PLAIN, _plain(lowered, events)), (_CORRECTED, _corrected(lowered, events)))
+        for law in (_PLAIN, _CORRECTED, _IN_PLANE)
         for kernel, needed in zip(law, (True, residuals, derivatives), strict=True)
-        if used and needed
+        if law in laws and needed
     ]
 
 
-def _plain(lowered: Lowered, events: bool) -> bool:
-    """Whether sums of samples are needed."""
-    return any(block.tangents == 2 or not events for block in lowered.blocks)
-
-
-def _corrected(lowered: Lowered, events: bool) -> bool:
-    """Whether sums that are corrected at events are needed."""
-    stops = any(isinstance(element, Gap | BilinearStop) for _, element in lowered.springs)
-    return events and (stops or any(block.tangents < 2 for block in lowered.blocks))
+def _law(block: FrictionBlock, events: bool) -> tuple[Compiled, ...]:
+    """Kernels of the sums that a block takes."""
+    if not (events and has_events(block.numbers, Shape(block.tangents, block.normal, block.memory))):
+        return _PLAIN
+    return _IN_PLANE if block.tangents == 2 else _CORRECTED
 
 
 def prepare_time(lowered: Lowered, events: bool | None) -> None:

@@ -28,6 +28,8 @@ WEIGHTS = (
 """Radau IIA of order five: nodes and weights of its stages, of which the last is the end of the step."""
 ITERATIONS = 12
 """Of Newton's method for the stages of a step; a step that needs more is halved."""
+FAR = 100.0
+"""Change of a stage in an iteration from which the method does not return; the imaginary parts would overflow."""
 
 #: Rows of signals: both trial forces k u, and the load N. Rows of gradients.
 PRESSED = 2
@@ -84,6 +86,8 @@ def step(begin, end, phi, friction, orders, mean, signals, constants, tables, st
             return 0.0 * phi, False
         for j in range(3):
             change = radau[2 + j, 0] * radau[6, 0] + radau[2 + j, 1] * radau[6, 1] + radau[2 + j, 2] * radau[6, 2]
+            if not abs(change.real) <= FAR:
+                return 0.0 * phi, False
             radau[0, j] += change
             moved = max(moved, abs(change.real))
         if found:

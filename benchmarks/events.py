@@ -9,7 +9,8 @@ from dalembert import Elastic, FrictionContact, HarmonicBalance, HarmonicForce, 
 from dalembert.structure import lumped
 from dalembert.study import load
 
-INTERFACES = Path(__file__).parents[1] / "studies" / "two-interfaces" / "elastic.toml"
+STUDIES = Path(__file__).parents[1] / "studies"
+INTERFACES, PLATE = STUDIES / "two-interfaces" / "elastic.toml", STUDIES / "patched-plate" / "sweep.toml"
 REFERENCE, MOST = 4096, 16_384
 HARMONICS = 7
 
@@ -34,9 +35,14 @@ def interfaces() -> tuple[VibrationSystem, np.ndarray, str]:
     return build(preload=80.0), np.linspace(200.0, 280.0, 81), "upper1.x"
 
 
+def plate() -> tuple[VibrationSystem, np.ndarray, str]:
+    """The study of a plate with patches, whose contacts slip in two directions, near its resonance."""
+    return load(PLATE).along("preload")(preload=80.0), np.linspace(404.5, 407.0, 6), "left.z"
+
+
 def main() -> list[dict[str, object]]:
     """Time a point of each; errors are of the amplitude, beside sums corrected with many samples."""
-    cases = {"one mass": slider(1), "two masses": slider(2), "two interfaces": interfaces()}
+    cases = {"one mass": slider(1), "two masses": slider(2), "two interfaces": interfaces(), "patched plate": plate()}
     rows = [_row(name, *case) for name, case in cases.items()]
     timing.report("events", f"Friction in frequency: sums corrected at events, {HARMONICS} harmonics", rows)
     return rows

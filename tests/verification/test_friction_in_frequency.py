@@ -1,7 +1,10 @@
 """Harmonic balance with friction against independent codes, closed forms, and limits of the laws."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from dalembert.structure import lumped
 from dalembert.vibration import (
@@ -13,6 +16,9 @@ from dalembert.vibration import (
     VibrationSystem,
     frequency_response,
 )
+from dalembert.vibration.contact_sums import Shape, contact_sums
+from dalembert.vibration.fourier import Fourier
+from dalembert.vibration.friction_law import SLIPPING, STUCK
 from vibrating_systems import chain, duffing, massless_foot, one_mass, two_masses
 
 TOPIC = "Friction in frequency"
@@ -197,3 +203,64 @@ def test_one_harmonic_of_a_slider_is_the_closed_form(record_evidence) -> None:
         "energy that a slider takes in a period of full slip", 4 * limit * (size - limit / stiffness),
         curve.dissipated("slider.x")[0], tolerance=1e-5, topic=TOPIC, source="4 μN (X - μN/k)", unit="J",
     )  # fmt: skip
+
+
+@pytest.mark.parametrize(("shape", "width", "sticks"), [("wide", 1.1, False), ("narrow", 0.1, True)])
+def test_slip_in_two_directions(record_evidence, shape: str, width: float, sticks: bool) -> None:
+    """A foot moves along an ellipse under a load that varies, and sticks in part if that is narrow."""
+    numbers, load = np.array([[2.0, 3.0, 0.0, 0.5, 2.0]]), 0.3
+    place = np.array([[[0.1, 1.0, 0.2], [-0.2, 0.3, width], [0.0, load, 0.1]]])
+    exact, stuck = _in_time(place[0], numbers[0])
+    force, states = contact_sums(numbers, Shape(2, True, True), Fourier((0, 1), 128), True).forces(place)
+    assert np.any(states == SLIPPING)
+    assert np.any(states == STUCK) == stuck == sticks
+    record_evidence(
+        f"slip in two directions along a {shape} ellipse: largest error of the force's coefficients, 128 samples",
+        0.0, np.abs(force[0, :2] - exact).max(), tolerance=1e-6, topic=TOPIC, unit="N", noisy=True,
+        source="the slider's place integrated in time, between its stops, by DOP853",
+    )  # fmt: skip
+
+
+def _in_time(place: np.ndarray, numbers: np.ndarray) -> tuple[np.ndarray, bool]:
+    """Coefficients of the tangential forces in the sixth period, and whether the slider rests in it."""
+    stiffness, normal, _, friction, load = numbers
+
+    def at(tau: float, order: int = 0) -> np.ndarray:
+        c, s = np.cos(tau), np.sin(tau)
+        return place @ (np.array([1.0, c, s]) if order == 0 else np.array([0.0, -s, c]))
+
+    def limit(tau: float, order: int = 0) -> float:
+        return friction * (normal * at(tau, order)[2] + (load if order == 0 else 0.0))
+
+    def rate(tau: float, z: np.ndarray) -> float:
+        force = stiffness * (at(tau)[:2] - z)
+        return at(tau, 1)[:2] @ force / np.linalg.norm(force) - limit(tau, 1) / stiffness
+
+    def excess(tau: float, z: np.ndarray) -> float:
+        return float(np.linalg.norm(stiffness * (at(tau)[:2] - z)) - limit(tau))
+
+    def slide(tau: float, z: np.ndarray) -> np.ndarray:
+        force = stiffness * (at(tau)[:2] - z)
+        return rate(tau, z) * force / np.linalg.norm(force)
+
+    rate.terminal, excess.terminal, rate.direction, excess.direction = True, True, -1, 1  # type: ignore[attr-defined]
+    tau, z, sliding, pieces, end = 0.0, np.zeros(2), False, [], 12 * np.pi
+    if excess(tau, z) > 0:
+        force = stiffness * (at(tau)[:2] - z)
+        z, sliding = at(tau)[:2] - limit(tau) * force / np.linalg.norm(force) / stiffness, True
+    while tau < end:
+        own, event = (slide, rate) if sliding else (lambda _, z: 0.0 * z, excess)
+        piece = solve_ivp(
+            own, (tau, end), z, method="DOP853", events=event, rtol=1e-12, atol=1e-13, max_step=0.05, dense_output=True
+        )
+        pieces.append((tau, piece.t[-1], piece.sol, sliding))
+        tau, z, sliding = piece.t[-1], piece.y[:, -1], not sliding
+    nodes, weights = np.polynomial.legendre.leggauss(60)
+    result = np.zeros((2, 3))
+    for begin, stop, solution, _ in pieces:
+        for low, high in pairwise(np.linspace(max(begin, 10 * np.pi), max(stop, 10 * np.pi), 5)):
+            for node, weight in zip(nodes, weights * (high - low) / 2, strict=True):
+                t = (low + high) / 2 + node * (high - low) / 2
+                force = stiffness * (at(t)[:2] - solution(t))
+                result += weight * np.outer(force, [0.5, np.cos(t), np.sin(t)]) / np.pi
+    return result, any(not moves for _, stop, _, moves in pieces if stop > 10 * np.pi)

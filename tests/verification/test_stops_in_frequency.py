@@ -3,17 +3,21 @@
 The systems are examples 03 and 07 of NLvib (Krack, Gross: "Harmonic Balance for Nonlinear Vibration Problems", 2019).
 """
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
 from dalembert.structure import lumped
 from dalembert.vibration import Gap, HarmonicBalance, HarmonicForce, VibrationSystem, frequency_response
 from random_vibrations import ACCEPTED, Law, RandomSystem, unbalanced
+from sliders_in_time import Periodic, Sliders
 from stops_in_time import Stops
 from vibrating_systems import chain
 
 TOPIC = "Friction in frequency"
 TIME = "shooting with exact flows between the instants at which the stop changes"
+SHOOTING = "shooting by fourth-order Runge-Kutta steps that end where sliders and stops change"
 TURN = 2 * np.pi
 CLOSE = 0.01
 """Distance of the largest multiplier from the unit circle within which a point may be judged wrongly."""
@@ -83,9 +87,12 @@ def test_stability_of_a_mass_that_meets_a_stop_is_that_of_shooting(record_eviden
     )  # fmt: skip
 
 
+CHAIN = {"m1": [1.0, 0, 0], "12": [1.0, -1, 0], "m2": [0, 1.0, 0], "23": [0, 1.0, -1], "m3": [0, 0, 1.0]}
+"""Rows of relative displacement in the chain of three masses."""
+
+
 def test_the_path_of_a_chain_with_sliders_and_a_stop_has_four_turning_points(record_evidence) -> None:
-    rows = {"m1": [1.0, 0, 0], "12": [1.0, -1, 0], "m2": [0, 1.0, 0], "23": [0, 1.0, -1], "m3": [0, 0, 1.0]}
-    way = {name: np.array(row) for name, row in rows.items()}
+    way = {name: np.array(row) for name, row in CHAIN.items()}
     own = RandomSystem(chain(), np.zeros(0), laws=[
         Law(way["m1"], None, stiffness=20.0, friction=1.0, load=1.0),
         Law(way["12"], None, stiffness=20.0, friction=1.0, load=1.0),
@@ -101,3 +108,80 @@ def test_the_path_of_a_chain_with_sliders_and_a_stop_has_four_turning_points(rec
         "three masses with sliders and a stop: largest residual of the path, as part of the forces", 0.0, worst,
         tolerance=ACCEPTED, topic=TOPIC, source="the balance of forces in plain NumPy",
     )  # fmt: skip
+
+
+def chain_in_time() -> Sliders:
+    """The chain with sliders and a stop, to be integrated in time."""
+    structure, way = chain().structure, {name: np.array(row) for name, row in CHAIN.items()}
+    return Sliders(
+        structure.mass, structure.damping, structure.stiffness, np.array([0.0, 1.0, 0.0]),
+        sliders=((way["m1"], 20.0, 1.0), (way["12"], 20.0, 1.0)), stops=((way["m3"], 1.0, 0.25),),
+        cubic=((way["m2"], 1.0), (way["23"], 1.0)),
+    )  # fmt: skip
+
+
+def chain_state(curve, point: int) -> np.ndarray:
+    """Displacements, their rates by the phase, and positions of the sliders, where the force is largest."""
+    orders, x = np.arange(1, len(curve.orders)), curve.response[point]
+    places = x[:, 0] + x[:, 1::2].sum(axis=1)
+    force = curve.forces[point, :2, 0] + curve.forces[point, :2, 1::2].sum(axis=1)
+    moved = np.array([CHAIN["m1"], CHAIN["12"]]) @ places
+    return np.concatenate([places, x[:, 2::2] @ orders, moved - np.clip(force, -1, 1) / 20])
+
+
+@pytest.mark.slow
+def test_the_turning_points_of_a_chain_with_sliders_and_a_stop_are_those_of_shooting(record_evidence) -> None:
+    reference = chain_in_time()
+    curve = frequency_response(
+        chain(), (0.5 / TURN, 2 / TURN), HarmonicBalance(21), continuation="arc-length", check=False
+    )
+    assert curve.coordinates[:2] == ("to ground.x", "between.x")
+    folds = np.flatnonzero(curve.fold)
+    turned = [
+        reference.fold(chain_state(curve, point), TURN * curve.frequencies[point], 3e-3) for point in folds.tolist()
+    ]
+    frequencies = np.array([one.omega for one in turned if one is not None])
+    np.testing.assert_allclose(frequencies, [1.63507, 1.62971, 1.66746, 1.55930], atol=1e-5)
+    worst = float(np.abs(TURN * curve.folds - frequencies).max())
+    record_evidence(
+        "three masses with sliders and a stop: largest error of the four turning points, rad/s", 0.0, worst,
+        tolerance=2e-5, topic=TOPIC, source=SHOOTING,
+    )  # fmt: skip
+    # Two turns are folds, with a multiplier of 1. At the two others a slider begins to stick or to slip.
+    nearest = [float(np.abs(one.multipliers - 1).min()) for one in turned if one is not None]
+    assert max(nearest[0], nearest[3]) < 1e-6 < 0.01 < min(nearest[1], nearest[2])
+
+
+@pytest.mark.slow
+def test_points_between_the_turning_points_of_a_chain_are_those_of_shooting(record_evidence) -> None:
+    reference = chain_in_time()
+    curve = frequency_response(
+        chain(), (0.5 / TURN, 2 / TURN), HarmonicBalance(21), continuation="arc-length", stability=True, check=False
+    )
+    folds = np.flatnonzero(curve.fold)
+    apart = [point for point in range(5, len(curve), 9) if np.abs(folds - point).min() > 2]
+    points = sorted({*apart, *(int(point) for point in np.append(folds - 3, folds + 3))})
+    found: list[Periodic | None] = [
+        reference.periodic(chain_state(curve, point), TURN * curve.frequencies[point]) for point in points
+    ]
+    errors, right, signs = [], [], []
+    for point, one in zip(points, found, strict=True):
+        assert one is not None, point
+        places = one.state[:3]
+        errors.append(np.abs(places - chain_state(curve, point)[:3]).max() / np.abs(places).max())
+        signs.append(np.prod([np.sign(1 - own.real) for own in one.multipliers if own.imag == 0]))
+        largest = float(np.abs(one.multipliers).max())
+        if abs(largest - 1) > CLOSE and curve.stable[point] >= 0:
+            right.append((curve.stable[point] == 1) == (largest < 1))
+    record_evidence(
+        "three masses with sliders and a stop: largest error of points of the path, as part of the motion", 0.0,
+        max(errors), tolerance=1e-3, topic=TOPIC, source=SHOOTING,
+    )  # fmt: skip
+    record_evidence(
+        "three masses with sliders and a stop: share of points with the right stability", 1.0, float(np.mean(right)),
+        tolerance=0.0, topic=TOPIC, source=SHOOTING,
+    )  # fmt: skip
+    assert len(right) > 20
+    # The determinant of I - M changes its sign at the turning points, and nowhere else.
+    turns = [sum(int(fold) in range(a, b) for fold in folds) for a, b in pairwise(points)]
+    assert [a * b for a, b in pairwise(signs)] == [(-1.0) ** turn for turn in turns]

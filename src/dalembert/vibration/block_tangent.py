@@ -92,6 +92,17 @@ class BlockTangent:
             np.add.at(blocks, self._rows, values)
         return blocks
 
+    @property
+    def sign(self) -> float:
+        r"""Sign of the determinant of J, which is :math:`\det A\,\det(1 + V A^{-1} E m)`."""
+        # Blocks of harmonics are complex numbers as pairs of real ones: their determinants are positive.
+        own = np.linalg.slogdet(self._reference_blocks[0].real)[0] if self.series.mean else 1.0
+        if not self.active:
+            return float(own)
+        matrix, pivots = self._coupled[1]
+        swapped = np.sum(pivots != np.arange(len(pivots))) % 2
+        return float(own * (-1) ** swapped * np.prod(np.sign(np.diag(matrix))))
+
     @cached_property
     def _rows(self) -> np.ndarray:
         """Coordinates of the active contacts."""

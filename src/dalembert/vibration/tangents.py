@@ -85,10 +85,12 @@ def bordered(
 
 
 def orientation(tangent: Tangent, direction: np.ndarray, scales: tuple[float, float, float]) -> float:
-    """Sign of the determinant of the tangent with a row, which a direction along a path keeps; 0 where not dense."""
-    if not isinstance(tangent, DenseTangent):
-        return 0.0
-    return float(np.linalg.slogdet(_with_row(tangent, direction, scales))[0])
+    """Sign of the determinant of the tangent with a row, which a direction along a path keeps; 0 where it is 0."""
+    if isinstance(tangent, DenseTangent):
+        return float(np.linalg.slogdet(_with_row(tangent, direction, scales))[0])
+    size, width, _ = scales
+    moving = tangent.solve(tangent.slope[:, :, None])[:, :, 0] * (width / size)
+    return tangent.sign * float(np.sign(direction[-1] - direction[:-1] @ moving.ravel()))
 
 
 def _with_row(tangent: DenseTangent, direction: np.ndarray, scales: tuple[float, float, float]) -> np.ndarray:

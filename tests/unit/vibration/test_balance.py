@@ -25,7 +25,7 @@ from dalembert.vibration import (
 from dalembert.vibration import balance as module
 from dalembert.vibration.equations import equations
 from dalembert.vibration.fourier import real_blocks
-from dalembert.vibration.tangents import BlockTangent, DenseTangent, bordered
+from dalembert.vibration.tangents import BlockTangent, DenseTangent, bordered, orientation
 
 Fill = Callable[[VibrationSystem], None]
 
@@ -161,6 +161,9 @@ def test_the_jacobian_by_its_structure_is_the_dense_one(
     solved = [bordered(own, direction, (0.1, 2.0, 3.0), right[:, :, 0], 0.7) for own in (dense, block)]
     for one, other in zip(*solved, strict=True):
         np.testing.assert_allclose(one, other, rtol=1e-7, atol=1e-9 * np.abs(one).max())
+    for row in (direction, -direction, rng.normal(size=direction.shape)):
+        signs = [orientation(own, row, (0.1, 2.0, 3.0)) for own in (dense, block)]
+        assert signs[0] == signs[1] != 0
 
 
 def test_curves_by_the_structure_are_the_dense_ones(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,10 +1,12 @@
 """Random vibrating systems with contacts, and the balance of their forces evaluated anew in plain NumPy.
 
 As a command (``python tests/random_vibrations.py 200``) it goes through that many systems, at given frequencies and
-along paths, and writes the table tests/verification/references/random_vibrations.csv.
+along paths, and writes the table tests/verification/references/random_vibrations.csv. With a second number it stops
+after that many seconds; begun again, it goes on after the last line of its unfinished table, which lies beside that.
 """
 
 import sys
+import time
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -359,13 +361,22 @@ def row(number: int) -> str:
     return f"{number},{'; '.join(own.kinds)},{found},{worst},{outcome.lost},{outcome.refused},{part:.4f},{len(path)}"
 
 
+HEAD = "system,contacts,points found,largest residual,points lost,points refused,part of the range,points of the path"
+
+
 def main() -> None:
-    """Write the table."""
-    rows = map(row, range(int(sys.argv[1]) if len(sys.argv) > 1 else 200))
-    head = (
-        "system,contacts,points found,largest residual,points lost,points refused,part of the range,points of the path"
-    )
-    TABLE.write_text("\n".join([head, *rows]) + "\n", encoding="utf-8")
+    """Write the table, or go on with it for some seconds."""
+    count, limit = int(sys.argv[1]) if len(sys.argv) > 1 else 200, float(sys.argv[2]) if len(sys.argv) > 2 else np.inf
+    begin, part = time.monotonic(), TABLE.with_suffix(".part")
+    if not part.exists():
+        part.write_text(HEAD + "\n", encoding="utf-8")
+    for number in range(len(part.read_text(encoding="utf-8").splitlines()) - 1, count):
+        if time.monotonic() - begin > limit:
+            return
+        line = row(number)
+        with part.open("a", encoding="utf-8") as file:
+            file.write(line + "\n")
+    part.replace(TABLE)
 
 
 if __name__ == "__main__":

@@ -16,8 +16,8 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from scipy.linalg import LinAlgError, eigh
-from scipy.sparse import csc_array, eye_array, issparse
+from scipy.linalg import LinAlgError, eigh, qr
+from scipy.sparse import csc_array, diags_array, eye_array, issparse
 from scipy.sparse.linalg import splu
 
 from dalembert.errors import ModelError, SolveError, listed
@@ -36,6 +36,10 @@ MOVING = 1e-6
 """Part of the largest motion above which a degree of freedom is said to move."""
 SOFT = 1e-12
 """Stiffness, as part of the largest, that makes a sparse interior that moves freely one that can be factorised."""
+DECOUPLED = 1e-10
+"""Stiffness or static force along a free motion, as part of the largest, that is rounding."""
+MOST_FREE = 24
+"""Free motions of a sparse interior that are looked for: four bodies in space."""
 NAMED = 4
 """Degrees of freedom that a sentence names."""
 
@@ -137,8 +141,9 @@ class Condensation:
         self.loads, self.names = loads, structure.dofs.names
         self.outer_loads, self.inner_loads = loads @ self.retained, np.asarray((self.back.T @ loads.T).T)
         self._shared: dict[str, np.ndarray] = {}
-        if self.orders[0] == 0:
-            _require_held(self.inner[0], self.back, structure.dofs.names)
+        self.free, self._pins = np.zeros((size, 0)), np.zeros(0, dtype=int)
+        if self.orders[0] == 0 and self.inner_loads.shape[1]:
+            self._set_free(_free_motions(self.inner[0]))
 
     def at(self, omega: float) -> Point:
         """The condensed structure at ω, rad/s."""
@@ -169,8 +174,61 @@ class Condensation:
         )
 
     def full(self, retained: np.ndarray, interior: np.ndarray) -> np.ndarray:
-        """All degrees of freedom (orders, n) from the retained and the interior ones."""
-        return retained @ self.retained.T + np.asarray((self.back @ interior.T).T)
+        """All degrees of freedom (orders, n) from the retained and the interior ones.
+
+        Where nothing holds a mean position, it is the smallest one: without a part along :attr:`free`.
+        """
+        motion = retained @ self.retained.T + np.asarray((self.back @ interior.T).T)
+        if self.free.size:
+            motion[0] -= self.free @ (self.free.T @ motion[0])
+        return motion
+
+    def _set_free(self, motions: np.ndarray) -> None:
+        """Keep the motions (l, motions) that nothing holds where the coordinates of the elements are held.
+
+        They carry mass and no mean force, so that periodic motions exist, each about any mean position.
+
+        Raises
+        ------
+        ModelError
+            For motions without mass, and for static forces along them.
+        """
+        if not motions.size:
+            return
+        moved = np.asarray(self.back @ motions)
+        size = np.abs(moved).max(axis=1)
+        mass = np.linalg.eigvalsh(motions.T @ _times_columns(self.inner[1], motions))
+        coupled = np.abs(self.across[0] @ motions).max(initial=0.0)
+        if mass[0] <= FLOATING * abs(self.inner[1]).max() or coupled > DECOUPLED * abs(self.outer[0]).max(initial=1.0):
+            raise ModelError(
+                f"the structure can move freely, at {_moving(self.names, size)}, without a mass, a spring or a contact "
+                "that holds it, so its motion is not determined; clamp it, or give it mass"
+            )
+        self.free = np.linalg.qr(moved)[0]
+        static = np.real(self.loads[0])
+        force = float(np.linalg.norm(self.free.T @ static))
+        if force > DECOUPLED * np.linalg.norm(static):
+            raise ModelError(
+                f"a mean force of {force:.3g} N acts along {_moving(self.names, size)}, where no spring and no contact "
+                "holds the structure, so it has no periodic motion; clamp it, or balance the static forces"
+            )
+        self._pins = qr(motions.T, mode="r", pivoting=True)[-1][: motions.shape[1]]
+
+    @property
+    def free_names(self) -> str:
+        """Degrees of freedom whose mean position nothing holds; empty without."""
+        return _moving(self.names, np.abs(self.free).max(axis=1)) if self.free.size else ""
+
+    def _pinned(self, inner: Any) -> Any:
+        """Interior stiffness of the mean position with a support for each free motion, which carries no force."""
+        support = float(abs(self.inner[0]).max()) or 1.0
+        if isinstance(inner, list):
+            places = np.zeros(inner[0].shape[0])
+            places[self._pins] = support
+            return [csc_array(inner[0] + diags_array(places)), *inner[1:]]
+        inner = inner.copy()
+        inner[(0, self._pins) if inner.ndim == 2 else (0, self._pins, self._pins)] += support
+        return inner
 
     def solve(self, s: np.ndarray, right: np.ndarray, inner: Any = None) -> np.ndarray:
         """Z_ll⁻¹ times right-hand sides (orders, l, columns)."""
@@ -199,6 +257,8 @@ class Condensation:
         SolveError
             Where forces, the last of the right-hand sides, move one that the retained coordinates do not hold.
         """
+        if self._pins.size:
+            inner = self._pinned(inner)
         if isinstance(inner, list) or inner.ndim > 2:
             return inner
         still = np.abs(inner) <= self._resonant
@@ -297,16 +357,9 @@ def _real(matrix: Any) -> Any:
     return matrix.real if np.iscomplexobj(matrix) else matrix
 
 
-def _require_held(stiffness: Any, back: Any, names: tuple[str, ...]) -> None:
-    """Refuse a structure that still moves freely where the coordinates of its elements are held."""
-    motion = np.abs(back @ _free_motion(stiffness)) if stiffness.shape[0] else np.zeros(0)
-    if not motion.any():
-        return
-    raise ModelError(
-        f"the structure can move freely, at {_moving(names, motion)}, without a spring or a contact that holds it, so "
-        "its mean position is not determined; clamp it, or keep odd harmonics only (odd_only=True) where the motion is "
-        "symmetric"
-    )
+def _times_columns(matrix: Any, columns: np.ndarray) -> np.ndarray:
+    """A matrix (l, l), or its diagonal (l,), times columns (l, columns)."""
+    return matrix[:, None] * columns if matrix.ndim == 1 else np.asarray(matrix @ columns)
 
 
 def _moving(names: tuple[str, ...], motion: np.ndarray) -> str:
@@ -325,23 +378,26 @@ def _resonance(s: np.ndarray, where: str) -> SolveError:
     )
 
 
-def _free_motion(stiffness: Any) -> np.ndarray:
-    """A motion (l,) that a stiffness does not resist, made of all such ones; zeros if it resists all."""
-    any_motion = np.random.default_rng(0).standard_normal(stiffness.shape[0])  # with a part of each
+def _free_motions(stiffness: Any) -> np.ndarray:
+    """Motions (l, motions) that a stiffness does not resist."""
     if stiffness.ndim == 1:
-        return np.where(np.abs(stiffness) <= FLOATING * np.abs(stiffness).max(), any_motion, 0.0)
-    if issparse(stiffness):
-        try:
-            pivots = np.abs(splu(csc_array(stiffness)).U.diagonal())
-        except RuntimeError:  # a pivot is zero
-            pivots = np.zeros(1)
-        if pivots.min() > FLOATING * pivots.max():
-            return np.zeros_like(any_motion)
-        nearly = splu(csc_array(stiffness + SOFT * (abs(stiffness).max() or 1.0) * eye_array(len(any_motion))))
-        for _ in range(3):
-            any_motion = nearly.solve(any_motion)
-            any_motion = any_motion / np.abs(any_motion).max()
-        return any_motion
-    values, shapes = np.linalg.eigh(stiffness)
-    free = shapes[:, np.abs(values) <= FLOATING * np.abs(values).max()]
-    return free @ (free.T @ any_motion)
+        return np.eye(len(stiffness))[:, np.abs(stiffness) <= FLOATING * np.abs(stiffness).max()]
+    if not issparse(stiffness):
+        return _unresisted(stiffness, np.eye(len(stiffness)))
+    try:
+        pivots = np.abs(splu(csc_array(stiffness)).U.diagonal())
+    except RuntimeError:  # a pivot is zero
+        pivots = np.zeros(1)
+    if pivots.min() > FLOATING * pivots.max():
+        return np.zeros((stiffness.shape[0], 0))
+    nearly = splu(csc_array(stiffness + SOFT * (abs(stiffness).max() or 1.0) * eye_array(stiffness.shape[0])))
+    basis = np.random.default_rng(0).standard_normal((stiffness.shape[0], min(MOST_FREE, stiffness.shape[0])))
+    for _ in range(3):
+        basis = np.linalg.qr(nearly.solve(basis))[0]
+    return _unresisted(stiffness, basis)
+
+
+def _unresisted(stiffness: Any, basis: np.ndarray) -> np.ndarray:
+    """Of the motions of an orthonormal basis (l, motions), those that a stiffness does not resist."""
+    values, shapes = np.linalg.eigh(basis.T @ (stiffness @ basis))
+    return basis @ shapes[:, np.abs(values) <= FLOATING * (abs(stiffness).max() or 1.0)]

@@ -140,7 +140,7 @@ def equations(
     InputError
         For parts on degrees of freedom that are not there, and for odd harmonics where something acts in one direction.
     ModelError
-        For rigid contacts that depend on each other, and for a structure whose mean position nothing holds.
+        For rigid contacts that depend on each other, and for mean forces along a motion that nothing holds.
     """
     lowered = lower(system).real
     if method.odd_only:

@@ -23,7 +23,7 @@ from dalembert.vibration.recorded import recorded
 from dalembert.vibration.system import VibrationSystem
 from dalembert.vibration.threads import one_thread
 from dalembert.vibration.truncation import largest, truncation_findings
-from dalembert.vibration.unfound import unfound, unfound_findings
+from dalembert.vibration.unfound import free_findings, unfound, unfound_findings
 
 NATURAL, ARC_LENGTH = "natural", "arc-length"
 PHASES = 64
@@ -111,7 +111,7 @@ def frequency_response(
         a structure that is too large for dense matrices, has hysteretic damping, or where several degrees of freedom
         share one mass.
     ModelError
-        For rigid contacts that depend on each other, and for a structure whose mean position nothing holds.
+        For rigid contacts that depend on each other, and for mean forces along a motion that nothing holds.
 
     Examples
     --------
@@ -234,6 +234,7 @@ def _curve(
         provenance={**provenance, "method": asdict(problem.method), **settings},
         findings=(
             *unfound_findings(len(records), filter(None, lost)),
+            *free_findings(problem),
             *(() if top is None else truncation_findings(problem, top)),
         ),
     )

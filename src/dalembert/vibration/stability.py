@@ -15,6 +15,8 @@ from dalembert.vibration.uncondensed import Uncondensed
 HILL, TIME_MAP, AUTOMATIC = "hill", "time map", "automatic"
 NEUTRAL = 1e-8
 """Growth, in parts of ω, that is none: rounding of undamped motions."""
+SPLIT = 1e-6
+"""Exponent of a free motion, in parts of ω, that is rounding: the root of that of the equations."""
 FEWEST = 512
 """Steps of the map over a period, if the motion does not have more samples."""
 TRUNCATED = 0.02 / (2 * np.pi)
@@ -62,8 +64,16 @@ def exponents(problem: Equations, solution: Solution, way: str = AUTOMATIC) -> E
     """Floquet exponents at a solution: by Hill's method, or by the time map where there are contacts with friction."""
     if way == HILL or (way == AUTOMATIC and not remembers(problem)):
         values = problem.once(HILL, solution, lambda: hill(problem, solution))
-        return Exponents(values, TRUNCATED if _touches(problem, solution) else 0.0)
-    return Exponents(problem.once(TIME_MAP, solution, lambda: _by_time_map(problem, solution)))
+        return Exponents(_held(problem, values), TRUNCATED if _touches(problem, solution) else 0.0)
+    return Exponents(_held(problem, problem.once(TIME_MAP, solution, lambda: _by_time_map(problem, solution))))
+
+
+def _held(problem: Equations, values: np.ndarray) -> np.ndarray:
+    """Exponents with those of free motions, of place and of speed, at zero: rounding splits such pairs."""
+    nearest = np.argsort(np.abs(values))[: 2 * problem.condensation.free.shape[1]]
+    result = values.copy()
+    result[nearest[np.abs(values[nearest]) < SPLIT]] = 0.0
+    return result
 
 
 def _touches(problem: Equations, solution: Solution) -> bool:

@@ -1,4 +1,4 @@
-"""Why points of a curve were not found."""
+"""Why points of a curve were not found, and what is free in those that were."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -77,3 +77,13 @@ def unfound_findings(points: int, lost: Iterable[Unfound]) -> tuple[Finding, ...
     message = f"{count} The largest residual is {worst.residual:.1e} of the forces, at {worst.frequency:.6g} Hz."
     advice = "Follow the curve by arc length, or with smaller steps of frequency, more harmonics or more samples."
     return (Finding("points-not-found", "warning", values, message, advice),)
+
+
+def free_findings(problem: Equations) -> tuple[Finding, ...]:
+    """Return the finding on motions of the structure that nothing holds."""
+    names = problem.condensation.free_names
+    if not names:
+        return ()
+    message = f"No spring and no contact holds the mean position along {names}; the smallest one was chosen."
+    advice = "Look at changes of these displacements, or hold the structure by a spring."
+    return (Finding("free-mean-position", "note", {"motion": names}, message, advice),)

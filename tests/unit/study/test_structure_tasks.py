@@ -367,15 +367,15 @@ def test_a_structure_that_nothing_holds_is_refused(write, tmp_path):
 name = "m"
 mass = 1.0
 [[model.force]]
+kind = "StaticForce"
 dof = "m"
-amplitude = 1.0
+value = 1.0
 [frequency_response]
 frequencies = [1.0]
 """
     sentence = (
-        "[[model.spring]]: the structure can move freely, at 'm.x', without a spring or a contact that holds it, so "
-        "its mean position is not determined; clamp it, or keep odd harmonics only (odd_only=True) where the motion is "
-        "symmetric"
+        "[[model.spring]]: a mean force of 1 N acts along 'm.x', where no spring and no contact holds the structure, "
+        "so it has no periodic motion; clamp it, or balance the static forces"
     )
     assert refused(write, text) == sentence
     with pytest.raises(DalembertError, match=re.escape(sentence)):

@@ -84,8 +84,11 @@ def test_cells_side_by_side_with_one_stiffness_are_one_slider() -> None:
     np.testing.assert_allclose(apart.amplitude("m2"), together.amplitude("m2"), rtol=1e-9)
 
 
-def free_mass(*parts) -> VibrationSystem:
-    system = VibrationSystem(lumped({"a": 1.0, "b": 1.0}, [("a", "b", 1.0, 0.01)]))
+def free_mass(*parts, massless: bool = False) -> VibrationSystem:
+    masses, springs = {"a": 1.0, "b": 1.0}, [("a", "b", 1.0, 0.01)]
+    if massless:
+        masses, springs = {**masses, "c": 0.0, "d": 0.0}, [*springs, ("c", "d", 1.0, 0.0)]
+    system = VibrationSystem(lumped(masses, springs))
     for part in parts:
         system.add(part)
     return system
@@ -99,12 +102,18 @@ CONTACT = {"friction": 0.3, "preload": 1.0}
     ("system", "options", "error", "sentence"),
     [
         (
-            free_mass(FORCE),
+            free_mass(FORCE, StaticForce("b", 2.0), StaticForce("a", -1.0)),
             {},
             ModelError,
-            "the structure can move freely, at 'a.x' and 'b.x', without a spring or a contact that holds it, so its "
-            "mean position is not determined; clamp it, or keep odd harmonics only (odd_only=True) where the motion is "
-            "symmetric",
+            "a mean force of 0.707 N acts along 'a.x' and 'b.x', where no spring and no contact holds the structure, "
+            "so it has no periodic motion; clamp it, or balance the static forces",
+        ),
+        (
+            free_mass(FORCE, massless=True),
+            {},
+            ModelError,
+            "the structure can move freely, at 'a.x', 'b.x', 'c.x' and 'd.x', without a mass, a spring or a contact "
+            "that holds it, so its motion is not determined; clamp it, or give it mass",
         ),
         (
             free_mass(FORCE, FrictionContact("foot", "c", **CONTACT)),
@@ -159,23 +168,36 @@ def test_what_cannot_be_meant_is_told(system: VibrationSystem, options: dict, er
 
 @pytest.mark.parametrize("sparse", [False, True])
 @pytest.mark.parametrize("damping", [0.0, 0.1])
-def test_the_part_that_nothing_holds_is_named(sparse: bool, damping: float, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_part_that_nothing_holds_moves_about_its_place(
+    sparse: bool, damping: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """A chain that is held at its first mass and cut behind the second, in modes and not, and by a sparse solver."""
     names = [f"m{number}" for number in range(8)]
     springs = [(first, second, 1.0, 0.0) for first, second in pairwise(names) if first != "m1"]
     chain = lumped(dict.fromkeys(names, 1.0), [("m0", None, 1.0, damping), *springs])
+    matrices = chain.mass, chain.stiffness, chain.damping
     if sparse:
         monkeypatch.setattr("dalembert.vibration.condensation.DENSE", 0)
         chain = replace(chain, mass=csc_array(chain.mass), stiffness=csc_array(chain.stiffness))
     system = VibrationSystem(chain)
-    system.add(HarmonicForce("m0", 1.0))
-    sentence = (
-        "the structure can move freely, at 'm2.x', 'm3.x', 'm4.x', 'm5.x' and 2 more degrees of freedom, without a "
-        "spring or a contact that holds it, so its mean position is not determined; clamp it, or keep odd harmonics "
-        "only (odd_only=True) where the motion is symmetric"
+    static = np.array([0, 0, 1.0, 0, 0, 0, 0, -1.0])
+    for part in (HarmonicForce("m0", 1.0), HarmonicForce("m4", 1.0), StaticForce("m2", 1.0), StaticForce("m7", -1.0)):
+        system.add(part)
+    curve = frequency_response(system, np.array([0.1]))
+    mass, stiffness, viscous = matrices
+    omega = 0.2 * np.pi
+    moved = np.linalg.solve(
+        stiffness - omega**2 * mass + 1j * omega * (0 if viscous is None else viscous), np.eye(8)[0] + np.eye(8)[4]
     )
-    with pytest.raises(ModelError, match=says(sentence)):
-        frequency_response(system, np.array([0.1]))
+    np.testing.assert_allclose(curve.response[0, :, 1], moved.real, atol=1e-11)
+    np.testing.assert_allclose(curve.response[0, :, 2], -moved.imag, atol=1e-11)
+    np.testing.assert_allclose(curve.response[0, :, 0], np.linalg.pinv(stiffness) @ static, atol=1e-11)
+    assert curve.findings[0].code == "free-mean-position"
+    assert curve.findings[0].severity == "note"
+    assert curve.findings[0].message == (
+        "No spring and no contact holds the mean position along 'm2.x', 'm3.x', 'm4.x', 'm5.x' and 2 more degrees of "
+        "freedom; the smallest one was chosen."
+    )
 
 
 @pytest.mark.parametrize(

@@ -1,10 +1,13 @@
 """Structures that only contacts hold: their motions are found, and what no contact balances is named."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from dalembert.structure import lumped
 from dalembert.vibration import (
+    CubicSpring,
     Elastic,
     FrequencyCurve,
     FrictionContact,
@@ -17,6 +20,7 @@ from dalembert.vibration import (
     frequency_response,
     steady_state,
 )
+from sliders_in_time import Sliders
 
 FREQUENCIES = np.array([0.5, 0.8, 1.2, 2.0, 3.0]) / (2 * np.pi)
 LAWS = {
@@ -108,3 +112,28 @@ def test_a_point_that_newton_does_not_find_is_a_finding() -> None:
     curve = frequency_response(system, FREQUENCIES[:1], HarmonicBalance(5, iterations=1, halvings=0))
     assert [finding.code for finding in curve.findings] == ["points-not-found"]
     assert curve.doubts[0].startswith("1 of 1 points were not found. The largest residual is ")
+
+
+@pytest.mark.parametrize("part", ["cubic", "slider"])
+def test_two_masses_that_nothing_holds_move_as_in_time(part: str) -> None:
+    structure, way = lumped({"a": 1.0, "b": 2.0}, [("a", "b", 1.0, 0.1)]), np.array([1.0, -1.0])
+    system = VibrationSystem(structure)
+    system.add(HarmonicForce("a", 1.0))
+    reference = Sliders(structure.mass, structure.damping, structure.stiffness, np.array([1.0, 0.0]))
+    if part == "slider":
+        system.add(FrictionContact("slider", "a", "b", friction=0.3, preload=1.0, law=Elastic(2.0)))
+        reference = replace(reference, sliders=((way, 2.0, 0.3),))
+    else:
+        system.add(CubicSpring("cubic", "a", "b", stiffness=1.0))
+        reference = replace(reference, cubic=((way, 1.0),))
+    omegas = np.array([0.7, 1.3, 2.0])
+    curve = frequency_response(system, omegas / (2 * np.pi), HarmonicBalance(25), stability=True, check=False)
+    assert curve.converged.all()
+    assert np.all(curve.stable == 1)
+    np.testing.assert_allclose(curve.response[:, :, 0].sum(axis=1), 0.0, atol=1e-9)
+    for omega, x, force in zip(omegas, curve.response, curve.forces[:, 0], strict=True):
+        places = x[:, 0] + x[:, 1::2].sum(axis=1)
+        slider = [way @ places - (force[0] + force[1::2].sum()) / 2.0] if part == "slider" else []
+        begin = np.concatenate([places, x[:, 2::2] @ np.arange(1, 26), slider])
+        end, _ = reference.period(begin, omega)
+        np.testing.assert_allclose(end[:4], begin[:4], atol=2e-4 * np.abs(begin).max())

@@ -6,7 +6,7 @@ from random_vibrations import ACCEPTED, at_frequencies, path_end, random_system
 
 TOPIC = "Friction in frequency"
 SOURCE = "the balance of forces in plain NumPy, contacts integrated between their events"
-REFUSED = {9: 5}
+REFUSED = {9: 2}
 """Points that no sampling finds: a rigid contact pressed by an interference, whose mass bounces."""
 FEW = [number for number in range(20) if number not in REFUSED]
 MORE = [number for number in range(200) if number not in FEW]

@@ -121,6 +121,17 @@ class Balance:
         found = np.stack([np.linalg.lstsq(own, right)[0] for own, right in zip(stiffness, force, strict=True)])
         return self.series.coefficients(found)
 
+    def touching(self, unknowns: np.ndarray) -> np.ndarray:
+        """Unknowns with the mean positions at which rigid contacts just touch: near motions that bounce on them."""
+        result = unknowns.copy()
+        for block in self.lowered.blocks:
+            if block.kind == ELASTIC or not block.normal or not self.series.mean:
+                continue
+            places = self._retained[block.rows[:, -1]]
+            varying = unknowns[places, 1:] @ self.series.synthesis[:, 1:].T
+            result[places, 0] = block.numbers[:, GAP] - varying.max(axis=1)
+        return result
+
     def residual(self, linear: np.ndarray, unknowns: np.ndarray, tangent: Tangent | None = None) -> Evaluation:
         """Residual from its linear part; the elements' part of the tangent is added to ``tangent``.
 

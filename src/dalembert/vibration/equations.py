@@ -80,7 +80,7 @@ class Equations:
         return solution
 
     def first(self, omega: float) -> Solution:
-        """A first point: from closed contacts that stick, from the motion without contacts, with more and more force.
+        """A first point: from closed contacts that stick, from the motion without contacts, with more force.
 
         With little varying force contacts stick, so that this is the way of a friction limit from infinity to its own.
         """
@@ -94,13 +94,20 @@ class Equations:
             free = np.linalg.solve(point.stiffness, point.force[:, :, None])[:, :, 0]
         except np.linalg.LinAlgError:  # springs without a linear part hold the structure
             free = (np.linalg.pinv(point.stiffness) @ point.force[:, :, None])[:, :, 0]
-        other = self.solve(self.balance(samples).series.coefficients(free), omega, samples, point=point)
-        if other.converged:
-            return other
+        for guess in self._free_guesses(balance, balance.series.coefficients(free)):
+            other = self.solve(guess, omega, samples, point=point)
+            if other.converged:
+                return other
+            best = min(best, other, key=lambda one: one.error)
         if not self.method.halvings:
-            return min(best, other, key=lambda one: one.error)
+            return best
         loaded = self.solve(by_force(self.balance(samples), self.method, point), omega, samples, point=point)
-        return loaded if loaded.converged else min(best, other, loaded, key=lambda one: one.error)
+        return loaded if loaded.converged else min(best, loaded, key=lambda one: one.error)
+
+    def _free_guesses(self, balance: Balance, free: np.ndarray) -> list[np.ndarray]:
+        """The motion without contacts, and where masses may bounce on rigid contacts, the same that just touches."""
+        bounces = any(block.normal and block.kind != ELASTIC for block in self.lowered.blocks)
+        return [free, balance.touching(free)] if bounces else [free]
 
     def once(self, what: str, solution: Solution, compute: Callable[[], np.ndarray]) -> np.ndarray:
         """What follows from a solution, by name; it is kept where solutions are."""

@@ -39,6 +39,13 @@ def test_a_point_behind_a_fold_is_found_along_the_curve(number: int) -> None:
     assert max(outcome.residuals) < ACCEPTED
 
 
+def test_a_mass_that_bounces_on_a_rigid_contact_is_found_from_a_motion_that_just_touches() -> None:
+    own = random_system(9)
+    curve = frequency_response(own.system, own.frequencies[2:], METHOD, check=False)
+    assert curve.converged.all()
+    assert max(unbalanced(own, curve, point) for point in range(3)) < ACCEPTED
+
+
 def test_the_evaluation_of_forces_in_plain_numpy_refuses_a_point_that_is_no_solution() -> None:
     own = random_system(3)
     curve = frequency_response(own.system, own.frequencies, METHOD)

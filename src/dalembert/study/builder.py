@@ -1,13 +1,14 @@
 """The function from parameters to a System that a study file's model is."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from dalembert.errors import InputError
 from dalembert.study.components import KindTable
 from dalembert.study.expressions import Expression
 from dalembert.study.functions import FunctionReference
+from dalembert.study.inputs import InputReference, MeasuredInput, input_named
 from dalembert.study.model_table import ModelTable
 from dalembert.study.places import Place
 
@@ -28,10 +29,12 @@ class SystemBuilder:
     ----------
     model : ModelTable
     constants : mapping of str to float or Expression
+    inputs : mapping of str to MeasuredInput
     """
 
     model: ModelTable
     constants: Mapping[str, float | Expression]
+    inputs: Mapping[str, MeasuredInput] = field(default_factory=dict)
 
     def __call__(self, **parameters: complex) -> "System":
         from dalembert.multibody import System
@@ -45,10 +48,11 @@ class SystemBuilder:
         if gravity is not None:
             options["gravity"] = tuple(resolved(one, values, "[model], gravity") for one in gravity)
         system = System(**options)
+        signals = signals_of(self.inputs, values)
         placed: dict[str, Any] = {}
         for table, component in self.model.components:
             where = f"[[model.{table}]] {component.name!r}"
-            placed[component.name] = system.add(built(component, values, where, placed, system))
+            placed[component.name] = system.add(built(component, values, where, placed, system, signals))
         return system
 
 
@@ -62,14 +66,24 @@ class FunctionBuilder:
     arguments : mapping of str to any
     vibrates : bool
         Whether it builds a vibrating structure, and not a mechanism.
+    inputs : mapping of str to MeasuredInput
+        Of arguments that name one.
+    constants : mapping of str to float or Expression
+        Which numbers of the inputs may name.
     """
 
     function: Callable[..., Any]
     arguments: Mapping[str, Any]
     vibrates: bool = False
+    inputs: Mapping[str, MeasuredInput] = field(default_factory=dict)
+    constants: Mapping[str, float | Expression] = field(default_factory=dict)
 
     def __call__(self, **parameters: complex) -> Any:
-        system = self.function(**parameters, **self.arguments)
+        arguments = dict(self.arguments)
+        if self.inputs:
+            signals = signals_of(self.inputs, named_values(self.constants, parameters))
+            arguments |= {key: signals[name] for key, value in arguments.items() if (name := input_named(value))}
+        system = self.function(**parameters, **arguments)
         expected = self._expected
         if not isinstance(system, expected):
             more = (
@@ -106,7 +120,20 @@ def named_values(constants: Mapping[str, float | Expression], parameters: Values
     return values
 
 
-def built(table: KindTable, values: Values, where: str, placed: Values = EMPTY, system: Any = None) -> Any:
+def signals_of(inputs: Mapping[str, MeasuredInput], values: Values) -> dict[str, Any]:
+    """The signals of inputs, by name, once the parameters are known."""
+    found = {}
+    for name, one in inputs.items():
+        try:
+            found[name] = one.signal(values)
+        except InputError as error:
+            raise InputError(f"[inputs.{name}]: {error}") from None
+    return found
+
+
+def built(
+    table: KindTable, values: Values, where: str, placed: Values = EMPTY, system: Any = None, signals: Values = EMPTY
+) -> Any:
     """What a table describes, once the parameters are known; places are those of a mechanism's bodies.
 
     >>> from dalembert.structure import Modal
@@ -116,7 +143,10 @@ def built(table: KindTable, values: Values, where: str, placed: Values = EMPTY, 
     Modal(ratio=0.01)
     """
     arguments = {
-        key: _resolved(given, values, placed, system, f"{where}, {key}") for key, given in table.given().items()
+        key: signals[given.input]
+        if isinstance(given, InputReference)
+        else _resolved(given, values, placed, system, f"{where}, {key}")
+        for key, given in table.given().items()
     }
     return table.target_type(**arguments)
 

@@ -10,6 +10,7 @@ from dalembert.errors import unknown
 from dalembert.forward import ForwardModel, Sensor, Sensors
 from dalembert.forward.sensors import QUANTITIES
 from dalembert.study.data_table import DataTable
+from dalembert.study.inputs import InputTable
 from dalembert.study.numbers import fixed
 from dalembert.study.parameters import OwnParameterTable, ParameterTable
 from dalembert.study.table import Name, Read, StudyTable, problem
@@ -68,10 +69,14 @@ class ExperimentTable(DataTable):
         {}, description="constants that have another value in this experiment"
     )
     arguments: dict[str, Any] = Field({}, description="arguments of the model's function in this experiment")
+    inputs: dict[str, InputTable] = Field({}, description="keys of [inputs.NAME] that differ in this experiment")
 
     def variant(self, study: "Study") -> "Study":
         """The study as it is in this experiment."""
-        return study.varied(self.constants, self.arguments, self.parameters(study.file.parameters))
+        shared = study.file.inputs
+        inputs = {**shared, **{name: table.over(shared[name]) for name, table in self.inputs.items()}}
+        varied = study.varied(self.constants, self.arguments, self.parameters(study.file.parameters))
+        return varied.driven(inputs, self)
 
     def parameters(self, shared: Mapping[str, ParameterTable]) -> dict[str, ParameterTable]:
         """The parameters' tables as they are in this experiment."""

@@ -9,6 +9,7 @@ from dalembert.errors import unknown
 from dalembert.study.catalogue import Words, kinds_of
 from dalembert.study.components import one_of, table_of
 from dalembert.study.functions import FunctionName
+from dalembert.study.inputs import signal_or_input
 from dalembert.study.numbers import number
 from dalembert.study.places import Place
 from dalembert.study.structure_table import PARTS, StructureTable, part_tables, structure_table, wrong_structure
@@ -131,7 +132,7 @@ def model_table(words: Words = None) -> type[ModelTable]:
     """The model's table with all kinds of components that there are, or those that words name."""
     lists: dict[str, Any] = {}
     if words is None or not words.isdisjoint(_TABLES):
-        signal = one_of([table_of(target) for target in kinds_of("signal")])
+        signal = signal_or_input(one_of([table_of(target) for target in kinds_of("signal")]))
         for table in _TABLES:
             kinds = kinds_of(table, words) or (kinds_of(table) if table in (words or ()) else ())
             if kinds:

@@ -17,6 +17,7 @@ from dalembert.study.catalogue import Words, balance, kind_names
 from dalembert.study.components import buildable_table
 from dalembert.study.data_table import BandsTable, DataTable
 from dalembert.study.experiments import ExperimentTable, SensorTable, wrong_experiments
+from dalembert.study.inputs import InputTable, wrong_inputs
 from dalembert.study.model_table import ModelTable, model_table
 from dalembert.study.parameters import ParameterTable, check_names, read_constants
 from dalembert.study.solvers import solver
@@ -49,6 +50,7 @@ class StudyFile(StudyTable):
     data: DataTable | None = None
     bands: BandsTable | None = None
     experiments: list[ExperimentTable] = Field([], description="several experiments in place of [data]")
+    inputs: dict[str, InputTable] = Field({}, description="measured inputs that drive the model, by name")
     sensors: dict[str, SensorTable] = Field({}, description="what is not known of the sensors, by channel")
 
     @model_validator(mode="after")
@@ -61,7 +63,7 @@ class StudyFile(StudyTable):
             given = f"{names} are given" if names else "no task is given"
             raise problem(f"{given}; a study has one task, one of {', '.join(f'[{name}]' for name in TASKS)}")
         (name,) = self.tasks
-        wrong = [*wrong_experiments(self), *_wrong_settings(self), *TASKS[name].wrong(self)]
+        wrong = [*wrong_experiments(self), *wrong_inputs(self), *_wrong_settings(self), *TASKS[name].wrong(self)]
         if wrong:
             raise problem(*wrong)
         return self

@@ -13,7 +13,9 @@ from dalembert.errors import DataError, InputError, ModelError, unknown
 from dalembert.forward import Checkpoint, Executor, ForwardModel, Recorded, on_cluster
 from dalembert.parameters import Parameters
 from dalembert.study.builder import FunctionBuilder, SystemBuilder
+from dalembert.study.data_table import DataTable
 from dalembert.study.experiments import measured_channels
+from dalembert.study.inputs import InputTable, MeasuredInput
 from dalembert.study.parameters import ParameterTable
 from dalembert.study.schema import StudyFile
 from dalembert.study.structure_builder import StructureBuilder
@@ -86,6 +88,8 @@ class Study:
         Where the answers of its models are kept.
     executor : str or distributed.Client, optional
         Where batches of its models are computed.
+    beside : DataTable, optional
+        Of the experiment that the study is: inputs without a file are in its file.
     """
 
     path: Path
@@ -95,6 +99,7 @@ class Study:
     name: str
     checkpoint: Checkpoint | None = field(default=None, repr=False, compare=False)
     executor: Executor = field(default=None, repr=False, compare=False)
+    beside: DataTable | None = field(default=None, repr=False, compare=False)
 
     @property
     def title(self) -> str:
@@ -134,10 +139,23 @@ class Study:
         if model.function is not None:
             arguments = model.resolved_arguments
             given = {**self.parameters.mapping(self.parameters.start), **arguments}
-            return FunctionBuilder(model.function.fitting(**given), arguments, self.file.vibrates)
+            function = model.function.fitting(**given)
+            return FunctionBuilder(function, arguments, self.file.vibrates, self.inputs, self.file.constants)
         if model.is_structure:
             return StructureBuilder(model, self.file.constants, tuple(_watched(self.file)))
-        return SystemBuilder(model, self.file.constants)
+        return SystemBuilder(model, self.file.constants, self.inputs)
+
+    @cached_property
+    def inputs(self) -> "dict[str, MeasuredInput]":
+        """The measured inputs, by name."""
+        if self.beside is None and self.file.experiments and self.file.inputs:
+            return self.file.experiments[0].variant(self).inputs
+        beside = self.beside or self.file.data
+        return {name: table.read(name, beside) for name, table in self.file.inputs.items()}
+
+    def driven(self, inputs: "Mapping[str, InputTable]", beside: DataTable) -> "Study":
+        """The same study with other inputs, which are in the file of other data where they name none."""
+        return replace(self, file=self.file.model_copy(update={"inputs": dict(inputs)}), beside=beside)
 
     @property
     def solver(self) -> Any:
@@ -175,6 +193,7 @@ class Study:
         """The mechanism's motion until ``end`` (s) at a parameter vector."""
         from dalembert.multibody import simulate
 
+        self.require_inputs(end)
         return simulate(self.system(vector), end, solver=self.solver, times=times, most_steps=np.inf)
 
     def forward(self, channels: Sequence[str], samples: np.ndarray) -> ForwardModel:
@@ -212,6 +231,8 @@ class Study:
 
             if len(samples) and not getattr(self.table, "times", None):
                 _refuse_outside(self._measured_in, samples)
+            if len(samples):
+                self.require_inputs(float(samples[-1]))
             response: Any = TimeResponse(self.builder, self.parameters, channels, samples, solver=self.solver)
             return response
         if self.file.vibrates:
@@ -228,6 +249,11 @@ class Study:
                 f"{reference} returned a {type(model).__name__}; expected a ForwardModel such as PythonModel"
             )
         return model
+
+    def require_inputs(self, end: float) -> None:
+        """Refuse inputs that do not last as long as a motion until ``end`` (s)."""
+        for one in self.inputs.values():
+            one.require(end)
 
     def varied(
         self,

@@ -23,6 +23,8 @@ TABLES = {
     "BandsTable": ["data", "bands"],
     "ExperimentTable": ["data", "experiments"],
     "SensorTable": [r'sensors\."AB.end.x"'],
+    "InputTable": ["data", r"inputs\.NAME"],
+    "InputReference": [r"inputs\.NAME"],
     "SimulateTable": ["simulate"],
     "Identify": ["identify"],
     "ShootingTable": ["identify"],

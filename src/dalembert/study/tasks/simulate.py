@@ -105,6 +105,7 @@ class Simulate(Task):
         from dalembert.multibody import TimeResponse
 
         study.system()
+        study.require_inputs(study.table.last)
         table, ends = study.table, np.array([0.0, study.table.last])
         for key, names in (("channels", table.channels), ("points", [f"{name}.x" for name in table.points])):
             if names:

@@ -1,0 +1,197 @@
+"""The tables of measured inputs: columns of files that drive the model, wherever a signal may stand."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+import numpy as np
+from pydantic import Discriminator, Field, Tag, model_validator
+
+from dalembert.errors import DataError, unknown
+from dalembert.study.data_table import DataFile, DataTable, FileTable
+from dalembert.study.expressions import Expression
+from dalembert.study.numbers import fixed, number
+from dalembert.study.table import Read, StudyTable, problem
+
+if TYPE_CHECKING:
+    from dalembert.multibody import Table
+
+_CHANNEL = "input"
+_OF_FILES = set(FileTable.model_fields) - {"file", "units"}
+_OUTSIDE = 0.01  # of a motion: what may lie beyond the ends of an input
+
+
+class InputReference(StudyTable):
+    """A measured input in place of a signal: ``torque = { input = "torque" }``."""
+
+    input: str = Field(description="name of a table [inputs.NAME]")
+
+
+class InputTable(FileTable):
+    """A measured input: a column of the data's file, or of another one."""
+
+    file: DataFile | None = Field(None, description="that of the data, or of the experiment, if not given")
+    column: str | None = Field(None, description="name of the column")
+    unit: str = Field("", description="of the column, where it is not in SI units: 'N*mm'")
+    kind: Literal["linear", "cubic", "held"] = Field("linear", description="what the input does between its samples")
+    scale: Annotated[Any, Read(number(None))] = Field(1.0, description="factor, such as a torque constant")
+    offset: Annotated[Any, Read(number(None))] = Field(0.0, description="added to the scaled input, in SI units")
+    delay: Annotated[Any, Read(number("s"))] = Field(0.0, description="positive where the input acts late")
+    integrals: Literal[0, 1, 2] = Field(0, description="2 makes the motion of a base of its acceleration")
+    lowpass: Annotated[float, Read(fixed("Hz"))] | None = Field(
+        None, description="cutoff frequency of a low-pass filter without delay: '40 Hz'"
+    )
+    missing: Literal["refuse", "leave-out"] = Field("refuse", description="what becomes of values that are not there")
+    wraps: bool = Field(False, description="whether it is an angle known up to whole turns")
+
+    @model_validator(mode="after")
+    def _check(self) -> "InputTable":
+        described = sorted(self.model_fields_set & _OF_FILES)
+        if described and self.file is None:
+            raise problem(
+                f"{', '.join(described)}: an input from the data's file is read as the data are; give a file too"
+            )
+        if self.frequency is not None:
+            raise problem("frequency: an input lies along time; name its column by time")
+        return self
+
+    def over(self, shared: "InputTable | None") -> "InputTable":
+        """This table with the keys that it leaves out from the shared one."""
+        if shared is None:
+            return self
+        return shared.model_copy(update={name: getattr(self, name) for name in self.model_fields_set})
+
+    def read(self, name: str, beside: DataTable | None) -> "MeasuredInput":
+        """The samples of the input, from its file or that of the data ``beside``.
+
+        Raises
+        ------
+        DataError
+            For what is wrong with the file, and for an input without one.
+        """
+        assert self.column is not None  # or the study was refused
+        table = beside
+        if self.file is not None:
+            table = DataTable.model_construct(**{key: getattr(self, key) for key in FileTable.model_fields})
+        if table is None:
+            raise DataError(f"[inputs.{name}]: no file is given, and there are no [data]; give a file")
+        units = {**table.units, **({self.column: self.unit} if self.unit else {})}
+        # the data's own reading, so that their times are those of the input; what else becomes of the data is left out
+        own: dict[str, Any] = {"deviations": None, "derivatives": {}, "between": None, "every": None, "resample": None}
+        own |= {"columns": {_CHANNEL: self.column}, "units": units, "lowpass": self.lowpass, "decimate": None}
+        own |= {"missing": self.missing, "wraps": [_CHANNEL] * self.wraps}
+        data = table.model_copy(update=own).read()
+        values = data.continuous[:, data.channels.index(_CHANNEL)]
+        there = np.isfinite(values)
+        return MeasuredInput(name, self, data.coordinate.values[there], values[there], str(table.file))
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredInput:
+    """Samples of an input, and how they drive the model.
+
+    Parameters
+    ----------
+    name : str
+    table : InputTable
+    times, values : array, shape (samples,)
+    source : str
+        The file.
+    """
+
+    name: str
+    table: InputTable
+    times: np.ndarray
+    values: np.ndarray
+    source: str
+
+    def signal(self, values: Mapping[str, Any]) -> "Table":
+        """The signal at values of parameters and constants."""
+        from dalembert.multibody import Table
+
+        numbers: dict[str, Any] = {}
+        for key in ("scale", "offset", "delay"):
+            given = getattr(self.table, key)
+            numbers[key] = given(values) if isinstance(given, Expression) else given
+        own: Any = Table
+        return own(self.times, self.values, self.table.kind, integrals=self.table.integrals, **numbers)
+
+    def require(self, end: float) -> None:
+        """Refuse an input that does not last as long as a motion until ``end`` (s).
+
+        Raises
+        ------
+        DataError
+            With the times of both.
+        """
+        first, last = self.times[[0, -1]]
+        slack = _OUTSIDE * end + 2 * float(np.median(np.diff(self.times)))
+        if first > slack or last < end - slack:
+            raise DataError(
+                f"[inputs.{self.name}]: {self.source} has values from {first:g} to {last:g} s, and the motion lasts "
+                f"from 0 to {end:g} s; expected an input that lasts as long. Choose samples of the data by between, or "
+                "another start of the times"
+            )
+
+
+def signal_or_input(signal: Any) -> Any:
+    """Type of a key that takes a signal's table, or the name of an input."""
+    return Annotated[
+        Annotated[signal, Tag("signal")] | Annotated[InputReference, Tag("measured")],
+        Discriminator(lambda value: "measured" if _refers(value) else "signal"),
+    ]
+
+
+def _refers(value: Any) -> bool:
+    return isinstance(value, InputReference) or (isinstance(value, dict) and "input" in value and "kind" not in value)
+
+
+def input_named(value: Any) -> str | None:
+    """Name of the input that an argument of a function stands for: ``{ input = "torque" }``."""
+    return value["input"] if isinstance(value, dict) and value.keys() == {"input"} else None
+
+
+def wrong_inputs(file: Any) -> list[str]:
+    """Sentences about inputs that do not fit to the rest of the file."""
+    if file.inputs and (file.vibrates or file.model.forward is not None):
+        return ["[inputs] drive mechanisms, and here is another model; leave them out"]
+    wrong, used = [], dict(_used(file.model))
+    wrong += [unknown("input", name, file.inputs, where) for name, where in used.items() if name not in file.inputs]
+    for name, table in file.inputs.items():
+        if name not in used:
+            wrong.append(
+                f"[inputs.{name}] is used nowhere in [model]; write {{ input = '{name}' }} where a signal may stand"
+            )
+        tables = [entry.inputs[name].over(table) if name in entry.inputs else table for entry in file.experiments]
+        if any(one.column is None for one in tables or [table]):
+            wrong.append(f"[inputs.{name}]: the key 'column' is missing; expected the name of a column")
+        if any(one.file is None for one in tables or [table]) and file.data is None and not file.experiments:
+            wrong.append(f"[inputs.{name}]: the key 'file' is missing, and there are no [data] with a file")
+        if any(one.kind == "held" and _varies(one.delay, file) for one in tables or [table]):
+            wrong.append(
+                f"[inputs.{name}], delay: the response to a held input has no derivative by its delay, since each "
+                "change of the value moves in time as a jump; take kind = 'linear', or a delay that depends on no "
+                "parameter"
+            )
+    for entry in file.experiments:
+        where = f"[[experiments]] {entry.name!r}, inputs"
+        wrong += [unknown("input", name, file.inputs, where) for name in entry.inputs if name not in file.inputs]
+    return wrong
+
+
+def _used(model: Any) -> Iterator[tuple[str, str]]:
+    """Names of the inputs that a model uses, and where."""
+    for table, component in model.components:
+        for key, value in component.given().items():
+            if isinstance(value, InputReference):
+                yield value.input, f"[[model.{table}]] {component.name!r}, {key}"
+    for key, value in model.arguments.items():
+        if (name := input_named(value)) is not None:
+            yield name, f"[model.arguments], {key}"
+
+
+def _varies(given: Any, file: Any) -> bool:
+    """Whether a number depends on a parameter, through constants too."""
+    if not isinstance(given, Expression):
+        return False
+    return any(name in file.parameters or _varies(file.constants.get(name), file) for name in given.names)

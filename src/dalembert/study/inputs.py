@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from dalembert.multibody import Table
 
 _CHANNEL = "input"
+_ABSCISSA = "t"  # what units call the times of a universal file
 _OF_FILES = set(FileTable.model_fields) - {"file", "units"}
 _OUTSIDE = 0.01  # of a motion: what may lie beyond the ends of an input
 
@@ -75,7 +76,8 @@ class InputTable(FileTable):
             table = DataTable.model_construct(**{key: getattr(self, key) for key in FileTable.model_fields})
         if table is None:
             raise DataError(f"[inputs.{name}]: no file is given, and there are no [data]; give a file")
-        units = {**table.units, **({self.column: self.unit} if self.unit else {})}
+        units = {name: unit for name, unit in table.units.items() if name in (table.time, self.column, _ABSCISSA)}
+        units |= {self.column: self.unit} if self.unit else {}
         # the data's own reading, so that their times are those of the input; what else becomes of the data is left out
         own: dict[str, Any] = {"deviations": None, "derivatives": {}, "between": None, "every": None, "resample": None}
         own |= {"columns": {_CHANNEL: self.column}, "units": units, "lowpass": self.lowpass, "decimate": None}

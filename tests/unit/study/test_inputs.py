@@ -50,7 +50,9 @@ delay = "late"
 DATA = """
 [data]
 file = "record.csv"
+time = "ms"
 columns = { "bar.start.angle" = "angle" }
+units = { ms = "ms", angle = "deg" }
 deviations = { "bar.start.angle" = 1e-4 }
 between = [0.1, 0.9]
 [identify]
@@ -73,10 +75,9 @@ def moved(current: np.ndarray = CURRENT, kind: str = "linear", **more) -> np.nda
 
 
 def written(path: Path, angle: np.ndarray, current: np.ndarray = CURRENT) -> None:
-    rows = [
-        f"{t!r},{a!r},{1000 * i!r}" for t, a, i in zip(TIMES.tolist(), angle.tolist(), current.tolist(), strict=True)
-    ]
-    path.write_text("\n".join(["t,angle,i", *rows]))
+    columns = (1000 * TIMES, np.rad2deg(angle), 1000 * current)
+    rows = [f"{t!r},{a!r},{i!r}" for t, a, i in zip(*(column.tolist() for column in columns), strict=True)]
+    path.write_text("\n".join(["ms,angle,i", *rows]))
 
 
 @pytest.fixture
@@ -137,19 +138,25 @@ EXPERIMENTS = """
 [[experiments]]
 name = "first"
 file = "record.csv"
+time = "ms"
 columns = { "bar.start.angle" = "angle" }
+units = { ms = "ms", angle = "deg" }
 [[experiments]]
 name = "second"
 file = "second.csv"
+time = "ms"
 columns = { "bar.start.angle" = "angle" }
+units = { ms = "ms", angle = "deg" }
 inputs.current.column = "j"
 inputs.current.kind = "held"
 inputs.current.delay = 0.0
 [[experiments]]
 name = "third"
 file = "record.csv"
+time = "ms"
 columns = { "bar.start.angle" = "angle" }
-inputs.current = { file = "second.csv", column = "j" }
+units = { ms = "ms", angle = "deg" }
+inputs.current = { file = "second.csv", column = "j", time = "ms", units = { ms = "ms" } }
 [identify]
 """
 
@@ -157,7 +164,7 @@ inputs.current = { file = "second.csv", column = "j" }
 def test_each_experiment_has_the_input_of_its_own_file(folder):
     other = CURRENT[::-1]
     written(folder / "second.csv", moved(other, "held", delay=0.0), other)
-    (folder / "second.csv").write_text((folder / "second.csv").read_text().replace("t,angle,i", "t,angle,j"))
+    (folder / "second.csv").write_text((folder / "second.csv").read_text().replace("ms,angle,i", "ms,angle,j"))
     experiments, _ = posed(study(folder, MODEL + INPUT + EXPERIMENTS))
     vector = np.array(list(TRUE.values()))
     for one in experiments[:2]:
@@ -172,6 +179,8 @@ def test_an_acceleration_moves_the_base_of_a_model(folder):
     text = """
 [inputs.shaker]
 file = "record.csv"
+time = "ms"
+units = { ms = "ms" }
 column = "i"
 integrals = 2
 kind = "cubic"
@@ -281,7 +290,7 @@ def test_a_mistake_about_inputs_is_told_with_its_place(folder, text, sentence):
         (
             MODEL + INPUT.replace('"i"', '"amps"') + DATA,
             DataError,
-            "unknown column 'amps'; known: angle, i, t",
+            "unknown column 'amps'; did you mean 'ms'?",
         ),
         (
             MODEL + SHORT + DATA,

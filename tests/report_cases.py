@@ -18,6 +18,8 @@ from dalembert.study import load, run_study
 from dalembert.study.tasks.telling import foreseen
 from dalembert.surrogate import Adaptive, Tensor, TotalDegree
 from dalembert.uncertainty import Chebyshev, LatinHypercube, MonteCarlo, Optimise, Scan, Taylor, Vertex
+from free_oscillations import NOISE, TRUTH, oscillation, oscillator, recorded, rubbing
+from free_oscillations import TIMES as OSCILLATING
 from frequency_cases import FREQUENCY_CASES
 from report_case import Case
 from small_models import DECAY, LINE, TIMES, banded, measured
@@ -107,6 +109,24 @@ def _broken_profile(function: Callable) -> Any:
     data = Measurements.of(TIMES, {"x": np.exp(-TIMES)}, deviations=0.1)
     with np.errstate(over="ignore"):
         return profile(model, data, da.identify(model, data, start=[1.0], starts=1))
+
+
+def _one_rubs() -> Any:
+    motions = {"a": oscillation(OSCILLATING, 30.0, 0.1, 0.3), "b": rubbing(OSCILLATING, 30.0, 0.1, 0.3, 0.3)}
+    return da.identify(
+        [Experiment(name, oscillator(), recorded(x), own=("damping", "start")) for name, x in motions.items()]
+    )
+
+
+def _two_late() -> Any:
+    def both(stiffness: Any, damping: Any, start: Any) -> np.ndarray:
+        x = oscillation(OSCILLATING, stiffness, damping, start)
+        return np.stack([x, x + x**2], axis=1)
+
+    x = oscillation(np.maximum(OSCILLATING - 0.02, 0), *TRUTH)
+    noise = NOISE * np.random.default_rng(0).standard_normal((2, len(x)))
+    model = PythonModel(both, oscillator().parameters, ["x", "y"], OSCILLATING)
+    return da.identify(model, Measurements.of(OSCILLATING, {"x": x + noise[0], "y": x + x**2 + noise[1]}))
 
 
 def _profiled(model: PythonModel, data: Measurements, **options: Any) -> Any:
@@ -287,6 +307,30 @@ CASES: dict[str, Case] = {
             DECAY, Measurements.of(TIMES, {"x": DECAY.function(2.0, 0.8) + 0.02 * autoregressive(0, 41, 0.6)}, 0.02)
         ),
         ("Check the model structure and the bounds, or increase `starts`.", "for independent residuals"),
+    ),
+    "friction that the model lacks": Case(
+        lambda: da.identify(oscillator(), recorded(rubbing(OSCILLATING, 30.0, 0.1, 0.3, 0.3), deviations=NOISE)),
+        (
+            "The model does not follow the data from",
+            "times the given deviation",
+            "The two halves of the record have different parameters",
+            "At the dashed line the residuals leave the noise",
+            "(fitted to each half)",
+        ),
+    ),
+    "friction in one of two experiments": Case(
+        _one_rubs, ("The model does not follow the data of experiment 'b'", "(estimated from neighbouring residuals)")
+    ),
+    "a late sensor": Case(
+        lambda: da.identify(oscillator(), recorded(oscillation(np.maximum(OSCILLATING - 0.02, 0), *TRUTH))),
+        ("are late: a delay of about", "[sensors] 'x' = { delay = [0.0, 0.04] }"),
+    ),
+    "early data": Case(
+        lambda: da.identify(oscillator(), recorded(oscillation(OSCILLATING + 0.02, *TRUTH))),
+        ("are early: a delay of about −", "and the delays of measured inputs."),
+    ),
+    "two late sensors": Case(
+        _two_late, ("The data of all channels are late", "Identify a delay of each sensor, up to")
     ),
     "two minima": Case(
         lambda: da.identify(

@@ -6,9 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from dalembert.findings import Finding
-from dalembert.inverse.correlation.series import series_of
+from dalembert.inverse.correlation.series import records_of, series_of
 from dalembert.inverse.correlation.whiteness import LEVEL, p_value
-from dalembert.inverse.experiments import JointModel
 from dalembert.inverse.problem import Problem
 
 GOOD = 0.9
@@ -67,20 +66,14 @@ def explained(problem: Problem, response: np.ndarray, weights: np.ndarray, fitte
     """
     data = problem.data
     values, residual = data.continuous.ravel(), (np.sqrt(weights) * problem.misfit(response)).ravel()
-    places = {}
-    if isinstance(problem.model, JointModel):
-        names = [channel.name for channel in problem.model.channels]
-        for part in problem.model.parts:
-            places |= dict(
-                zip([names[k] for k in part.columns], [(part.name, own) for own in part.channels], strict=True)
-            )
+    records = records_of(problem)
     series = list(series_of(problem, weights))
     found = []
     for own in series:
         left, here, size = residual[own.rows], values[own.rows], weights.ravel()[own.rows]
         variation = float(np.sum(size * (here - np.average(here, weights=size)) ** 2))
         squares = float(left @ left)
-        record, channel = places.get(own.name, ("", own.name))
+        record, channel = records[own.name]
         found.append(
             Explained(
                 record=record,

@@ -17,6 +17,7 @@ from dalembert.inverse.events import StartEnd, Step
 from dalembert.inverse.experiment_fit import ExperimentFit, experiment_fit
 from dalembert.inverse.experiments import Part
 from dalembert.inverse.integration import IntegrationBias
+from dalembert.inverse.misfit.halves import Halves
 from dalembert.inverse.nodes import Nodes
 from dalembert.inverse.sentences import sentences
 from dalembert.inverse.validation import Validation
@@ -71,6 +72,8 @@ class Fit(Result):
         Noise processes of channels with correlated residuals; None where residuals are taken for independent.
     integration : IntegrationBias, optional
         How far the integrator's error moves the values; None for a model that cannot be simulated more exactly.
+    halves : Halves, optional
+        Parameters of the first and of the second half of the records; None where that is not known.
     """
 
     FORMAT: ClassVar[str] = "dalembert fit 1"
@@ -98,6 +101,7 @@ class Fit(Result):
     findings: tuple[Finding, ...] = ()
     correlated: CorrelatedResiduals | None = None
     integration: IntegrationBias | None = None
+    halves: Halves | None = None
 
     @property
     def plain_deviations(self) -> np.ndarray:

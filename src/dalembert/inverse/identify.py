@@ -21,6 +21,7 @@ from dalembert.inverse.integration import integration_bias, integration_findings
 from dalembert.inverse.journal import Journal
 from dalembert.inverse.loss import loss_of
 from dalembert.inverse.matching import check_kinds
+from dalembert.inverse.misfit import misfit_conclusions
 from dalembert.inverse.multistart import HORIZONS, multistart
 from dalembert.inverse.noise import noise_floor
 from dalembert.inverse.problem import Linearisation, Problem, pose
@@ -206,6 +207,9 @@ def identify(
     )
     undetermined = repeated(problem, vector, response) if best.nodes is None else ()
     rough = () if exact else roughness_findings(problem, best, at, told.deviations)
+    one_run = best.nodes is None or best.nodes.segments == 1
+    looked = None if exact or rounded or not one_run else at
+    parts_of_time, followed = misfit_conclusions(problem, looked, known=known)
     others = rivals(problem, best, floor, told.deviations, known=known)
     whole = response if problem is posed else posed.responses(vector[None])[0]
     predicted = parted.validation(whole)
@@ -250,12 +254,14 @@ def identify(
             *unit_findings(problem, vector, response),
             *rough,
             *findings,
+            *followed,
             *biased,
             *unexplained,
             *findings_at(model, vector),
         ),
         integration=found,
         correlated=correlated,
+        halves=parts_of_time,
     )
     journal.tell(Finished(fit.success, fit.status, fit.fitness, fit.values, fit.simulations))
     return fit

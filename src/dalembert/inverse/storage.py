@@ -11,6 +11,7 @@ from dalembert.inverse.explained import Explained
 from dalembert.inverse.fit import Fit
 from dalembert.inverse.stored_correlated import correlated_of, stored_correlated, told_correlated
 from dalembert.inverse.stored_data import data_labels, data_of, stored_data
+from dalembert.inverse.stored_halves import halves_of, stored_halves
 from dalembert.inverse.stored_integration import integration_of, stored_integration
 from dalembert.inverse.stored_nodes import nodes_of, stored_nodes, told_nodes
 from dalembert.inverse.stored_parts import parts_of, stored_parts, told_parts
@@ -43,6 +44,7 @@ def contents_of(fit: Fit) -> Contents:
         **stored_nodes(fit.nodes),
         **stored_correlated(fit.correlated),
         **stored_integration(fit.integration),
+        **stored_halves(fit.halves),
     }
     if fit.validation is not None:
         variables["validation_weights"] = (("sample", "channel"), fit.validation.weights)
@@ -59,6 +61,7 @@ def contents_of(fit: Fit) -> Contents:
         "nodes": told_nodes(fit.nodes),
         "correlated": told_correlated(fit.correlated),
         "integration": None if fit.integration is None else fit.integration.how,
+        "halves_refitted": None if fit.halves is None else fit.halves.refitted,
         "validation": None
         if fit.validation is None
         else {
@@ -97,6 +100,7 @@ def from_xarray(dataset: "Dataset") -> Fit:
         findings=saved_findings(dataset),
         correlated=correlated_of(a, told.get("correlated")),
         integration=integration_of(a, told.get("integration")),
+        halves=halves_of(a, told.get("halves_refitted")),
     )
 
 

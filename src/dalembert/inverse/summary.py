@@ -23,7 +23,7 @@ def summary(fit: Fit) -> str:
     experiments = experiments_table(fit)
     told = [fit.status, *([] if fit.validation is None else [str(fit.validation)]), *fit.identifiability().sentences]
     told += map(str, fit.findings)
-    return "\n".join([*table(rows), "", *facts, "", *experiments, *told])
+    return "\n".join([*table(rows), "", *facts, "", *experiments, *halves_table(fit), *told])
 
 
 def integration_facts(fit: Fit) -> list[str]:
@@ -51,6 +51,22 @@ def experiments_table(fit: Fit) -> list[str]:
             own = item.residuals[item.data.present[:, column], column]
             rms = f"{np.sqrt(np.mean(own**2)):.4g}"
             rows.append((item.name, channel, str(len(own)), rms, "" if item.fitted else "predicted"))
+    return [*table(rows), ""]
+
+
+def halves_table(fit: Fit) -> list[str]:
+    """Lines of a table of the parameters of the halves, with an empty one after it; none where they agree."""
+    found = fit.halves
+    if found is None or not np.any(found.drifting):
+        return []
+    rows = [("parameter", "first half", "second half", "difference / deviation")]
+    for k, name in enumerate(fit.parameters.names):
+        first, second = (
+            "not determined" if np.isnan(value) else f"{value:.5g} ± {deviation:.2g}"
+            for value, deviation in zip(found.values[:, k], found.deviations[:, k], strict=True)
+        )
+        size = found.differences[k]
+        rows.append((name, first, second, "" if np.isnan(size) else f"{size:.2g}"))
     return [*table(rows), ""]
 
 

@@ -23,6 +23,7 @@ SOURCES = [
         f"inverse/{name}.py"
         for name in ("correlation/findings", "explained", "integration", "suspect_units", "too_few")
     ),
+    *(f"inverse/misfit/{name}.py" for name in ("delays", "halves", "model_misfit")),
     *(f"inverse/bands/{name}.py" for name in ("status", "telling")),
     "inverse/sets/status.py",
     *(f"inverse/telling/{name}.py" for name in ("designs", "prediction", "profiles", "walk")),

@@ -8,6 +8,10 @@ LONG = 0.3
 """Part of the motion's period from which a correlation time is that of the motion, which decorrelates in a quarter."""
 
 
+CLEAR = 0.001
+"""Probability in white noise from which correlated residuals may be systematic."""
+
+
 @dataclass(frozen=True)
 class NoiseProcess:
     """The autoregressive process fitted to the residuals of one channel.
@@ -26,13 +30,15 @@ class NoiseProcess:
     variance : float
         Of a weighted residual.
     time : float
-        Correlation time: that in which the slowest part of the process's autocorrelation decays by e, at most the
-        length of the record, in the coordinate's unit.
+        Correlation time: that in which the slowest part of the autocorrelation of the process, or of that of first
+        order if it leaves white noise, decays by e; at most the length of the record, in the coordinate's unit.
     period : float
         Of the response, 2π times its deviation over that of its rate, at most a third of the record, in the
         coordinate's unit.
     unit : str
         Of the coordinate.
+    first_order : bool
+        Whether a process of first order leaves white noise.
     """
 
     channel: str
@@ -44,11 +50,15 @@ class NoiseProcess:
     time: float
     period: float
     unit: str
+    first_order: bool = False
 
     @property
     def systematic(self) -> bool:
-        """Whether the correlation lasts as long as the motion's own, so that the residuals are no noise."""
-        return self.time >= LONG * self.period
+        """Whether the correlation lasts as long as the motion's own, so that the residuals are no noise.
+
+        Noise of first order may be correlated that long, but not over a period.
+        """
+        return self.p_value < CLEAR and self.time >= (self.period if self.first_order else LONG * self.period)
 
 
 @dataclass(frozen=True, eq=False)

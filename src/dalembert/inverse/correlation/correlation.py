@@ -1,6 +1,6 @@
 """The covariance of weighted residuals, as far as they are correlated."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,7 +9,7 @@ from dalembert.inverse.correlation.autoregression import Autoregression, Moments
 from dalembert.inverse.correlation.correlated import CorrelatedResiduals, NoiseProcess
 from dalembert.inverse.correlation.ornstein_uhlenbeck import OrnsteinUhlenbeck, ornstein_uhlenbeck
 from dalembert.inverse.correlation.series import Series, series_of
-from dalembert.inverse.correlation.whiteness import LEVEL, p_value
+from dalembert.inverse.correlation.whiteness import LEVEL, is_first_order, p_value
 from dalembert.inverse.estimate import estimate, left_vectors, unknown_estimate
 from dalembert.inverse.problem import Problem
 
@@ -62,20 +62,15 @@ def correlation(
     scale = problem.model.parameters.scale
     number = len(scale)
     basis = np.zeros((len(residual), number)) if slopes is None else left_vectors(slopes)
-    series = list(series_of(problem))
-    tested = [(own, p_value(own, residual[own.rows], basis[own.rows])) for own in series]
-    found = [(own, p) for own, p in tested if p < LEVEL / len(series)]
+    found = correlated_series(list(series_of(problem)), residual, basis)
     if not found:
         return None
-    fitted = _fitted([own for own, _ in found], residual, basis, variance)
-    processes = tuple(
-        _summary(own, process, p, response.ravel()[own.rows])
-        for (own, p), (_, process) in zip(found, fitted, strict=True)
-    )
+    fitted = fitted_processes(list(found), residual, basis, variance)
+    processes = summaries(found, fitted, response, residual, basis)
     if slopes is None:
         nothing = unknown_estimate(number)
         return CorrelatedResiduals(processes, nothing.deviations, nothing.correlation, nothing.correlation)
-    noise = _noise(fitted, basis, variance)
+    noise = noise_along(fitted, basis, variance)
     for (own, process), told in zip(fitted, processes, strict=True):
         noise += _remainder(process.product(own, basis[own.rows]), basis[own.rows], variance, told, known=known)
     plain, corrected = estimate(slopes, scale, variance), estimate(slopes, scale, noise)
@@ -86,14 +81,23 @@ def correlation(
     return CorrelatedResiduals(processes, plain.deviations, plain.correlation, noise)
 
 
-def _fitted(
+def correlated_series(series: Sequence[Series], residual: np.ndarray, basis: np.ndarray) -> dict[Series, float]:
+    """Return the series that the tests do not take for white noise, with their probabilities.
+
+    ``residual`` (values,) are weighted, ``basis`` (values, columns) is orthonormal and spans what was fitted.
+    """
+    tested = {own: p_value(own, residual[own.rows], basis[own.rows]) for own in series}
+    return {own: p for own, p in tested.items() if p < LEVEL / len(tested)}
+
+
+def fitted_processes(
     series: Sequence[Series], residual: np.ndarray, basis: np.ndarray, variance: float
 ) -> list[tuple[Series, Process]]:
-    """A process for each series."""
+    """Return a noise process for each series, from weighted residuals (values,); all others have ``variance``."""
     attempts = [_Attempt.at(own, residual[own.rows], basis[own.rows]) for own in series]
     for _ in range(ROUNDS):
         processes = [(attempt.series, attempt.process) for attempt in attempts]
-        common = _noise(processes, basis, variance)
+        common = noise_along(processes, basis, variance)
         attempts = [attempt.corrected(common) for attempt in attempts]
     return [(attempt.series, attempt.process) for attempt in attempts]
 
@@ -120,10 +124,11 @@ class _Attempt:
         return _Attempt(self.series, better.process(), better)
 
 
-def _noise(processes: Sequence[tuple[Series, Process]], basis: np.ndarray, variance: float) -> np.ndarray:
-    """UᵀΣU, (parameters, parameters): the processes' covariance, ``variance`` for all other values."""
+def noise_along(processes: Sequence[tuple[Series, Process]], basis: np.ndarray, variance: float) -> np.ndarray:
+    """Return BᵀΣB, (columns, columns), for a basis B (values, columns): ``variance`` where there is no process."""
     others = np.ones(len(basis), dtype=bool)
-    others[np.concatenate([own.rows for own, _ in processes])] = False
+    for own, _ in processes:
+        others[own.rows] = False
     total = variance * basis[others].T @ basis[others]
     return total + sum(process.product(own, basis[own.rows]) for own, process in processes)
 
@@ -144,7 +149,27 @@ def _remainder(
     return (vectors * np.maximum(values, 0.0)) @ vectors.T
 
 
-def _summary(own: Series, process: Process, p_value: float, response: np.ndarray) -> NoiseProcess:
+def summaries(
+    found: Mapping[Series, float],
+    fitted: Sequence[tuple[Series, Process]],
+    response: np.ndarray,
+    residual: np.ndarray,
+    basis: np.ndarray,
+) -> tuple[NoiseProcess, ...]:
+    """Return what is known of fitted processes; ``found`` has the series' probabilities to be white noise."""
+    return tuple(
+        _summary(
+            own,
+            process,
+            found[own],
+            response.ravel()[own.rows],
+            first_order=is_first_order(own, process.first, residual[own.rows], basis[own.rows]),
+        )
+        for own, process in fitted
+    )
+
+
+def _summary(own: Series, process: Process, p_value: float, response: np.ndarray, *, first_order: bool) -> NoiseProcess:
     rate = np.sqrt(np.mean(np.gradient(response, own.along) ** 2))
     period = 2 * np.pi * np.std(response) / rate if rate > 0 else np.inf
     return NoiseProcess(
@@ -154,7 +179,8 @@ def _summary(own: Series, process: Process, p_value: float, response: np.ndarray
         order=process.order,
         even=own.grid is not None,
         variance=process.variance,
-        time=float(min(process.decay(own.step), own.length)),
+        time=float(min(-own.step / np.log(process.first) if first_order else process.decay(own.step), own.length)),
         period=float(min(period, own.length / 3)),
         unit=own.unit,
+        first_order=first_order,
     )

@@ -62,6 +62,19 @@ def series_of(problem: Problem, weights: np.ndarray | None = None) -> Iterator[S
             yield Series(name, rows[kept] * width + column, along[kept], grid, step, unit)
 
 
+def records_of(problem: Problem) -> dict[str, tuple[str, str]]:
+    """Return the experiment and the channel within it, by the channel's joint name; no experiment for a single one."""
+    model = problem.model
+    if not isinstance(model, JointModel):
+        return {name: ("", name) for name in problem.data.channels}
+    names = [channel.name for channel in model.channels]
+    return {
+        names[column]: (part.name, channel)
+        for part in model.parts
+        for column, channel in zip(part.columns, part.channels, strict=True)
+    }
+
+
 def even_grid(along: np.ndarray) -> tuple[np.ndarray | None, float]:
     """Return the places (values,) of samples on an even grid, or None, and the grid's interval.
 

@@ -1,5 +1,7 @@
 """Tests of whether residuals are white noise."""
 
+from dataclasses import replace
+
 import numpy as np
 from scipy.special import chdtrc
 
@@ -43,6 +45,39 @@ def p_value(series: Series, values: np.ndarray, basis: np.ndarray) -> float:
     terms = squares(series, values, basis)
     first, all_terms = chdtrc(1, terms[0]), chdtrc(len(terms), np.sum(terms))
     return float(all_terms if series.grid is None else min(1.0, 2 * min(first, all_terms)))
+
+
+def is_first_order(series: Series, first: float, values: np.ndarray, basis: np.ndarray) -> bool:
+    """Return whether weighted residuals (values,) are noise of first order: whitened as such they pass as white.
+
+    Even samples must have no periodic part, either: a model that is wrong leaves one of the motion's own period.
+    ``first`` is the autocorrelation of samples one ``series.step`` apart; a process without a positive one is not.
+    """
+    if not 0 < first < 1:
+        return False
+    along = series.along if series.grid is None else series.grid * series.step
+    factors = first ** (np.diff(along) / series.step)
+    size = np.sqrt(1 - factors**2)
+    white = (values[1:] - factors * values[:-1]) / size
+    rows = (basis[1:] - factors[:, None] * basis[:-1]) / size[:, None]
+    left, singular, _ = np.linalg.svd(rows, full_matrices=False)
+    grid = None if series.grid is None else series.grid[1:] - series.grid[1]
+    later = replace(series, rows=series.rows[1:], along=series.along[1:], grid=grid)
+    periodic = 1.0 if grid is None else p_value_of_period(on_grid(grid, white))
+    return min(p_value(later, white, left[:, singular > 1e-9 * singular[0]]), periodic) >= LEVEL / 10
+
+
+def p_value_of_period(values: np.ndarray) -> float:
+    """Return the probability of a periodic part at least as large in white noise (places,): Fisher's g test.
+
+    Source: R. A. Fisher, Tests of significance in harmonic analysis, Proceedings of the Royal Society A 125 (1929).
+
+    >>> p_value_of_period(np.cos(np.arange(64.0))) < 1e-9
+    True
+    """
+    power = np.abs(np.fft.rfft(values - np.mean(values))[1:]) ** 2
+    count, share = len(power), float(np.max(power) / np.sum(power))
+    return min(1.0, count * (1 - share) ** (count - 1))
 
 
 def on_grid(grid: np.ndarray, rows: np.ndarray) -> np.ndarray:

@@ -1,5 +1,6 @@
 """Responses against data."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -15,6 +16,7 @@ from dalembert.report.sections.section import Section
 from dalembert.report.table import Cell, Table, cell, noted
 
 HOW = "Lines are computed with the identified values, circles are data; below, computed minus measured."
+LEAVES = "At the dashed line the residuals leave the noise: from there on the model does not follow the data."
 SHADED = "The shaded part was not fitted."
 
 
@@ -33,7 +35,7 @@ class Comparison(Section):
 
     @property
     def plots(self) -> tuple[Plot, ...]:
-        return plots(self.fit, "responses")
+        return plots(self.fit, "responses", misfits=misfits(self.fit))
 
     @property
     def table(self) -> Table:
@@ -54,8 +56,16 @@ def validation(fit: FitLike) -> str:
     return "" if told is None else str(told)
 
 
-def plots(compared: ResponseLike, name: str, lead: str = "") -> tuple[Plot, ...]:
-    """A figure for each quantity, named ``name-1`` …, its title after ``lead``."""
+def misfits(fit: FitLike, experiment: str = "") -> dict[str, float]:
+    """Return where the model begins to leave the data of an experiment, by channel."""
+    found = (item.values for item in getattr(fit, "findings", ()) if item.code == "model-misfit")
+    return {item["channel"]: item["at"] for item in found if item["experiment"] == experiment}
+
+
+def plots(
+    compared: ResponseLike, name: str, lead: str = "", misfits: Mapping[str, float] | None = None
+) -> tuple[Plot, ...]:
+    """A figure for each quantity, named ``name-1`` …, its title after ``lead``, with the places of ``misfits``."""
     channels = compared.data.channels
     found = []
     for place, group in enumerate(by_quantity(channels), start=1):
@@ -64,7 +74,11 @@ def plots(compared: ResponseLike, name: str, lead: str = "") -> tuple[Plot, ...]
         begins = first_predicted(compared)
         if begins is not None:
             figure.add_vrect(x0=begins, x1=compared.data.coordinate.values[-1], fillcolor=LIGHT.muted, opacity=0.12)
-        found.append(Plot(f"{name}-{place}", figure, HOW if begins is None else f"{HOW} {SHADED}"))
+        marks = [at for channel, at in (misfits or {}).items() if channel in chosen]
+        for at in marks:
+            figure.add_vline(x=at, row=2, col=1, line={"color": LIGHT.ink, "width": 1.5, "dash": "dash"})  # pyright: ignore[reportArgumentType]
+        caption = [HOW, *([SHADED] if begins is not None else []), *([LEAVES] if marks else [])]
+        found.append(Plot(f"{name}-{place}", figure, " ".join(caption)))
     return tuple(found)
 
 

@@ -1,7 +1,7 @@
 """Table of the identified parameters."""
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -48,6 +48,25 @@ class Estimates(Section):
         }
         rows = [*zip(*columns.values(), strict=True), *(_fixed(item, tuple(columns)) for item in fit.parameters.fixed)]
         return noted(Table("parameters", "Identified values", tuple(columns), rows))
+
+    @property
+    def halves(self) -> Table | None:
+        """Values of the first and of the second half of the records; None where they are not known."""
+        found: Any = getattr(self.fit, "halves", None)
+        if found is None:
+            return None
+        columns: dict[str, list[Cell]] = {"parameter": [cell(item.name) for item in self.fit.parameters]}
+        for half, values, deviations in zip(("first", "second"), found.values, found.deviations, strict=True):
+            columns[f"{half} half"] = [cell(float(v), d) for v, d in zip(values, deviations, strict=True)]
+            columns[f"deviation, {half}"] = _short(deviations)
+        columns["difference / deviation"] = [
+            cell(float(size), digits=2, mark=bool(mark))
+            for size, mark in zip(found.differences, found.drifting, strict=True)
+        ]
+        columns["unit"] = [cell(item.unit) for item in self.fit.parameters]
+        how = "fitted to each half" if found.refitted else "one step from the values of the whole record"
+        caption = f"First and second half of the record ({how})"
+        return noted(Table("halves", caption, tuple(columns), [*zip(*columns.values(), strict=True)]))
 
     @property
     def plots(self) -> tuple[Plot, ...]:

@@ -7,7 +7,7 @@ from typing import ClassVar
 from dalembert.report.look import plain
 from dalembert.report.needs import ExperimentLike, FitLike
 from dalembert.report.plot import Plot
-from dalembert.report.sections.comparison import all_samples, plots, residual_cells, validation
+from dalembert.report.sections.comparison import all_samples, misfits, plots, residual_cells, validation
 from dalembert.report.sections.section import Section
 from dalembert.report.table import Table, cell, noted
 
@@ -28,7 +28,8 @@ class Experiments(Section):
 
     @property
     def plots(self) -> tuple[Plot, ...]:
-        return tuple(plot for number, item in enumerate(self.experiments, start=1) for plot in _plots(item, number))
+        numbered = enumerate(self.experiments, start=1)
+        return tuple(plot for number, item in numbered for plot in self._plots(item, number))
 
     @property
     def table(self) -> Table:
@@ -60,7 +61,6 @@ class Experiments(Section):
                 found.append((f"Download all samples of {item.name} as CSV", table))
         return found
 
-
-def _plots(item: ExperimentLike, number: int) -> tuple[Plot, ...]:
-    predicted = "" if item.fitted else " (predicted)"
-    return plots(item, f"experiment-{number}", f"{plain(item.name)}{predicted}: ")
+    def _plots(self, item: ExperimentLike, number: int) -> tuple[Plot, ...]:
+        lead = f"{plain(item.name)}{'' if item.fitted else ' (predicted)'}: "
+        return plots(item, f"experiment-{number}", lead, misfits(self.fit, item.name))

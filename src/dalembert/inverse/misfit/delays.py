@@ -1,0 +1,131 @@
+"""Delays of sensors that would explain the residuals of a fit."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from dalembert.findings import Finding
+from dalembert.inverse.correlation.series import Series
+from dalembert.inverse.misfit.residuals import Residuals
+
+SIGNIFICANT = 4.0
+"""Delay in its standard deviations from which it is suspected."""
+
+EXPLAINS = 0.5
+"""Part of the squares of residuals from which a delay explains residuals that stay correlated with it."""
+
+DISTINCT = 1e-6
+"""Part of the squares of a response's rate that no parameter makes up for; below, a delay cannot be determined."""
+
+TIME = "s"
+
+
+@dataclass(frozen=True)
+class SuspectDelay:
+    """A delay that would explain the residuals of a channel, or of all.
+
+    Parameters
+    ----------
+    channel : str
+        Its name in every experiment; empty for all channels.
+    delay, deviation : float
+        s; positive where the data are late.
+    explained : float
+        Part of the squares of its residuals that the delay takes away.
+    """
+
+    channel: str
+    delay: float
+    deviation: float
+    explained: float
+
+
+def suspect_delays(residuals: Residuals) -> tuple[tuple[SuspectDelay, ...], Residuals]:
+    """Return the delays that explain residuals, the most explaining first, and the residuals without them.
+
+    Notes
+    -----
+    Data that are late by τ leave the residuals R(t) − R(t − τ) ≈ τ dR/dt. The part of W^½ dR/dt that no parameter makes
+    up for is the column d; τ = dᵀr/dᵀd. Its deviation allows for the correlation of the residuals that are left.
+    """
+    found: list[SuspectDelay] = []
+    rates = _rates(residuals)
+    while rates:
+        best = max(filter(None, (_estimated(residuals, name, rate) for name, rate in rates.items())), default=None)
+        if best is None or not best.accepted:
+            break
+        found.append(best.suspect)
+        residuals = best.left
+        rates = {name: rate for name, rate in rates.items() if name and best.suspect.channel not in ("", name)}
+    return tuple(found), residuals
+
+
+def delay_findings(delays: tuple[SuspectDelay, ...], time: str) -> Iterator[Finding]:
+    """Yield a finding for each suspected delay; ``time`` is the name of the coordinate."""
+    for item in delays:
+        size, late = f"{abs(item.delay):.2g} s (± {item.deviation:.1g} s)", item.delay > 0
+        whose = f"{item.channel!r}" if item.channel else "all channels"
+        message = (
+            f"The data of {whose} are {'late' if late else 'early'}: a delay of about {'' if late else '−'}{size} "
+            f"explains {100 * item.explained:.3g} % of the squares of their residuals."
+        )
+        bound = f"{2 * item.delay:.1g}"
+        advice = (
+            f"Identify it: [sensors] {item.channel!r} = {{ delay = [0.0, {bound}] }} in a study file, or Sensors."
+            if late and item.channel
+            else f"Identify a delay of each sensor, up to {bound} s, or check where the {time} of the data begins."
+            if late
+            else f"Check where the {time} of the data begins, and the delays of measured inputs."
+        )
+        values = {"channel": item.channel, "delay": item.delay, "deviation": item.deviation}
+        yield Finding("suspect-delay", "warning", {**values, "explained": item.explained}, message, advice)
+
+
+@dataclass(frozen=True, eq=False)
+class _Estimated:
+    """A delay, the residuals without it, and the squares that it takes away."""
+
+    suspect: SuspectDelay
+    left: Residuals
+    gain: float
+    accepted: bool
+
+    def __lt__(self, other: "_Estimated") -> bool:
+        return self.gain < other.gain
+
+
+def _rates(residuals: Residuals) -> dict[str, np.ndarray]:
+    """W^½ dR/dt (values,) by channel, the same in all experiments, 0 in the others; of all channels by ``""``."""
+    found: dict[str, np.ndarray] = {}
+    weights = np.sqrt(residuals.problem.weights).ravel()
+    for own in residuals.series:
+        if own.unit == TIME and len(own.rows) > 2:
+            column = found.setdefault(residuals.records[own.name][1], np.zeros(len(weights)))
+            column[own.rows] = weights[own.rows] * _rate(residuals, own)
+    return {**found, "": sum(found.values(), np.zeros(len(weights)))} if len(found) > 1 else found
+
+
+def _rate(residuals: Residuals, own: Series) -> np.ndarray:
+    response = residuals.at.response.ravel()[own.rows]
+    if residuals.problem.data.wrapping[own.rows[0] % residuals.at.response.shape[1]]:
+        response = np.unwrap(response)
+    return np.gradient(response, own.along)
+
+
+def _estimated(residuals: Residuals, name: str, rate: np.ndarray) -> _Estimated | None:
+    """The delay of the channels with a rate (values,); None where other parameters make up for it."""
+    column = rate - residuals.basis @ (residuals.basis.T @ rate)
+    size = float(column @ column)
+    if not size > DISTINCT * float(rate @ rate):
+        return None
+    delay = float(column @ residuals.values) / size
+    left, gain = residuals.without(column, delay), delay**2 * size
+    share = gain / float(np.sum(residuals.values[rate != 0] ** 2))
+    if not gain > SIGNIFICANT**2 * left.variance:  # independent residuals have the least deviation
+        return _Estimated(SuspectDelay(name, delay, np.nan, share), left, gain, accepted=False)
+    deviation = float(np.sqrt(left.spread(column[:, None])[0, 0])) / size
+    white = not any(np.any(rate[own.rows]) for own in left.correlated)
+    explains = share >= EXPLAINS or white
+    accepted = explains and abs(delay) >= SIGNIFICANT * deviation
+    return _Estimated(SuspectDelay(name, delay, deviation, share), left, gain, accepted)

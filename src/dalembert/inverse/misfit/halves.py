@@ -1,0 +1,171 @@
+"""Whether the first and the second half of the records have the same parameters."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+from scipy.special import ndtr
+
+from dalembert.findings import Finding
+from dalembert.inverse.descent import End, refine
+from dalembert.inverse.estimate import UNSEEN
+from dalembert.inverse.journal import Journal
+from dalembert.inverse.misfit.residuals import Residuals
+from dalembert.inverse.problem import Problem
+from dalembert.optimize import LeastSquares
+
+LEVEL = 0.001
+"""Probability with which equal parameters are taken for different ones, over all parameters of a fit."""
+
+LEAST = 10
+"""Fewest values of a half, beyond the parameters."""
+
+WEAK = 1e-3
+"""Singular value of a half, as a part of the whole record's, below which it does not determine a combination."""
+
+REFITTED = LeastSquares(trials=30)
+
+
+@dataclass(frozen=True, eq=False)
+class Halves:
+    """Parameters of the first and of the second half of each record.
+
+    Parameters
+    ----------
+    values, deviations : array, shape (2, parameters)
+        NaN where a half does not determine the parameter, and for parameters on a bound.
+    differences : array, shape (parameters,)
+        Second less first value in standard deviations of that difference; NaN where a half does not determine it.
+    refitted : bool
+        Whether each half was fitted; if not, the values are those of one Gauss–Newton step from the whole fit.
+    """
+
+    values: np.ndarray
+    deviations: np.ndarray
+    differences: np.ndarray
+    refitted: bool
+
+    @property
+    def drifting(self) -> np.ndarray:
+        """Whether each parameter differs significantly, (parameters,)."""
+        size = np.nan_to_num(np.abs(self.differences))
+        return 2 * ndtr(-size) < LEVEL / max(1, np.count_nonzero(np.isfinite(self.differences)))
+
+
+def halves(residuals: Residuals) -> Halves | None:
+    """Return the parameters of the halves of the records; None where a half has too few values, or a parameter a prior.
+
+    One Gauss–Newton step of each half from the whole fit needs no simulation. Where it finds different parameters, both
+    halves are fitted, from the values of the whole fit on.
+
+    Notes
+    -----
+    With the rows S_h of S = W^½ ∂R/∂p that belong to a half, its step is −S_h⁺ r. The residuals of the whole fit are
+    (I − UUᵀ) e, with the noise e and the left singular vectors U of S. So the difference of the steps has the
+    covariance G Σ Gᵀ, G = (S_1⁺ − S_2⁺)(I − UUᵀ). Σ is the covariance of the noise: of its process where a channel is
+    correlated. Where residuals are systematic, and so no noise, it is that of independent noise that neighbouring
+    residuals show.
+    """
+    problem, at = residuals.problem, residuals.at
+    first, second = _masks(residuals)
+    free, parameters = residuals.free, problem.model.parameters
+    scale = parameters.scale[free]
+    if problem.priors or min(np.count_nonzero(first), np.count_nonzero(second)) < len(scale) + LEAST:
+        return None
+    slopes = problem.slopes(at, parameters.scale)[: len(first), free]
+    largest = float(np.linalg.svd(slopes, compute_uv=False)[0])
+    maps, known = zip(*(_step(slopes * mask[:, None], largest, scale) for mask in (first, second)), strict=True)
+    sizes = np.array([np.sqrt(np.diag(_spread(residuals, columns))) for columns in maps])
+    apart = maps[1] - maps[0]
+    apart = apart - residuals.basis @ (residuals.basis.T @ apart)
+    deviation = np.sqrt(np.diag(_spread(residuals, apart)))
+    guess = (parameters.upper - parameters.lower)[free] / np.sqrt(12)
+    made = partial(_halves, free, sizes, deviation, np.array(known) & (sizes < guess))
+    steps = np.array([-residuals.values @ columns for columns in maps])
+    found = made(at.vector[free] + steps, refitted=False)
+    if not np.any(found.drifting):
+        return found
+    again = [_refitted(problem, mask, at.vector) for mask in (first, second)]
+    if any(values is None for values in again):
+        return found
+    return made(np.array(again)[:, free], refitted=True)
+
+
+def halves_findings(found: Halves | None, problem: Problem) -> Iterator[Finding]:
+    """Yield a finding where the halves have different parameters."""
+    if found is None or not np.any(found.drifting):
+        return
+    items = problem.model.parameters.items
+    worst = int(np.nanargmax(np.abs(found.differences)))
+    name, size = items[worst].name, abs(float(found.differences[worst]))
+    first, second = (f"{value:.4g} {items[worst].unit}".rstrip() for value in found.values[:, worst])
+    others = [repr(item.name) for k, item in enumerate(items) if found.drifting[k] and k != worst]
+    also = f" Also different: {', '.join(others)}." if others else ""
+    values = {
+        "parameter": name,
+        "first": float(found.values[0, worst]),
+        "second": float(found.values[1, worst]),
+        "deviations": size,
+    }
+    yield Finding(
+        "parameters-drift",
+        "warning",
+        values,
+        f"The two halves of the record have different parameters: {name!r} is {first} in the first and {second} in the "
+        f"second half, {size:.3g} standard deviations apart.{also}",
+        "Look for what changes with time or amplitude, such as friction or a nonlinear stiffness.",
+    )
+
+
+def _masks(residuals: Residuals) -> tuple[np.ndarray, np.ndarray]:
+    """Masks (values,) of the values in the first and in the second half of each record."""
+    first, second = (np.zeros(len(residuals.values), dtype=bool) for _ in range(2))
+    for own in residuals.series:
+        early = own.along <= (own.along[0] + own.along[-1]) / 2
+        first[own.rows[early]], second[own.rows[~early]] = True, True
+    return first, second
+
+
+def _step(slopes: np.ndarray, largest: float, scale: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Map (values, parameters) from weighted residuals to a step of the parameters, and which are determined."""
+    left, singular, directions = np.linalg.svd(slopes, full_matrices=False)
+    seen = singular > max(WEAK * WEAK * largest, UNSEEN)
+    pinv = left[:, seen] / singular[seen] @ directions[seen] * scale
+    return pinv, ~np.any(np.abs(directions[~seen]) > WEAK, axis=0)
+
+
+def _spread(residuals: Residuals, columns: np.ndarray) -> np.ndarray:
+    """Covariance (columns, columns) of columnsᵀ · noise, for columns (values, columns)."""
+    total, fitted = np.zeros((columns.shape[1], columns.shape[1])), dict(residuals.fitted)
+    for own in residuals.series:
+        rows, process = columns[own.rows], fitted.get(own)
+        if process is None:
+            total += residuals.variance * rows.T @ rows
+        elif residuals.processes[own.name].systematic:
+            total += residuals.noise(own) ** 2 * rows.T @ rows
+        else:
+            total += process.product(own, rows)
+    return total
+
+
+def _halves(
+    free: np.ndarray, sizes: np.ndarray, deviation: np.ndarray, known: np.ndarray, values: np.ndarray, *, refitted: bool
+) -> Halves:
+    """Halves from values and deviations (2, free parameters), where ``known``; NaN for the others (parameters,)."""
+    both = known.all(axis=0) & (deviation > 0)
+    differences = np.full(len(deviation), np.nan)
+    differences[both] = (values[1] - values[0])[both] / deviation[both]
+    rows = np.full((5, len(free)), np.nan)
+    rows[:, free] = [*np.where(known, values, np.nan), *np.where(known, sizes, np.nan), differences]
+    return Halves(rows[:2], rows[2:4], rows[4], refitted)
+
+
+def _refitted(problem: Problem, mask: np.ndarray, vector: np.ndarray) -> np.ndarray | None:
+    """Values (parameters,) of a half, by least squares from those of the whole; None if it does not converge."""
+    journal = Journal(problem.samples)
+    weights = np.where(mask.reshape(problem.weights.shape), problem.weights, 0.0)
+    part = replace(problem, weights=weights, journal=journal)
+    end = refine(part, REFITTED, End(problem.search.points(vector), np.inf, False, ""))
+    problem.journal.simulations += journal.simulations
+    return problem.search.vectors(end.point) if end.success else None

@@ -1,0 +1,129 @@
+"""Weighted residuals of a fit, and what the fitted parameters took out of them."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Self
+
+import numpy as np
+
+from dalembert.inverse.correlation import NoiseProcess
+from dalembert.inverse.correlation.correlation import (
+    Process,
+    correlated_series,
+    fitted_processes,
+    noise_along,
+    summaries,
+)
+from dalembert.inverse.correlation.series import Series, records_of, series_of
+from dalembert.inverse.estimate import left_vectors
+from dalembert.inverse.misfit.local_noise import local_deviation
+from dalembert.inverse.noise import quantum
+from dalembert.inverse.problem import Linearisation, Problem
+
+BOUND = 1e-6
+"""Distance from a bound, as a part of the width between bounds, up to which a parameter is on it."""
+
+STATIONARY = 0.1
+"""Squares of residuals that a last step may still take away, in variances of a residual."""
+
+
+@dataclass(frozen=True, eq=False)
+class Residuals:
+    """Weighted residuals at a minimum.
+
+    Parameters
+    ----------
+    problem : Problem
+    at : Linearisation
+    values : array, shape (values,)
+        W^½ (R − data), flat from (samples, channels).
+    basis : array, shape (values, columns)
+        Orthonormal; spans the changes that the fit could have explained.
+    free : array of bool, shape (parameters,)
+        Parameters that are on no bound, which alone the basis is of.
+    known : bool
+        Whether the variance of a weighted residual is known to be 1.
+    """
+
+    problem: Problem
+    at: Linearisation
+    values: np.ndarray
+    basis: np.ndarray
+    free: np.ndarray
+    known: bool
+
+    @classmethod
+    def of(cls, problem: Problem, at: Linearisation, *, known: bool) -> Self:
+        """Return the residuals of a problem; with a robust loss their influence on the estimate."""
+        plain = replace(problem, loss=None)
+        slopes, values = plain.slopes(at, problem.model.parameters.scale), plain.residual(at.response)
+        if problem.loss is not None:
+            counted = problem.weights.ravel() > 0
+            values[counted] = problem.loss.influence(values[counted])
+        parameters = problem.model.parameters
+        near = BOUND * (parameters.upper - parameters.lower)
+        free = (at.vector - parameters.lower > near) & (parameters.upper - at.vector > near)
+        return cls(problem, at, values, left_vectors(slopes[:, free])[: at.response.size], free, known)
+
+    @property
+    def stationary(self) -> bool:
+        """Whether the values are at a minimum: no step of the parameters takes more away than noise does."""
+        return float(np.sum((self.basis.T @ self.values) ** 2)) <= STATIONARY * self.variance
+
+    @cached_property
+    def series(self) -> tuple[Series, ...]:
+        """Each channel of each experiment."""
+        return tuple(series_of(self.problem))
+
+    @cached_property
+    def records(self) -> dict[str, tuple[str, str]]:
+        """Experiment and channel of a series, by its name."""
+        return records_of(self.problem)
+
+    @cached_property
+    def variance(self) -> float:
+        """Variance of a weighted residual: from the residuals, but at least 1 where it is known."""
+        freedom = self.problem.compared - self.basis.shape[1]
+        own = float(self.values @ self.values) / freedom if freedom > 0 else np.nan
+        return max(own, 1.0) if self.known else own
+
+    @cached_property
+    def correlated(self) -> Mapping[Series, float]:
+        """Series that are not white noise, with their probabilities to be so."""
+        return correlated_series(self.series, self.values, self.basis)
+
+    @cached_property
+    def fitted(self) -> list[tuple[Series, Process]]:
+        """Noise process of each series that is not white noise."""
+        return fitted_processes(list(self.correlated), self.values, self.basis, self.variance)
+
+    @cached_property
+    def processes(self) -> dict[str, NoiseProcess]:
+        """What is known of these processes, by the series' name."""
+        found = summaries(self.correlated, self.fitted, self.at.response, self.values, self.basis)
+        return {item.channel: item for item in found}
+
+    def noise(self, own: Series) -> float:
+        """Return the standard deviation of a weighted residual of a series by noise alone.
+
+        Where it is not known it follows from neighbouring residuals and from rounding of the data.
+        """
+        if self.known:
+            return 1.0
+        rows, columns = np.divmod(own.rows, self.at.response.shape[1])
+        weights, data = (table[rows, columns[0]] for table in (self.problem.weights, self.problem.data.values))
+        rounding = quantum(data) * np.sqrt(np.mean(weights) / 12)
+        return max(local_deviation(own.along, self.values[own.rows]), rounding, float(np.finfo(float).tiny))
+
+    def spread(self, columns: np.ndarray) -> np.ndarray:
+        """Return the covariance (columns, columns) of columnsᵀ · noise, for columns (values, columns).
+
+        Correlated series count with the process fitted to their residuals.
+        """
+        return noise_along(self.fitted, columns, self.variance)
+
+    def without(self, column: np.ndarray, amount: float) -> "Residuals":
+        """Return the residuals less ``amount`` of a column (values,) that is orthogonal to the basis."""
+        basis = np.column_stack([self.basis, column / np.linalg.norm(column)])
+        return replace(self, values=self.values - amount * column, basis=basis)

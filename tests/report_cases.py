@@ -308,6 +308,9 @@ CASES: dict[str, Case] = {
         ),
         ("Check the model structure and the bounds, or increase `starts`.", "for independent residuals"),
     ),
+    "a record whose first part is fitted": Case(
+        lambda: da.identify(_experiments(), validation={"b": 2.0}), ("after its first 2",)
+    ),
     "friction that the model lacks": Case(
         lambda: da.identify(oscillator(), recorded(rubbing(OSCILLATING, 30.0, 0.1, 0.3, 0.3), deviations=NOISE)),
         (

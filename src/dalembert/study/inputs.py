@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 _CHANNEL = "input"
 _ABSCISSA = "t"  # what units call the times of a universal file
 _OF_FILES = set(FileTable.model_fields) - {"file", "units"}
+_OF_TIMES = {*FileTable.model_fields, "start", "split", "trial"}
 _OUTSIDE = 0.01  # of a motion: what may lie beyond the ends of an input
 
 
@@ -78,9 +79,13 @@ class InputTable(FileTable):
             raise DataError(f"[inputs.{name}]: no file is given, and there are no [data]; give a file")
         units = {name: unit for name, unit in table.units.items() if name in (table.time, self.column, _ABSCISSA)}
         units |= {self.column: self.unit} if self.unit else {}
-        # the data's own reading, so that their times are those of the input; what else becomes of the data is left out
-        own: dict[str, Any] = {"deviations": None, "derivatives": {}, "between": None, "every": None, "resample": None}
-        own |= {"columns": {_CHANNEL: self.column}, "units": units, "lowpass": self.lowpass, "decimate": None}
+        # the times are read as those of the data; what else becomes of the data is left out
+        own = {
+            key: one.get_default(call_default_factory=True)
+            for key, one in DataTable.model_fields.items()
+            if key not in _OF_TIMES
+        }
+        own |= {"columns": {_CHANNEL: self.column}, "units": units, "lowpass": self.lowpass}
         own |= {"missing": self.missing, "wraps": [_CHANNEL] * self.wraps}
         data = table.model_copy(update=own).read()
         values = data.continuous[:, data.channels.index(_CHANNEL)]

@@ -228,6 +228,20 @@ def driven(constant, late, drag, course):
     np.testing.assert_array_equal(model.jacobian(vector), own.jacobian(vector))
 
 
+COMPARED = """
+[work_precision]
+end = "1 s"
+channels = ["bar.start.angle"]
+[[work_precision.reference]]
+kind = "RadauIIA"
+[[work_precision.reference]]
+kind = "RungeKutta4"
+step = 1e-3
+[[work_precision.series]]
+name = "alpha"
+solver = { step = 0.01 }
+over = { step = [0.01, 0.005] }
+"""
 SHORT = """
 [inputs.current]
 file = "short.csv"
@@ -300,6 +314,11 @@ def test_a_mistake_about_inputs_is_told_with_its_place(folder, text, sentence):
         ),
         (
             MODEL + SHORT + '[simulate]\nend = "1 s"',
+            DataError,
+            "has values from 0 to 0.5 s, and the motion lasts from 0 to 1 s; expected an input that lasts as long.",
+        ),
+        (
+            MODEL.replace('[solver]\nstep = "2 ms"', "") + SHORT + COMPARED,
             DataError,
             "has values from 0 to 0.5 s, and the motion lasts from 0 to 1 s; expected an input that lasts as long.",
         ),

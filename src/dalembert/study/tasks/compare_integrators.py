@@ -87,6 +87,7 @@ class CompareIntegrators(Task):
         from dalembert.multibody import TimeResponse
 
         table, ends = study.table, np.array([0.0, study.table.end])
+        study.require_inputs(table.end)
         for one in table.reference:
             response = TimeResponse(study.builder, study.parameters, table.channels, ends, solver=one.settings())
             with placed("[work_precision], channels"):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dalembert.data import Bands, Measurements, read_bands, read_csv
+from dalembert.data import Bands, Measurements, read, read_bands, read_csv
 from dalembert.errors import DataError
 from dalembert.forward import PythonModel
 from dalembert.inverse import identify
@@ -59,41 +59,24 @@ FILES = {
     "no lines of numbers": (
         "t,x\n",
         {},
-        "{path}: the file holds only a header line; expected a line of column names and then lines of numbers",
+        "{path}: the file holds no line of numbers; expected column names and then lines of numbers",
     ),
     "a short line": (
         "t,x,y\n0,1,2\n0.1,1\n",
         {},
         "{path}, line 3: 2 cells; expected 3, as the header has",
     ),
-    "semicolons": (
-        "t;angle\n0;1\n",
-        {},
-        "{path}, line 1: 't;angle' is read as the name of one column; the cells seem to be separated by semicolons; "
-        'give separator = ";"',
-    ),
-    "semicolons and decimal commas": (
-        "t;angle\n0,0;1,5\n",
-        {},
-        "{path}, line 1: 't;angle' is read as the name of one column; the cells seem to be separated by semicolons; "
-        'give separator = ";" and decimal = ","',
-    ),
-    "tabs": (
-        "t\tangle\n0\t1\n",
-        {},
-        "{path}, line 1: 't\\tangle' is read as the name of one column; the cells seem to be separated by tabs; "
-        'give separator = "\\t"',
-    ),
     "commas where there should be semicolons": (
         "t,angle\n0,1\n",
         {"separator": ";"},
-        "{path}, line 1: 't,angle' is read as the name of one column; the cells seem to be separated by commas; "
-        'give separator = ","',
+        "{path}: there is no column 't' with the separator or decimal mark that was given; the file seems to have "
+        "cells separated by commas, names in line 1; leave separator and decimal out",
     ),
-    "decimal commas": (
+    "decimal commas where there should be points": (
         "t;x\n0,0;1,5\n",
-        {"separator": ";"},
-        "{path}, line 2, column 't': '0,0' is not a number; for numbers with decimal commas give decimal = \",\"",
+        {"decimal": "."},
+        "{path}: there is no column 't' with the separator or decimal mark that was given; the file seems to have "
+        "cells separated by semicolons, decimal commas, names in line 1; leave separator and decimal out",
     ),
     "points beside decimal commas": (
         "t;x\n0,0;1.500,5\n",
@@ -108,30 +91,44 @@ FILES = {
     "one mark for cells and decimals": (
         "t,x\n0,1\n",
         {"decimal": ","},
+        "{path}: there is no column 't' with the separator or decimal mark that was given; the file seems to have "
+        "cells separated by commas, names in line 1; leave separator and decimal out",
+    ),
+    "one mark for both": (
+        "t,x\n0,1\n",
+        {"separator": ",", "decimal": ","},
         "{path}: ',' stands between the cells and before the decimals; give separator the character that stands "
         "between the cells, such as ';'",
     ),
     "no mark of decimals": (
         "t,x\n0,1\n",
         {"decimal": ":"},
-        "{path}: decimal is ':'; expected '.' or ','",
+        "{path}: decimal is ':'; expected 'auto', '.' or ','",
+    ),
+    "a number of no column": (
+        "t,x\n0,1\n",
+        {"columns": {"x": 3}},
+        "{path}: there is no column 3; expected a number from 1 to 2",
+    ),
+    "a word in a file without a header": (
+        "0 1\n0.1 2\n0.2 one\n",
+        {},
+        "{path}, line 3, column '2': 'one' is not a number",
+    ),
+    "a short line in a file without a header": (
+        "0 1 2\n0.1 2\n0.2 3 4\n0.3 4 5\n",
+        {},
+        "{path}, line 2: 2 cells; expected 3, as most lines have",
+    ),
+    "units that are none": (
+        "t,angle\ns,degrees?\n0,1\n",
+        {},
+        "{path}: unknown column 't'; known: degrees?, s",
     ),
     "a separator of two characters": (
         "t,x\n0,1\n",
         {"separator": ", "},
-        "{path}: separator is ', '; expected one character, such as ';'",
-    ),
-    "no header": (
-        "0.0,-0.6098\n0.1,-0.6\n",
-        {},
-        "{path}, line 1: the first line holds numbers only (0.0,-0.6098); expected the names of the columns; "
-        "put a line with them above it",
-    ),
-    "a line of units": (
-        "t,angle\ns,deg\n0,1\n",
-        {},
-        "{path}, line 2: no cell holds a number ('t' is 's', 'angle' is 'deg'); expected numbers below the names; "
-        "if these are the units of the columns, delete the line and give them by units",
+        "{path}: separator is ', '; expected 'auto', or one character, such as ';'",
     ),
     "a deviation that is missing": (
         "t,x,y\n0,1,2\n",
@@ -158,16 +155,46 @@ def test_a_file_that_is_not_there_is_answered_with_its_neighbours(tmp_path):
     assert str(error.value) == f"folder {tmp_path}: unknown file 'motions.csv'; did you mean 'motion.csv'?"
 
 
-@pytest.mark.parametrize(
-    ("content", "line"),
-    [(b"t,x\n\xff\xfe\xfa", 2), ("t,größe\n0,1\n".encode("latin-1"), 1), ("t,x\n0,1\n".encode("utf-16"), 1)],
-)
-def test_a_file_that_is_not_utf_8_text_is_told(content, line, tmp_path):
+@pytest.mark.parametrize("content", [b"t,x\n\xff\xfe\x00\x01", b"\xff\xfet\x00,", bytes(range(256))])
+def test_a_file_that_is_no_text_is_told(content, tmp_path):
     path = tmp_path / "motion.csv"
     path.write_bytes(content)
     with pytest.raises(DataError) as error:
         read_csv(path)
-    assert str(error.value) == f"{path}, line {line}: the file is not UTF-8 text; save it as UTF-8"
+    assert str(error.value) == f"{path}: the file is not text; give its format, or save it as UTF-8 text"
+
+
+def test_a_damaged_archive_is_told(tmp_path):
+    path = tmp_path / "motion.csv.gz"
+    path.write_bytes(b"\x1f\x8b broken")
+    with pytest.raises(DataError, match="cannot be read as text with columns"):
+        read(path)
+
+
+JSON_FILES = {
+    "not JSON": (
+        '{"t": [0, 1],\n "x": [1, 2}',
+        "{path}, line 2, column 12: the file is not JSON (Expecting ',' delimiter); expected an object of arrays, or "
+        "an array of objects or of rows, of numbers",
+    ),
+    "a number": (
+        "3",
+        "{path}: the file holds something else than an object of arrays, or an array of objects or of rows, of numbers",
+    ),
+    "a word": ('{"t": [0, 1], "x": [1, "a"]}', "{path}, column 'x', sample 1: 'a' is not a number"),
+    "a short row": ("[[0, 1], [1]]", "{path}, row 2: 1 values; expected 2, as the first row has"),
+    "a column that is missing": ('{"time": [0, 1], "x": [1, 2]}', "{path}: unknown column 't'; known: time, x"),
+}
+
+
+@pytest.mark.parametrize("defect", JSON_FILES)
+def test_a_defect_of_a_json_file_is_told(defect, tmp_path):
+    text, sentence = JSON_FILES[defect]
+    path = tmp_path / "motion.json"
+    path.write_text(text)
+    with pytest.raises(DataError) as error:
+        read(path)
+    assert str(error.value) == sentence.format(path=path)
 
 
 def test_a_folder_is_no_file_of_data(tmp_path):

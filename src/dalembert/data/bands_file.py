@@ -7,16 +7,17 @@ from pathlib import Path
 from dalembert.data.bands import Bands
 from dalembert.data.formats import columns_in
 from dalembert.data.opening import told_of
+from dalembert.data.text_layout import AUTO
 from dalembert.errors import DataError
 
 
 def read_bands(
     path: str | Path,
-    time: str = "t",
+    time: str | int = "t",
     columns: Mapping[str, tuple[str, str]] | None = None,
     *,
-    separator: str = ",",
-    decimal: str = ".",
+    separator: str = AUTO,
+    decimal: str = AUTO,
     units: Mapping[str, str] | None = None,
     format: str | None = None,  # noqa: A002
     frequency: str | None = None,

@@ -28,6 +28,8 @@ class Columns:
         Units of columns that the file itself names.
     frequency : bool
         Whether the samples lie along a frequency in Hz, not along time.
+    layout : str
+        What a text file was taken to be, in words.
     """
 
     path: Path
@@ -36,6 +38,7 @@ class Columns:
     table: Mapping[str, np.ndarray]
     units: Mapping[str, str] = field(default_factory=dict)
     frequency: bool = False
+    layout: str = ""
 
     def converted(self, units: Mapping[str, str] | None) -> tuple[Coordinate, dict[str, np.ndarray]]:
         """Coordinate and columns in SI units, from the given units, or else those that the file names.

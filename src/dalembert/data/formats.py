@@ -5,14 +5,17 @@ from pathlib import Path
 
 from dalembert.data.columns import Columns
 from dalembert.data.csv_columns import csv_columns
+from dalembert.data.json_file import json_columns
 from dalembert.data.mat_file import mat_columns
 from dalembert.data.netcdf_file import netcdf_columns
 from dalembert.data.parquet_file import parquet_columns
+from dalembert.data.text_layout import AUTO
 from dalembert.data.uff_file import uff_columns
 from dalembert.errors import DataError, unknown
 
 SUFFIXES = {
-    "csv": (".csv", ".txt"),
+    "csv": (".csv", ".txt", ".dat", ".tsv", ".asc", ".log"),
+    "json": (".json",),
     "parquet": (".parquet", ".pq"),
     "mat": (".mat",),
     "uff": (".uff", ".unv", ".uf", ".bunv"),
@@ -20,15 +23,17 @@ SUFFIXES = {
 }
 """Suffixes of the files of each format."""
 
+_COMPRESSED = ("csv", "json")  # may end in .gz
+
 
 def columns_in(
     path: Path,
-    time: str,
-    names: Iterable[str] | None,
+    time: str | int,
+    names: Iterable[str | int] | None,
     *,
     missing: str = "refuse",
-    separator: str = ",",
-    decimal: str = ".",
+    separator: str = AUTO,
+    decimal: str = AUTO,
     units: Collection[str] = (),
     format: str | None = None,  # noqa: A002
 ) -> Columns:
@@ -44,6 +49,9 @@ def columns_in(
     kind = format_of(path) if format is None else format
     if kind == "csv":
         return csv_columns(path, time, names, missing, separator, decimal)
+    if kind == "json":
+        return json_columns(path, time, names, missing)
+    time, names = str(time), None if names is None else [str(name) for name in names]
     if kind == "uff":
         return uff_columns(path, names, missing, units)
     readers = {"parquet": parquet_columns, "mat": mat_columns, "netcdf": netcdf_columns}
@@ -58,9 +66,13 @@ def format_of(path: Path) -> str:
     >>> format_of(Path("motion.MAT"))
     'mat'
     """
+    compressed = path.suffix.lower() == ".gz"
+    suffix = Path(path.stem).suffix if compressed else path.suffix
     for name, suffixes in SUFFIXES.items():
-        if path.suffix.lower() in suffixes:
+        if suffix.lower() in suffixes and (name in _COMPRESSED or not compressed):
             return name
+    if compressed:
+        raise DataError(f"{path}: only text and JSON are read from .gz files; decompress the file")
     known = ", ".join(suffix for suffixes in SUFFIXES.values() for suffix in suffixes)
     raise DataError(
         f"{path}: the suffix {path.suffix!r} stands for no format; expected one of {known}; rename the file, or say "

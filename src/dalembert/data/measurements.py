@@ -33,6 +33,8 @@ class Measurements:
         What a NaN among the values means to a method: a defect, or a sample that was not measured and does not count.
     wraps : tuple of str
         Channels that are angles in rad known up to whole turns: their differences count modulo 2π.
+    origin : str
+        The file that they come from, and what a text file was taken to be, in words.
 
     Raises
     ------
@@ -49,6 +51,7 @@ class Measurements:
     deviations: np.ndarray | None = None
     missing: str = "refuse"
     wraps: tuple[str, ...] = ()
+    origin: str = ""
 
     def __post_init__(self) -> None:
         for name, value in (

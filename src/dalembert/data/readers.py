@@ -10,49 +10,53 @@ from numpy.typing import ArrayLike
 from dalembert.data.formats import columns_in
 from dalembert.data.measurements import Measurements
 from dalembert.data.opening import told_of
+from dalembert.data.text_layout import AUTO
 
 
 def read(
     path: str | Path,
-    time: str = "t",
-    columns: Mapping[str, str] | None = None,
+    time: str | int = "t",
+    columns: Mapping[str, str | int] | None = None,
     deviations: Mapping[str, float] | ArrayLike | None = None,
     *,
     units: Mapping[str, str] | None = None,
     missing: str = "refuse",
     wraps: Iterable[str] = (),
     format: str | None = None,  # noqa: A002
-    separator: str = ",",
-    decimal: str = ".",
+    separator: str = AUTO,
+    decimal: str = AUTO,
     frequency: str | None = None,
 ) -> Measurements:
-    """Measurements from a file: CSV, Parquet, MAT (version 5 and 7.3), UFF (dataset 58) or NetCDF.
+    """Measurements from a file: text with columns, JSON, Parquet, MAT (version 5 and 7.3), UFF (dataset 58) or NetCDF.
 
     Parameters
     ----------
     path : path
-    time : str
-        Column of the times. A universal file has none to name: there it is the abscissa, ``"t"`` in ``units``.
-    columns : mapping of str to str, optional
+    time : str or int
+        Column of the times; in a text file without a header the first one if not given. A universal file has none to
+        name: there it is the abscissa, ``"t"`` in ``units``.
+    columns : mapping of str to str or int, optional
         Column of each channel, for example ``{"AB.end.x": "case1_x"}``; every column by its own name if not given. In
-        a MAT file a column is a vector, a field of a struct, ``"run.x"``, or a part of a matrix, ``"q(:,1)"``; in a
-        universal file a function, by its response node and direction, ``"12:+X"``, or its first ID line; in NetCDF a
-        variable, or an entry of one, ``"response[AB.end.x]"``.
+        text files and rows of JSON a number counts columns from 1. In a MAT file a column is a vector, a field of a
+        struct, ``"run.x"``, or a part of a matrix, ``"q(:,1)"``; in a universal file a function, by its response node
+        and direction, ``"12:+X"``, or its first ID line; in NetCDF a variable, or an entry of one,
+        ``"response[AB.end.x]"``.
     deviations : number, mapping by channel, or array of shape (channels,), optional
         Standard deviations of the noise, in SI units.
     units : mapping of str to str, optional
         Unit of each column of the file that is not in SI units, for example ``{"t": "ms", "case1_x": "mm"}``. Units
-        that a NetCDF file names are known without it.
+        that a NetCDF file names are known without it, and so are those of a text file in a line below the names or in
+        brackets behind a name, ``angle [deg]``.
     missing : {"refuse", "leave-out"}
         With ``"leave-out"`` an empty cell, a null or a NaN is a sample that was not measured, and does not count.
     wraps : iterable of str
         Channels that are angles known up to whole turns.
-    format : {"csv", "parquet", "mat", "uff", "netcdf"}, optional
-        By the file's suffix if not given.
+    format : {"csv", "json", "parquet", "mat", "uff", "netcdf"}, optional
+        By the file's suffix if not given; ``"csv"`` is any text with columns.
     separator : str
-        Of the cells of a CSV file.
-    decimal : {".", ","}
-        What stands before the decimals of the numbers of a CSV file.
+        Of the cells of a text file; found from its lines if ``"auto"``. A blank stands for any number of blanks.
+    decimal : {"auto", ".", ","}
+        What stands before the decimals of the numbers of a text file; found from its lines if ``"auto"``.
     frequency : str, optional
         Column of the frequencies along which the samples lie, in place of the times.
 
@@ -74,30 +78,31 @@ def read(
     ([0.0, 0.1], [[1.0], [0.9]])
     """
     path = Path(path)
-    names = None if columns is None else columns.values()
+    names = None if columns is None else list(columns.values())
     text = {"separator": separator, "decimal": decimal}
     options: Any = {"missing": missing, "units": [*(units or ())], "format": format, **text}
     found = columns_in(path, frequency or time, names, **options)
     along, table = replace(found, frequency=found.frequency or frequency is not None).converted(units)
-    chosen = {name: name for name in table} if columns is None else columns
+    chosen = {name: name for name in table} if columns is None else {name: str(of) for name, of in columns.items()}
     with told_of(path):
         channels = {name: table[column] for name, column in chosen.items()}
-        return Measurements.of(along, channels, deviations, missing=missing, wraps=wraps)
+        data = Measurements.of(along, channels, deviations, missing=missing, wraps=wraps)
+    return replace(data, origin=f"{path}: {found.layout}" if found.layout else str(path))
 
 
 def read_csv(
     path: str | Path,
-    time: str = "t",
-    columns: Mapping[str, str] | None = None,
+    time: str | int = "t",
+    columns: Mapping[str, str | int] | None = None,
     deviations: Mapping[str, float] | ArrayLike | None = None,
     *,
-    separator: str = ",",
-    decimal: str = ".",
+    separator: str = AUTO,
+    decimal: str = AUTO,
     units: Mapping[str, str] | None = None,
     missing: str = "refuse",
     wraps: Iterable[str] = (),
 ) -> Measurements:
-    """Measurements from a CSV file with a header line, whatever its suffix; the arguments are those of :func:`read`.
+    """Measurements from a text file with columns, whatever its suffix; the arguments are those of :func:`read`.
 
     Raises
     ------
@@ -120,8 +125,8 @@ def read_csv(
 
 def read_parquet(
     path: str | Path,
-    time: str = "t",
-    columns: Mapping[str, str] | None = None,
+    time: str | int = "t",
+    columns: Mapping[str, str | int] | None = None,
     deviations: Mapping[str, float] | ArrayLike | None = None,
     **more: Any,
 ) -> Measurements:
@@ -134,8 +139,8 @@ def read_parquet(
 
 def read_mat(
     path: str | Path,
-    time: str = "t",
-    columns: Mapping[str, str] | None = None,
+    time: str | int = "t",
+    columns: Mapping[str, str | int] | None = None,
     deviations: Mapping[str, float] | ArrayLike | None = None,
     **more: Any,
 ) -> Measurements:
@@ -174,8 +179,8 @@ def read_uff(
 
 def read_netcdf(
     path: str | Path,
-    time: str = "t",
-    columns: Mapping[str, str] | None = None,
+    time: str | int = "t",
+    columns: Mapping[str, str | int] | None = None,
     deviations: Mapping[str, float] | ArrayLike | None = None,
     **more: Any,
 ) -> Measurements:

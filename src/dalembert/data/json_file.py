@@ -1,0 +1,64 @@
+"""Columns of a JSON file: an object of arrays, or an array of objects or of rows."""
+
+import json
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from dalembert.data.columns import Columns, chosen
+from dalembert.data.text_lines import file_bytes
+from dalembert.errors import DataError
+
+_FORMS = "an object of arrays, or an array of objects or of rows, of numbers"
+
+
+def json_columns(path: Path, time: str | int, names: Iterable[str | int] | None, missing: str) -> Columns:
+    """Times and columns by name; those of rows by their numbers from 1.
+
+    Raises
+    ------
+    DataError
+        With the line and column where the file is no JSON; for another form; as :func:`chosen`.
+    """
+    try:
+        content = json.loads(file_bytes(path))
+    except json.JSONDecodeError as error:
+        raise DataError(
+            f"{path}, line {error.lineno}, column {error.colno}: the file is not JSON ({error.msg}); expected {_FORMS}"
+        ) from None
+    except UnicodeDecodeError as error:
+        raise DataError(f"{path}: the file is not text ({error.reason}); expected JSON") from None
+    columns = {name: _array(path, name, entries) for name, entries in _by_name(path, content).items()}
+    rows = isinstance(content, list) and isinstance(content[0], list)
+    label = "1" if rows and time == "t" else str(time)
+    wanted = None if names is None else map(str, names)
+    return Columns(path, label, *chosen(path, columns, label, wanted, missing), layout="JSON")
+
+
+def _by_name(path: Path, content: Any) -> dict[str, list[Any]]:
+    if isinstance(content, dict) and any(isinstance(entries, list) for entries in content.values()):
+        return {name: entries for name, entries in content.items() if isinstance(entries, list)}
+    if isinstance(content, list) and content and all(isinstance(entry, dict) for entry in content):
+        names = dict.fromkeys(name for entry in content for name in entry)
+        return {name: [entry.get(name) for entry in content] for name in names}
+    if isinstance(content, list) and content and all(isinstance(entry, list) for entry in content):
+        width = len(content[0])
+        for number, entry in enumerate(content):
+            if len(entry) != width:
+                raise DataError(
+                    f"{path}, row {number + 1}: {len(entry)} values; expected {width}, as the first row has"
+                )
+        return {str(k + 1): [entry[k] for entry in content] for k in range(width)}
+    raise DataError(f"{path}: the file holds something else than {_FORMS}")
+
+
+def _array(path: Path, name: str, entries: list[Any]) -> np.ndarray:
+    """Numbers, null as NaN; what holds no numbers at all stays as it is, and is refused if it is wanted."""
+    if any(isinstance(entry, bool | str | list | dict) for entry in entries):
+        for row, entry in enumerate(entries):
+            if isinstance(entry, str | list | dict) and any(isinstance(one, int | float) for one in entries):
+                raise DataError(f"{path}, column {name!r}, sample {row}: {entry!r} is not a number")
+        return np.array(list(map(str, entries)))
+    return np.array([np.nan if entry is None else entry for entry in entries], dtype=float)

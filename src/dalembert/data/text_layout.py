@@ -1,0 +1,205 @@
+"""The layout of a text file with columns: separator, decimal mark, header, units, and where the numbers begin."""
+
+import csv
+import math
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from itertools import product
+
+from dalembert.errors import InputError
+from dalembert.units import si
+
+AUTO = "auto"
+SEPARATORS = {",": "commas", ";": "semicolons", "\t": "tabs", " ": "blanks"}
+COMMENTS = ("%", "#")
+GAPS = ("", "na", "nan")
+"""What a cell without a value holds, in any case of letters."""
+
+Line = tuple[int, str]
+Row = tuple[int, list[str]]
+_SAMPLE = 50  # lines that are looked at
+
+
+@dataclass(frozen=True)
+class Layout:
+    """What the lines of a text file are.
+
+    Parameters
+    ----------
+    separator, decimal : str
+        A blank stands for any number of blanks and tabs.
+    header : tuple of str
+        Names of the columns; their numbers from 1 where the file has none.
+    units : tuple of str
+        One a column, ``""`` where none is named.
+    rows : list of (line number, cells)
+    named : int or None
+        Line of the names; None where there is none.
+    measured : int or None
+        Line of the units.
+    """
+
+    separator: str
+    decimal: str
+    header: tuple[str, ...]
+    units: tuple[str, ...]
+    rows: list[Row]
+    named: int | None
+    measured: int | None
+
+    def __str__(self) -> str:
+        marks = f"cells separated by {SEPARATORS.get(self.separator, repr(self.separator))}"
+        comma = ", decimal commas" if self.decimal == "," else ""
+        names = "no header" if self.named is None else f"names in line {self.named}"
+        units = "" if self.measured is None else f", units in line {self.measured}"
+        return f"{marks}{comma}, {names}{units}"
+
+
+def layout(lines: Sequence[Line], time: str | int, separator: str = AUTO, decimal: str = AUTO) -> Layout:
+    """The layout of lines that are not blank.
+
+    Cells that are numbers decide: of all separators and decimal marks those that leave the fewest other cells, and of
+    these the ones that give the most columns.
+
+    Parameters
+    ----------
+    lines : sequence of (line number, text)
+    time : str or int
+        Column of the times: a first line that has this name is a header though it may hold numbers.
+    separator, decimal : str
+        ``"auto"``, or what they are.
+
+    Examples
+    --------
+    >>> found = layout([(1, "% rig 7"), (2, "time;angle"), (3, "s;deg"), (4, "0,0;1,5"), (5, "0,1;1,4")], "time")
+    >>> str(found)
+    'cells separated by semicolons, decimal commas, names in line 2, units in line 3'
+    >>> found.rows[0]
+    (4, ['0,0', '1,5'])
+    """
+    plain = [line for line in lines if not line[1].lstrip().startswith(COMMENTS)]
+    sample = [text for _, text in plain[len(plain) // 2 :]][:_SAMPLE]
+    separators = tuple(SEPARATORS) if separator == AUTO else (separator,)
+    marks = [(cut, mark) for cut, mark in product(separators, ".," if decimal == AUTO else decimal) if cut != mark] or [
+        (separators[0], ".")
+    ]
+    first = [text for _, text in plain[:_SAMPLE]]
+    cut, mark = max(marks, key=lambda pair: _suits(sample, first, *pair))
+    rows = _split(plain, cut)
+    counts = Counter(len(cells) for _, cells in rows[len(rows) // 2 :][:_SAMPLE])
+    width = counts.most_common(1)[0][0] if counts else 0
+    begin = _first_numbers(rows, width, mark)
+    if rows and begin == 0 and isinstance(time, str) and time in rows[0][1]:
+        begin = 1
+    above = rows[:begin] or _marked(lines, rows[0][0] if rows else 0, cut, width)
+    names, units = _head(above, width)
+    header = tuple(names[1]) if names else tuple(map(str, range(1, width + 1)))
+    data = rows[begin:]
+    header, data = _without_empty_end(header, data, named=names is not None)
+    width = len(data[0][1]) if data else len(header)
+    header += tuple(str(number) for number in range(len(header) + 1, width + 1))
+    found = [_bracketed(name) for name in header] if units is None else [_unit(cell) for cell in units[1]]
+    found = (found + [""] * len(header))[: len(header)]
+    return Layout(cut, mark, header, tuple(found), data, names and names[0], units and units[0])
+
+
+def is_number(cell: str, decimal: str = ".") -> bool:
+    """Whether a cell holds a number."""
+    try:
+        value(cell, decimal)
+    except ValueError:
+        return False
+    return True
+
+
+def value(cell: str, decimal: str) -> float:
+    """Number in a cell; a point beside decimal commas may divide thousands, and is refused."""
+    return float("" if decimal == "," and "." in cell else cell.replace(decimal, "."))
+
+
+def _split(lines: Iterable[Line], separator: str) -> list[Row]:
+    lines = list(lines)
+    if separator == " ":
+        return [(number, text.split()) for number, text in lines]
+    cells = csv.reader((text for _, text in lines), delimiter=separator)
+    return [(number, [cell.strip() for cell in row]) for (number, _), row in zip(lines, cells, strict=False)]
+
+
+def _suits(sample: Sequence[str], first: Sequence[str], separator: str, decimal: str) -> tuple[float, int]:
+    """Share of the cells that are numbers or empty times that of the lines of equal length; the number of columns."""
+    rows = [cells for _, cells in _split(enumerate(sample), separator)]
+    cells = [cell for row in rows for cell in row]
+    good = sum(is_number(cell, decimal) or cell.lower() in GAPS for cell in cells)
+    width = Counter(map(len, rows)).most_common(1)[0][0] if rows else 0
+    even = sum(len(cells) == width for _, cells in _split(enumerate(first), separator)) / max(1, len(first))
+    return even * good / max(1, len(cells)), width
+
+
+def _first_numbers(rows: Sequence[Row], width: int, decimal: str) -> int:
+    """Number of the first row that is not mostly words where the sample has numbers."""
+    sample = [cells for _, cells in rows[len(rows) // 2 :][:_SAMPLE] if len(cells) == width]
+    numeric = [
+        column
+        for column in range(width)
+        if 2 * sum(is_number(cells[column], decimal) for cells in sample) >= max(1, len(sample))
+    ]
+    for number, (_, cells) in enumerate(rows):
+        asked = [cells[column] for column in numeric if column < len(cells)]
+        words = sum(not is_number(cell, decimal) and cell.lower() not in GAPS for cell in asked)
+        if numeric and len(cells) > 1 - (width == 1) and 2 * words <= len(asked) and any(map(_filled, asked)):
+            return number
+    return len(rows)
+
+
+def _filled(cell: str) -> bool:
+    return cell.lower() not in GAPS
+
+
+def _marked(lines: Sequence[Line], before: int, separator: str, width: int) -> list[Row]:
+    """Comment lines above the numbers that have a name a column."""
+    marked = [(number, text.lstrip().lstrip("%#").strip()) for number, text in lines if number < before]
+    rows = _split(marked, separator)
+    rows = [
+        row if len(row[1]) == width else (row[0], text.split()) for row, (_, text) in zip(rows, marked, strict=True)
+    ]
+    return [row for row in rows[-2:] if len(row[1]) == width and not all(map(is_number, row[1]))]
+
+
+def _head(above: Sequence[Row], width: int) -> tuple[Row | None, Row | None]:
+    """The row of names and the row of units among those above the numbers."""
+    if len(above) > 1 and len(above[-1][1]) == width and all(_is_unit(cell) for cell in above[-1][1]):
+        return above[-2], above[-1]
+    return (above[-1] if above else None), None
+
+
+def _without_empty_end(header: tuple[str, ...], rows: list[Row], *, named: bool) -> tuple[tuple[str, ...], list[Row]]:
+    """Without a last column that is empty throughout, as a separator at the end of each line leaves one."""
+    width = len(header) if named else max((len(cells) for _, cells in rows), default=0)
+    ended = all(cells and not cells[-1] for _, cells in rows) and len({len(cells) for _, cells in rows}) == 1
+    if not rows or not ended or len(rows[0][1]) < 2 or (named and width == len(rows[0][1]) and header[-1]):
+        return header, rows
+    return header[: len(rows[0][1]) - 1], [(number, cells[:-1]) for number, cells in rows]
+
+
+def _unit(cell: str) -> str:
+    inner = cell.strip("[]() ")
+    return "" if inner in ("-", "1") else inner
+
+
+def _is_unit(cell: str) -> bool:
+    inner = _unit(cell)
+    if not inner:
+        return True
+    try:
+        return math.isfinite(si(f"1 {inner}", None))
+    except InputError:
+        return False
+
+
+def _bracketed(name: str) -> str:
+    """Unit in brackets at the end of a name, such as ``angle [deg]``."""
+    if not name.endswith("]") or "[" not in name:
+        return ""
+    cell = name[name.rindex("[") :]
+    return _unit(cell) if _is_unit(cell) else ""

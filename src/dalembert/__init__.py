@@ -45,7 +45,10 @@ _NAMES = {
         Structure box combine craig_bampton eigenmodes foot_pairs lumped mode_shapes node_motion pairs
         patched_plate plate read_structure similarity solid tie write_structure
     """,
-    "data": "Bands Measurements derivative read read_bands read_csv read_mat read_netcdf read_parquet read_uff",
+    "data": """
+        Bands Measurements derivative merged read read_bands read_csv read_mat read_netcdf read_parquet read_trials
+        read_uff
+    """,
     "inverse": """
         BandFit Designs Experiment Fit GlobalSurrogate MultipleShooting Nested ParameterSet Prediction Profiles State
         design identifiability identify identify_bands identify_set predict profile

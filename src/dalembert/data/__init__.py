@@ -3,19 +3,21 @@
 from dalembert.data.bands import Bands
 from dalembert.data.bands_file import read_bands
 from dalembert.data.derivative import Derivative, derivative
-from dalembert.data.measurements import Measurements
-from dalembert.data.readers import read, read_csv, read_mat, read_netcdf, read_parquet, read_uff
+from dalembert.data.measurements import Measurements, merged
+from dalembert.data.readers import read, read_csv, read_mat, read_netcdf, read_parquet, read_trials, read_uff
 
 __all__ = [
     "Bands",
     "Derivative",
     "Measurements",
     "derivative",
+    "merged",
     "read",
     "read_bands",
     "read_csv",
     "read_mat",
     "read_netcdf",
     "read_parquet",
+    "read_trials",
     "read_uff",
 ]

@@ -3,6 +3,7 @@
 from collections.abc import Collection, Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from dalembert.data.bands import Bands
 from dalembert.data.formats import columns_in
@@ -55,7 +56,7 @@ def read_bands(
             if isinstance(pair, str) or len(pair) != 2:
                 raise DataError(f"columns, channel {name!r}: {pair!r} was given; expected two names, (lower, upper)")
     names = None if columns is None else [column for pair in columns.values() for column in pair]
-    text = {"separator": separator, "decimal": decimal}
+    text: Any = {"separator": separator, "decimal": decimal}
     found = columns_in(path, frequency or time, names, units=[*(units or ())], format=format, **text)
     along, table = replace(found, frequency=found.frequency or frequency is not None).converted(units)
     pairs = _pairs(path, table) if columns is None else columns

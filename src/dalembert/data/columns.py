@@ -1,6 +1,6 @@
 """Columns of a file, whatever its format: chosen by name, checked, and in SI units."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -81,10 +81,58 @@ class Columns:
             raise DataError(f"{where}: the unit {unit!r} was given; expected that of a {kind}") from None
 
 
+@dataclass(frozen=True)
+class Trial:
+    """One of the trials in a file: the samples at which a column has a value.
+
+    Parameters
+    ----------
+    column : str or int
+        Column that numbers the trials.
+    label : str
+        Its value as text: ``"3"`` for 3 and 3.0.
+    """
+
+    column: str | int
+    label: str
+
+
+def trial_label(value: object) -> str:
+    """Label of a trial by a cell or a number.
+
+    >>> trial_label("3.0"), trial_label(3), trial_label("left")
+    ('3', '3', 'left')
+    """
+    try:
+        return f"{float(str(value)):g}"
+    except ValueError:
+        return str(value).strip()
+
+
+def of_trial(path: Path, labels: Sequence[str], trial: Trial) -> np.ndarray:
+    """Mask of the samples of a trial, from the label of each sample.
+
+    Raises
+    ------
+    DataError
+        Where there is no such trial.
+    """
+    mask = np.array([label == trial.label for label in labels])
+    if not mask.any():
+        known = dict.fromkeys(labels)
+        raise DataError(unknown("trial", trial.label, list(known), f"{path}, column {trial.column!r}"))
+    return mask
+
+
 def chosen(
-    path: Path, columns: Mapping[str, np.ndarray], time: str, names: Iterable[str] | None, missing: str
+    path: Path,
+    columns: Mapping[str, np.ndarray],
+    time: str,
+    names: Iterable[str] | None,
+    missing: str,
+    trial: Trial | None = None,
 ) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """The times (samples,), and columns (samples,) by name, of all that a file holds.
+    """The times (samples,), and columns (samples,) by name, of all that a file holds, or of one of its trials.
 
     Times that are dates become seconds since the first. Without ``names`` all columns of numbers as long as the times
     are chosen.
@@ -96,6 +144,8 @@ def chosen(
         numbers, a value that is not finite (NaN unless it is to be left out), a time that does not grow.
     """
     wanted = None if names is None else list(dict.fromkeys(names))
+    if trial is not None:
+        columns = _of_trial(path, columns, trial)
     for column in (time, *(wanted or ())):
         if column not in columns:
             raise DataError(unknown("column", column, columns, str(path)))
@@ -113,6 +163,15 @@ def chosen(
         check_finite(path, name, column, missing)
     check_growing(path, time, along)
     return along, table
+
+
+def _of_trial(path: Path, columns: Mapping[str, np.ndarray], trial: Trial) -> dict[str, np.ndarray]:
+    """The samples of one trial, of all columns that are as long as the one that numbers the trials."""
+    name = str(trial.column)
+    if name not in columns:
+        raise DataError(unknown("column", name, columns, str(path)))
+    mask = of_trial(path, [trial_label(value) for value in columns[name]], trial)
+    return {key: column[mask] for key, column in columns.items() if column.shape == mask.shape}
 
 
 def check_finite(path: Path, name: str, column: np.ndarray, missing: str) -> None:

@@ -2,18 +2,25 @@
 
 import math
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
-from dalembert.data.columns import Columns
+from dalembert.data.columns import Columns, Trial, of_trial, trial_label
 from dalembert.data.text_layout import AUTO, GAPS, Layout, Line, Row, is_number, layout, value
 from dalembert.data.text_lines import text_lines
 from dalembert.errors import DataError, unknown
 
 
 def csv_columns(
-    path: Path, time: str | int, names: Iterable[str | int] | None, missing: str, separator: str, decimal: str
+    path: Path,
+    time: str | int,
+    names: Iterable[str | int] | None,
+    missing: str,
+    separator: str = AUTO,
+    decimal: str = AUTO,
+    trial: Trial | None = None,
 ) -> Columns:
     """Times and columns by their names in the file, or by their numbers from 1.
 
@@ -30,6 +37,8 @@ def csv_columns(
         ``"auto"``, or the character; a blank stands for any number of blanks and tabs.
     decimal : {"auto", ".", ","}
         What stands before the decimals of a number.
+    trial : Trial, optional
+        The one trial whose lines are read.
 
     Raises
     ------
@@ -47,16 +56,34 @@ def csv_columns(
         _refuse_wrong_marks(path, lines, time, found)
     _refuse_rows(path, found)
     place = _places(path, found)
+    if trial is not None:
+        found = _of_trial(path, found, place(trial.column), trial)
     if time == "t" and found.named is None:
         time = 1
     first = place(time)
-    wanted = [k for k in range(len(found.header)) if k != first] if names is None else [place(one) for one in names]
+    numbering = None if trial is None else place(trial.column)
+    others = [k for k in range(len(found.header)) if k not in (first, numbering)]
+    wanted = others if names is None else [place(one) for one in names]
     labels = [found.header[k] for k in wanted] if names is None else [str(one) for one in names]
     table = _numbers(path, found, dict.fromkeys([first, *wanted]), missing, first)
     _refuse_order(path, found, first, table[first])
     units = {label: found.units[k] for label, k in zip([str(time), *labels], [first, *wanted], strict=True)}
     columns = dict(zip(labels, (table[k] for k in wanted), strict=True))
     return Columns(path, str(time), table[first], columns, units, layout=str(found))
+
+
+def csv_labels(path: Path, column: str | int, separator: str = AUTO, decimal: str = AUTO) -> list[str]:
+    """Label of the trial that each line belongs to, by the column that numbers them.
+
+    Raises
+    ------
+    DataError
+    """
+    _refuse_marks(path, separator, decimal)
+    found = layout(text_lines(path), column, separator, decimal)
+    _refuse_rows(path, found)
+    place = _places(path, found)(column)
+    return [trial_label(cells[place]) for _, cells in found.rows]
 
 
 def _refuse_marks(path: Path, separator: str, decimal: str) -> None:
@@ -112,6 +139,12 @@ def _places(path: Path, found: Layout) -> Callable[[str | int], int]:
         return header.index(column)
 
     return place
+
+
+def _of_trial(path: Path, found: Layout, place: int, trial: Trial) -> Layout:
+    """The lines of one trial."""
+    mask = of_trial(path, [trial_label(cells[place]) for _, cells in found.rows], trial)
+    return replace(found, rows=[row for row, there in zip(found.rows, mask, strict=True) if there])
 
 
 def _numbers(path: Path, found: Layout, places: Iterable[int], missing: str, time: int) -> dict[int, np.ndarray]:

@@ -103,7 +103,7 @@ def derivative(
     least = _check(order, window, degree)
     column = data.channels.index(channel)
     along, values = data.coordinate.values, data.continuous[:, column]
-    runs = [run for run in stretches(data.present[:, column]) if run.stop - run.start >= (window or least)]
+    runs = [run for run in stretches(data.present[:, column], along) if run.stop - run.start >= (window or least)]
     if not runs:
         raise DataError(
             f"channel {channel!r}: fewer than {window or least} samples beside each other; expected at least as many "

@@ -7,14 +7,16 @@ from typing import Any
 
 import numpy as np
 
-from dalembert.data.columns import Columns, chosen
+from dalembert.data.columns import Columns, Trial, chosen, trial_label
 from dalembert.data.text_lines import file_bytes
-from dalembert.errors import DataError
+from dalembert.errors import DataError, unknown
 
 _FORMS = "an object of arrays, or an array of objects or of rows, of numbers"
 
 
-def json_columns(path: Path, time: str | int, names: Iterable[str | int] | None, missing: str) -> Columns:
+def json_columns(
+    path: Path, time: str | int, names: Iterable[str | int] | None, missing: str, trial: Trial | None = None
+) -> Columns:
     """Times and columns by name; those of rows by their numbers from 1.
 
     Raises
@@ -22,19 +24,36 @@ def json_columns(path: Path, time: str | int, names: Iterable[str | int] | None,
     DataError
         With the line and column where the file is no JSON; for another form; as :func:`chosen`.
     """
+    content = _content(path)
+    columns = {name: _array(path, name, entries) for name, entries in _by_name(path, content).items()}
+    rows = isinstance(content, list) and isinstance(content[0], list)
+    label = "1" if rows and time == "t" else str(time)
+    wanted = None if names is None else list(map(str, names))
+    return Columns(path, label, *chosen(path, columns, label, wanted, missing, trial), layout="JSON")
+
+
+def json_labels(path: Path, column: str | int) -> list[str]:
+    """Label of the trial that each sample belongs to, by the column that numbers them.
+
+    Raises
+    ------
+    DataError
+    """
+    columns = _by_name(path, _content(path))
+    if str(column) not in columns:
+        raise DataError(unknown("column", str(column), columns, str(path)))
+    return [trial_label(value) for value in columns[str(column)]]
+
+
+def _content(path: Path) -> Any:
     try:
-        content = json.loads(file_bytes(path))
+        return json.loads(file_bytes(path))
     except json.JSONDecodeError as error:
         raise DataError(
             f"{path}, line {error.lineno}, column {error.colno}: the file is not JSON ({error.msg}); expected {_FORMS}"
         ) from None
     except UnicodeDecodeError as error:
         raise DataError(f"{path}: the file is not text ({error.reason}); expected JSON") from None
-    columns = {name: _array(path, name, entries) for name, entries in _by_name(path, content).items()}
-    rows = isinstance(content, list) and isinstance(content[0], list)
-    label = "1" if rows and time == "t" else str(time)
-    wanted = None if names is None else map(str, names)
-    return Columns(path, label, *chosen(path, columns, label, wanted, missing), layout="JSON")
 
 
 def _by_name(path: Path, content: Any) -> dict[str, list[Any]]:

@@ -1,6 +1,6 @@
 """Measured motion: channels along a coordinate, and how exact they are."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,6 +13,8 @@ from dalembert.forward import Coordinate
 
 MISSING = ("refuse", "leave-out")
 TURN = 2 * np.pi
+FIRST = "first"
+SAME = 1e-9  # part of the span below which two times are the same
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,6 +152,26 @@ class Measurements:
             return difference
         return np.where(self.wrapping, difference - TURN * np.rint(difference / TURN), difference)
 
+    def since(self, start: float | str) -> "Measurements":
+        """The same samples, with times that count from ``start``, or from the first sample if that is ``"first"``.
+
+        A model's motion begins at time 0, and few records do.
+
+        Raises
+        ------
+        DataError
+            For another word.
+
+        Examples
+        --------
+        >>> data = Measurements.of([48.2, 48.3, 48.4], {"x": [0.0, 1.0, 2.0]})
+        >>> data.since("first").coordinate.values.round(9).tolist(), data.since(48.0).coordinate.values[0].round(9)
+        ([0.0, 0.1, 0.2], np.float64(0.2))
+        """
+        along = self.coordinate
+        shifted = replace(along, values=along.values - beginning(along.values, start))
+        return replace(self, coordinate=shifted)
+
     def first(self, samples: int) -> "Measurements":
         """The first ``samples`` samples."""
         return replace(self, coordinate=cut(self.coordinate, samples), values=self.values[:samples])
@@ -255,7 +277,9 @@ class Measurements:
         Noise is not averaged away, and where the new samples are denser than the old ones neighbours share it, so that
         they hold less information than they are counted as.
 
-        New samples in a gap are missing. Wrapping channels are interpolated without their jumps and wrapped again.
+        New samples in a gap are missing: between values that are missing, and where the coordinate has a step of more
+        than 1.5 times the usual one (which 95 % of the steps do not exceed). Wrapping channels are interpolated
+        without their jumps and wrapped again.
 
         Parameters
         ----------
@@ -314,6 +338,66 @@ class Measurements:
         arrays = [self.values] if self.deviations is None else [self.values, self.deviations]
         arrays += [self.wrapping] if self.wraps else []
         return digest(self.coordinate, self.channels, *arrays)
+
+
+def beginning(along: np.ndarray, start: float | str) -> float:
+    """The time of a record (samples,) at which the motion begins: a number, or its first one.
+
+    Raises
+    ------
+    DataError
+        For another word.
+    """
+    if isinstance(start, str):
+        if start != FIRST:
+            raise DataError(f"start is {start!r}; expected {FIRST!r}, or the time at which the motion begins")
+        return float(along[0])
+    return float(start)
+
+
+def merged(parts: Sequence[Measurements]) -> Measurements:
+    """Channels of several records of the same experiment, at the times of all of them.
+
+    A channel is missing where another record has a sample and its own has none. Times that differ by less than a
+    billionth of the span are the same.
+
+    Raises
+    ------
+    DataError
+        For a channel in two records, records along different coordinates, deviations of some records only.
+
+    Examples
+    --------
+    >>> angle = Measurements.of([0.0, 0.1, 0.2], {"angle": [0.0, 1.0, 2.0]})
+    >>> force = Measurements.of([0.0, 0.2], {"force": [5.0, 6.0]})
+    >>> merged([angle, force]).values.tolist()
+    [[0.0, 5.0], [1.0, nan], [2.0, 6.0]]
+    """
+    first = parts[0]
+    if len(parts) == 1:
+        return first
+    if len({(part.coordinate.name, part.coordinate.unit) for part in parts}) > 1:
+        raise DataError("the records lie along different coordinates; expected times, or frequencies, of all of them")
+    if len({part.deviations is None for part in parts}) > 1:
+        raise DataError("some records have deviations and some have none; give them for all channels or for none")
+    stamps = np.unique(np.concatenate([part.coordinate.values for part in parts]))
+    stamps = stamps[np.concatenate([[True], np.diff(stamps) > SAME * max(float(np.ptp(stamps)), 1e-300)])]
+    tables = []
+    for part in parts:
+        table = np.full((len(stamps), len(part.channels)), np.nan)
+        middles = (stamps[:-1] + stamps[1:]) / 2
+        table[np.searchsorted(middles, part.coordinate.values)] = part.values
+        tables.append(table)
+    deviations = [part.deviations for part in parts if part.deviations is not None]
+    return Measurements(
+        replace(first.coordinate, values=stamps),
+        tuple(name for part in parts for name in part.channels),
+        np.hstack(tables),
+        np.concatenate(deviations) if deviations else None,
+        missing="leave-out",
+        wraps=tuple(name for part in parts for name in part.wraps),
+        origin="; ".join(filter(None, (part.origin for part in parts))),
+    )
 
 
 def _deviations(given: Mapping[str, float] | ArrayLike | None, channels: tuple[str, ...]) -> np.ndarray | None:

@@ -7,8 +7,9 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
-from dalembert.data.formats import columns_in
-from dalembert.data.measurements import Measurements
+from dalembert.data.columns import Trial, trial_label
+from dalembert.data.formats import columns_in, trial_labels
+from dalembert.data.measurements import FIRST, Measurements
 from dalembert.data.opening import told_of
 from dalembert.data.text_layout import AUTO
 
@@ -26,6 +27,8 @@ def read(
     separator: str = AUTO,
     decimal: str = AUTO,
     frequency: str | None = None,
+    start: float | str | None = None,
+    trial: tuple[str | int, str | float] | None = None,
 ) -> Measurements:
     """Measurements from a file: text with columns, JSON, Parquet, MAT (version 5 and 7.3), UFF (dataset 58) or NetCDF.
 
@@ -59,6 +62,12 @@ def read(
         What stands before the decimals of the numbers of a text file; found from its lines if ``"auto"``.
     frequency : str, optional
         Column of the frequencies along which the samples lie, in place of the times.
+    start : float or "first", optional
+        Time of the file, in s, at which the motion begins: times count from there. ``"first"`` is that of the first
+        sample.
+    trial : (column, value), optional
+        In text and JSON files with several trials: the column that numbers them, and the one that is read; see
+        :func:`read_trials` for all of them.
 
     Raises
     ------
@@ -80,14 +89,45 @@ def read(
     path = Path(path)
     names = None if columns is None else list(columns.values())
     text = {"separator": separator, "decimal": decimal}
-    options: Any = {"missing": missing, "units": [*(units or ())], "format": format, **text}
+    one = None if trial is None else Trial(trial[0], trial_label(trial[1]))
+    options: Any = {"missing": missing, "units": [*(units or ())], "format": format, "trial": one, **text}
     found = columns_in(path, frequency or time, names, **options)
     along, table = replace(found, frequency=found.frequency or frequency is not None).converted(units)
     chosen = {name: name for name in table} if columns is None else {name: str(of) for name, of in columns.items()}
     with told_of(path):
         channels = {name: table[column] for name, column in chosen.items()}
         data = Measurements.of(along, channels, deviations, missing=missing, wraps=wraps)
+        data = data if start is None else data.since(start)
     return replace(data, origin=f"{path}: {found.layout}" if found.layout else str(path))
+
+
+def read_trials(path: str | Path, split: str | int, *arguments: Any, **options: Any) -> dict[str, Measurements]:
+    """All trials in one text or JSON file, each by its label in the column ``split``.
+
+    The other arguments are those of :func:`read`. Times count from the first sample of each trial if not said otherwise
+    by ``start``.
+
+    Raises
+    ------
+    DataError
+        As :func:`read`.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     file = Path(folder) / "runs.csv"
+    ...     _ = file.write_text("run,t,x\\n1,0.0,5\\n1,0.1,6\\n2,7.0,8\\n2,7.1,9\\n")
+    ...     trials = read_trials(file, "run", columns={"AB.end.x": "x"})
+    >>> {label: data.values[:, 0].tolist() for label, data in trials.items()}
+    {'1': [5.0, 6.0], '2': [8.0, 9.0]}
+    >>> trials["2"].coordinate.values.round(3).tolist()
+    [0.0, 0.1]
+    """
+    marks = {key: options[key] for key in ("separator", "decimal", "format") if key in options}
+    options = {"start": FIRST, **options}
+    labels = trial_labels(Path(path), split, **marks)
+    return {label: read(path, *arguments, trial=(split, label), **options) for label in labels}
 
 
 def read_csv(

@@ -43,7 +43,7 @@ def _channel(
 ) -> np.ndarray:
     """A channel at new samples; NaN in gaps."""
     result = np.full(len(samples), np.nan)
-    for run in stretches(present):
+    for run in stretches(present, along):
         x, y = along[run], values[run]
         inside = (samples >= x[0] - close) & (samples <= x[-1] + close)
         spline = make_interp_spline(x, y, k=min(3, len(x) - 1))

@@ -17,6 +17,9 @@ from dalembert.forward.responses import Responses
 from dalembert.forward.wrapped import starting
 from dalembert.parameters import Parameter, Parameters
 
+START = "start"
+"""Parameter of the time stamp at which the motion begins."""
+
 QUANTITIES = {"delay": 0.0, "gain": 1.0, "offset": 0.0}
 """What a sensor may have, and what it is for a perfect one."""
 
@@ -61,6 +64,9 @@ class Sensors:
         By channel; the others are read as they are.
     times : array, shape (samples,), optional
         Time stamps of the readings; the model's own samples if not given.
+    start : (lower, upper) or Parameter, optional
+        Time stamp at which the motion begins, in the unit of the model's coordinate, where it is not known: a parameter
+        ``"start"``, by which all channels come late. 0 if not given.
 
     Raises
     ------
@@ -96,19 +102,28 @@ class Sensors:
     sensors: Mapping[str, Sensor]
     parameters: Parameters
     coordinate: Coordinate
+    start: Bounds | None
 
-    def __init__(self, model: ForwardModel, sensors: Mapping[str, Sensor], times: ArrayLike | None = None) -> None:
+    def __init__(
+        self,
+        model: ForwardModel,
+        sensors: Mapping[str, Sensor],
+        times: ArrayLike | None = None,
+        start: Bounds | None = None,
+    ) -> None:
         check_model("Sensors", model)
         if not isinstance(sensors, Mapping) or not all(isinstance(sensor, Sensor) for sensor in sensors.values()):
             raise InputError(f"Sensors: sensors is {shown(sensors)}; expected a mapping from channels to Sensor")
         along = model.coordinate
         stamps = along.values if times is None else samples_of(times, "Sensors", "times")
         own = [entry for name, sensor in sensors.items() for entry in _unknowns(model, name, sensor)]
+        own += [] if start is None else [_parameter(START, start, along.unit, 0.0)]
         for name, value in (
             ("model", model),
             ("sensors", dict(sensors)),
             ("parameters", Parameters((*model.parameters.declared, *own))),
             ("coordinate", Coordinate(along.name, along.unit, stamps)),
+            ("start", start),
         ):
             object.__setattr__(self, name, value)
         self._check_reach()
@@ -154,6 +169,8 @@ class Sensors:
             for what, slope in (("delay", -gain * rate), ("gain", there[:, 0]), ("offset", 1.0)):
                 if at[what] is not None:
                     jacobian[:, column, at[what]] = slope
+            if START in self.parameters.names:
+                jacobian[:, column, self.parameters.names.index(START)] = -gain * rate
         return read, jacobian
 
     def check_derivatives(self, vector: np.ndarray) -> None:
@@ -162,23 +179,23 @@ class Sensors:
 
     def starting(self, values: Mapping[str, float]) -> "Sensors":
         """The same readings of the model first built at these values of its parameters."""
-        return Sensors(starting(self.model, values), self.sensors, self.coordinate.values)
+        return Sensors(starting(self.model, values), self.sensors, self.coordinate.values, self.start)
 
     def first(self, samples: int) -> "Sensors":
         """The same readings, cut to their first ``samples`` samples; the model is cut where they no longer need it."""
         stamps, own = self.coordinate.values[:samples], self.model.coordinate.values
-        earliest = min((0.0, *(self._bounds(name)[0] for name in self.sensors)))
+        earliest = min((0.0, *(self._bounds(channel.name)[0] for channel in self.channels)))
         needed = int(np.searchsorted(own, stamps[-1] - earliest, side="left")) + 1
         kept = min(len(own), needed + DEGREE)
         inner = self.model if kept == len(own) else self.model.first(kept)
-        return Sensors(inner, self.sensors, stamps)
+        return Sensors(inner, self.sensors, stamps, self.start)
 
     def refined(self) -> Refinement | None:
         """Return the same readings of a more exact model, or None."""
         finer = refined(self.model)
         if finer is None:
             return None
-        return replace(finer, model=Sensors(finer.model, self.sensors, self.coordinate.values))
+        return replace(finer, model=Sensors(finer.model, self.sensors, self.coordinate.values, self.start))
 
     def _read(self, vector: np.ndarray, response: np.ndarray) -> np.ndarray:
         """Readings (samples, channels) of one response of the model."""
@@ -204,28 +221,35 @@ class Sensors:
 
     def _column(self, channel: str, what: str) -> int | None:
         """Where a quantity of a sensor stands among the parameters, if it is one."""
-        name = f"{channel} {what}"
+        return self._place(f"{channel} {what}")
+
+    def _place(self, name: str) -> int | None:
         return self.parameters.names.index(name) if name in self.parameters.names else None
 
     def _value(self, vector: np.ndarray, channel: str, what: str) -> float:
+        """A quantity of a sensor; a delay with the time stamp at which the motion begins."""
         column = self._column(channel, what)
-        return self._known(channel, what) if column is None else float(vector[column])
+        own = self._known(f"{channel} {what}", QUANTITIES[what]) if column is None else float(vector[column])
+        if what != "delay":
+            return own
+        column = self._place(START)
+        return own + (self._known(START, 0.0) if column is None else float(vector[column]))
 
-    def _known(self, channel: str, what: str) -> float:
+    def _known(self, name: str, perfect: float) -> float:
         """Value of a quantity that no method varies: that of a fixed parameter, or of a perfect sensor."""
-        name = f"{channel} {what}"
-        return next((float(item.lower) for item in self.parameters.fixed if item.name == name), QUANTITIES[what])
+        return next((float(item.lower) for item in self.parameters.fixed if item.name == name), perfect)
 
     def _is_delayed(self, channel: str) -> bool:
-        return self._column(channel, "delay") is not None or self._known(channel, "delay") != QUANTITIES["delay"]
+        return self._bounds(channel) != (0.0, 0.0)
 
     def _bounds(self, channel: str) -> tuple[float, float]:
-        """Least and largest delay of a channel."""
-        column = self._column(channel, "delay")
-        if column is None:
-            known = self._known(channel, "delay")
-            return known, known
-        return self.parameters.lower[column], self.parameters.upper[column]
+        """Least and largest delay of a channel, with the time stamp at which the motion begins."""
+        least, most = 0.0, 0.0
+        for name in (f"{channel} delay", START):
+            column, known = self._place(name), self._known(name, 0.0)
+            least += known if column is None else self.parameters.lower[column]
+            most += known if column is None else self.parameters.upper[column]
+        return least, most
 
     def _check_reach(self) -> None:
         """Refuse readings of times at which the model says nothing."""
@@ -234,7 +258,8 @@ class Sensors:
         for name in (channel.name for channel in self.channels):
             least, most = self._bounds(name)
             begins, ends = stamps[0] - most, stamps[-1] - least
-            if begins < own[0] - slack and not (name in self.sensors and self.sensors[name].at_rest):
+            at_rest = self.sensors[name].at_rest if name in self.sensors else self.start is not None
+            if begins < own[0] - slack and not at_rest:
                 raise InputError(
                     f"Sensors: the first reading of {name!r}, at {along.name} {stamps[0]:.6g} {along.unit}, may show "
                     f"the motion at {begins:.6g} {along.unit}, and the model begins at {own[0]:.6g} {along.unit}; "

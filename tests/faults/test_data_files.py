@@ -222,14 +222,15 @@ FILES = {
         "a.xlsx",
         mat(t=TIMES, x=ANGLE),
         {},
-        "{path}: the suffix '.xlsx' stands for no format; expected one of .csv, .txt, .parquet, .pq, .mat, .uff, .unv, "
-        ".uf, .bunv, .nc, .nc4, .cdf; rename the file, or say which format it has: csv, parquet, mat, uff, netcdf",
+        "{path}: the suffix '.xlsx' stands for no format; expected one of .csv, .txt, .dat, .tsv, .asc, .log, .json, "
+        ".parquet, .pq, .mat, .uff, .unv, .uf, .bunv, .nc, .nc4, .cdf; rename the file, or say which format it has: "
+        "csv, json, parquet, mat, uff, netcdf",
     ),
     "a column that is there twice": (
         "a.csv",
         lambda path: path.write_text("t,x,x\n0,1,2\n"),
         {},
-        "{path}: 2 columns are called 'x'; expected one; rename the others",
+        "{path}: 2 columns are called 'x'; expected one; name the column by its number, such as 2",
     ),
     "a wrapping channel that there is not": (
         "a.csv",

@@ -63,7 +63,7 @@ def csv_columns(
     first = place(time)
     numbering = None if trial is None else place(trial.column)
     others = [k for k in range(len(found.header)) if k not in (first, numbering)]
-    wanted = others if names is None else [place(one) for one in names]
+    wanted = [place(found.header[k]) for k in others] if names is None else [place(one) for one in names]
     labels = [found.header[k] for k in wanted] if names is None else [str(one) for one in names]
     table = _numbers(path, found, dict.fromkeys([first, *wanted]), missing, first)
     _refuse_order(path, found, first, table[first])

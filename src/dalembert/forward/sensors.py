@@ -17,7 +17,7 @@ from dalembert.forward.responses import Responses
 from dalembert.forward.wrapped import starting
 from dalembert.parameters import Parameter, Parameters
 
-START = "start"
+START = "start time"
 """Parameter of the time stamp at which the motion begins."""
 
 QUANTITIES = {"delay": 0.0, "gain": 1.0, "offset": 0.0}
@@ -66,7 +66,7 @@ class Sensors:
         Time stamps of the readings; the model's own samples if not given.
     start : (lower, upper) or Parameter, optional
         Time stamp at which the motion begins, in the unit of the model's coordinate, where it is not known: a parameter
-        ``"start"``, by which all channels come late. 0 if not given.
+        ``"start time"``, by which all channels come late. 0 if not given.
 
     Raises
     ------

@@ -2,7 +2,7 @@
 
 from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import (
     AfterValidator,
@@ -17,8 +17,12 @@ from pydantic import (
     model_validator,
 )
 
+from dalembert.arguments import is_whole
 from dalembert.data.formats import SUFFIXES
+from dalembert.data.measurements import FIRST, beginning
 from dalembert.errors import unknown
+from dalembert.forward.sensors import START
+from dalembert.parameters import Parameter
 from dalembert.study.context import Context
 from dalembert.study.numbers import fixed, read_number, samples
 from dalembert.study.table import Read, StudyTable, checked, problem
@@ -48,18 +52,35 @@ def is_universal(file: Path, form: str | None) -> bool:
     return form == "uff" or (form is None and file.suffix.lower() in SUFFIXES["uff"])
 
 
+def _read_column(value: Any) -> str | int:
+    if isinstance(value, str) or (is_whole(value) and value >= 1):
+        return value
+    raise problem(f"{value!r} was given; expected the name of a column in quotes, or its number from 1")
+
+
+Column = Annotated[
+    str | int,
+    PlainValidator(_read_column),
+    WithJsonSchema({"anyOf": [{"type": "string"}, {"type": "integer", "minimum": 1}]}),
+]
+
+
 class FileTable(StudyTable):
-    """A file of columns: CSV, Parquet, MAT, UFF or NetCDF."""
+    """A file of columns: text, JSON, Parquet, MAT, UFF or NetCDF."""
 
     file: DataFile = Field(description="relative to the study file")
     format: Format | None = Field(None, description="by the suffix of the file if not given")
-    time: str = Field("t", description="name of the column of times")
+    time: Column = Field("t", description="column of times, by its name, or its number from 1 in a text file")
     frequency: str | None = Field(
         None, description="name of the column of frequencies, where the samples lie along one"
     )
     units: dict[str, str] = Field({}, description="unit of each column that is not in SI units: case1_x = 'mm'")
-    separator: str = Field(",", min_length=1, max_length=1, description="of the cells of a CSV file")
-    decimal: Literal[".", ","] = Field(".", description="what stands before the decimals of a CSV file's numbers")
+    separator: str = Field(
+        "auto", description="of the cells of a text file, a blank for any number; found from its lines if 'auto'"
+    )
+    decimal: Literal["auto", ".", ","] = Field(
+        "auto", description="what stands before the decimals of a text file's numbers; found from its lines if 'auto'"
+    )
 
     @property
     def how(self) -> dict[str, Any]:
@@ -103,15 +124,68 @@ Ends = Annotated[list[Annotated[float, Read(fixed(None))]], Field(min_length=2, 
 Samples = Annotated[tuple[float, ...], Read(samples(None))] | None
 
 
-class DataTable(FileTable):
-    """Measured data: a file, its column of times, the column of each channel, and what becomes of them."""
+class StartTable(StudyTable):
+    """A time of the file at which the motion begins that is not known: its bounds, and optionally a first guess."""
 
-    columns: dict[str, str] = Field(min_length=1, description="column of each channel: 'AB.end.x' = 'case1_x'")
+    lower: Annotated[float, Read(fixed("s"))]
+    upper: Annotated[float, Read(fixed("s"))]
+    start: Annotated[float, Read(fixed("s"))] | None = None
+
+    @model_validator(mode="after")
+    def _check(self) -> "StartTable":
+        checked(lambda: self.parameter)
+        return self
+
+    @property
+    def parameter(self) -> Parameter:
+        """The parameter that is identified."""
+        return Parameter(START, self.lower, self.upper, "s", start=self.start)
+
+
+Start = Annotated[
+    Annotated[StartTable, Tag("table")]
+    | Annotated[Literal["first"], Tag("word")]
+    | Annotated[float, Read(fixed("s")), Tag("number")],
+    Discriminator(lambda value: "table" if isinstance(value, dict) else "word" if value == FIRST else "number"),
+]
+
+
+class ChannelFile(FileTable):
+    """A file of channels, with their deviations."""
+
+    columns: dict[str, Column] = Field(
+        min_length=1,
+        description="column of each channel: 'AB.end.x' = 'case1_x', or its number from 1 in a text file",
+    )
     deviations: dict[str, Annotated[float, Read(fixed(None))]] | None = Field(
         None, description="standard deviation of each channel's noise"
     )
     missing: Literal["refuse", "leave-out"] = Field("refuse", description="what becomes of values that are not there")
     wraps: list[str] = Field([], description="channels that are angles known up to whole turns")
+
+    def of_file(self, **options: Any) -> "Measurements":
+        """The channels as the file holds them."""
+        from dalembert.data import read
+
+        given = self.deviations
+        known = None if given is None else {name: given[name] for name in self.columns if name in given}
+        options |= {"missing": self.missing, "wraps": self.wraps, **self.how}
+        return read(self.file, self.time, self.columns, known, **options)
+
+
+class DataTable(ChannelFile):
+    """Measured data: a file, its column of times, the column of each channel, and what becomes of them."""
+
+    SEVERAL: ClassVar[bool] = False  # whether one table may stand for all trials of a file
+
+    start: Annotated[Any, Read(Start)] = Field(
+        None,
+        description="time of the file at which the motion begins: a number, 'first' for that of the first sample, or "
+        "bounds if it is not known",
+    )
+    split: Column | None = Field(None, description="column that numbers the trials in the file")
+    trial: str | float | None = Field(None, description="the trial that is read, of those that split numbers")
+    more: list[ChannelFile] = Field([], description="further files of the same experiment, with other time stamps")
     derivatives: dict[str, Annotated[DerivativeTable, Read(Differentiated)]] = Field(
         {}, description="channels that are derivatives of others: 'crank.rate' = 'crank.angle'"
     )
@@ -130,6 +204,14 @@ class DataTable(FileTable):
     @model_validator(mode="after")
     def _check(self) -> "DataTable":
         wrong = [unknown("channel", name, self.columns, "wraps") for name in self.wraps if name not in self.columns]
+        if self.trial is not None and self.split is None:
+            wrong.append("trial is given, but not split, the column that numbers the trials; give both")
+        if self.split is not None and self.trial is None and not self.SEVERAL:
+            wrong.append("split is given without trial; give the trial that is read, or use [[experiments]] for all")
+        names = [name for file in (self, *self.more) for name in file.columns]
+        repeated = sorted({name for name in names if names.count(name) > 1})
+        if repeated:
+            wrong.append(f"more: {', '.join(repeated)} has a column in several files; expected one for each channel")
         for name, derivative in self.derivatives.items():
             if name in self.columns:
                 wrong.append(f"derivatives: the channel {name!r} has a column already; expected another name")
@@ -144,17 +226,19 @@ class DataTable(FileTable):
     @property
     def channels(self) -> tuple[str, ...]:
         """Channels that the data have."""
-        return (*self.columns, *self.derivatives)
+        return (*(name for file in (self, *self.more) for name in file.columns), *self.derivatives)
 
     def read(self) -> "Measurements":
         """The data."""
-        from dalembert.data import read
+        from dalembert.data import merged
         from dalembert.data.opening import told_of
 
-        given = self.deviations
-        measured = None if given is None else {name: given[name] for name in given if name not in self.derivatives}
-        data = read(self.file, self.time, self.columns, measured, missing=self.missing, wraps=self.wraps, **self.how)
+        given, trial = self.deviations, None if self.split is None else (self.split, self.trial)
+        data = self.of_file(trial=trial)
+        begin = 0.0 if self.begins is None else beginning(data.coordinate.values, self.begins)
+        data = data.since(begin)
         with told_of(self.file):
+            data = merged([data, *(file.of_file(start=begin) for file in self.more)])
             data = self._filtered(data)
             for name, one in self.derivatives.items():
                 how = {"order": one.order, "window": one.window, "degree": one.degree}
@@ -164,6 +248,23 @@ class DataTable(FileTable):
             if self.every is not None:
                 data = data.every(self.every)
             return data if self.resample is None else data.resampled(self.resample)
+
+    @property
+    def begins(self) -> float | str | None:
+        """Time of the file at which the motion begins, where it is known."""
+        return None if isinstance(self.start, StartTable) else self.start
+
+    @property
+    def unknown_start(self) -> Parameter | None:
+        """Time of the file at which the motion begins, where it is to be identified."""
+        return self.start.parameter if isinstance(self.start, StartTable) else None
+
+    def labels(self) -> list[str]:
+        """Labels of the trials in the file."""
+        from dalembert.data.formats import trial_labels
+
+        assert self.split is not None
+        return trial_labels(self.file, self.split, separator=self.separator, decimal=self.decimal, format=self.format)
 
     def _filtered(self, data: "Measurements") -> "Measurements":
         """The data behind the low-pass filter, and thinned by it."""

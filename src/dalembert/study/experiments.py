@@ -1,14 +1,15 @@
 """The tables of several experiments and of sensors, and the models and data that they make."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 from pydantic import Field, ValidationError, model_validator
 
-from dalembert.errors import unknown
+from dalembert.errors import DataError, unknown
 from dalembert.forward import ForwardModel, Sensor, Sensors
-from dalembert.forward.sensors import QUANTITIES
+from dalembert.forward.sensors import QUANTITIES, START
+from dalembert.parameters import Parameter
 from dalembert.study.data_table import DataTable
 from dalembert.study.inputs import InputTable
 from dalembert.study.numbers import fixed
@@ -22,6 +23,9 @@ if TYPE_CHECKING:
 
 MOST_SAMPLES = 20_000
 """Samples of a motion between which sensors interpolate, at most; as many as steps if those are fewer."""
+
+LATE = 10
+"""Steps of a record before its first sample from which it must say where the motion begins."""
 
 TimeBounds = Annotated[list[Annotated[float, Read(fixed("s"))]], Field(min_length=2, max_length=2)]
 Bounds = Annotated[list[Annotated[float, Read(fixed(None))]], Field(min_length=2, max_length=2)]
@@ -59,6 +63,8 @@ class SensorTable(StudyTable):
 class ExperimentTable(DataTable):
     """One of several experiments: its data, and what differs from the others."""
 
+    SEVERAL = True
+
     name: Name
     own: list[str] | dict[str, OwnParameterTable] = Field(
         [],
@@ -71,6 +77,11 @@ class ExperimentTable(DataTable):
     arguments: dict[str, Any] = Field({}, description="arguments of the model's function in this experiment")
     inputs: dict[str, InputTable] = Field({}, description="keys of [inputs.NAME] that differ in this experiment")
 
+    @property
+    def alone(self) -> tuple[str, ...]:
+        """Parameters of this experiment alone; the time at which its motion begins is one of them."""
+        return (*self.own, *([START] if self.unknown_start else []))
+
     def variant(self, study: "Study") -> "Study":
         """The study as it is in this experiment."""
         shared = study.file.inputs
@@ -82,6 +93,25 @@ class ExperimentTable(DataTable):
         """The parameters' tables as they are in this experiment."""
         given = self.own if isinstance(self.own, dict) else {}
         return {name: given[name].over(table) if name in given else table for name, table in shared.items()}
+
+
+def expanded(tables: list[ExperimentTable]) -> list[ExperimentTable]:
+    """Experiments, those of files with several trials one by one, ``"NAME-3"``."""
+    found = []
+    for table in tables:
+        if table.split is None or table.trial is not None:
+            found.append(table)
+            continue
+        try:
+            labels = table.labels()
+        except DataError as error:
+            raise problem(str(error)) from None
+        start = "first" if table.start is None else table.start
+        found += [
+            table.model_copy(update={"name": f"{table.name}-{label}", "trial": label, "start": start})
+            for label in labels
+        ]
+    return found
 
 
 def wrong_experiments(file: Any) -> list[str]:
@@ -134,23 +164,27 @@ def measured_channels(file: Any) -> tuple[str, ...]:
 def unknown_names(study: "Study") -> tuple[str, ...]:
     """Names of the parameters of the model, of sensors, and of single experiments, in the order of the fit."""
     file = study.file
-    if not file.experiments:
-        return (*study.parameters.names, *_of_sensors(file, measured_channels(file)))
+    if file.data is not None:
+        return (*study.parameters.names, *_of_readings(file, file.data))
     names = {}
     for table in file.experiments:
-        for name in (*study.parameters.names, *_of_sensors(file, table.channels)):
-            names[f"{table.name}.{name}" if name in table.own else name] = None
+        for name in (*study.parameters.names, *_of_readings(file, table)):
+            names[f"{table.name}.{name}" if name in table.alone else name] = None
     return tuple(names)
 
 
-def _of_sensors(file: Any, channels: Sequence[str]) -> list[str]:
-    """Names of the parameters of the sensors of some channels."""
+def _of_readings(file: Any, table: DataTable) -> list[str]:
+    """Names of the parameters of the sensors of some data, and of the time at which the motion begins."""
+    start = table.unknown_start
     return [
-        f"{channel} {what}"
-        for channel, table in file.sensors.items()
-        if channel in channels
-        for what in QUANTITIES
-        if (bounds := getattr(table, what)) is not None and bounds[0] < bounds[1]
+        *(
+            f"{channel} {what}"
+            for channel, sensor in file.sensors.items()
+            if channel in table.channels
+            for what in QUANTITIES
+            if (bounds := getattr(sensor, what)) is not None and bounds[0] < bounds[1]
+        ),
+        *([START] if start is not None and not start.is_fixed else []),
     ]
 
 
@@ -158,35 +192,53 @@ def posed(study: "Study") -> "tuple[ForwardModel | list[Experiment], Measurement
     """Model and data of a study, or its experiments and None: the first arguments of ``identify``."""
     from dalembert.inverse import Experiment
 
-    if not study.file.experiments:
+    if study.file.data is not None:
         data = study.data()
         shooting = getattr(study.table, "shooting", None)
         if shooting is None:
-            return _model(study, data), data
+            return _model(study, data, study.file.data), data
         later = (state.channel for state in shooting.states.values())
         channels = tuple(dict.fromkeys((*data.channels, *later)))
         return study.forward(channels, data.coordinate.values), data
     experiments = []
     for table in study.file.experiments:
         data, variant = table.read(), table.variant(study)
-        experiments.append(Experiment(table.name, _model(variant, data), data, tuple(table.own)))
+        experiments.append(Experiment(table.name, _model(variant, data, table), data, table.alone))
     return experiments, None
 
 
-def _model(study: "Study", data: "Measurements") -> ForwardModel:
+def _model(study: "Study", data: "Measurements", table: DataTable) -> ForwardModel:
     """The model at the samples of data, seen by the sensors that there are."""
     sensors = {name: table.sensor for name, table in study.file.sensors.items() if name in data.channels}
-    stamps = data.coordinate.values
-    if not sensors:
+    stamps, start = data.coordinate.values, table.unknown_start
+    if study.has_system and start is None:
+        _refuse_late(table, stamps)
+    if not sensors and start is None:
         return study.forward(data.channels, stamps)
-    samples = _fine(study, stamps, sensors) if study.has_system else stamps
-    return Sensors(study.forward(data.channels, samples), sensors, stamps)
+    samples = _fine(study, stamps, sensors, start) if study.has_system else stamps
+    return Sensors(study.forward(data.channels, samples), sensors, stamps, start)
 
 
-def _fine(study: "Study", stamps: np.ndarray, sensors: dict[str, Sensor]) -> np.ndarray:
+def _refuse_late(table: DataTable, stamps: np.ndarray) -> None:
+    """Refuse a record that begins late, and of which nobody says when the motion began.
+
+    Raises
+    ------
+    DataError
+    """
+    if table.start is not None or table.between is not None or len(stamps) < 2:
+        return
+    if stamps[0] > LATE * np.median(np.diff(stamps)):
+        raise DataError(
+            f"{table.file}, column {table.time!r}: the times begin at {stamps[0]:.6g} s, and a motion begins at 0. If "
+            "it begins with the record, give start = 'first'; if it began at 0 s of the file, give start = 0"
+        )
+
+
+def _fine(study: "Study", stamps: np.ndarray, sensors: dict[str, Sensor], start: Parameter | None = None) -> np.ndarray:
     """Times of the solver's steps until the last reading, every so manyth of them where they are very many."""
     least = min((sensor.delay[0] for sensor in sensors.values() if isinstance(sensor.delay, tuple)), default=0.0)
-    end = float(stamps[-1]) - min(0.0, least)
+    end = float(stamps[-1]) - min(0.0, least) - (0.0 if start is None else start.lower)
     step = getattr(study.solver, "step", None) or end / 2000
     apart = step * np.ceil(end / step / MOST_SAMPLES)
     return apart * np.arange(np.ceil(end / apart - 1e-9) + 1)

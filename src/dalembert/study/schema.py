@@ -5,6 +5,7 @@ from functools import lru_cache
 from typing import Annotated, Any
 
 from pydantic import (
+    AfterValidator,
     BeforeValidator,
     Field,
     PlainValidator,
@@ -16,7 +17,7 @@ from pydantic import (
 from dalembert.study.catalogue import Words, balance, kind_names
 from dalembert.study.components import buildable_table
 from dalembert.study.data_table import BandsTable, DataTable
-from dalembert.study.experiments import ExperimentTable, SensorTable, wrong_experiments
+from dalembert.study.experiments import ExperimentTable, SensorTable, expanded, wrong_experiments
 from dalembert.study.inputs import InputTable, wrong_inputs
 from dalembert.study.model_table import ModelTable, model_table
 from dalembert.study.parameters import ParameterTable, check_names, read_constants
@@ -49,7 +50,9 @@ class StudyFile(StudyTable):
     harmonic_balance: Any = None
     data: DataTable | None = None
     bands: BandsTable | None = None
-    experiments: list[ExperimentTable] = Field([], description="several experiments in place of [data]")
+    experiments: Annotated[list[ExperimentTable], AfterValidator(expanded)] = Field(
+        [], description="several experiments in place of [data]"
+    )
     inputs: dict[str, InputTable] = Field({}, description="measured inputs that drive the model, by name")
     sensors: dict[str, SensorTable] = Field({}, description="what is not known of the sensors, by channel")
 

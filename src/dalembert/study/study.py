@@ -206,6 +206,7 @@ class Study:
             self.system()  # what is wrong with the model itself is told as such
             with placed(self._named_in):
                 made.channels  # noqa: B018 (an unknown one is found here)
+            made.fingerprint  # noqa: B018 (and what cannot be assembled here)
         model = on_cluster(made, self.executor)
         if self.checkpoint is None:
             return model

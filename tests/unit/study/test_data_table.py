@@ -218,7 +218,8 @@ def test_the_settings_of_a_table_are_in_si(study):
         (
             'columns = { a = "run.deg" }\nformat = "xls"',
             [
-                "study.toml: [data], format: 'xls' was given; expected 'csv', 'parquet', 'mat', 'uff' or 'netcdf'",
+                "study.toml: [data], format: 'xls' was given; expected 'csv', 'json', 'parquet', 'mat', 'uff' or "
+                "'netcdf'",
             ],
         ),
     ],
@@ -289,6 +290,6 @@ def test_a_text_file_with_semicolons_and_decimal_commas(study, tmp_path):
     columns = 'columns = { "crank.angle" = "angle" }\n'
     read = study(columns + 'separator = ";"\ndecimal = ","', file="run.csv").data()
     assert (read.coordinate.values.tolist(), read.values.tolist()) == ([0.0, 2.0], [[0.0], [5.0]])
-    sentence = "study.toml: [data], decimal: ';' was given; expected '.' or ','"
+    sentence = "study.toml: [data], decimal: ';' was given; expected 'auto', '.' or ','"
     with pytest.raises(InputError, match=says(sentence)):
         study(columns + 'decimal = ";"', file="run.csv")

@@ -247,7 +247,8 @@ def mistakes(path: Path) -> list[str]:
         ]),
         (BANDS, ('["low", "high"]', '["low", "hihg"]'), ["bands.csv: unknown column 'hihg'; did you mean 'high'?"]),
         (BANDS, ("[bands]", "[data]"), [
-            "decay.toml: [data.columns], x: ['low', 'high'] was given; expected text in quotes"
+            "decay.toml: [data.columns], x: ['low', 'high'] was given; expected the name of a column in "
+            "quotes, or its number from 1"
         ]),
         (BANDS, ("[identify_bands]", '[identify_bands]\nintervals = ["hate"]\nweights = { y = 1.0 }'), [
             "decay.toml: [identify_bands], intervals: unknown parameter 'hate'; did you mean 'rate'?",

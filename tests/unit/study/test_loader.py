@@ -210,7 +210,7 @@ step = 1e-3
 spectral_radius = 2
 [data]
 file = "none.csv"
-columns = { x = 1 }
+columns = { x = 1.5 }
 [identify]
 method = "nelder-meat"
 starts = 0
@@ -251,7 +251,7 @@ horizon = "growin"
         "study.toml: [[model.load]] 'T', torque: unknown kind 'Harmonik'; did you mean 'Harmonic'?",
         "study.toml: [solver]: GeneralizedAlpha: spectral_radius is 2.0; expected a number in [0, 1]",
         f"study.toml: [data], file: 'none.csv' was given, but there is no file {path.parent / 'none.csv'}",
-        "study.toml: [data.columns], x: 1 was given; expected text in quotes",
+        "study.toml: [data.columns], x: 1.5 was given; expected the name of a column in quotes, or its number from 1",
         "study.toml: [identify], method: unknown method 'nelder-meat'; did you mean 'Nelder-Mead'?",
         "study.toml: [identify], starts: 0 was given; expected a number of at least 1",
         "study.toml: [identify], polish: 'yes' was given; expected true or false",

@@ -19,6 +19,8 @@ TABLES = {
     "Model": ["model", "Structures"],
     "GeneralizedAlpha": ["solver"],
     "DataTable": ["data"],
+    "ChannelFile": ["data"],
+    "StartTable": ["data"],
     "DerivativeTable": ["data"],
     "BandsTable": ["data", "bands"],
     "ExperimentTable": ["data", "experiments"],

@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Discriminator, Field, Tag, model_validator
 
 from dalembert.errors import DataError, unknown
-from dalembert.study.data_table import DataFile, DataTable, FileTable
+from dalembert.study.data_table import Column, DataFile, DataTable, FileTable
 from dalembert.study.expressions import Expression
 from dalembert.study.numbers import fixed, number
 from dalembert.study.table import Read, StudyTable, problem
@@ -33,7 +33,7 @@ class InputTable(FileTable):
     """A measured input: a column of the data's file, or of another one."""
 
     file: DataFile | None = Field(None, description="that of the data, or of the experiment, if not given")
-    column: str | None = Field(None, description="name of the column")
+    column: Column | None = Field(None, description="name of the column, or its number from 1 in a text file")
     unit: str = Field("", description="of the column, where it is not in SI units: 'N*mm'")
     kind: Literal["linear", "cubic", "held"] = Field("linear", description="what the input does between its samples")
     scale: Annotated[Any, Read(number(None))] = Field(1.0, description="factor, such as a torque constant")
@@ -77,8 +77,9 @@ class InputTable(FileTable):
             table = DataTable.model_construct(**{key: getattr(self, key) for key in FileTable.model_fields})
         if table is None:
             raise DataError(f"[inputs.{name}]: no file is given, and there are no [data]; give a file")
-        units = {name: unit for name, unit in table.units.items() if name in (table.time, self.column, _ABSCISSA)}
-        units |= {self.column: self.unit} if self.unit else {}
+        column = str(self.column)
+        units = {name: unit for name, unit in table.units.items() if name in (str(table.time), column, _ABSCISSA)}
+        units |= {column: self.unit} if self.unit else {}
         # the times are read as those of the data; what else becomes of the data is left out
         own = {
             key: one.get_default(call_default_factory=True)
@@ -180,6 +181,11 @@ def wrong_inputs(file: Any) -> list[str]:
                 "change of the value moves in time as a jump; take kind = 'linear', or a delay that depends on no "
                 "parameter"
             )
+    if file.inputs and any(table.unknown_start is not None for table in (file.data, *file.experiments) if table):
+        wrong.append(
+            "start: the time at which the motion begins is to be identified, and [inputs] drive the model at times of "
+            "the file; give start as a number or 'first', or bounds of a sensor's delay"
+        )
     for entry in file.experiments:
         where = f"[[experiments]] {entry.name!r}, inputs"
         wrong += [unknown("input", name, file.inputs, where) for name in entry.inputs if name not in file.inputs]

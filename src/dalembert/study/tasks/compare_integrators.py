@@ -92,6 +92,7 @@ class CompareIntegrators(Task):
             response = TimeResponse(study.builder, study.parameters, table.channels, ends, solver=one.settings())
             with placed("[work_precision], channels"):
                 response.channels  # noqa: B018
+            response.fingerprint  # noqa: B018 (what cannot be assembled is refused here)
         count = sum(len(series.integrators()) for series in table.series)
         told = f"compares {len(table.series)} integrators in {count} settings over {table.end:g} s"
         return f"{told}: {_simulations(table)} simulations"

@@ -55,7 +55,7 @@ def judged(problem: Equations, path: Iterable[Found], located: bool) -> Iterator
         Whether changes become points of their own; else the first point behind one is marked.
     """
     before: tuple[Solution, Exponents] | None = None
-    folded = False
+    folded, adjacent = False, True
     for one in path:
         if one.returned:
             before = None
@@ -68,17 +68,23 @@ def judged(problem: Equations, path: Iterable[Found], located: bool) -> Iterator
             folded = True
         else:
             own = exponents(problem, one.solution)
+            if not own.judged and np.isfinite(own.error):
+                # A change of sign within the error is no bifurcation: points further on show whether there is one.
+                yield Judged(one)
+                adjacent = False
+                continue
             kind = ""
             if before is not None and before[1].unstable != own.unstable and not folded:
                 kind = _kind(before[1], own)
                 if kind == BRANCH and not _branches(problem, before[0], one.solution):
                     kind = ""
-                place = _located(problem, before, (one.solution, own)) if located and kind else None
+                place = _located(problem, before, (one.solution, own)) if located and adjacent and kind else None
                 if place is not None:
-                    yield Judged(Found(place[0]), _said(before[1]), _kind(place[1], place[1], _rank(before[1], own)))
+                    stable = _said(before[1]) if place[1].judged else NOT_ASKED
+                    yield Judged(Found(place[0]), stable, _kind(place[1], place[1], _rank(before[1], own)))
                     kind = ""
             yield Judged(one, _said(own), kind)
-            before, folded = (one.solution, own), False
+            before, folded, adjacent = (one.solution, own), False, True
 
 
 def _said(own: Exponents) -> int:
@@ -95,10 +101,11 @@ def _rank(before: Exponents, after: Exponents) -> int:
 def _kind(before: Exponents, after: Exponents, rank: int | None = None) -> str:
     """From the side on which the exponent grows."""
     rank = _rank(before, after) if rank is None else rank
-    turn = abs((before if before.unstable > after.unstable else after).values[rank].imag) % 1.0
-    if min(turn, 1 - turn) < REAL:
+    grows = before if before.unstable > after.unstable else after
+    turn, none = abs(grows.values[rank].imag) % 1.0, max(REAL, grows.error if np.isfinite(grows.error) else 0.0)
+    if min(turn, 1 - turn) < none:
         return BRANCH
-    return DOUBLING if abs(turn - 0.5) < REAL else TORUS
+    return DOUBLING if abs(turn - 0.5) < none else TORUS
 
 
 def _branches(problem: Equations, before: Solution, after: Solution) -> bool:

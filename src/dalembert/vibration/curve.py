@@ -77,8 +77,8 @@ class FrequencyCurve(Result):
     sampling_errors : array, shape (points,)
         Change of the residual with twice as many, as part of the forces.
     stable : array of int8, shape (points,)
-        1 stable, 0 unstable, -1 where it was not asked for, the point was not found, or a stop is touched and Hill's
-        method gives a largest multiplier within 0.02 of the unit circle. A fold has what comes before.
+        1 stable, 0 unstable, -1 where it was not asked for, the point was not found, or a stop is touched and twice
+        the harmonics change the largest growth by more than this growth. A fold has what comes before.
     markers : tuple of (str, int)
         Bifurcations and their points: ``"fold"``, and where stability was asked for ``"torus"``, ``"period doubling"``
         and ``"branch point"``.

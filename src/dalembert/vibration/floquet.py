@@ -24,7 +24,8 @@ def floquet_multipliers(system: VibrationSystem, curve: FrequencyCurve, point: i
     curve : FrequencyCurve
     point : int
     way : {"automatic", "hill", "time map"}
-        Hill's method in frequency, which has the accuracy of the harmonics but does not know the memory of sliders, or
+        Hill's method in frequency, which has the accuracy of the harmonics (twice as many as the curve's where a stop
+        is touched) but does not know the memory of sliders, or
         trapezoidal steps of the linearised motion over a period, whose error falls with their square. Automatic: the
         former without contacts with friction, the latter with such.
 

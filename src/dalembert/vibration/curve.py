@@ -85,8 +85,8 @@ class FrequencyCurve(Result):
     provenance : mapping
         Versions, method, settings.
     findings : tuple of Finding
-        ``"unbalanced-mean"`` or ``"points-not-found"`` where points were not found; ``"few-harmonics"``;
-        ``"free-mean-position"`` where nothing holds a mean position.
+        ``"unbalanced-mean"``, ``"force-not-finite"``, ``"undamped-resonance"`` or ``"points-not-found"`` where points
+        were not found; ``"few-harmonics"``; ``"free-mean-position"`` where nothing holds a mean position.
     """
 
     FORMAT: ClassVar[str] = "dalembert frequency curve 1"

@@ -122,7 +122,8 @@ class UserElement(Checked):
     Raises
     ------
     InputError
-        By :meth:`law`, for a function that drops the imaginary part of displacements, as ``abs`` does.
+        By :meth:`law`, for a function that drops the imaginary part of displacements, as ``abs`` does, and for one
+        whose forces at zero displacements are not finite.
 
     Examples
     --------
@@ -140,6 +141,12 @@ class UserElement(Checked):
         values = self._forces(u)
         if np.iscomplexobj(u):
             return values, np.zeros(0)
+        # Elsewhere a trial of Newton's method may lie beyond what the law is for; the search turns back there.
+        if not np.any(u) and not np.all(np.isfinite(values)):
+            raise InputError(
+                f"element {self.name!r}: its function returned {values[~np.isfinite(values)][0]} at zero "
+                "displacements; expected finite forces"
+            )
         if not self._compared and np.any(u) and not np.iscomplexobj(values):  # where no parameter is moved
             self._compare(u)
         slopes = np.empty((len(u), *u.shape))
@@ -147,7 +154,8 @@ class UserElement(Checked):
             moved = u.astype(complex)
             moved[column] += 1e-30j
             slopes[:, column] = np.imag(self._forces(moved)) / 1e-30
-        return values, slopes
+        # NaN in place of infinity, which sums turn into NaN with a warning.
+        return np.where(np.isfinite(values), values, np.nan), np.where(np.isfinite(slopes), slopes, np.nan)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "dofs", (self.dofs,) if isinstance(self.dofs, str) else tuple(self.dofs))

@@ -96,14 +96,14 @@ def _change(values: np.ndarray, finer: np.ndarray) -> float:
 
     Next to each other in the plane: beside a fold or a crossing the fastest ones of both are not the same exponent.
     """
-    pairs = (finer[0], values), (values[0], finer)
-    return max(float(abs(one.real - others[_nearest(one, others)].real)) for one, others in pairs)
+    pairs = (complex(finer[0]), values), (complex(values[0]), finer)
+    return max(abs(one.real - float(np.real(others)[_nearest(one, others)])) for one, others in pairs)
 
 
 def _nearest(one: complex, others: np.ndarray) -> int:
     """The exponent next to one, up to its copies and conjugates."""
-    turns = np.minimum(abs(others.imag % 1 - one.imag % 1), abs(others.imag % 1 - -one.imag % 1))
-    return int(np.argmin(np.hypot(others.real - one.real, np.minimum(turns, 1 - turns))))
+    turns = np.minimum(abs(np.imag(others) % 1 - one.imag % 1), abs(np.imag(others) % 1 - -one.imag % 1))
+    return int(np.argmin(np.hypot(np.real(others) - one.real, np.minimum(turns, 1 - turns))))
 
 
 def _finer(finer: Equations, problem: Equations, solution: Solution) -> np.ndarray:

@@ -67,7 +67,8 @@ def steady_state(
     Raises
     ------
     InputError
-        For a frequency that is not positive, an unknown way, unknown degrees of freedom, and a start that does not fit.
+        For a frequency that is not positive, a system without a force, an unknown way, unknown degrees of freedom, and
+        a start that does not fit.
     ModelError
         For a structure too large, or with neither mass nor stiffness somewhere.
     SolveError
@@ -87,6 +88,11 @@ def steady_state(
     method = method or Newmark()
     if not (np.isfinite(frequency) and frequency > 0):
         raise InputError(f"steady_state: the frequency is {frequency}; expected a positive number in Hz")
+    if not system.forces:
+        raise InputError(
+            "steady_state: no force acts on the system, so that it stands still; add a HarmonicForce, or use backbone "
+            "for motions without force"
+        )
     if way not in (LONG_RUN, SHOOTING):
         raise InputError(unknown("way", way, (LONG_RUN, SHOOTING), "steady_state"))
     lowered = lower(system).real

@@ -7,9 +7,10 @@ import numpy as np
 
 from dalembert.errors import listed
 from dalembert.findings import Finding
-from dalembert.vibration.condensation import MOVING, NAMED
+from dalembert.vibration.condensation import FLOATING, MOVING, NAMED, NEARLY
 from dalembert.vibration.equations import Equations
 from dalembert.vibration.newton import VERIFIED, Solution
+from dalembert.vibration.springs import UserElement
 
 LEFT = 0.1
 """Part of the residual, along a motion that no stiffness holds, from which this motion is the cause."""
@@ -30,12 +31,18 @@ class Unfound:
         other causes.
     force : float
         This mean force, N.
+    element : str
+        Element whose function has no finite force where Newton's method goes; empty for other causes.
+    resonance : bool
+        Whether the structure resonates here without damping.
     """
 
     frequency: float
     residual: float
     motion: str = ""
     force: float = 0.0
+    element: str = ""
+    resonance: bool = False
 
 
 def unfound(problem: Equations, solution: Solution) -> Unfound | None:
@@ -47,11 +54,39 @@ def unfound(problem: Equations, solution: Solution) -> Unfound | None:
     along = motions.T @ residual[:, 0]
     largest = max(LEFT * float(np.linalg.norm(residual)), VERIFIED * solution.point.load)
     if not np.linalg.norm(along) > largest:
-        return Unfound(frequency, solution.error)
+        return Unfound(
+            frequency, solution.error, element=_not_finite(problem, solution), resonance=_resonates(solution)
+        )
     balance = problem.balance(solution.samples)
     moved = np.abs(balance.displacements((motions @ along)[:, None])[:, 0])
     names = [repr(balance.lowered.row_names[row]) for row in np.flatnonzero(moved > MOVING * moved.max())]
     return Unfound(frequency, solution.error, listed(names[:NAMED]), float(np.linalg.norm(along)))
+
+
+def _not_finite(problem: Equations, solution: Solution) -> str:
+    """Name of the user's element whose force is not finite here or after Newton's next step; empty if there is none."""
+    balance = problem.balance(solution.samples)
+    try:
+        step = solution.tangent.solve(solution.evaluation.residual[:, :, None])[:, :, 0]
+    except np.linalg.LinAlgError:
+        step = np.zeros_like(solution.unknowns)
+    for part in (0.0, 1.0):
+        motion = balance.displacements(solution.unknowns - part * step) @ balance.series.synthesis.T
+        for rows, element in balance.lowered.springs:
+            if isinstance(element, UserElement) and not np.all(np.isfinite(element.law(motion[rows])[0])):
+                return element.name
+    return ""
+
+
+def _resonates(solution: Solution) -> bool:
+    """Whether the structure has no dynamic stiffness in some motion at a harmonic that forces act in."""
+    point = solution.point
+    forced = np.abs(point.force).max(axis=1, initial=0.0) > FLOATING * point.load
+    stiffness = point.stiffness[forced & (point.frequencies > 0)]
+    if not stiffness.size:
+        return False
+    smallest = np.linalg.svd(stiffness, compute_uv=False)[:, -1]
+    return bool(np.any(smallest <= NEARLY * point.stiffest))
 
 
 def unfound_findings(points: int, lost: Iterable[Unfound]) -> tuple[Finding, ...]:
@@ -72,6 +107,16 @@ def unfound_findings(points: int, lost: Iterable[Unfound]) -> tuple[Finding, ...
                 "them or the preload, or hold the structure by a spring."
             )
             return (Finding("unbalanced-mean", "error", values, message, advice),)
+    for one in lost:
+        where, values = f"{count} At {one.frequency:.6g} Hz", {"points": len(lost), "frequency": one.frequency}
+        if one.element:
+            message = f"{where} the function of {one.element!r} returns forces that are not finite."
+            advice = "Let it return finite forces at all displacements."
+            return (Finding("force-not-finite", "error", {**values, "element": one.element}, message, advice),)
+        if one.resonance:
+            message = f"{where} the structure resonates without damping, and no element limits its motion."
+            advice = "Give it damping, or choose another frequency."
+            return (Finding("undamped-resonance", "error", values, message, advice),)
     worst = max(lost, key=lambda one: one.residual)
     values = {"points": len(lost), "frequency": worst.frequency, "residual": worst.residual}
     message = f"{count} The largest residual is {worst.residual:.1e} of the forces, at {worst.frequency:.6g} Hz."

@@ -264,13 +264,19 @@ def test_what_a_law_of_the_users_raises_is_raised() -> None:
         steady_state(system, 0.1)
 
 
+def pushed(system: VibrationSystem, dof: str) -> VibrationSystem:
+    system.add(HarmonicForce(dof, 1.0))
+    return system
+
+
 def loose() -> VibrationSystem:
-    return VibrationSystem(lumped({"a": 1.0, "b": 0.0}, [("a", None, 1.0, 0.1)]))
+    return pushed(VibrationSystem(lumped({"a": 1.0, "b": 0.0}, [("a", None, 1.0, 0.1)])), "a")
 
 
 def large() -> VibrationSystem:
     names = [f"m{number}" for number in range(1501)]
-    return VibrationSystem(lumped(dict.fromkeys(names, 1.0), [(name, None, 1.0, 0.0) for name in names]))
+    system = VibrationSystem(lumped(dict.fromkeys(names, 1.0), [(name, None, 1.0, 0.0) for name in names]))
+    return pushed(system, "m0")
 
 
 @pytest.mark.parametrize(

@@ -94,20 +94,20 @@ class Equations:
             free = np.linalg.solve(point.stiffness, point.force[:, :, None])[:, :, 0]
         except np.linalg.LinAlgError:  # springs without a linear part hold the structure
             free = (np.linalg.pinv(point.stiffness) @ point.force[:, :, None])[:, :, 0]
-        for guess in self._free_guesses(balance, balance.series.coefficients(free)):
-            other = self.solve(guess, omega, samples, point=point)
-            if other.converged:
-                return other
-            best = min(best, other, key=lambda one: one.error)
-        if not self.method.halvings:
+        moved = balance.series.coefficients(free)
+        other = self.solve(moved, omega, samples, point=point)
+        if other.converged:
+            return other
+        best = min(best, other, key=lambda one: one.error)
+        if self.method.halvings:
+            loaded = self.solve(by_force(balance, self.method, point), omega, samples, point=point)
+            if loaded.converged:
+                return loaded
+            best = min(best, loaded, key=lambda one: one.error)
+        if not any(block.normal and block.kind != ELASTIC for block in self.lowered.blocks):
             return best
-        loaded = self.solve(by_force(self.balance(samples), self.method, point), omega, samples, point=point)
-        return loaded if loaded.converged else min(best, loaded, key=lambda one: one.error)
-
-    def _free_guesses(self, balance: Balance, free: np.ndarray) -> list[np.ndarray]:
-        """The motion without contacts, and where masses may bounce on rigid contacts, the same that just touches."""
-        bounces = any(block.normal and block.kind != ELASTIC for block in self.lowered.blocks)
-        return [free, balance.touching(free)] if bounces else [free]
+        touching = self.solve(balance.touching(moved), omega, samples, point=point)
+        return touching if touching.converged else min(best, touching, key=lambda one: one.error)
 
     def once(self, what: str, solution: Solution, compute: Callable[[], np.ndarray]) -> np.ndarray:
         """What follows from a solution, by name; it is kept where solutions are."""

@@ -46,6 +46,12 @@ def test_a_mass_that_bounces_on_a_rigid_contact_is_found_from_a_motion_that_just
     assert max(unbalanced(own, curve, point) for point in range(3)) < ACCEPTED
 
 
+def test_a_contact_that_can_stay_closed_does_so_at_a_first_point() -> None:
+    own = random_system(55)
+    _, path = path_end(own)
+    assert np.abs(path.response[0]).max() < 1e-12
+
+
 def test_the_evaluation_of_forces_in_plain_numpy_refuses_a_point_that_is_no_solution() -> None:
     own = random_system(3)
     curve = frequency_response(own.system, own.frequencies, METHOD)

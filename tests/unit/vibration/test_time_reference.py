@@ -100,9 +100,10 @@ PLANE = Elastic(8.0, normal_stiffness=15.0)
 def test_every_law_agrees_with_harmonic_balance(system: VibrationSystem, states: set[int]) -> None:
     curve = frequency_response(system, np.array([0.45, 0.7]), HarmonicBalance(15, samples=1024))
     assert curve.converged.all()
-    comparison = compare_in_time(system, curve, points=[0, 1], method=Newmark(512), way="shooting")
+    # the error of the steps in time is of first order at lift-off: 1.7e-3 with 512, 2.2e-4 with 4,096
+    comparison = compare_in_time(system, curve, points=[0, 1], method=Newmark(2048), way="shooting")
     assert comparison.converged.all()
-    assert np.abs(comparison.differences).max() < 1e-3
+    assert np.abs(comparison.differences).max() < 5e-4
     seen = steady_state(system, 0.7, Newmark(128, tolerance=1e-3), start=(curve, 1)).states
     assert set(np.unique(seen)) == states
 

@@ -129,10 +129,11 @@ def check(
     study: StudyFile,
     limit: Annotated[float, typer.Option(min=0, metavar="SECONDS", help="Time for simulations.")] = 30.0,
 ) -> None:
-    """Check a study, and say what it would run, about how many simulations and how long."""
+    """Check a study, list its mechanism's channels, and say about how many simulations it would run and how long."""
     with _exit_codes():
         from dalembert.errors import ModelError
         from dalembert.study import load, plan
+        from dalembert.study.channels import channel_lines
         from dalembert.study.duration import spoken, within
         from dalembert.study.runner import looked
         from dalembert.study.table import placed
@@ -140,6 +141,8 @@ def check(
         read = load(study)
         with placed(study.name), placed(study.name, ModelError):
             typer.echo(f"{study}: in order; it {plan(read)}")
+            for line in channel_lines(read):
+                typer.echo(line)
             try:
                 for sentence in within(limit, lambda: looked(read, limit)):
                     typer.echo(sentence)

@@ -64,13 +64,26 @@ def unknown(what: str, given: object, known: Iterable[str], where: str = "") -> 
 
     >>> unknown("channel", "AB.end.z", ["AB.end.x", "AB.end.y", "OA.end.x"])
     "unknown channel 'AB.end.z'; did you mean 'AB.end.y' or 'AB.end.x'?"
+
+    Of names with parts those of the same kind come first, as the last part says it.
+
+    >>> unknown("channel", "bar.tip.x", ["bar.end.x", "bar.end.vx", "pin.tip.y", "bar.top.y"])
+    "unknown channel 'bar.tip.x'; did you mean 'bar.end.x' or 'bar.top.y'?"
     """
     names = sorted(known)
-    close = get_close_matches(str(given), names, n=2, cutoff=0.6)
+    close = _closest(str(given), names)
     prefix = f"{where}: " if where else ""
     if close:
         return f"{prefix}unknown {what} {given!r}; did you mean {' or '.join(map(repr, close))}?"
     return f"{prefix}unknown {what} {given!r}; known: {', '.join(names) or 'none'}"
+
+
+def _closest(given: str, names: list[str]) -> list[str]:
+    """Up to two close names; those that end in the part that the given one ends in, or is meant to, come first."""
+    close = get_close_matches(given, names, n=len(names) or 1, cutoff=0.6)
+    kinds = sorted({name.rpartition(".")[2] for name in names if "." in name})
+    kind = get_close_matches(given.rpartition(".")[2], kinds, n=1, cutoff=0.6) if "." in given else []
+    return sorted(close, key=lambda name: name.rpartition(".")[2] not in kind)[:2]
 
 
 def no_text(path: object, error: UnicodeDecodeError) -> str:

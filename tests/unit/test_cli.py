@@ -107,6 +107,17 @@ def test_check(dalembert):
     )
 
 
+def test_check_lists_the_channels_of_a_mechanism(dalembert, tmp_path):
+    bar = 'kind = "RigidBar"\nname = "bar"\nlength = 1\nmass = 0.5\nangle = 0\n'
+    (tmp_path / "bar.toml").write_text(f"[solver]\nstep = 0.1\n[simulate]\nend = 1\n[[model.body]]\n{bar}")
+    lines = dalembert("check", "bar.toml").stdout.splitlines()
+    assert lines[1:4] == [
+        "30 channels, NAME.QUANTITY:",
+        "  bar.start, bar.end, bar.centre: x, y, angle, vx, vy, rate, ax, ay, acceleration",
+        "  system: kinetic_energy, potential_energy, total_energy",
+    ]
+
+
 def test_exit_code_1_if_the_solver_could_not(dalembert, tmp_path):
     (tmp_path / "decay.toml").write_text(SWEEP.replace("2 1/s", "3 1/s"))
     ran = dalembert("run", "decay.toml")

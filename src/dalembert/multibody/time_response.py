@@ -29,6 +29,7 @@ from dalembert.multibody.long_runs import check_pace, check_steps
 from dalembert.multibody.lowering import Lowered, lower
 from dalembert.multibody.observe import Observer, observer
 from dalembert.multibody.simulation import begin_time, checked, integrator, simulate
+from dalembert.multibody.skipped_samples import skipped_samples
 from dalembert.multibody.slip_rates import rubbing
 from dalembert.multibody.system import System
 from dalembert.parameters import Parameter, Parameters
@@ -304,7 +305,8 @@ class TimeResponse:
         system = self.system(vector)
         try:
             if not rubbing(system):
-                return system.findings
+                step, end = self.solver.fixed_step, float(self.times[-1])
+                return (*system.findings, *skipped_samples(system, step, self.begin, end))
             return simulate(system, float(self.times[-1]), self.solver, begin=self.begin).findings
         except (ModelError, SolveError, InputError):  # no motion, or one that does not fit into memory
             return system.findings

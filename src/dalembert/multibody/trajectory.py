@@ -22,6 +22,7 @@ from dalembert.multibody.integrators.run import Run
 from dalembert.multibody.kernels.motion import Motion
 from dalembert.multibody.lowering import Lowered
 from dalembert.multibody.observe import channel_names, observer
+from dalembert.multibody.skipped_samples import skipped_samples
 from dalembert.multibody.slip_rates import rubbing, slip_findings
 from dalembert.multibody.system import System
 
@@ -62,10 +63,12 @@ class Trajectory:
 
     @cached_property
     def findings(self) -> tuple[Finding, ...]:
-        """Those of the system, and of smoothed friction that does not suit the motion."""
+        """Those of the system, of inputs that steps skip, and of smoothed friction that does not suit the motion."""
         joints = rubbing(self.system)
+        begin = float(np.real(self.lowered.signal_data[0]))
+        skipped = skipped_samples(self.system, self.solver.fixed_step, begin, float(self.run.times[-1]))
         if not joints:
-            return self.system.findings
+            return (*self.system.findings, *skipped)
         times, states = self.run.times, self.run.states
         readers = observer(self.system, self.lowered, [f"{name}.{own.channel}" for name, own in joints.items()])
         prepare(readers.kernels(self.lowered, False))
@@ -74,7 +77,7 @@ class Trajectory:
             slip_findings(name, own, times, column, self.solver.fixed_step)
             for (name, own), column in zip(joints.items(), rates.T, strict=True)
         )
-        return (*self.system.findings, *chain.from_iterable(unsuited))
+        return (*self.system.findings, *skipped, *chain.from_iterable(unsuited))
 
     @property
     def channel_names(self) -> tuple[str, ...]:

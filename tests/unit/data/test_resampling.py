@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from dalembert.data import Measurements
+from dalembert.data import Measurements, derivative
+from dalembert.data.stretches import gaps
 from dalembert.errors import DataError
 
 TURN = 2 * np.pi
@@ -151,3 +152,23 @@ def test_what_cannot_be_is_refused(wrong, sentence):
     with pytest.raises(DataError) as error:
         wrong()
     assert str(error.value) == sentence
+
+
+def test_missing_time_stamps_are_a_gap():
+    """49 samples were not stored: no value is invented between those beside them."""
+    times = np.delete(np.arange(201) * 0.01, np.arange(60, 109))
+    data = Measurements.of(times, {"x": np.sin(3 * times)}, deviations=1e-6)
+    found = data.resampled(np.arange(201) * 0.01)
+    assert np.flatnonzero(~found.present[:, 0]).tolist() == list(range(60, 109))
+    np.testing.assert_allclose(found.values[found.present[:, 0], 0], np.sin(3 * times), atol=1e-12)
+    rates = derivative(data, "x").values
+    np.testing.assert_allclose(rates, 3 * np.cos(3 * times), atol=1e-3)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_uneven_stamps_have_few_gaps(seed):
+    """Jittered stamps none, and those of a random process no more than a hundredth."""
+    draw = np.random.default_rng(seed)
+    jittered = np.arange(1000) + draw.uniform(-0.2, 0.2, 1000)
+    assert len(gaps(jittered)) == 0
+    assert len(gaps(np.cumsum(draw.exponential(size=1000)))) < 25

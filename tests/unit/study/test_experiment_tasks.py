@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dalembert.errors import InputError
+from dalembert.errors import DataError, InputError
 from dalembert.inverse import Prediction
 from dalembert.study import load, plan, report_run, run_study
 from dalembert.study.runner import unknowns
@@ -254,3 +254,113 @@ def test_the_first_part_of_a_record_that_is_predicted_is_fitted(write, tmp_path)
     _, outcome = run_study(load(write(TWO + '[identify]\nvalidation = { long = "1 s" }\n')), tmp_path / "run")
     assert outcome.fit.validation.what == "the experiment 'long' after its first 1 s"
     assert outcome.best["values"]["long.size"] == pytest.approx(1.5)
+
+
+def swings(path, begins, drag=0.2, noise=0.0):
+    """Angles of the pendulum, let go from each angle in degrees, in one file with a column that numbers the trials."""
+    rows, stamps = [], np.arange(61) * 0.02
+    for number, begin in enumerate(begins, start=1):
+        path.with_name("swing.toml").write_text(
+            PENDULUM.replace('"30 deg"', f'"{begin} deg"') + "[simulate]\nend = 1.3\n"
+        )
+        study = load(path.with_name("swing.toml"))
+        angle = study.forward(["rod.end.angle"], stamps).evaluate(np.array([[drag]])).only()[0, :, 0]
+        rows += [f"{number} {12.5 * number + t:.2f} {a:.9f}" for t, a in zip(stamps, angle, strict=True)]
+    path.write_text("\n".join(["trial time angle", *rows]))
+
+
+TRIALS = (
+    PENDULUM.replace('begin = "30 deg"\n', "").replace(
+        "[parameters]\n", '[parameters]\nbegin = { lower = "5 deg", upper = "80 deg" }\n'
+    )
+    + """
+[[experiments]]
+name = "swing"
+file = "swings.txt"
+time = "time"
+columns = { "rod.end.angle" = "angle" }
+split = "trial"
+own = ["begin"]
+"""
+)
+
+
+def test_the_trials_in_a_file_are_experiments(write, tmp_path):
+    swings(tmp_path / "swings.txt", (30, 50, 40))
+    study = load(write(TRIALS + '[identify]\nvalidation = { swing-3 = "0.3 s" }\n'))
+    assert unknowns(study) == ("drag", "swing-1.begin", "swing-2.begin", "swing-3.begin")
+    _, outcome = run_study(study, tmp_path / "run")
+    exact = {"drag": 0.2} | {f"swing-{k}.begin": np.deg2rad(at) for k, at in ((1, 30), (2, 50), (3, 40))}
+    assert outcome.best["values"] == pytest.approx(exact, rel=1e-6)
+    assert outcome.fit.validation.what == "the experiment 'swing-3' after its first 0.3 s"
+
+
+def test_one_trial_of_a_file_is_data(write, tmp_path):
+    swings(tmp_path / "swings.txt", (30, 50))
+    table = '[data]\nfile = "swings.txt"\ntime = "time"\ncolumns = { "rod.end.angle" = "angle" }\nsplit = "trial"\n'
+    text = TRIALS.partition("[[experiments]]")[0] + table
+    _, outcome = run_study(load(write(text + 'trial = 2\nstart = "first"\n[identify]\n')), tmp_path / "run")
+    assert outcome.best["values"] == pytest.approx({"drag": 0.2, "begin": np.deg2rad(50)}, rel=1e-6)
+    for more, sentence in (
+        ("", "split is given without trial; give the trial that is read, or use [[experiments]] for all"),
+        ("trial = 3\n", "column 'trial': unknown trial '3'; known: 1, 2"),
+    ):
+        with pytest.raises((InputError, DataError)) as raised:
+            run_study(load(write(text + more + "[identify]\n")), tmp_path / "refused")
+        assert sentence in str(raised.value)
+
+
+def test_a_record_that_begins_late_says_when_the_motion_begins(write, tmp_path):
+    swings(tmp_path / "swings.txt", (30,))
+    table = '[data]\nfile = "swings.txt"\ntime = "time"\ncolumns = { "rod.end.angle" = "angle" }\n'
+    text = TRIALS.partition("[[experiments]]")[0] + table
+    with pytest.raises(DataError) as raised:
+        run_study(load(write(text + "[identify]\n")), tmp_path / "refused")
+    assert str(raised.value).endswith(
+        "swings.txt, column 'time': the times begin at 12.5 s, and a motion begins at 0. If it begins with the record, "
+        "give start = 'first'; if it began at 0 s of the file, give start = 0"
+    )
+    for start in ('"first"', "12.5", '"12500 ms"'):
+        data = load(write(text + f"start = {start}\n[identify]\n")).data()
+        assert data.coordinate.values[0] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_the_time_at_which_the_motion_begins_is_identified(write, tmp_path):
+    swings(tmp_path / "swings.txt", (30,))
+    table = (
+        '[data]\nfile = "swings.txt"\ntime = "time"\ncolumns = { "rod.end.angle" = "angle" }\n'
+        'start = { lower = "12.4 s", upper = "12.6 s", start = "12.42 s" }\n'
+    )
+    text = TRIALS.partition("[[experiments]]")[0].replace(
+        'lower = "5 deg", upper = "80 deg"', "lower = 0.5236, upper = 0.5236"
+    )
+    text = text.replace("0.5236", repr(float(np.deg2rad(30))))
+    study = load(write(text + table + "[identify]\n"))
+    assert unknowns(study) == ("drag", "start time")
+    _, outcome = run_study(study, tmp_path / "run")
+    assert outcome.best["values"]["start time"] == pytest.approx(12.5, abs=1e-5)
+    assert outcome.best["values"]["drag"] == pytest.approx(0.2, rel=1e-4)
+
+
+def test_files_with_other_time_stamps_belong_to_one_experiment(write, tmp_path):
+    swings(tmp_path / "swings.txt", (30,))
+    stamps = np.arange(40) * 0.033
+    study = load(write(PENDULUM + "[simulate]\nend = 1.3\n"))
+    way = study.forward(["rod.end.x"], stamps).evaluate(np.array([[0.2]])).only()[0, :, 0]
+    (tmp_path / "way.csv").write_text(
+        "\n".join(["ms;x", *(f"{12500 + 1000 * t:.3f};{x:.9f}" for t, x in zip(stamps, way))])
+    )
+    table = (
+        '[data]\nfile = "swings.txt"\ntime = "time"\nstart = "first"\ncolumns = { "rod.end.angle" = "angle" }\n'
+        'more = [{ file = "way.csv", time = "ms", units = { ms = "ms" }, columns = { "rod.end.x" = "x" } }]\n'
+    )
+    study = load(
+        write(
+            TRIALS.partition("[[experiments]]")[0]
+            + table
+            + '[identify]\nweights = { "rod.end.angle" = 1.0, "rod.end.x" = 1.0 }\n'
+        )
+    )
+    assert study.data().present.sum(axis=0).tolist() == [61, 40]
+    _, outcome = run_study(study, tmp_path / "run")
+    assert outcome.best["values"] == pytest.approx({"drag": 0.2, "begin": np.deg2rad(30)}, rel=1e-5)

@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Discriminator, Field, Tag, model_validator
 
 from dalembert.errors import DataError, unknown
-from dalembert.study.data_table import Column, DataFile, DataTable, FileTable
+from dalembert.study.data_table import Column, DataFile, DataTable, FileTable, Start, StartTable
 from dalembert.study.expressions import Expression
 from dalembert.study.numbers import fixed, number
 from dalembert.study.table import Read, StudyTable, problem
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 _CHANNEL = "input"
 _ABSCISSA = "t"  # what units call the times of a universal file
-_OF_FILES = set(FileTable.model_fields) - {"file", "units"}
+_OF_FILES = {*FileTable.model_fields, "start"} - {"file", "units"}
 _OF_TIMES = {*FileTable.model_fields, "start", "split", "trial"}
 _OUTSIDE = 0.01  # of a motion: what may lie beyond the ends of an input
 
@@ -36,6 +36,10 @@ class InputTable(FileTable):
     column: Column | None = Field(None, description="name of the column, or its number from 1 in a text file")
     unit: str = Field("", description="of the column, where it is not in SI units: 'N*mm'")
     kind: Literal["linear", "cubic", "held"] = Field("linear", description="what the input does between its samples")
+    start: Annotated[Any, Read(Start)] = Field(
+        None,
+        description="time of its file at which the motion begins: a number, or 'first' for that of the first sample",
+    )
     scale: Annotated[Any, Read(number(None))] = Field(1.0, description="factor, such as a torque constant")
     offset: Annotated[Any, Read(number(None))] = Field(0.0, description="added to the scaled input, in SI units")
     delay: Annotated[Any, Read(number("s"))] = Field(0.0, description="positive where the input acts late")
@@ -53,6 +57,8 @@ class InputTable(FileTable):
             raise problem(
                 f"{', '.join(described)}: an input from the data's file is read as the data are; give a file too"
             )
+        if isinstance(self.start, StartTable):
+            raise problem("start: bounds were given; expected a number of seconds of the file, or 'first'")
         if self.frequency is not None:
             raise problem("frequency: an input lies along time; name its column by time")
         return self
@@ -74,7 +80,8 @@ class InputTable(FileTable):
         assert self.column is not None  # or the study was refused
         table = beside
         if self.file is not None:
-            table = DataTable.model_construct(**{key: getattr(self, key) for key in FileTable.model_fields})
+            own = {key: getattr(self, key) for key in (*FileTable.model_fields, "start")}
+            table = DataTable.model_construct(**own)
         if table is None:
             raise DataError(f"[inputs.{name}]: no file is given, and there are no [data]; give a file")
         column = str(self.column)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dalembert.data import Measurements
+from dalembert.data import Measurements, merged
 from dalembert.errors import DataError
 from support import says
 
@@ -67,6 +67,34 @@ def test_decimation_keeps_what_is_slow_and_removes_what_would_be_aliased() -> No
     assert data.deviations[0] < 0.05
     assert of(sine(5.0)).decimated(1).values.shape == (4000, 1)
     np.testing.assert_array_equal(of(sine(5.0)).decimated(10, 20.0).values, of(sine(5.0)).filtered(20.0).values[::10])
+
+
+def test_channels_of_different_rates_are_filtered_and_decimated_each_on_its_own() -> None:
+    """Two records with other stamps, merged; decimation counts the samples of each."""
+    slow = np.arange(400) / 100.0 + 0.0003
+    parts = [
+        of(sine(5.0) + sine(97.0)),
+        Measurements.of(slow, {"y": np.sin(2 * np.pi * 2.0 * slow)}),
+    ]
+    both = merged(parts)
+    found = both.filtered(20.0)
+    np.testing.assert_array_equal(found.values[both.present[:, 0], 0], parts[0].filtered(20.0).values[:, 0])
+    np.testing.assert_array_equal(found.values[both.present[:, 1], 1], parts[1].filtered(20.0).values[:, 0])
+    thin = both.decimated(2)
+    assert thin.present.sum(axis=0).tolist() == [2000, 200]
+    for column, part in enumerate(parts):
+        alone = part.decimated(2, 20.0)
+        there = thin.present[:, column]
+        np.testing.assert_array_equal(thin.coordinate.values[there], alone.coordinate.values)
+        np.testing.assert_array_equal(thin.values[there, column], alone.values[:, 0])
+
+
+def test_decimation_keeps_the_grid_of_samples_over_gaps() -> None:
+    values = sine(5.0)
+    values[1003] = np.nan
+    kept = np.r_[0:2001, 2505:4000]
+    found = of(values[kept], TIMES[kept], missing="leave-out").decimated(10)
+    np.testing.assert_allclose(found.coordinate.values, np.r_[0:2010:10, 2510:4000:10] / 1000, atol=1e-12)
 
 
 @pytest.mark.parametrize(

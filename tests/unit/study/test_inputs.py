@@ -174,6 +174,51 @@ def test_each_experiment_has_the_input_of_its_own_file(folder):
     np.testing.assert_allclose(driven, moved(other), rtol=0, atol=1e-9)
 
 
+def test_the_start_of_the_data_is_that_of_an_input_in_their_file(folder):
+    lines = (folder / "record.csv").read_text().splitlines()
+    late = [f"{float(line.partition(',')[0]) + 48200},{line.partition(',')[2]}" for line in lines[1:]]
+    (folder / "record.csv").write_text("\n".join([lines[0], *late]))
+    vector = np.array(list(TRUE.values()))
+    for start in ('"first"', '"48.2 s"'):
+        text = DATA.replace("between = [0.1, 0.9]", f"start = {start}")
+        model, data = posed(study(folder, MODEL + INPUT + text))
+        np.testing.assert_allclose(data.coordinate.values, TIMES, rtol=0, atol=1e-9)
+        np.testing.assert_allclose(model.evaluate(vector).only()[0], data.values, rtol=0, atol=1e-8)
+
+
+def test_an_input_in_another_file_has_a_start_of_its_own(folder):
+    rows = [f"{t + 7.5!r},{i!r}" for t, i in zip(TIMES.tolist(), CURRENT.tolist(), strict=True)]
+    (folder / "drive.csv").write_text("\n".join(["t,i", *rows]))
+    table = INPUT.replace('unit = "mA"', 'file = "drive.csv"')
+    for start in ('"first"', "7.5"):
+        (one,) = study(folder, MODEL + table + f"start = {start}\n" + DATA).inputs.values()
+        np.testing.assert_allclose(one.times, TIMES, rtol=0, atol=1e-9)
+
+
+def test_each_trial_of_a_file_has_its_own_input(folder):
+    rows = ["run,t,angle,i"]
+    currents = (CURRENT, CURRENT[::-1])
+    for run, current in enumerate(currents):
+        rows += [
+            f"{run},{t!r},{a!r},{1000 * i!r}"
+            for t, a, i in zip(TIMES.tolist(), moved(current).tolist(), current.tolist(), strict=True)
+        ]
+    (folder / "trials.csv").write_text("\n".join(rows))
+    text = """
+[[experiments]]
+name = "run"
+file = "trials.csv"
+split = "run"
+columns = { "bar.start.angle" = "angle" }
+[identify]
+"""
+    experiments, _ = posed(study(folder, MODEL + INPUT + text))
+    assert [one.name for one in experiments] == ["run-0", "run-1"]
+    for one in experiments:
+        response = one.model.evaluate(np.array(list(TRUE.values()))).only()[0]
+        np.testing.assert_allclose(response, one.data.values, rtol=0, atol=1e-8)
+
+
 def test_an_acceleration_moves_the_base_of_a_model(folder):
     """Simulated without data: the input has its own file."""
     text = """
@@ -271,6 +316,10 @@ column = "i"
         (
             MODEL + INPUT + 'separator = ";"' + DATA,
             "[inputs.current]: separator: an input from the data's file is read as the data are; give a file too",
+        ),
+        (
+            MODEL + SHORT.replace("short", "record") + "start = { lower = 0.0, upper = 1.0 }" + DATA,
+            "[inputs.current]: start: bounds were given; expected a number of seconds of the file, or 'first'",
         ),
         (
             MODEL + INPUT + 'kind = "held"' + DATA,

@@ -21,6 +21,9 @@ LEVEL = 0.001
 LEAST = 10
 """Fewest values of a window."""
 
+DETERMINED = 1e-6
+"""Part of the largest singular value of a part of the record from which that part determines a combination."""
+
 OUTSIDE = 3.0
 """Residual in deviations of the noise that is outside of its band."""
 
@@ -36,6 +39,8 @@ class ModelMisfit:
     channel : str
     at : float
         Coordinate at which the residuals first leave the band of the noise.
+    followed : float
+        Coordinate up to which the model follows the record, if the record up to there alone is fitted.
     unit : str
         Of the coordinate.
     ratio : float
@@ -47,9 +52,14 @@ class ModelMisfit:
     experiment: str
     channel: str
     at: float
+    followed: float
     unit: str
     ratio: float
     known: bool
+
+
+def _shown(value: float, unit: str) -> str:
+    return f"{value:.4g} {unit}".rstrip()
 
 
 def model_misfits(residuals: Residuals) -> tuple[ModelMisfit, ...]:
@@ -72,12 +82,15 @@ def misfit_findings(misfits: Sequence[ModelMisfit]) -> Iterator[Finding]:
     for item in misfits:
         record = f" of experiment {item.experiment!r}" if item.experiment else ""
         noise = "given deviation" if item.known else "noise (estimated from neighbouring residuals)"
+        names = ("experiment", "channel", "at", "followed", "ratio")
+        values = {name: getattr(item, name) for name in names}
         yield Finding(
             "model-misfit",
             "warning",
-            {"experiment": item.experiment, "channel": item.channel, "at": item.at, "ratio": item.ratio},
-            f"The model does not follow the data{record} from {f'{item.at:.4g} {item.unit}'.rstrip()} on, first in "
-            f"{item.channel!r}: the residuals reach {item.ratio:.3g} times the {noise}.",
+            values,
+            f"The model does not follow the data{record} from {_shown(item.at, item.unit)} on, first in "
+            f"{item.channel!r}: the residuals reach {item.ratio:.3g} times the {noise}. Fitted alone, the data up to "
+            f"{_shown(item.followed, item.unit)} can be followed.",
             "Look there in the figure of residuals. Add what the model lacks, widen the bounds, or increase `starts`.",
         )
 
@@ -91,13 +104,43 @@ def _misfit(residuals: Residuals, own: Series, process: NoiseProcess) -> ModelMi
     values, noise = residuals.values[own.rows], residuals.noise(own)
     size = max(LEAST, min(int(process.period / 2 / own.step), len(values) // 8))
     windows = np.array_split(np.arange(len(values)), max(1, len(values) // size))
-    ratios = np.array([np.sqrt(np.mean(values[rows] ** 2)) for rows in windows]) / noise
     least = min(len(rows) for rows in windows)
-    limit = max(FAR, np.sqrt(chdtri(least, LEVEL / len(windows)) / least))
-    outside = np.flatnonzero(ratios > limit)
+    limit = max(FAR, np.sqrt(chdtri(least, LEVEL / len(windows)) / least)) * noise
+    sizes = _sizes(values, windows)
+    outside = np.flatnonzero(sizes > limit)
     if not len(outside):
         return None
     rows = windows[outside[0]]
     first = rows[np.argmax(np.abs(values[rows]) > OUTSIDE * noise)]
     experiment, channel = residuals.records[own.name]
-    return ModelMisfit(experiment, channel, float(own.along[first]), own.unit, float(ratios.max()), residuals.known)
+    return ModelMisfit(
+        experiment,
+        channel,
+        float(own.along[first]),
+        _followed(residuals, own, windows, limit),
+        own.unit,
+        float(sizes.max()) / noise,
+        residuals.known,
+    )
+
+
+def _sizes(values: np.ndarray, windows: Sequence[np.ndarray]) -> np.ndarray:
+    """Root mean square of values in each window."""
+    return np.array([np.sqrt(np.mean(values[rows] ** 2)) for rows in windows])
+
+
+def _followed(residuals: Residuals, own: Series, windows: Sequence[np.ndarray], limit: float) -> float:
+    """Coordinate up to which one Gauss–Newton step of the record's first windows alone leaves at most ``limit``."""
+    followed = float(own.along[0])
+    shares = {other: (other.along - other.along[0]) / (other.length or 1.0) for other in residuals.series}
+    for count, window in enumerate(windows, start=1):
+        end = shares[own][window[-1]]
+        rows = np.concatenate([other.rows[share <= end] for other, share in shares.items()])
+        basis, singular, _ = np.linalg.svd(residuals.basis[rows], full_matrices=False)
+        basis = basis[:, singular > DETERMINED * singular[0]]
+        values = np.zeros(len(residuals.values))
+        values[rows] = residuals.values[rows] - basis @ (basis.T @ residuals.values[rows])
+        if np.any(_sizes(values[own.rows], windows[:count]) > limit):
+            break
+        followed = float(own.along[window[-1]])
+    return followed

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 
 import numpy as np
+from scipy.special import chdtri
 
 from dalembert.arguments import takes_checked
 from dalembert.errors import InputError, unknown
@@ -16,7 +17,10 @@ from dalembert.inverse.fit import Fit
 from dalembert.inverse.telling.prediction import Prediction
 from dalembert.inverse.telling.sensitivity import linearised
 
-INHERITED = ("correlated-residuals", "systematic-residuals")
+EXCESSIVE = 0.001
+"""Probability of noise as large as the residuals, below which their given deviation is too small."""
+
+INHERITED = ("correlated-residuals", "systematic-residuals", "model-misfit")
 """Findings of the fit that concern its predictions, too."""
 
 
@@ -49,7 +53,8 @@ def predict(model: ForwardModel | Experiment, fit: Fit, level: float = 0.95) -> 
     -----
     The response's covariance is J C Jᵀ, with its jacobian J and the covariance C of the parameters. Bands are
     ± quantile × deviation, from the normal distribution where the noise is known, else from Student's t; with noise,
-    a measurement's variance is added. C and that variance allow for correlated residuals. A combination that the data
+    a measurement's variance is added. C and that variance allow for correlated residuals, the variance also for
+    residuals that are larger than their given deviation explains. A combination that the data
     did not see, but this response does, leaves the band infinitely wide.
 
     Bands follow from the linearised response. Where a band grows as wide on each side as the amplitude of its channel,
@@ -173,6 +178,14 @@ def _deviations(fit: Fit, jacobian: np.ndarray) -> np.ndarray:
     return np.where(lost, np.inf, np.sqrt(squares))
 
 
+def _excess(fit: Fit, column: int) -> float:
+    """Residuals of a channel over their given deviation, in the root mean square; 1 where noise explains them."""
+    there = fit.weights[:, column] > 0
+    count = np.count_nonzero(there)
+    squares = float(np.sum((fit.residuals[there, column] / fit.data.deviations[column]) ** 2))  # pyright: ignore[reportOptionalSubscript]
+    return float(np.sqrt(squares / count)) if count and squares > chdtri(count, EXCESSIVE) else 1.0
+
+
 def _noise(fit: Fit, channel: str) -> float:
     """Standard deviation of a channel's noise; NaN for one that was not measured."""
     if channel not in fit.data.channels:
@@ -180,9 +193,9 @@ def _noise(fit: Fit, channel: str) -> float:
     column = fit.data.channels.index(channel)
     found = () if fit.correlated is None else fit.correlated.processes
     process = next((item for item in found if item.channel == channel), None)
-    if fit.data.deviations is not None and process is None:
-        return float(fit.data.deviations[column])
     weights = fit.weights[:, column]
+    if fit.data.deviations is not None and process is None:
+        return float(fit.data.deviations[column]) * _excess(fit, column)
     if not np.any(weights > 0):
         return np.nan
     own = variance(fit) if process is None else max(process.variance, variance(fit) if noise_is_known(fit) else 0.0)

@@ -22,7 +22,16 @@ def test_a_model_without_friction_is_said_to_be_wrong(correlation, deviations):
     assert finding.severity == "warning"
     assert finding.values["ratio"] > 2
     assert finding.values["at"] < 1
+    assert 2 < finding.values["followed"] < 6
     assert ("given deviation" in finding.message) == (deviations is not None)
+
+
+def test_the_part_that_can_be_followed_alone_is_fitted_to_its_noise():
+    data = recorded(RUBBING, 1, 0.0, NOISE)
+    (finding,) = misfits(identify(oscillator(), data))
+    samples = int(np.sum(finding.values["followed"] >= TIMES))
+    assert misfits(identify(oscillator(TIMES[:samples]), data.first(samples))) == []
+    assert misfits(identify(oscillator(TIMES[: samples + 80]), data.first(samples + 80))) != []
 
 
 @pytest.mark.parametrize("deviations", [None, NOISE], ids=["unknown-noise", "known-noise"])
@@ -31,6 +40,7 @@ def test_the_misfit_begins_where_something_else_moves(deviations):
     other = np.where(TIMES > 5, 0.02 * np.sin(4 * (TIMES - 5)), 0.0)
     (finding,) = misfits(identify(LINE, recorded(np.sin(TIMES) + other, 0, 0.0, deviations)))
     assert 5 < finding.values["at"] < 5.8
+    assert 4.5 < finding.values["followed"] < 5.8
     assert f"from {finding.values['at']:.4g} s on, first in 'x'" in finding.message
 
 

@@ -155,3 +155,14 @@ def test_a_wide_band_of_a_badly_known_level_does_not_end():
     assert band_end(np.full(5, 3.0), np.array([0.0, 1.0, 0.0, 1.0, 0.0])) is None
     assert band_end(np.array([0.0, 2.0, 4.0]), np.array([0.0, 5.0, 10.0])) is None
     assert band_end(np.array([0.0, 2.0, 4.0]), np.array([0.0, 5.0, 10.0]), wraps=True) == 2
+
+
+def test_a_given_deviation_that_is_too_small_does_not_narrow_the_band_of_measurements():
+    times = np.linspace(0, 4, 400)
+    model = PythonModel(lambda slope: slope * times, {"slope": (0.0, 2.0)}, ["x"], times)
+    noise = np.random.default_rng(0).standard_normal((2, 400))
+    fit = identify(model, Measurements.of(times, {"x": times + 0.1 * noise[0]}, deviations=0.02))
+    told = predict(model, fit)
+    unseen = times + 0.1 * noise[1]
+    assert 0.9 < np.mean((told.measured_lower[:, 0] <= unseen) & (unseen <= told.measured_upper[:, 0])) < 0.99
+    assert told.noise[0] == pytest.approx(0.1, rel=0.1)

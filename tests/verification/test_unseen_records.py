@@ -1,4 +1,4 @@
-"""Warnings on unit, delay and model in cases drawn by seed, and bands of predictions on records that were not fitted."""
+"""Warnings on unit, delay and model in cases drawn by seed, and bands of predictions on unseen records."""
 
 from dataclasses import replace
 

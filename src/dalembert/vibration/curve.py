@@ -46,6 +46,9 @@ class Peak(NamedTuple):
     amplitude: float
 
 
+_ROUNDING = 1e-10  # of the work done in and out in a period: energies below it are none
+
+
 @dataclass(frozen=True, eq=False)
 class FrequencyCurve(Result):
     """Periodic responses of a system along a path over frequency, as :func:`frequency_response` returns them.
@@ -150,17 +153,19 @@ class FrequencyCurve(Result):
     def dissipated(self, coordinate: str) -> np.ndarray:
         """Energy that an element takes from the motion in a period along a coordinate, J, (points,).
 
-        ∮ λ du, which of all harmonics of the force takes those that the displacement has too.
+        ∮ λ du, which of all harmonics of the force takes those that the displacement has too; 0 where it is rounding.
         """
         if coordinate not in self.coordinates:
             raise InputError(unknown("coordinate", coordinate, self.coordinates))
         row = self.coordinates.index(coordinate)
-        u, force, total = self.displacements[:, row], self.forces[:, row], np.zeros(len(self))
+        u, force = self.displacements[:, row], self.forces[:, row]
+        total, size = np.zeros(len(self)), np.zeros(len(self))
         mean = int(self.orders[0] == 0)
         for number, order in enumerate(self.orders[mean:]):
             c = mean + 2 * number
-            total += np.pi * order * (force[:, c] * u[:, c + 1] - force[:, c + 1] * u[:, c])
-        return total
+            ahead, behind = np.pi * order * force[:, c] * u[:, c + 1], np.pi * order * force[:, c + 1] * u[:, c]
+            total, size = total + ahead - behind, size + np.abs(ahead) + np.abs(behind)
+        return np.where(np.abs(total) > _ROUNDING * size, total, 0.0)
 
     @property
     def folds(self) -> np.ndarray:

@@ -1,5 +1,8 @@
 """Take the pictures of these pages: ``python docs/pictures.py RUN``, RUN the finished demo's folder.
 
+``python docs/pictures.py RUN FIRST FINAL`` takes those of the tutorial on raw records too, from the folders of its two
+runs.
+
 Needs Chromium, which the tests of pages drive as well.
 """
 
@@ -36,6 +39,15 @@ def report(browser: Chromium, run: Path) -> None:
     take(tab, "report", 0, end_of(tab, "#mechanism"))
 
 
+def records(browser: Chromium, first: Path, final: Path) -> None:
+    """The record with a wrong reading in the first study, and the one that is predicted in the final one."""
+    for name, run, figure in (("records-first", first, "experiment-3-1"), ("records-final", final, "experiment-4-1")):
+        tab = browser.open(run / "report.html", width=WIDTH)
+        tab.until(f"document.querySelector('#figure-{figure} .main-svg')")
+        begin = tab.run(f"document.querySelector('#figure-{figure}').getBoundingClientRect().top + scrollY")
+        take(tab, name, begin, end_of(tab, f"#figure-{figure}"))
+
+
 def studio(browser: Chromium, workspace: Path) -> None:
     command = [Path(sys.executable).with_name("dalembert"), "studio", workspace, "--port", "0", "--no-browser"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as serving:
@@ -55,4 +67,6 @@ if __name__ == "__main__":
         chromium = Chromium(Path(shutil.which("chromium")), Path(folder) / "profile")
         report(chromium, Path(sys.argv[1]))
         studio(chromium, Path(folder))
+        if len(sys.argv) > 2:
+            records(chromium, Path(sys.argv[2]), Path(sys.argv[3]))
         chromium.close()

@@ -52,6 +52,14 @@ def _integrators(fine: float, **early: int) -> Any:
     return da.work_precision(system, 1.0, ["bar.end.x"], series, reference=references, repeats=1)
 
 
+def _with_outliers() -> da.Measurements:
+    """A decay with noise as stated, and two readings that are far off."""
+    data = _exact(DECAY, [2.0, 0.8], noise=0.02, deviations=0.02)
+    values = data.values.copy()
+    values[[7, 30]] += 1.0
+    return replace(data, values=values)
+
+
 def _exact(model: PythonModel, values: list[float], **options: Any) -> Measurements:
     return measured(model, values, **options)
 
@@ -345,6 +353,10 @@ CASES: dict[str, Case] = {
     "outliers": Case(
         lambda: da.identify(DECAY, _exact(DECAY, [2.0, 0.8], noise=0.05, deviations=0.02), loss="cauchy"),
         ("weighted residuals exceed", "pull less than their squares would."),
+    ),
+    "few outliers": Case(
+        lambda: da.identify(DECAY, _with_outliers(), loss="huber"),
+        ("Without the outliers the residuals are as large as the given deviations.",),
     ),
     "failing runs": Case(
         lambda: _unsimulated(None, 1.9, 4),

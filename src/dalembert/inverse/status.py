@@ -8,6 +8,9 @@ from dalembert.inverse.noise import NoiseFloor, signal
 from dalembert.inverse.problem import Problem
 from dalembert.inverse.too_few import lacking
 
+_MEDIAN = 0.6745  # of the size of a standard normal variable
+_AS_GIVEN = 1.2  # deviations of the residuals, in those given, up to which they are as large
+
 
 def status(problem: Problem, best: End, response: np.ndarray, floor: NoiseFloor, correlated: bool) -> str:
     """Whether it converged, how the misfit compares with the known noise, and whether the residuals look like noise.
@@ -39,6 +42,8 @@ def status(problem: Problem, best: End, response: np.ndarray, floor: NoiseFloor,
         return " ".join(parts)
     if best.fitness <= floor.fitness:
         parts.append(f"The misfit is at the floor that the noise of the data allows (known from {floor.source}).")
+    elif problem.loss is not None and floor.source == "given deviations" and _usual(problem, response) < _AS_GIVEN:
+        parts.append("Without the outliers the residuals are as large as the given deviations.")
     elif floor.source == "given deviations":
         parts.append(
             f"The misfit is {np.sqrt(best.fitness / floor.fitness):.2g} times {EXCESSIVE}; look "
@@ -47,6 +52,12 @@ def status(problem: Problem, best: End, response: np.ndarray, floor: NoiseFloor,
     elif not correlated:
         parts.append("What remains looks like noise; give the data's deviations to have it checked against them.")
     return " ".join(parts)
+
+
+def _usual(problem: Problem, response: np.ndarray) -> float:
+    """Standard deviation of the weighted residuals by their median size, which outliers hardly change."""
+    counted = problem.weights > 0
+    return float(np.median(np.sqrt(problem.weights[counted]) * np.abs(problem.misfit(response)[counted]))) / _MEDIAN
 
 
 def _explains(misfit: float, variation: float) -> str:

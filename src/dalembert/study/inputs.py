@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import numpy as np
 from pydantic import Discriminator, Field, Tag, model_validator
 
+from dalembert.data.stretches import gaps
 from dalembert.errors import DataError, unknown
 from dalembert.study.data_table import Column, DataFile, DataTable, FileTable, Start, StartTable
 from dalembert.study.expressions import Expression
@@ -98,7 +99,18 @@ class InputTable(FileTable):
         data = table.model_copy(update=own).read()
         values = data.continuous[:, data.channels.index(_CHANNEL)]
         there = np.isfinite(values)
+        self._refuse_gaps(name, data.coordinate.values, str(table.file))
         return MeasuredInput(name, self, data.coordinate.values[there], values[there], str(table.file))
+
+    def _refuse_gaps(self, name: str, times: np.ndarray, source: str) -> None:
+        """Refuse an input of which time stamps are missing: what drives the model there is not known."""
+        found = gaps(times)
+        if self.missing == "refuse" and len(found):
+            begin, end = times[found[0]], times[found[0] + 1]
+            raise DataError(
+                f"[inputs.{name}]: {source} has no values from {begin:.6g} to {end:.6g} s, and what drives the "
+                "model there is not known. Keep the samples before or behind it, or join them by missing = 'leave-out'"
+            )
 
 
 @dataclass(frozen=True, eq=False)

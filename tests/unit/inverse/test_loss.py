@@ -102,3 +102,10 @@ def test_the_usual_scale_costs_five_per_cent_of_the_efficiency_and_deviations_sa
 def test_losses_that_cannot_be_meant_are_told(options, sentence):
     with pytest.raises(InputError, match=says(sentence)):
         identify(DECAY, measured(DECAY, [2.0, 0.8]), **options)
+
+
+def test_the_status_of_a_robust_fit_does_not_count_outliers():
+    fit = identify(DECAY, spoilt(outliers=2), loss="huber")
+    assert "Without the outliers the residuals are as large as the given deviations." in fit.status
+    wrong = Measurements.of(TIMES, {"x": spoilt().values[:, 0]}, 0.004)
+    assert "times what the given deviations allow" in identify(DECAY, wrong, loss="huber").status

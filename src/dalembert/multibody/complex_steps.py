@@ -175,7 +175,7 @@ def _of_components(lowered: Lowered, along: Along) -> Iterator[tuple[str, np.nda
             owners = ", ".join(map(repr, dict.fromkeys(lowered.parts[kind])))
             yield f"a force of {owners} at t = {t:.6g} s", residual(lowered, model, x, v, a, float(t), kind)
     if along.readers:
-        values = along.readers.read(lowered, model, *states)
+        values = along.readers.read(lowered, model, *states, times=along.times[along.samples])
         for channel, column in zip(along.readers.channels, values.T, strict=True):
             yield f"the channel {channel.name!r}", column
 
@@ -206,7 +206,7 @@ def check_forces(lowered: Lowered, along: Along, scale: np.ndarray, remedy: str 
                     for kind in kinds:
                         _check_force(lowered, kind, direction, float(along.times[sample]), state, remedy)
                     if along.readers:
-                        _check_channels(lowered, along.readers, direction, state)
+                        _check_channels(lowered, along.readers, direction, state, float(along.times[sample]))
 
 
 def _foreign(kind: Kind) -> bool:
@@ -244,14 +244,16 @@ def _check_force(
         )
 
 
-def _check_channels(lowered: Lowered, observer: Observer, direction: Sequence[np.ndarray], state: list) -> None:
+def _check_channels(
+    lowered: Lowered, observer: Observer, direction: Sequence[np.ndarray], state: list, t: float
+) -> None:
     x, v, a = state
     dx, dv = direction
 
     def read(shift: complex) -> np.ndarray:
         model, kind = (lowered.upright, complex) if isinstance(shift, complex) else (lowered.real, float)
         moved = (part[None].astype(kind) for part in (x + shift * dx, v + shift * dv, a))
-        return observer.read(lowered, model, *moved)[0]
+        return observer.read(lowered, model, *moved, times=np.array([t]))[0]
 
     lost = attempted(lambda: lost_step(read, 1.0))
     if lost:

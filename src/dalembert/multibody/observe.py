@@ -70,18 +70,20 @@ class Observer:
         own = [kind.kernel("outputs", dtype) for dtype in types for kind in kinds if kind is not None]
         return [*[outputs_history] * bool(own), *own, *(energy_kernels(lowered, derivatives) if None in kinds else [])]
 
-    def read(self, lowered: Lowered, model: Model, x: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
-        """Values (samples, channels) from states (samples, N + 1), real or complex."""
+    def read(
+        self, lowered: Lowered, model: Model, x: np.ndarray, v: np.ndarray, a: np.ndarray, times: np.ndarray
+    ) -> np.ndarray:
+        """Values (samples, channels) from states (samples, N + 1), real or complex, at times in s (samples,)."""
         x, v, a = (np.ascontiguousarray(array) for array in (x, v, a))
         out = np.empty((len(x), len(self.channels)), dtype=x.dtype)
         for kind in dict.fromkeys(row.kind for row in self.rows):
             columns = [column for column, row in enumerate(self.rows) if row.kind is kind]
             if kind is None:
-                times = np.zeros(len(x))
+                still = np.zeros(len(x))
                 weights = np.array([self.rows[column].weights for column in columns])
-                out[:, columns] = energies(model, x, v, times, times)[:, :2] @ weights.T
+                out[:, columns] = energies(model, x, v, still, still)[:, :2] @ weights.T
             else:
-                values = _outputs(kind, [self.rows[column] for column in columns], lowered, model, x, v, a)
+                values = _outputs(kind, [self.rows[column] for column in columns], lowered, model, x, v, a, times)
                 for place, column in enumerate(columns):
                     out[:, column] = values[:, place, self.rows[column].output]
         for column, row in enumerate(self.rows):
@@ -92,8 +94,9 @@ class Observer:
 
 
 def _outputs(
-    kind: Kind, rows: list[_Row], lowered: Lowered, model: Model, x: np.ndarray, v: np.ndarray, a: np.ndarray
-) -> np.ndarray:
+    kind: Kind, rows: list[_Row], lowered: Lowered, model: Model, x: np.ndarray, v: np.ndarray, a: np.ndarray,
+    times: np.ndarray,
+) -> np.ndarray:  # fmt: skip
     """All outputs of components of a kind, (samples, components, outputs)."""
     numbers = np.array([row.numbers(lowered) for row in rows])
     numbers = np.ascontiguousarray(numbers if model.dtype is complex else np.real(numbers), dtype=model.dtype)
@@ -104,10 +107,17 @@ def _outputs(
     block["numbers"], block["outputs"] = numbers.ctypes.data, kind.kernel("outputs", model.dtype).address
     out = np.zeros((len(x), len(rows), len(kind.outputs)), dtype=model.dtype)
     places = (array.ctypes.data for array in (x, v, a))
+    stamps = np.ascontiguousarray(times if kind.observes_inputs else times[:0], dtype=float)
     outputs_history(
-        call.address, block.ctypes.data, *places, x.strides[0], out.ctypes.data, out.strides[0], len(x)
+        model.address, call.address, block.ctypes.data, *places, x.strides[0], stamps, beside(stamps, -1),
+        out.ctypes.data, out.strides[0], len(x),
     )  # fmt: skip
     return out
+
+
+def beside(times: np.ndarray, side: int) -> np.ndarray:
+    """Times a little before (-1) or after (1) the given ones: on which side of a jump of a load they stand."""
+    return np.maximum(times + side * 1e-9 * times[-1], 0.0) if len(times) else times
 
 
 def observer(system: System, lowered: Lowered, names: list[str] | tuple[str, ...]) -> Observer:

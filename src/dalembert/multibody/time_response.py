@@ -168,7 +168,7 @@ class TimeResponse:
                 failures[row] = result.reason
                 if result.reason is None:
                     states = result.states
-                    values[row] = frame.observer.read(lowered, lowered.real, states.x, states.v, states.a)
+                    values[row] = frame.observer.read(lowered, lowered.real, states.x, states.v, states.a, self.times)
 
         parts = _parts(len(vectors), self.workers)
         with in_complex_numbers(strict=False):
@@ -206,11 +206,11 @@ class TimeResponse:
                 raise inexact(name, error) from error
         self._check(vector, lowered, result)
         states, slopes = result.states, result.derivatives
-        values = frame.observer.read(lowered, lowered.real, states.x, states.v, states.a)
+        values = frame.observer.read(lowered, lowered.real, states.x, states.v, states.a, self.times)
         jacobian = np.empty((*values.shape, len(vector)))
         for column, own in enumerate(tilted):
             lifted = [real + 1j * STEP * slope[column] for real, slope in zip(states[:3], slopes[:3], strict=True)]
-            response = frame.observer.read(own, own.dual, *lifted)
+            response = frame.observer.read(own, own.dual, *lifted, times=self.times)
             jacobian[:, :, column] = np.imag(response) / (STEP * self.parameters.scale[column])
         return values, jacobian
 

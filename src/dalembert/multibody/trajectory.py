@@ -21,7 +21,7 @@ from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.run import Run
 from dalembert.multibody.kernels.motion import Motion
 from dalembert.multibody.lowering import Lowered
-from dalembert.multibody.observe import channel_names, observer
+from dalembert.multibody.observe import beside, channel_names, observer
 from dalembert.multibody.skipped_samples import skipped_samples
 from dalembert.multibody.slip_rates import rubbing, slip_findings
 from dalembert.multibody.system import System
@@ -72,7 +72,7 @@ class Trajectory:
         times, states = self.run.times, self.run.states
         readers = observer(self.system, self.lowered, [f"{name}.{own.channel}" for name, own in joints.items()])
         prepare(readers.kernels(self.lowered, False))
-        rates = readers.read(self.lowered, self.lowered.real, states.x, states.v, states.a)
+        rates = readers.read(self.lowered, self.lowered.real, states.x, states.v, states.a, times)
         unsuited = (
             slip_findings(name, own, times, column, self.solver.fixed_step)
             for (name, own), column in zip(joints.items(), rates.T, strict=True)
@@ -94,7 +94,7 @@ class Trajectory:
         """
         states, own = self.states, observer(self.system, self.lowered, names_of(names, "Trajectory", "channels"))
         prepare(own.kernels(self.lowered, False))
-        return own.read(self.lowered, self.lowered.real, states.x, states.v, states.a)
+        return own.read(self.lowered, self.lowered.real, states.x, states.v, states.a, self.times)
 
     def reactions(self, joint: str) -> np.ndarray:
         """Force (N) along x and y and torque (N m) of a joint on its second side, (samples, 3)."""
@@ -114,10 +114,10 @@ class Trajectory:
         """Energies at all times of the run."""
         prepare(energy_kernels(self.lowered, False))
         states, times = self.run.states, self.run.times
-        kinetic, potential, power = energies(self.lowered.real, states.x, states.v, times, _beside(times, -1)).T
+        kinetic, potential, power = energies(self.lowered.real, states.x, states.v, times, beside(times, -1)).T
         after = power
         if self.lowered.jumps:  # the power at the beginning of an interval may not be that at the end of the one before
-            after = energies(self.lowered.real, states.x, states.v, times, _beside(times, 1))[:, 2]
+            after = energies(self.lowered.real, states.x, states.v, times, beside(times, 1))[:, 2]
         steps = np.diff(times) * (power[1:] + after[:-1]) / 2
         work = np.concatenate([[0.0], np.cumsum(steps)])
         total = kinetic + potential
@@ -132,7 +132,7 @@ class Trajectory:
     @cached_property
     def _violations(self) -> dict[str, np.ndarray]:
         states, times = self.states, self.times
-        levels = violations(self.lowered, states.x, states.v, states.a, times, _beside(self.run.times, -1)[self.rows]).T
+        levels = violations(self.lowered, states.x, states.v, states.a, times, beside(self.run.times, -1)[self.rows]).T
         return dict(zip(("position", "velocity", "acceleration"), levels, strict=True))
 
     @property
@@ -187,8 +187,3 @@ class Trajectory:
                 *map(str, self.findings),
             ]
         )
-
-
-def _beside(times: np.ndarray, side: int) -> np.ndarray:
-    """Times a little before (-1) or after (1) the given ones: on which side of a jump of a load they stand."""
-    return np.maximum(times + side * 1e-9 * times[-1], 0.0)

@@ -9,12 +9,17 @@ from dalembert.multibody.kernels.records import BLOCK_SIZE, block_at, call_at, m
 
 @kernel
 def outputs_history(
-    work: Address, block: Address, x: Address, v: Address, a: Address, stride: int, out: Address, out_stride: int,
-    samples: int,
+    model: Address, work: Address, block: Address, x: Address, v: Address, a: Address, stride: int, times: Reals,
+    within: Reals, out: Address, out_stride: int, samples: int,
 ) -> None:  # fmt: skip
-    """Outputs of a block at each sample; the next outputs stand ``out_stride`` bytes behind, states ``stride``."""
+    """Outputs of a block at each sample; the next outputs stand ``out_stride`` bytes behind, states ``stride``.
+
+    Without ``times`` there are no signals.
+    """
     own = call_at(work)
     for s in range(samples):
+        if len(times) > 0:
+            set_signals(model, times[s], within[s], work)
         own.x, own.v, own.a, own.r = x + s * stride, v + s * stride, a + s * stride, out + s * out_stride
         call(block_at(block).outputs, work, block)
 

@@ -52,6 +52,8 @@ class Kind:
     outputs : tuple of (name, unit)
     observe : function (x, v, a, p, m, inputs, out), optional
         Fills the outputs.
+    observes_inputs : bool
+        Whether the outputs depend on signals, which are evaluated only then.
     lengths : tuple of str
         Columns that count to the extent of a mechanism, m.
     gravity : tuple of str
@@ -86,6 +88,7 @@ class Kind:
     known: Callable[..., Any] | None = None
     outputs: tuple[tuple[str, str], ...] = ()
     observe: Callable[..., Any] | None = None
+    observes_inputs: bool = False
     lengths: tuple[str, ...] = ()
     gravity: tuple[str, ...] = ()
     chart: Chart | None = None

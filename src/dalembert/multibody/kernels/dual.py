@@ -61,6 +61,17 @@ def tanh(x):
     return _first_order(x, t, 1.0 - t * t)
 
 
+def exponential(x):
+    """Exponential function; not of jets, so not for constraints."""
+    e = math.exp(x.real)
+    return _first_order(x, e, e)
+
+
+def logarithm(x):
+    """Natural logarithm of a quantity with a positive real part; not of jets, so not for constraints."""
+    return _first_order(x, math.log(x.real), 1.0 / x.real)
+
+
 def angle_of(x, y):
     """Angle of the vector (x, y) in (-pi, pi]."""
     if hasattr(x, "function"):
@@ -133,6 +144,33 @@ def _tanh(x):
     def dual(x):
         s = math.tanh(x.real)
         return complex(s, (1.0 - s * s) * x.imag)
+
+    return dual
+
+
+@overload(exponential)
+def _exponential(x):
+    if not _is_number(x):
+        return None
+    if not _is_complex(x):
+        return lambda x: math.exp(x)
+
+    def dual(x):
+        e = math.exp(x.real)
+        return complex(e, e * x.imag)
+
+    return dual
+
+
+@overload(logarithm)
+def _logarithm(x):
+    if not _is_number(x):
+        return None
+    if not _is_complex(x):
+        return lambda x: math.log(x)
+
+    def dual(x):
+        return complex(math.log(x.real), x.imag / x.real)
 
     return dual
 

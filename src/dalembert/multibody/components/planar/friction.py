@@ -1,15 +1,17 @@
-"""Friction in joints: viscous, and smoothed Coulomb friction that may grow with the reaction."""
+"""Friction in joints: viscous, smoothed Coulomb friction that may grow with the reaction, and Stribeck's."""
 
 from typing import Any, NamedTuple
 
+from dalembert.errors import InputError
 from dalembert.kernels.kernel import inlined
-from dalembert.multibody.components.fields import Number
-from dalembert.multibody.kernels.dual import tanh
+from dalembert.multibody.components.fields import Number, require, require_not_negative
+from dalembert.multibody.kernels.dual import exponential, logarithm, tanh
 
 #: Viscous coefficient, constant Coulomb force or torque, what it grows by with the reaction (friction coefficient
-#: times pin radius, or friction coefficient), and the rate at which tanh(rate / slip) turns its sign.
-NUMBERS = ("viscous", "coulomb", "per_reaction", "slip")
-TINY = 1e-18  # keeps |reaction| differentiable where the reaction vanishes, N^2
+#: times pin radius, or friction coefficient), the rate at which tanh(rate / slip) turns its sign, and how much larger
+#: the force is at low rates, with the rate and the exponent of its decrease.
+NUMBERS = ("viscous", "coulomb", "per_reaction", "slip", "stribeck", "stribeck_rate", "stribeck_exponent")
+TINY = 1e-18  # keeps |reaction| differentiable where the reaction vanishes, N^2, and the power of a rate of zero
 
 
 class Smoothing(NamedTuple):
@@ -36,10 +38,40 @@ class Smoothing(NamedTuple):
 @inlined
 def resistance(reaction, rate, p):
     """Friction against a rate."""
-    return p.viscous * rate + (p.coulomb + p.per_reaction * reaction) * tanh(rate / p.slip)
+    dry = p.coulomb + p.per_reaction * reaction
+    if p.stribeck != 0.0:
+        ratio = rate / p.stribeck_rate
+        power = exponential(0.5 * p.stribeck_exponent * logarithm(ratio * ratio + TINY))
+        dry += p.stribeck * exponential(-power)
+    return p.viscous * rate + dry * tanh(rate / p.slip)
 
 
 def coefficients(joint: Any) -> dict[str, Number]:
     """Friction coefficients of a joint. A zero one stays in the model: it may be the bound of a parameter."""
-    values = {name: getattr(joint, name) for name in ("viscous", "coulomb", "friction_coefficient")}
+    values = {name: getattr(joint, name) for name in ("viscous", "coulomb", "friction_coefficient", "stribeck")}
     return {name: value for name, value in values.items() if value is not None}
+
+
+def rubs(joint: Any) -> bool:
+    """Return whether a joint has dry friction."""
+    return bool(joint.coulomb or joint.friction_coefficient or joint.stribeck)
+
+
+def check(owner: str, joint: Any, stribeck: str) -> None:
+    """Refuse negative coefficients, and Stribeck's friction without its rate, the field ``stribeck``."""
+    require_not_negative(owner, **coefficients(joint))
+    require(owner, stribeck_exponent=joint.stribeck_exponent)
+    rate = getattr(joint, stribeck)
+    if rate is not None:
+        require(owner, **{stribeck: rate})
+    elif joint.stribeck is not None:
+        raise InputError(
+            f"{owner}: stribeck was given without a {stribeck}. Give the rate at which Stribeck's friction has "
+            "decreased to 1/e"
+        )
+
+
+def law(joint: Any, per_reaction: Number, slip: Number, stribeck_rate: Number | None) -> list[Number]:
+    """Return the numbers of a joint's friction, in the order of `NUMBERS`."""
+    decrease = joint.stribeck or 0.0, stribeck_rate or 1.0, joint.stribeck_exponent
+    return [joint.viscous or 0.0, joint.coulomb or 0.0, per_reaction, slip, *decrease]

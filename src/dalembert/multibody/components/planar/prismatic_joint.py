@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from dalembert.kernels.kernel import inlined
-from dalembert.multibody.components.fields import Number, number, require, require_not_negative
+from dalembert.multibody.components.fields import Number, number, require
 from dalembert.multibody.components.planar import friction, pairs
 from dalembert.multibody.components.planar.joint import OUTPUTS, Joint, observe_joint
 from dalembert.multibody.components.planar.markers import direction, twist
@@ -135,6 +135,12 @@ class PrismaticJoint(Joint):
     slip_velocity : float
         Sliding velocity, m/s, over which the Coulomb force turns its sign, as tanh(velocity / slip_velocity). The
         finding ``slip-rate`` of a trajectory says whether it suits the motion, as for a revolute joint.
+    stribeck : float
+        Friction force at low velocities beyond that of Coulomb, N. It decreases with the velocity as
+        stribeck x exp(-\\|velocity / stribeck_velocity\\|^stribeck_exponent).
+    stribeck_velocity : float
+        m/s.
+    stribeck_exponent : float
 
     The output ``sliding_velocity`` is the velocity of b against a along the line.
     """
@@ -144,24 +150,28 @@ class PrismaticJoint(Joint):
     coulomb: Number | None = number("N", None)
     friction_coefficient: Number | None = number("", None)
     slip_velocity: Number = number("m/s", 1e-3)
+    stribeck: Number | None = number("N", None)
+    stribeck_velocity: Number | None = number("m/s", None)
+    stribeck_exponent: Number = number("", 2.0)
 
     kind = PRISMATIC
 
     def __post_init__(self) -> None:
         owner = f"prismatic joint {self.name!r}"
-        require_not_negative(owner, **friction.coefficients(self))
+        friction.check(owner, self, "stribeck_velocity")
         require(owner, slip_velocity=self.slip_velocity)
 
     @property
     def smoothing(self) -> friction.Smoothing | None:
-        rubs = self.coulomb or self.friction_coefficient
-        return friction.Smoothing("sliding_velocity", "slip_velocity", self.slip_velocity, "m/s") if rubs else None
+        if not friction.rubs(self):
+            return None
+        return friction.Smoothing("sliding_velocity", "slip_velocity", self.slip_velocity, "m/s")
 
     def lower(self, lowering: "Lowering") -> None:
         pair = lowering.pair(self.a, self.b, self.name)
         self._oriented()
         index = self._add(lowering, pair, [pair.rest_angle, self.angle])
         if friction.coefficients(self):
-            law = self.viscous or 0.0, self.coulomb or 0.0, self.friction_coefficient or 0.0
-            numbers = [*pair.data, self.angle, *law, self.slip_velocity]
+            law = friction.law(self, self.friction_coefficient or 0.0, self.slip_velocity, self.stribeck_velocity)
+            numbers = [*pair.data, self.angle, *law]
             lowering.add(PRISMATIC_FRICTION, index, numbers, pair.integers)

@@ -120,9 +120,26 @@ class RevoluteJoint(Joint):
         Relative angular velocity, rad/s, over which the Coulomb torque turns its sign, as tanh(rate / slip_rate).
         The finding ``slip-rate`` of a trajectory says whether it suits the motion: where it is large, the joint creeps
         although friction should hold it; where it is small, steps jump over the change of sign.
+    stribeck : float
+        Friction torque at low rates beyond that of Coulomb, N m. It decreases with the rate as
+        stribeck x exp(-\\|rate / stribeck_rate\\|^stribeck_exponent).
+    stribeck_rate : float
+        rad/s. The largest torque is nearly the sum of all three only if ``slip_rate`` is several times smaller.
+    stribeck_exponent : float
+        2 for a Gaussian decrease, 1 for an exponential one.
 
-    Without ``viscous``, ``coulomb`` and ``friction_coefficient`` there is no friction. A coefficient of zero stays in
-    the model: it may be the value of a parameter.
+    Without ``viscous``, ``coulomb``, ``friction_coefficient`` and ``stribeck`` there is no friction. A coefficient of
+    zero stays in the model: it may be the value of a parameter.
+
+    Examples
+    --------
+    >>> from dalembert.multibody import RigidBody, System, simulate
+    >>> system = System(gravity=(0.0, 0.0))
+    >>> wheel = system.add(RigidBody("wheel", mass=1.0, inertia=0.1, angular_velocity=1.0))
+    >>> dry = {"coulomb": 0.02, "stribeck": 0.01, "stribeck_rate": 0.5}
+    >>> _ = system.add(RevoluteJoint("pin", system.ground, wheel.centre, **dry))
+    >>> simulate(system, end=1.0).channels(["wheel.centre.rate"])[-1].round(3)
+    array([0.796])
     """
 
     viscous: Number | None = number("N*m*s", None)
@@ -130,12 +147,16 @@ class RevoluteJoint(Joint):
     friction_coefficient: Number | None = number("", None)
     pin_radius: Number | None = number("m", None)
     slip_rate: Number = number("rad/s", 1e-3)
+    stribeck: Number | None = number("N*m", None)
+    stribeck_rate: Number | None = number("rad/s", None)
+    stribeck_exponent: Number = number("", 2.0)
 
     kind = REVOLUTE
 
     def __post_init__(self) -> None:
         owner = f"revolute joint {self.name!r}"
-        require_not_negative(owner, pin_radius=self.pin_radius or 0.0, **friction.coefficients(self))
+        require_not_negative(owner, pin_radius=self.pin_radius or 0.0)
+        friction.check(owner, self, "stribeck_rate")
         require(owner, slip_rate=self.slip_rate)
         if self.friction_coefficient is not None and self.pin_radius is None:
             raise InputError(
@@ -145,8 +166,7 @@ class RevoluteJoint(Joint):
 
     @property
     def smoothing(self) -> friction.Smoothing | None:
-        rubs = self.coulomb or self.friction_coefficient
-        return friction.Smoothing("rate", "slip_rate", self.slip_rate, "rad/s") if rubs else None
+        return friction.Smoothing("rate", "slip_rate", self.slip_rate, "rad/s") if friction.rubs(self) else None
 
     def lower(self, lowering: "Lowering") -> None:
         pair = lowering.pair(self.a, self.b, self.name)
@@ -154,5 +174,5 @@ class RevoluteJoint(Joint):
         if friction.coefficients(self):
             self._oriented("a rigid body where a joint has friction")
             lever = (self.friction_coefficient or 0.0) * (self.pin_radius or 0.0)
-            law = [self.viscous or 0.0, self.coulomb or 0.0, lever, self.slip_rate]
+            law = friction.law(self, lever, self.slip_rate, self.stribeck_rate)
             lowering.add(REVOLUTE_FRICTION, index, [*pair.data, *law], pair.integers)

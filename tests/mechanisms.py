@@ -78,6 +78,18 @@ def _loads(make: Callable) -> Callable:
     return add
 
 
+def _on_wheels(make: Callable) -> Callable:
+    """Piece of the components that ``make`` gives for two sides, of rigid bodies and of the ground."""
+
+    def add(system: mb.System) -> None:
+        number = len(system.bodies)
+        wheels = [system.add(plate(f"{number}{k}", position=(0.3 * k, 0.2), angle=0.3 * k)) for k in range(2)]
+        system.add(make(f"{number}-0", wheels[0].centre, wheels[1].centre))
+        system.add(make(f"{number}-1", system.ground, wheels[1].centre))
+
+    return add
+
+
 def _gears(system: mb.System) -> None:
     """Gears between rigid bodies, and between one and the ground."""
     number = len(system.bodies)
@@ -121,6 +133,21 @@ DISSIPATIVE = {
             *sides, viscous=0.4, coulomb=0.3, friction_coefficient=0.2, pin_radius=0.1, slip_rate=0.8
         )
     ),
+    "pin friction, Stribeck": _between(
+        lambda *sides: mb.RevoluteJoint(
+            *sides,
+            coulomb=0.3,
+            friction_coefficient=0.2,
+            pin_radius=0.1,
+            slip_rate=0.8,
+            stribeck=0.5,
+            stribeck_rate=0.9,
+            stribeck_exponent=1.3,
+        )
+    ),
+    "slide friction, Stribeck": _between(
+        lambda *sides: mb.PrismaticJoint(*sides, viscous=0.4, slip_velocity=0.7, stribeck=0.5, stribeck_velocity=0.9)
+    ),
     "slide friction": _between(
         lambda *sides: mb.PrismaticJoint(
             *sides, angle=0.6, viscous=0.4, coulomb=0.3, friction_coefficient=0.2, slip_velocity=0.7
@@ -132,6 +159,29 @@ DISSIPATIVE = {
     "follower force": _loads(lambda name, at: mb.Force(name, at, x=2.0, y=WAVE, follower=True)),
     "torque": _loads(lambda name, at: mb.Torque(name, at, WAVE)),
     "torque between": _between(lambda name, a, b: mb.Torque(name, a, RAMP, against=b)),
+    "motor": _between(
+        lambda *sides: mb.Motor(*sides, torque_constant=0.4, resistance=0.8, gear_ratio=-3.0, voltage=WAVE)
+    ),
+    "motor with a current": _between(lambda *sides: mb.Motor(*sides, torque_constant=0.4, current=WAVE, enabled=0.7)),
+    "geared motor": _on_wheels(
+        lambda *sides: mb.Motor(
+            *sides,
+            torque_constant=0.4,
+            resistance=0.8,
+            back_emf=0.3,
+            voltage_limit=2.0,
+            gear_ratio=3.0,
+            efficiency=0.7,
+            slip_rate=0.9,
+            armature_inertia=0.05,
+            voltage=WAVE,
+        )
+    ),
+    "servo": _between(
+        lambda *sides: mb.Servo(
+            *sides, torque_constant=0.4, resistance=0.8, voltage_limit=3.0, goal=WAVE, kp=5.0, kd=0.2, dead_band=0.1
+        )
+    ),
     "user force": _loads(lambda name, at: mb.UserForce(name, at, compiled_wind)),
     "user force between": _between(lambda name, a, b: mb.UserForce(name, a, compiled_wind, against=b)),
 }

@@ -89,6 +89,7 @@ from dalembert.multibody import GaussNewton as GaussNewton
 from dalembert.multibody import GearJoint as GearJoint
 from dalembert.multibody import GeneralizedAlpha as GeneralizedAlpha
 from dalembert.multibody import Harmonic as Harmonic
+from dalembert.multibody import Motor as Motor
 from dalembert.multibody import OdeSolver as OdeSolver
 from dalembert.multibody import Partitioning as Partitioning
 from dalembert.multibody import Point as Point
@@ -103,6 +104,7 @@ from dalembert.multibody import RigidBar as RigidBar
 from dalembert.multibody import RigidBarBetween as RigidBarBetween
 from dalembert.multibody import RigidBody as RigidBody
 from dalembert.multibody import RungeKutta4 as RungeKutta4
+from dalembert.multibody import Servo as Servo
 from dalembert.multibody import Spring as Spring
 from dalembert.multibody import Step as Step
 from dalembert.multibody import System as System

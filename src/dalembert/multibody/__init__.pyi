@@ -11,6 +11,7 @@ from dalembert.multibody.components.planar.force import Force as Force
 from dalembert.multibody.components.planar.gear_joint import GearJoint as GearJoint
 from dalembert.multibody.components.planar.joint import Joint as Joint
 from dalembert.multibody.components.planar.load import Load as Load
+from dalembert.multibody.components.planar.motor import Motor as Motor
 from dalembert.multibody.components.planar.point_mass import PointMass as PointMass
 from dalembert.multibody.components.planar.prescribed_motion import PrescribedMotion as PrescribedMotion
 from dalembert.multibody.components.planar.prismatic_joint import PrismaticJoint as PrismaticJoint
@@ -18,6 +19,7 @@ from dalembert.multibody.components.planar.revolute_joint import RevoluteJoint a
 from dalembert.multibody.components.planar.rigid_bar import RigidBar as RigidBar
 from dalembert.multibody.components.planar.rigid_bar_between import RigidBarBetween as RigidBarBetween
 from dalembert.multibody.components.planar.rigid_body import RigidBody as RigidBody
+from dalembert.multibody.components.planar.servo import Servo as Servo
 from dalembert.multibody.components.planar.spring import Spring as Spring
 from dalembert.multibody.components.planar.torque import Torque as Torque
 from dalembert.multibody.components.planar.torsion_spring import TorsionSpring as TorsionSpring

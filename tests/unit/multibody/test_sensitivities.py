@@ -32,7 +32,11 @@ FLEXIBLE = {
     "velocity": (0.3, -0.2), "angular_velocity": 0.8, "damping": 0.01,
 }  # fmt: skip
 RIGID = {"mass": 2.0, "inertia": 0.3, "angle": 0.4, "velocity": (0.3, -0.2), "angular_velocity": 0.8}
-RUBBING = {"viscous": 0.4, "coulomb": 0.6, "friction_coefficient": 0.3}
+RUBBING = {"viscous": 0.4, "coulomb": 0.6, "friction_coefficient": 0.3, "stribeck": 0.5, "stribeck_exponent": 1.4}
+DRIVE = {
+    "torque_constant": 0.5, "resistance": 0.8, "back_emf": 0.4, "voltage_limit": 3.0, "gear_ratio": 2.0,
+    "efficiency": 0.7, "slip_rate": 2.0, "armature_inertia": 0.02, "enabled": 0.9,
+}  # fmt: skip
 
 
 def arm(system: mb.System, **options) -> mb.RigidBar:
@@ -138,6 +142,20 @@ def grounded(**fields) -> mb.System:
     return system
 
 
+def driving(kind: type) -> Callable:
+    """Scene of two motors between two pinned bars, one of them at the limit of its voltage."""
+
+    def build(**fields) -> mb.System:
+        system = pinned()
+        first, second = system.bodies
+        sides = first.point("end"), second.point("start")
+        system.add(kind("limited", *sides, **fields))
+        system.add(kind("free", *sides, **fields | {"voltage_limit": None}))
+        return system
+
+    return build
+
+
 def geared(**fields) -> mb.System:
     """A pinion under a spring that drives a wheel."""
     system = mb.System()
@@ -164,8 +182,10 @@ SCENES: dict[type, tuple[Callable[..., mb.System], dict]] = {
         | {"velocity": (0.3, -0.2), "angular_velocity": 0.8},
     ),
     mb.PointMass: (mass, {"mass": 1.5, "position": (0.3, 0.4), "velocity": (0.5, -0.6)}),
-    mb.RevoluteJoint: (pinned, RUBBING | {"pin_radius": 0.2, "slip_rate": 2.0}),
-    mb.PrismaticJoint: (sliding, RUBBING | {"slip_velocity": 1.5, "angle": 0.7}),
+    mb.RevoluteJoint: (pinned, RUBBING | {"pin_radius": 0.2, "slip_rate": 2.0, "stribeck_rate": 2.5}),
+    mb.PrismaticJoint: (sliding, RUBBING | {"slip_velocity": 1.5, "angle": 0.7, "stribeck_velocity": 0.5}),
+    mb.Motor: (driving(mb.Motor), DRIVE | {"voltage": 6.0, "current": None}),
+    mb.Servo: (driving(mb.Servo), DRIVE | {"goal": 0.7, "kp": 6.0, "kd": 0.4, "dead_band": 0.05}),
     mb.FixedJoint: (pinned, {}),
     mb.DistanceJoint: (hung, {"length": 1.1}),
     mb.PrescribedMotion: (on_a_rail, {"motion": -0.6}),

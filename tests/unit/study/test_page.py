@@ -59,7 +59,7 @@ TABLES = {
 
 BODIES = {"AncfBeam", "AncfCable", "RigidBar", "RigidBarBetween", "RigidBody", "PointMass"}
 JOINTS = {"RevoluteJoint", "PrismaticJoint", "FixedJoint", "DistanceJoint", "PrescribedMotion", "GearJoint"}
-LOADS = {"Force", "Torque", "Spring", "TorsionSpring", "UserForce", "Bushing"}
+LOADS = {"Force", "Torque", "Spring", "TorsionSpring", "UserForce", "Bushing", "Motor", "Servo"}
 EVERYWHERE = {kind: {"name"} for kind in BODIES | LOADS} | {kind: {"name", "a", "b"} for kind in JOINTS}
 """Keys that the page gives once for all kinds."""
 

@@ -1,0 +1,103 @@
+"""Servos: motors with a position loop."""
+
+__all__ = ["Servo"]
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from dalembert.errors import InputError
+from dalembert.kernels.kernel import inlined
+from dalembert.multibody.components.fields import Number, number, require, require_not_negative
+from dalembert.multibody.components.planar.motor_law import Drive, clipped, drive_kind
+from dalembert.multibody.components.planar.pairs import relative_angle, relative_spin
+from dalembert.multibody.components.signals import Course
+from dalembert.multibody.kernels.dual import wrapped
+
+if TYPE_CHECKING:
+    from dalembert.multibody.lowering import Lowering
+
+
+@inlined
+def _command(x, v, p, m, inputs):
+    """Voltage of the position loop."""
+    error = inputs.signals[m.goal, 0] - relative_angle(x, p, m)
+    error = wrapped(error) if m.wraps == 1 else error
+    if m.has_dead_band == 1:
+        error -= clipped(error, p.dead_band)
+    return p.kp * error - p.kd * relative_spin(x, v, m)
+
+
+SERVO = drive_kind("servo", _command, ("kp", "kd", "dead_band"), ("goal", "has_dead_band"))
+
+
+@dataclass(frozen=True)
+class Servo(Drive):
+    """A motor whose voltage a position loop controls: it turns b against a to the angle ``goal``.
+
+    The voltage is kp (goal - angle) - kd rate, within ``voltage_limit``, of the angle and the rate of b against a.
+
+    Parameters
+    ----------
+    name : str
+    a, b : Point or ground
+        Stator and output, which a revolute joint should connect.
+    torque_constant, resistance, back_emf, gear_ratio, efficiency, slip_rate, armature_inertia, enabled
+        Of the motor, see `Motor`. The resistance is needed.
+    voltage_limit : float, optional
+        V. For a loop with gains as duty per angle, multiply them by the supply voltage and give that as the limit.
+    goal : float or Signal
+        rad; the channel ``angle`` of the servo is compared with it.
+    kp : float
+        V/rad.
+    kd : float
+        V s/rad. It acts on the measured rate, so that a step of the goal gives no impulse.
+    dead_band : float, optional
+        rad. Errors up to it have no voltage, larger ones are reduced by it; the corners are rounded over 2 % of it.
+
+    Raises
+    ------
+    InputError
+        Without a goal, kp or resistance, and for numbers out of range.
+
+    Notes
+    -----
+    Outputs are those of `Motor`. The loop is continuous in time.
+
+    Examples
+    --------
+    A pendulum that a servo turns to 1 rad. The error that remains holds its weight:
+
+    >>> from dalembert.multibody import RevoluteJoint, RigidBar, System, simulate
+    >>> system = System(gravity=(0.0, -9.81))
+    >>> bar = system.add(RigidBar("bar", length=0.2, mass=0.1))
+    >>> _ = system.add(RevoluteJoint("pin", system.ground, bar.start, viscous=0.01))
+    >>> motor = {"torque_constant": 1.0, "resistance": 4.0, "voltage_limit": 12.0}
+    >>> _ = system.add(Servo("servo", system.ground, bar.start, **motor, goal=1.0, kp=30.0))
+    >>> angle, torque = simulate(system, end=4.0).channels(["servo.angle", "servo.torque"])[-1].round(5)
+    >>> float(angle), float(torque)
+    (0.99285, 0.05359)
+    """
+
+    goal: Course | None = number("rad", None)
+    kp: Number | None = number("V/rad", None)
+    kd: Number = number("V*s/rad", 0.0)
+    dead_band: Number | None = number("rad", None)
+
+    kind = SERVO
+
+    def __post_init__(self) -> None:
+        owner = f"servo {self.name!r}"
+        for name in ("goal", "kp", "resistance"):
+            if getattr(self, name) is None:
+                raise InputError(f"{owner}: {name} is missing; give it")
+        require_not_negative(owner, kp=self.kp or 0.0, kd=self.kd)
+        if self.dead_band is not None:
+            require(owner, dead_band=self.dead_band)
+        self._check(owner)
+
+    def lower(self, lowering: "Lowering") -> None:
+        assert self.goal is not None
+        assert self.kp is not None
+        band = 1.0 if self.dead_band is None else self.dead_band
+        marks = [lowering.signal(self.goal), int(self.dead_band is not None)]
+        self._add(lowering, f"servo {self.name!r}", [self.kp, self.kd, band], marks)

@@ -28,7 +28,9 @@ def bent():
 
 def test_residuals_that_are_no_noise_are_a_doubt(bent, tmp_path):
     assert bent.success
-    assert len(bent.doubts) == 1
+    codes = {finding.code for finding in bent.findings if finding.severity in ("warning", "error")}
+    assert codes == {"systematic-residuals", "model-misfit", "parameters-drift"}
+    assert len(bent.doubts) == 3
     assert bent.doubts[0].startswith("The residuals of 'x' stay correlated over")
     text = _text(bent, tmp_path)
     assert "? identified, with doubts" in text

@@ -3,8 +3,10 @@
 import numpy as np
 import pytest
 
+from dalembert.data import Measurements
 from dalembert.errors import InputError
 from dalembert.forward import ForwardModel, PythonModel, Sensor, Sensors
+from dalembert.inverse import identify
 from dalembert.parameters import Parameter
 from support import says
 
@@ -55,7 +57,7 @@ def test_stamps_that_are_samples_are_read_without_interpolation():
 
 def test_a_run_that_fails_is_marked_and_the_others_return():
     responses = SEEN.evaluate(np.array([POINT, [8.5, 0, 1, 0]]))
-    assert responses.failures == (None, "RuntimeError: too fast (test_sensors.py, line 18)")
+    assert responses.failures == (None, "RuntimeError: too fast (test_sensors.py, line 20)")
     np.testing.assert_allclose(responses.values[0], exact(*POINT), atol=1e-9)
 
 
@@ -77,6 +79,59 @@ def test_at_rest_readings_from_before_the_first_sample_are_the_first_state():
     np.testing.assert_allclose(slopes[:2, 0], 0.0, atol=1e-12)
 
 
+def lagging(rate, lag, times):
+    """Sine behind a first-order lag that begins at rest."""
+    gain, phase = 1 / np.sqrt(1 + (rate * lag) ** 2), np.arctan(rate * lag)
+    start = gain * np.sin(phase) * np.exp(-times / lag) if lag else 0.0
+    return gain * np.sin(rate * times - phase) + start
+
+
+@pytest.mark.parametrize("lag", [0.0, 1e-5, 0.003, 0.0099, 0.0101, 0.2, 3.0, 1e3])
+def test_a_lagged_sine_has_the_gain_and_the_phase_of_a_low_pass(lag):
+    seen = Sensors(SWING, {"y": Sensor(lag=(0.0, 2e3))}, STAMPS)
+    read = seen.evaluate(np.array([[5.0, lag]])).values[0, :, 1]
+    np.testing.assert_allclose(read, lagging(5.0, lag, STAMPS), atol=1e-9)
+    np.testing.assert_allclose(seen.linearise(np.array([5.0, lag]))[0][:, 1], read, rtol=1e-12)
+
+
+@pytest.mark.parametrize("lag", [1e-4, 0.0095, 0.0105, 0.2, 3.0])
+def test_derivatives_of_a_lagged_reading_are_exact(lag):
+    sensor = Sensor(lag=(0.0, 5.0), delay=(0.0, 0.2), gain=(0.5, 2.0), at_rest=True)
+    seen = Sensors(SWING, {"y": sensor}, np.array([0.01, 0.3, 0.333, 2.0, 3.7]))
+    point = np.array([4.0, 0.043, lag, 1.3])
+    slopes = seen.jacobian(point)
+    for column, step in enumerate((1e-6, 1e-6, 1e-4 * lag, 1e-6)):
+        way = step * np.eye(4)[column]
+        moved = seen.evaluate(np.array([point + way, point - way])).values
+        differences = (moved[0] - moved[1]) / (2 * step)
+        np.testing.assert_allclose(slopes[:, :, column], differences, atol=2e-7 * max(1.0, np.abs(differences).max()))
+
+
+def test_the_derivative_at_no_lag_is_that_of_a_small_one():
+    seen = Sensors(SWING, {"y": Sensor(lag=(0.0, 5.0))}, STAMPS)
+    np.testing.assert_allclose(seen.jacobian(np.array([4.0, 0.0]))[:, 1, 1], -4 * np.cos(4 * STAMPS), atol=1e-6)
+    np.testing.assert_allclose(seen.jacobian(np.array([4.0, 1e-7]))[:, 1, 1], -4 * np.cos(4 * STAMPS), atol=1e-5)
+
+
+def test_a_lag_is_exact_between_uneven_samples_of_a_polynomial():
+    """Of degree 3, which the spline has, so that the closed form holds to rounding."""
+    own, stamps, lag = np.cumsum(np.r_[0.0, np.tile([0.01, 0.2, 0.05], 12)]), np.array([0.0, 0.07, 1.234, 3.1]), 0.15
+    cubic = PythonModel(lambda a: a * own**3, {"a": (0.5, 2.0)}, ["x"], own)
+    read = Sensors(cubic, {"x": Sensor(lag=(lag, lag))}, stamps).evaluate(np.array([[1.0]])).values[0, :, 0]
+    settled = stamps**3 - 3 * lag * stamps**2 + 6 * lag**2 * stamps - 6 * lag**3
+    np.testing.assert_allclose(read, settled + 6 * lag**3 * np.exp(-stamps / lag), atol=1e-12)
+
+
+def test_a_lag_is_not_confused_with_a_delay():
+    """A swept sine shows both, and the fit separates them."""
+    fine = np.linspace(0.0, 4.0, 2001)
+    sweep = PythonModel(lambda rate: np.sin(rate * fine + fine**3), {"rate": (1.0, 9.0)}, ["x"], fine)
+    seen = Sensors(sweep, {"x": Sensor(lag=(0.0, 0.1), delay=(0.0, 0.05), at_rest=True)}, np.linspace(0.0, 4.0, 401))
+    measured = seen.evaluate(np.array([[3.0, 0.012, 0.03]])).values[0]
+    fit = identify(seen, Measurements.of(seen.coordinate.values, {"x": measured[:, 0]}))
+    np.testing.assert_allclose(fit.values, [3.0, 0.012, 0.03], rtol=1e-6)
+
+
 @pytest.mark.parametrize(
     ("sensors", "times", "sentence"),
     [
@@ -84,7 +139,7 @@ def test_at_rest_readings_from_before_the_first_sample_are_the_first_state():
         (
             {"x": Sensor()},
             STAMPS,
-            "Sensors: the sensor of 'x' has no delay, gain or offset; give bounds of one, or leave it out",
+            "Sensors: the sensor of 'x' has no delay, lag, gain or offset; give bounds of one, or leave it out",
         ),
         (
             {"x": Sensor(delay=(0.0, 0.6))},
@@ -104,6 +159,11 @@ def test_at_rest_readings_from_before_the_first_sample_are_the_first_state():
             np.array([1.0, 4.5]),
             "Sensors: the last reading of 'x', at time 4.5 s, may show the motion at 4.5 s, and the model ends at 4 s; "
             "build the model with samples until then",
+        ),
+        (
+            {"x": Sensor(lag=(-0.1, 0.1))},
+            STAMPS,
+            "Sensors: the lag of 'x' may be -0.1; expected bounds of zero or more",
         ),
         (
             {"x": Sensor(gain=(2, 1))},

@@ -1,4 +1,4 @@
-"""What sensors read of a response: late by a delay, scaled by a gain, shifted by an offset, all unknown."""
+"""What sensors read of a response: late by a delay or a lag, scaled by a gain, shifted by an offset, all unknown."""
 
 import hashlib
 from collections.abc import Mapping
@@ -11,6 +11,7 @@ from scipy.interpolate import make_interp_spline
 from dalembert.arguments import check_model, samples_of
 from dalembert.errors import InputError, shown, unknown
 from dalembert.forward.complex_steps import check_derivatives
+from dalembert.forward.lag import lagged
 from dalembert.forward.model import Channel, Coordinate, ForwardModel
 from dalembert.forward.refinement import Refinement, refined
 from dalembert.forward.responses import Responses
@@ -20,7 +21,7 @@ from dalembert.parameters import Parameter, Parameters
 START = "start time"
 """Parameter of the time stamp at which the motion begins."""
 
-QUANTITIES = {"delay": 0.0, "gain": 1.0, "offset": 0.0}
+QUANTITIES = {"delay": 0.0, "lag": 0.0, "gain": 1.0, "offset": 0.0}
 """What a sensor may have, and what it is for a perfect one."""
 
 DEGREE = 5
@@ -31,12 +32,15 @@ Bounds = tuple[float, float] | Parameter
 
 @dataclass(frozen=True)
 class Sensor:
-    """Bounds of what is not known of a sensor that reads gain · R(t − delay) + offset.
+    """Bounds of what is not known of a sensor that reads gain · y(t − delay) + offset, lag · dy/dt + y = R(t).
 
     Parameters
     ----------
     delay : (lower, upper) or Parameter, optional
         s, or the unit of the model's coordinate; positive where the reading comes late. 0 if not given.
+    lag : (lower, upper) or Parameter, optional
+        Time constant of a first-order low-pass, in the unit of the delay; 0, no lag, if not given. The sensor is at
+        rest at the first sample of the model: it begins with the response there.
     gain : (lower, upper) or Parameter, optional
         1 if not given.
     offset : (lower, upper) or Parameter, optional
@@ -47,6 +51,7 @@ class Sensor:
     """
 
     delay: Bounds | None = None
+    lag: Bounds | None = None
     gain: Bounds | None = None
     offset: Bounds | None = None
     at_rest: bool = False
@@ -54,7 +59,7 @@ class Sensor:
 
 @dataclass(frozen=True)
 class Sensors:
-    """A model as sensors see it: with a delay, a gain or an offset a channel as further parameters.
+    """A model as sensors see it: with a delay, a lag, a gain or an offset a channel as further parameters.
 
     Parameters
     ----------
@@ -75,13 +80,13 @@ class Sensors:
 
     Notes
     -----
-    The parameters are named ``"AB.end.x delay"``, ``"AB.end.x gain"`` and ``"AB.end.x offset"``; a first guess is that
-    of a perfect sensor where the bounds allow it.
+    The parameters are named ``"AB.end.x delay"``, ``"AB.end.x lag"``, ``"AB.end.x gain"`` and ``"AB.end.x offset"``; a
+    first guess is that of a perfect sensor where the bounds allow it.
 
     Between samples the response is a spline of degree 5 through them, and its derivatives are those of that spline,
     exact for the response that is computed. The spline of a vibration errs by 7e-8 of its amplitude at 20 samples a
     period and by 1e-9 at 40; by 1e-5 and 2e-7 beside its ends. Stamps that are samples of the model are not
-    interpolated in channels without a delay.
+    interpolated in channels without a delay or a lag. A lagged reading is the exact solution for this spline.
 
     Examples
     --------
@@ -162,11 +167,16 @@ class Sensors:
         jacobian = np.zeros((*read.shape, len(vector)))
         for column, channel in enumerate(self.channels):
             at = {what: self._column(channel.name, what) for what in QUANTITIES}
-            delay, gain, offset = (self._value(vector, channel.name, what) for what in QUANTITIES)
-            there, rate = self._interpolated(table[:, column], delay, delayed=self._is_delayed(channel.name))
+            _, _, gain, offset = (self._value(vector, channel.name, what) for what in QUANTITIES)
+            there, rate, by_lag = self._seen(vector, channel.name, table[:, column])
             read[:, column] = gain * there[:, 0] + offset
             jacobian[:, column, :own] = gain * there[:, 1:]
-            for what, slope in (("delay", -gain * rate), ("gain", there[:, 0]), ("offset", 1.0)):
+            for what, slope in (
+                ("delay", -gain * rate),
+                ("lag", gain * by_lag),
+                ("gain", there[:, 0]),
+                ("offset", 1.0),
+            ):
                 if at[what] is not None:
                     jacobian[:, column, at[what]] = slope
             if START in self.parameters.names:
@@ -201,23 +211,23 @@ class Sensors:
         """Readings (samples, channels) of one response of the model."""
         read = np.empty((len(self.coordinate.values), len(self.channels)))
         for column, channel in enumerate(self.channels):
-            delay, gain, offset = (self._value(vector, channel.name, what) for what in QUANTITIES)
-            delayed = self._is_delayed(channel.name)
-            there, _ = self._interpolated(response[:, column, None], delay, delayed=delayed)
+            _, _, gain, offset = (self._value(vector, channel.name, what) for what in QUANTITIES)
+            there, _, _ = self._seen(vector, channel.name, response[:, column, None])
             read[:, column] = gain * there[:, 0] + offset
         return read
 
-    def _interpolated(self, table: np.ndarray, delay: float, *, delayed: bool) -> tuple[np.ndarray, np.ndarray]:
-        """Columns of (model's samples, columns) at the stamps less a delay, and the first column's derivative there."""
+    def _seen(self, vector: np.ndarray, channel: str, table: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Columns (model's samples, columns) of a channel, late; derivatives of the first by time and by the lag."""
         own, stamps = self.model.coordinate.values, self.coordinate.values
-        if not delayed and (rows := _rows(own, stamps)) is not None:
-            return table[rows], np.zeros(len(stamps))
+        if not self._is_late(channel) and (rows := _rows(own, stamps)) is not None:
+            return table[rows], np.zeros(len(stamps)), np.zeros(len(stamps))
         spline = make_interp_spline(own, table, k=min(DEGREE, len(own) - 1))
-        asked = stamps - delay
+        asked = stamps - self._value(vector, channel, "delay")
         before = asked < own[0]
         at = np.clip(asked, own[0], own[-1])  # what lies beyond by rounding
-        there, rate = spline(at), spline.derivative()(at)[:, 0]
-        return np.where(before[:, None], table[0], there), np.where(before, 0.0, rate)
+        there, rate, by_lag = lagged(spline, own, at, self._value(vector, channel, "lag"))
+        rate, by_lag = (np.where(before, 0.0, column[:, 0]) for column in (rate, by_lag))
+        return np.where(before[:, None], table[0], there), rate, by_lag
 
     def _column(self, channel: str, what: str) -> int | None:
         """Where a quantity of a sensor stands among the parameters, if it is one."""
@@ -239,8 +249,9 @@ class Sensors:
         """Value of a quantity that no method varies: that of a fixed parameter, or of a perfect sensor."""
         return next((float(item.lower) for item in self.parameters.fixed if item.name == name), perfect)
 
-    def _is_delayed(self, channel: str) -> bool:
-        return self._bounds(channel) != (0.0, 0.0)
+    def _is_late(self, channel: str) -> bool:
+        lags = self._column(channel, "lag") is not None or self._known(f"{channel} lag", 0.0) != 0
+        return lags or self._bounds(channel) != (0.0, 0.0)
 
     def _bounds(self, channel: str) -> tuple[float, float]:
         """Least and largest delay of a channel, with the time stamp at which the motion begins."""
@@ -282,10 +293,14 @@ def _unknowns(model: ForwardModel, name: str, sensor: Sensor) -> list[Parameter]
     given = {what: getattr(sensor, what) for what in QUANTITIES if getattr(sensor, what) is not None}
     if not given:
         raise InputError(
-            f"Sensors: the sensor of {name!r} has no delay, gain or offset; give bounds of one, or leave it out"
+            f"Sensors: the sensor of {name!r} has no delay, lag, gain or offset; give bounds of one, or leave it out"
         )
-    unit = {"delay": model.coordinate.unit, "gain": "", "offset": units[name]}
-    return [_parameter(f"{name} {what}", bounds, unit[what], QUANTITIES[what]) for what, bounds in given.items()]
+    unit = {"delay": model.coordinate.unit, "lag": model.coordinate.unit, "gain": "", "offset": units[name]}
+    found = [_parameter(f"{name} {what}", bounds, unit[what], QUANTITIES[what]) for what, bounds in given.items()]
+    for item in found:
+        if item.name == f"{name} lag" and item.lower < 0:
+            raise InputError(f"Sensors: the lag of {name!r} may be {item.lower:g}; expected bounds of zero or more")
+    return found
 
 
 def _parameter(name: str, bounds: Bounds, unit: str, perfect: float) -> Parameter:

@@ -35,20 +35,23 @@ class SensorTable(StudyTable):
     """Bounds of what is not known of a channel's sensor."""
 
     delay: TimeBounds | None = Field(None, description="positive where the reading comes late")
+    lag: TimeBounds | None = Field(None, description="time constant of a first-order low-pass")
     gain: Bounds | None = None
     offset: Bounds | None = Field(None, description="in the channel's unit")
     at_rest: bool = Field(False, description="whether the channel rests at its first value before the motion begins")
 
     @model_validator(mode="after")
     def _check(self) -> "SensorTable":
-        given = {what: getattr(self, what) for what in ("delay", "gain", "offset") if getattr(self, what) is not None}
+        given = {what: getattr(self, what) for what in QUANTITIES if getattr(self, what) is not None}
         wrong = [
             f"{what} is between {lower:g} and {upper:g}; expected the lower bound first"
             for what, (lower, upper) in given.items()
             if lower > upper
         ]
+        if self.lag is not None and self.lag[0] < 0:
+            wrong.append(f"lag may be {self.lag[0]:g} s; expected bounds of zero or more")
         if not given:
-            wrong.append("neither delay, gain nor offset is given; expected bounds of at least one")
+            wrong.append("none of delay, lag, gain and offset is given; expected bounds of at least one")
         if wrong:
             raise problem(*wrong)
         return self
@@ -56,7 +59,7 @@ class SensorTable(StudyTable):
     @property
     def sensor(self) -> Sensor:
         """The sensor."""
-        pairs = {what: getattr(self, what) for what in ("delay", "gain", "offset")}
+        pairs = {what: getattr(self, what) for what in QUANTITIES}
         return Sensor(**{what: pair and tuple(pair) for what, pair in pairs.items()}, at_rest=self.at_rest)
 
 

@@ -210,7 +210,7 @@ def test_each_experiment_has_its_prediction(write, tmp_path):
         ),
         (
             TWO + "[sensors.x]\nat_rest = true\n[identify]\n",
-            "neither delay, gain nor offset is given; expected bounds of at least one",
+            "none of delay, lag, gain and offset is given; expected bounds of at least one",
         ),
         (
             TWO.replace("arguments = { end = 5.0, samples = 41 }", "constants = { begin = 1.0 }") + "[identify]\n",

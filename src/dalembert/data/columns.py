@@ -100,11 +100,11 @@ class Trial:
 def trial_label(value: object) -> str:
     """Label of a trial by a cell or a number.
 
-    >>> trial_label("3.0"), trial_label(3), trial_label("left")
-    ('3', '3', 'left')
+    >>> trial_label("3.0"), trial_label(3), trial_label(1234567), trial_label("left")
+    ('3', '3', '1234567', 'left')
     """
     try:
-        return f"{float(str(value)):g}"
+        return f"{float(str(value)):.15g}"
     except ValueError:
         return str(value).strip()
 

@@ -82,8 +82,7 @@ def csv_labels(path: Path, column: str | int, separator: str = AUTO, decimal: st
     _refuse_marks(path, separator, decimal)
     found = layout(text_lines(path), column, separator, decimal)
     _refuse_rows(path, found)
-    place = _places(path, found)(column)
-    return [trial_label(cells[place]) for _, cells in found.rows]
+    return _labels(path, found, _places(path, found)(column))
 
 
 def _refuse_marks(path: Path, separator: str, decimal: str) -> None:
@@ -143,8 +142,17 @@ def _places(path: Path, found: Layout) -> Callable[[str | int], int]:
 
 def _of_trial(path: Path, found: Layout, place: int, trial: Trial) -> Layout:
     """The lines of one trial."""
-    mask = of_trial(path, [trial_label(cells[place]) for _, cells in found.rows], trial)
+    mask = of_trial(path, _labels(path, found, place), trial)
     return replace(found, rows=[row for row, there in zip(found.rows, mask, strict=True) if there])
+
+
+def _labels(path: Path, found: Layout, place: int) -> list[str]:
+    """Label of the trial of each line."""
+    for line, cells in found.rows:
+        if cells[place].lower() in GAPS:
+            where = f"{path}, line {line}, column {found.header[place]!r}"
+            raise DataError(f"{where}: no trial; expected its number or name in each line")
+    return [trial_label(cells[place]) for _, cells in found.rows]
 
 
 def _numbers(path: Path, found: Layout, places: Iterable[int], missing: str, time: int) -> dict[int, np.ndarray]:

@@ -19,6 +19,7 @@ GAPS = ("", "na", "nan")
 Line = tuple[int, str]
 Row = tuple[int, list[str]]
 _SAMPLE = 50  # lines that are looked at
+_FOLLOW = 3  # lines of numbers that begin them
 
 
 @dataclass(frozen=True)
@@ -52,7 +53,8 @@ class Layout:
         marks = f"cells separated by {SEPARATORS.get(self.separator, repr(self.separator))}"
         comma = ", decimal commas" if self.decimal == "," else ""
         names = "no header" if self.named is None else f"names in line {self.named}"
-        units = "" if self.measured is None else f", units in line {self.measured}"
+        units = ", units behind names" if any(self.units) else ""
+        units = units if self.measured is None else f", units in line {self.measured}"
         return f"{marks}{comma}, {names}{units}"
 
 
@@ -92,8 +94,8 @@ def layout(lines: Sequence[Line], time: str | int, separator: str = AUTO, decima
     begin = _first_numbers(rows, width, mark)
     if rows and begin == 0 and isinstance(time, str) and time in rows[0][1]:
         begin = 1
-    above = rows[:begin] or _marked(lines, rows[0][0] if rows else 0, cut, width)
-    names, units = _head(above, width)
+    before = rows[begin][0] if begin < len(rows) else math.inf
+    names, units = _head(_above(lines, before, cut, width, time), width)
     header = tuple(names[1]) if names else tuple(map(str, range(1, width + 1)))
     data = rows[begin:]
     header, data = _without_empty_end(header, data, named=names is not None)
@@ -137,40 +139,58 @@ def _suits(sample: Sequence[str], first: Sequence[str], separator: str, decimal:
 
 
 def _first_numbers(rows: Sequence[Row], width: int, decimal: str) -> int:
-    """Number of the first row that is not mostly words where the sample has numbers."""
+    """Number of the first row of numbers: one that others follow, or else the first of all."""
     sample = [cells for _, cells in rows[len(rows) // 2 :][:_SAMPLE] if len(cells) == width]
     numeric = [
         column
         for column in range(width)
         if 2 * sum(is_number(cells[column], decimal) for cells in sample) >= max(1, len(sample))
     ]
-    for number, (_, cells) in enumerate(rows):
-        asked = [cells[column] for column in numeric if column < len(cells)]
-        words = sum(not is_number(cell, decimal) and cell.lower() not in GAPS for cell in asked)
-        if numeric and len(cells) > 1 - (width == 1) and 2 * words <= len(asked) and any(map(_filled, asked)):
-            return number
-    return len(rows)
+    found = [_has_numbers(cells, numeric, width, decimal) for _, cells in rows]
+    begins = [number for number, there in enumerate(found) if there]
+    return next((number for number in begins if all(found[number : number + _FOLLOW])), (begins or [len(rows)])[0])
+
+
+def _has_numbers(cells: Sequence[str], numeric: Sequence[int], width: int, decimal: str) -> bool:
+    """Whether at least half of the cells in columns of numbers are some; of a line of another length all of them."""
+    asked = [cells[column] for column in numeric if column < len(cells) and _filled(cells[column])]
+    numbers = sum(is_number(cell, decimal) for cell in asked)
+    return bool(asked) and (2 * numbers >= len(asked) if len(cells) == width else numbers == len(asked))
 
 
 def _filled(cell: str) -> bool:
     return cell.lower() not in GAPS
 
 
-def _marked(lines: Sequence[Line], before: int, separator: str, width: int) -> list[Row]:
-    """Comment lines above the numbers that have a name a column."""
-    marked = [(number, text.lstrip().lstrip("%#").strip()) for number, text in lines if number < before]
-    rows = _split(marked, separator)
-    rows = [
-        row if len(row[1]) == width else (row[0], text.split()) for row, (_, text) in zip(rows, marked, strict=True)
-    ]
-    return [row for row in rows[-2:] if len(row[1]) == width and not all(map(is_number, row[1]))]
+def _above(lines: Sequence[Line], before: float, separator: str, width: int, time: str | int) -> list[Row]:
+    """The lines above the numbers, comments among them without their marks, where they may name columns or units.
+
+    A comment below the line that names the times is text, unless it holds units.
+    """
+    rows, named = [], False
+    for number, text in lines:
+        if number >= before:
+            break
+        marked = text.lstrip().startswith(COMMENTS)
+        plain = text.lstrip().lstrip("%#").strip() if marked else text
+        ((_, cells),) = _split([(number, plain)], separator)
+        cells = plain.split() if marked and len(cells) != width else cells
+        wide = len(cells) == width and not all(map(is_number, cells))
+        if not marked or (wide and (not named or time in cells or _are_units(cells, width))):
+            rows.append((number, cells))
+            named = named or time in cells
+    return rows
 
 
 def _head(above: Sequence[Row], width: int) -> tuple[Row | None, Row | None]:
     """The row of names and the row of units among those above the numbers."""
-    if len(above) > 1 and len(above[-1][1]) == width and all(_is_unit(cell) for cell in above[-1][1]):
+    if len(above) > 1 and _are_units(above[-1][1], width):
         return above[-2], above[-1]
     return (above[-1] if above else None), None
+
+
+def _are_units(cells: Sequence[str], width: int) -> bool:
+    return len(cells) == width and all(map(_is_unit, cells))
 
 
 def _without_empty_end(header: tuple[str, ...], rows: list[Row], *, named: bool) -> tuple[tuple[str, ...], list[Row]]:
@@ -198,8 +218,8 @@ def _is_unit(cell: str) -> bool:
 
 
 def _bracketed(name: str) -> str:
-    """Unit in brackets at the end of a name, such as ``angle [deg]``."""
-    if not name.endswith("]") or "[" not in name:
-        return ""
-    cell = name[name.rindex("[") :]
-    return _unit(cell) if _is_unit(cell) else ""
+    """Unit in brackets at the end of a name, such as ``angle [deg]`` or ``Time (ms)``."""
+    for left, right in ("[]", "()"):
+        if name.endswith(right) and left in name and _is_unit(cell := name[name.rindex(left) :]):
+            return _unit(cell)
+    return ""

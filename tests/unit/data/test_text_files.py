@@ -67,6 +67,23 @@ FORMS = {
         text(";", "t;i;a", end=";"),
         "cells separated by semicolons, names in line 1",
     ),
+    "a title of words above a header with a hash": (
+        text(",", "Instrument XY 200", "# t,i,a", "# s,A,rad"),
+        "cells separated by commas, names in line 2, units in line 3",
+    ),
+    "a comment as wide as the header below it": (
+        text(",", "t,i,a", "# one, two, three"),
+        "cells separated by commas, names in line 1",
+    ),
+    "a title of words and numbers": (
+        text(" ", "Serial: 1234, firmware 1.2", "t i a"),
+        "cells separated by blanks, names in line 2",
+    ),
+    "a header of settings": (
+        text(";", "Version;2;", "Mark;Comma;", "***", "t;i;a"),
+        "cells separated by semicolons, names in line 4",
+    ),
+    "the first line of a spreadsheet": (text(";", "sep=;", "t;i;a"), "cells separated by semicolons, names in line 2"),
     "quotes": (text(",", '"t","i","a"'), "cells separated by commas, names in line 1"),
     "lines of Windows": (text(",", "t,i,a").replace("\n", "\r\n"), "cells separated by commas, names in line 1"),
     "blank lines": (text(",", "t,i,a", "").replace("\n1.0,", "\n\n1.0,"), "cells separated by commas, names in line 1"),
@@ -112,6 +129,7 @@ def test_columns_of_a_file_with_a_header_have_numbers_too(tmp_path):
         text(",", "t,i,a", "ms,A,deg"),
         text(",", "t,i,a", "[ms],[A],[deg]"),
         text(" ", "# t i a", "# ms A deg"),
+        text(",", "Instrument XY 200", "# t,i,a", "# ms,A,deg"),
     ],
 )
 def test_a_line_of_units_counts(content, tmp_path):
@@ -123,11 +141,21 @@ def test_a_line_of_units_counts(content, tmp_path):
     np.testing.assert_allclose(given.values[:, 0], ANGLE)
 
 
-def test_units_behind_names_count(tmp_path):
-    (tmp_path / "run.txt").write_text(text(";", "time [ms];motor current;angle [deg]"))
-    data = read(tmp_path / "run.txt", time="time [ms]", columns={"bar.angle": "angle [deg]"})
+@pytest.mark.parametrize("brackets", ["[]", "()"])
+def test_units_behind_names_count(brackets, tmp_path):
+    left, right = brackets
+    time, angle = f"time {left}ms{right}", f"angle {left}deg{right}"
+    (tmp_path / "run.txt").write_text(text(";", f"{time};motor current;{angle}"))
+    data = read(tmp_path / "run.txt", time=time, columns={"bar.angle": angle})
     np.testing.assert_allclose(data.coordinate.values, 1e-3 * np.array(TIMES))
     np.testing.assert_allclose(data.values[:, 0], np.deg2rad(ANGLE))
+    assert data.origin.endswith("names in line 1, units behind names")
+
+
+def test_brackets_without_a_unit_are_part_of_the_name(tmp_path):
+    (tmp_path / "run.txt").write_text(text(";", "t;i;angle (filtered)"))
+    data = read(tmp_path / "run.txt", columns={"bar.angle": "angle (filtered)"})
+    np.testing.assert_array_equal(data.values[:, 0], ANGLE)
 
 
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "cp1252"])

@@ -100,6 +100,7 @@ def fit(
             channels=channels,
             values=response + noise,
             deviations=np.array([5e-3, 5e-3]),
+            taken=np.ones(response.shape, dtype=bool),
         ),
         residuals=response - (response + noise),
         history=history,

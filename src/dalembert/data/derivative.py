@@ -1,6 +1,6 @@
 """Derivatives of measured channels by local polynomials, with their error."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.polynomial.legendre import legder, legval, legvander
@@ -60,7 +60,13 @@ class Derivative:
 
 @takes_checked()
 def derivative(
-    data: Measurements, channel: str, *, order: int = 1, window: int | None = None, degree: int = 3
+    data: Measurements,
+    channel: str,
+    *,
+    order: int = 1,
+    window: int | None = None,
+    degree: int = 3,
+    gap: float | None = None,
 ) -> Derivative:
     """Derivative of a channel: that of a polynomial fitted by least squares to the samples around each.
 
@@ -76,6 +82,9 @@ def derivative(
         polynomials leave no more than noise.
     degree : int
         Of the polynomial, at least the order.
+    gap : float, optional
+        Longest step of the coordinate that is no gap; 1.5 times the usual one if not given, as in
+        :meth:`Measurements.resampled`.
 
     Raises
     ------
@@ -102,8 +111,11 @@ def derivative(
         raise DataError(unknown("channel", channel, data.channels, "derivative"))
     least = _check(order, window, degree)
     column = data.channels.index(channel)
-    along, values = data.coordinate.values, data.continuous[:, column]
-    runs = [run for run in stretches(data.present[:, column], along) if run.stop - run.start >= (window or least)]
+    rows = data.taken[:, column]
+    along, values = data.coordinate.values[rows], data.continuous[rows, column]
+    runs = [
+        run for run in stretches(data.present[rows, column], along, gap) if run.stop - run.start >= (window or least)
+    ]
     if not runs:
         raise DataError(
             f"channel {channel!r}: fewer than {window or least} samples beside each other; expected at least as many "
@@ -119,7 +131,15 @@ def derivative(
     found = [_derivative(along, values, runs, order, size, degree, deviation, step) for size in windows]
     loose = [one for one in found if one.left <= STIFF * max(deviation, found[0].left)]
     best = min(loose, key=lambda one: one.error)
-    return best if step == 1 else _derivative(along, values, runs, order, best.window, degree, deviation)
+    best = best if step == 1 else _derivative(along, values, runs, order, best.window, degree, deviation)
+    return replace(best, values=_spread(best.values, rows), noise=_spread(best.noise, rows))
+
+
+def _spread(values: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """Values at all samples, NaN but in some rows (samples,)."""
+    spread = np.full(len(rows), np.nan)
+    spread[rows] = values
+    return spread
 
 
 def _check(order: int, window: int | None, degree: int) -> int:

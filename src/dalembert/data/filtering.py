@@ -62,7 +62,8 @@ def decimated(data: Measurements, factor: int, cutoff: float | None) -> Measurem
     )
     rows = np.any(kept, axis=1)
     values = np.where(kept, slow.values, np.nan)[rows]
-    return replace(slow, coordinate=replace(slow.coordinate, values=along[rows]), values=values)
+    sampled = None if slow.sampled is None else kept[rows]
+    return replace(slow, coordinate=replace(slow.coordinate, values=along[rows]), values=values, sampled=sampled)
 
 
 def _times(data: Measurements) -> np.ndarray:

@@ -37,6 +37,9 @@ class Measurements:
         Channels that are angles in rad known up to whole turns: their differences count modulo 2π.
     origin : str
         The file that they come from, and what a text file was taken to be, in words.
+    sampled : array of bool, shape (samples, channels), optional
+        Where the sensor of each channel takes samples, if not at all of the coordinate: a missing value elsewhere is
+        no gap. See :func:`merged`.
 
     Raises
     ------
@@ -54,6 +57,7 @@ class Measurements:
     missing: str = "refuse"
     wraps: tuple[str, ...] = ()
     origin: str = ""
+    sampled: np.ndarray | None = None
 
     def __post_init__(self) -> None:
         for name, value in (
@@ -65,6 +69,8 @@ class Measurements:
         ):
             object.__setattr__(self, name, value)
         check_labels(self.coordinate, self.channels, values=self.values)
+        if self.sampled is not None and np.shape(self.sampled) != self.values.shape:
+            raise DataError(f"sampled of shape {np.shape(self.sampled)} was given; expected {self.values.shape}")
         if self.missing not in MISSING:
             raise DataError(unknown("word", str(self.missing), MISSING, "missing"))
         for name in self.wraps:
@@ -126,6 +132,11 @@ class Measurements:
         return np.isfinite(self.values)
 
     @property
+    def taken(self) -> np.ndarray:
+        """Mask of the samples that each channel's sensor takes, measured or lost, shape (samples, channels)."""
+        return np.ones(self.values.shape, dtype=bool) if self.sampled is None else np.asarray(self.sampled, dtype=bool)
+
+    @property
     def wrapping(self) -> np.ndarray:
         """Mask of the channels that wrap, shape (channels,)."""
         return np.isin(self.channels, self.wraps)
@@ -174,7 +185,7 @@ class Measurements:
 
     def first(self, samples: int) -> "Measurements":
         """The first ``samples`` samples."""
-        return replace(self, coordinate=cut(self.coordinate, samples), values=self.values[:samples])
+        return self._rows(slice(samples), cut(self.coordinate, samples))
 
     def between(self, begin: float, end: float) -> "Measurements":
         """The samples from ``begin`` to ``end`` of the coordinate, both included.
@@ -193,10 +204,15 @@ class Measurements:
         Raises
         ------
         DataError
-            For a step below 1.
+            For a step below 1, and for channels with different time stamps, of which some would be lost.
         """
         if step < 1:
             raise DataError(f"every {step} samples; expected at least 1")
+        if step > 1 and not self.taken.all():
+            raise DataError(
+                f"every {step} samples of channels with different time stamps; decimate them, or thin each record "
+                "before they are merged"
+            )
         return self._picked(np.arange(len(self.values)) % step == 0, "")
 
     def filtered(self, cutoff: float) -> "Measurements":
@@ -265,11 +281,13 @@ class Measurements:
                 f"no sample lies {what}; the {along.name} runs from {along.values[0]:.10g} to {along.values[-1]:.10g} "
                 f"{along.unit}"
             )
-        return replace(
-            self, coordinate=Coordinate(along.name, along.unit, along.values[mask]), values=self.values[mask]
-        )
+        return self._rows(mask, Coordinate(along.name, along.unit, along.values[mask]))
 
-    def resampled(self, samples: ArrayLike) -> "Measurements":
+    def _rows(self, rows: slice | np.ndarray, along: Coordinate) -> "Measurements":
+        sampled = None if self.sampled is None else self.sampled[rows]
+        return replace(self, coordinate=along, values=self.values[rows], sampled=sampled)
+
+    def resampled(self, samples: ArrayLike, *, gap: float | None = None) -> "Measurements":
         """The channels at other samples of the coordinate, by cubic splines through the values.
 
         A spline is no filter: the new samples are values of the same motion, which is what a model sampled there
@@ -285,6 +303,8 @@ class Measurements:
         ----------
         samples : array, shape (new samples,)
             Growing, within the data.
+        gap : float, optional
+            Longest step of the coordinate that is no gap, in place of 1.5 times the usual one.
 
         Raises
         ------
@@ -299,7 +319,7 @@ class Measurements:
         """
         from dalembert.data.resampling import resampled
 
-        return resampled(self, np.array(samples, dtype=float))
+        return resampled(self, np.array(samples, dtype=float), gap)
 
     def with_derivative(
         self,
@@ -310,6 +330,7 @@ class Measurements:
         window: int | None = None,
         degree: int = 3,
         deviation: float | None = None,
+        gap: float | None = None,
     ) -> "Measurements":
         """The measurements and a channel ``name`` beside them, a derivative of another one.
 
@@ -325,12 +346,14 @@ class Measurements:
         """
         from dalembert.data.derivative import derivative
 
-        found = derivative(self, channel, order=order, window=window, degree=degree)
+        found = derivative(self, channel, order=order, window=window, degree=degree, gap=gap)
         deviations = self.deviations
         if deviations is not None:
             deviations = np.append(deviations, found.error if deviation is None else deviation)
         values = np.column_stack([self.values, found.values])
-        return replace(self, channels=(*self.channels, name), values=values, deviations=deviations)
+        taken = self.taken[:, [*range(len(self.channels)), self.channels.index(channel)]]
+        sampled = None if self.sampled is None else taken
+        return replace(self, channels=(*self.channels, name), values=values, deviations=deviations, sampled=sampled)
 
     @property
     def fingerprint(self) -> str:
@@ -358,8 +381,9 @@ def beginning(along: np.ndarray, start: float | str) -> float:
 def merged(parts: Sequence[Measurements]) -> Measurements:
     """Channels of several records of the same experiment, at the times of all of them.
 
-    A channel is missing where another record has a sample and its own has none. Times that differ by less than a
-    billionth of the span are the same.
+    A channel is missing where another record has a sample and its own has none. That is no gap: filters, derivatives
+    and splines take each channel at its own samples. Times that differ by less than a billionth of the span are the
+    same.
 
     Raises
     ------
@@ -382,12 +406,14 @@ def merged(parts: Sequence[Measurements]) -> Measurements:
         raise DataError("some records have deviations and some have none; give them for all channels or for none")
     stamps = np.unique(np.concatenate([part.coordinate.values for part in parts]))
     stamps = stamps[np.concatenate([[True], np.diff(stamps) > SAME * max(float(np.ptp(stamps)), 1e-300)])]
-    tables = []
+    middles = (stamps[:-1] + stamps[1:]) / 2
+    tables, sampled = [], []
     for part in parts:
-        table = np.full((len(stamps), len(part.channels)), np.nan)
-        middles = (stamps[:-1] + stamps[1:]) / 2
-        table[np.searchsorted(middles, part.coordinate.values)] = part.values
-        tables.append(table)
+        rows = np.searchsorted(middles, part.coordinate.values)
+        for collected, own, empty in ((tables, part.values, np.nan), (sampled, part.taken, False)):
+            table = np.full((len(stamps), len(part.channels)), empty)
+            table[rows] = own
+            collected.append(table)
     deviations = [part.deviations for part in parts if part.deviations is not None]
     return Measurements(
         replace(first.coordinate, values=stamps),
@@ -397,6 +423,7 @@ def merged(parts: Sequence[Measurements]) -> Measurements:
         missing="leave-out",
         wraps=tuple(name for part in parts for name in part.wraps),
         origin="; ".join(filter(None, (part.origin for part in parts))),
+        sampled=np.hstack(sampled),
     )
 
 

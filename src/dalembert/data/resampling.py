@@ -15,7 +15,7 @@ CLOSE = 1e-9
 """Samples as close as this part of the coordinate's span are the same."""
 
 
-def resampled(data: Measurements, samples: np.ndarray) -> Measurements:
+def resampled(data: Measurements, samples: np.ndarray, gap: float | None = None) -> Measurements:
     """Measurements at other samples (new samples,), by splines between the gaps of each channel."""
     along = data.coordinate
     given = Coordinate(along.name, along.unit, np.atleast_1d(samples))
@@ -30,20 +30,20 @@ def resampled(data: Measurements, samples: np.ndarray) -> Measurements:
         )
     values = np.column_stack(
         [
-            _channel(along.values, column, there, given.values, close)
-            for column, there in zip(data.continuous.T, data.present.T, strict=True)
+            _channel(along.values[rows], column[rows], there[rows], given.values, close, gap)
+            for column, there, rows in zip(data.continuous.T, data.present.T, data.taken.T, strict=True)
         ]
     )
     turned = (values + TURN / 2) % TURN - TURN / 2
-    return replace(data, coordinate=given, values=np.where(data.wrapping, turned, values))
+    return replace(data, coordinate=given, values=np.where(data.wrapping, turned, values), sampled=None)
 
 
 def _channel(
-    along: np.ndarray, values: np.ndarray, present: np.ndarray, samples: np.ndarray, close: float
+    along: np.ndarray, values: np.ndarray, present: np.ndarray, samples: np.ndarray, close: float, gap: float | None
 ) -> np.ndarray:
     """A channel at new samples; NaN in gaps."""
     result = np.full(len(samples), np.nan)
-    for run in stretches(present, along):
+    for run in stretches(present, along, gap):
         x, y = along[run], values[run]
         inside = (samples >= x[0] - close) & (samples <= x[-1] + close)
         spline = make_interp_spline(x, y, k=min(3, len(x) - 1))

@@ -126,6 +126,7 @@ class Part:
             values=joint.values[self.block],
             deviations=None if joint.deviations is None else joint.deviations[self.columns],
             wraps=tuple(own[name] for name in joint.wraps if name in own),
+            sampled=None if joint.sampled is None else joint.sampled[self.block],
         )
 
 
@@ -391,8 +392,9 @@ def _rows(samples: Sequence[np.ndarray]) -> tuple[list[np.ndarray], Coordinate]:
 def _measurements(experiments: Sequence[Experiment], model: JointModel) -> Measurements:
     """All data in the rows and columns of the joint response; NaN where an experiment has no sample."""
     values = np.full((len(model.coordinate.values), len(model.channels)), np.nan)
+    sampled = np.zeros(values.shape, dtype=bool)
     for item, part in zip(experiments, model.parts, strict=True):
-        values[part.block] = item.data.values
+        values[part.block], sampled[part.block] = item.data.values, item.data.taken
     deviations = [item.data.deviations for item in experiments if item.data.deviations is not None]
     return Measurements(
         model.coordinate,
@@ -401,4 +403,5 @@ def _measurements(experiments: Sequence[Experiment], model: JointModel) -> Measu
         np.concatenate(deviations) if deviations else None,
         missing="leave-out",
         wraps=tuple(f"{item.name}.{name}" for item in experiments for name in item.data.wraps),
+        sampled=sampled,
     )

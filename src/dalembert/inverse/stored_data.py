@@ -16,6 +16,8 @@ def stored_data(data: Measurements) -> dict[str, Any]:
         variables["data_deviations"] = ("channel", data.deviations)
     if data.wraps:
         variables["data_wraps"] = ("channel", data.wrapping)
+    if data.sampled is not None:
+        variables["data_sampled"] = (("sample", "channel"), data.taken)
     return variables
 
 
@@ -35,4 +37,5 @@ def data_of(dataset: "Dataset") -> Measurements:
         dataset["data_deviations"].values if "data_deviations" in dataset else None,
         dataset["data"].attrs.get("missing", "refuse"),
         tuple(name for name, wrap in zip(channels, wraps, strict=True) if wrap),
+        sampled=dataset["data_sampled"].values.astype(bool) if "data_sampled" in dataset else None,
     )

@@ -158,6 +158,7 @@ def _experiments(problem: Problem, lengths: Mapping[str, float], fitted: np.ndar
             values=values[:, columns],
             deviations=None if data.deviations is None else data.deviations[columns],
             wraps=tuple(name for name in data.wraps if name in channels),
+            sampled=None if data.sampled is None else data.sampled[:, columns],
         ),
     )
     return Split(problem, part, fitted, _in_words(model, lengths))

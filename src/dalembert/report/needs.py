@@ -29,7 +29,10 @@ class CoordinateLike(Protocol):
 
 
 class MeasurementsLike(Protocol):
-    """Data: values (samples, channels), NaN where one is missing; standard deviations (channels,) if they are known."""
+    """Data: values (samples, channels), NaN where one is missing; standard deviations (channels,) if they are known.
+
+    ``taken`` (samples, channels): where the sensor of each channel takes samples.
+    """
 
     @property
     def coordinate(self) -> CoordinateLike: ...
@@ -39,6 +42,8 @@ class MeasurementsLike(Protocol):
     def values(self) -> np.ndarray: ...
     @property
     def deviations(self) -> np.ndarray | None: ...
+    @property
+    def taken(self) -> np.ndarray: ...
 
 
 class ResponseLike(Protocol):

@@ -26,6 +26,6 @@ def thin(values: np.ndarray, most: int = 4000) -> np.ndarray:
     if len(values) <= most:
         return np.arange(len(values))
     stretches = np.array_split(np.arange(len(values)), most // 2 - 1)
-    known = np.nan_to_num(values)
-    extremes = [(part[known[part].argmin()], part[known[part].argmax()]) for part in stretches]
+    low, high = (np.where(np.isnan(values), none, values) for none in (np.inf, -np.inf))
+    extremes = [(part[low[part].argmin()], part[high[part].argmax()]) for part in stretches]
     return np.unique([0, len(values) - 1, *np.ravel(extremes)])

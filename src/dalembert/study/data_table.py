@@ -162,15 +162,24 @@ class ChannelFile(FileTable):
     )
     missing: Literal["refuse", "leave-out"] = Field("refuse", description="what becomes of values that are not there")
     wraps: list[str] = Field([], description="channels that are angles known up to whole turns")
+    lowpass: Annotated[float, Read(fixed("Hz"))] | None = Field(
+        None, description="cutoff frequency of a low-pass filter without delay: '40 Hz'"
+    )
+    decimate: int | None = Field(None, ge=2, description="keep every so manyth sample behind the low-pass filter")
 
     def of_file(self, **options: Any) -> "Measurements":
-        """The channels as the file holds them."""
+        """The channels of the file, filtered and decimated."""
         from dalembert.data import read
+        from dalembert.data.opening import told_of
 
         given = self.deviations
         known = None if given is None else {name: given[name] for name in self.columns if name in given}
         options |= {"missing": self.missing, "wraps": self.wraps, **self.how}
-        return read(self.file, self.time, self.columns, known, **options)
+        data = read(self.file, self.time, self.columns, known, **options)
+        with told_of(self.file):
+            if self.decimate is not None:
+                return data.decimated(self.decimate, self.lowpass)
+            return data if self.lowpass is None else data.filtered(self.lowpass)
 
 
 class DataTable(ChannelFile):
@@ -192,10 +201,12 @@ class DataTable(ChannelFile):
     between: Annotated[Ends, WrapValidator(_along)] = Field(
         None, description="times, or frequencies, between which samples are kept"
     )
-    lowpass: Annotated[float, Read(fixed("Hz"))] | None = Field(
-        None, description="cutoff frequency of a low-pass filter without delay: '40 Hz'"
+    gap: Annotated[float, Read(fixed(None))] | None = Field(
+        None,
+        gt=0,
+        description="longest step of the times, or frequencies, that is no gap to derivatives and resample; 1.5 times "
+        "the usual one if not given",
     )
-    decimate: int | None = Field(None, ge=2, description="keep every so manyth sample behind the low-pass filter")
     every: int | None = Field(None, ge=1, description="keep every so manyth sample, without a filter")
     resample: Annotated[Samples, WrapValidator(_along)] = Field(
         None, description="times, or frequencies, at which splines through the samples are taken"
@@ -203,7 +214,12 @@ class DataTable(ChannelFile):
 
     @model_validator(mode="after")
     def _check(self) -> "DataTable":
-        wrong = [unknown("channel", name, self.columns, "wraps") for name in self.wraps if name not in self.columns]
+        wrong = [
+            unknown("channel", name, file.columns, "wraps")
+            for file in (self, *self.more)
+            for name in file.wraps
+            if name not in file.columns
+        ]
         if self.trial is not None and self.split is None:
             wrong.append("trial is given, but not split, the column that numbers the trials; give both")
         if self.split is not None and self.trial is None and not self.SEVERAL:
@@ -213,10 +229,12 @@ class DataTable(ChannelFile):
         if repeated:
             wrong.append(f"more: {', '.join(repeated)} has a column in several files; expected one for each channel")
         for name, derivative in self.derivatives.items():
-            if name in self.columns:
+            if name in names:
                 wrong.append(f"derivatives: the channel {name!r} has a column already; expected another name")
-            if derivative.of not in self.columns:
-                wrong.append(unknown("channel", derivative.of, self.columns, f"derivatives, {name!r}"))
+            if derivative.of not in names:
+                wrong.append(unknown("channel", derivative.of, names, f"derivatives, {name!r}"))
+        if self.more and self.every is not None:
+            wrong.append("every is given with more; give decimate for each file, whose time stamps differ")
         thinned = [name for name in ("decimate", "every", "resample") if getattr(self, name) is not None]
         wrong += [f"{one} and {other} are both given; expected one of them" for one, other in pairwise(thinned)]
         if wrong:
@@ -236,18 +254,17 @@ class DataTable(ChannelFile):
         given, trial = self.deviations, None if self.split is None else (self.split, self.trial)
         data = self.of_file(trial=trial)
         begin = 0.0 if self.begins is None else beginning(data.coordinate.values, self.begins)
-        data = data.since(begin)
+        parts = [data.since(begin), *(file.of_file(start=begin) for file in self.more)]
         with told_of(self.file):
-            data = merged([data, *(file.of_file(start=begin) for file in self.more)])
-            data = self._filtered(data)
+            data = merged(parts)
             for name, one in self.derivatives.items():
-                how = {"order": one.order, "window": one.window, "degree": one.degree}
+                how = {"order": one.order, "window": one.window, "degree": one.degree, "gap": self.gap}
                 data = data.with_derivative(one.of, name, **how, deviation=(given or {}).get(name))
             if self.between is not None:
                 data = data.between(*self.between)
             if self.every is not None:
                 data = data.every(self.every)
-            return data if self.resample is None else data.resampled(self.resample)
+            return data if self.resample is None else data.resampled(self.resample, gap=self.gap)
 
     @property
     def begins(self) -> float | str | None:
@@ -265,12 +282,6 @@ class DataTable(ChannelFile):
 
         assert self.split is not None
         return trial_labels(self.file, self.split, separator=self.separator, decimal=self.decimal, format=self.format)
-
-    def _filtered(self, data: "Measurements") -> "Measurements":
-        """The data behind the low-pass filter, and thinned by it."""
-        if self.decimate is not None:
-            return data.decimated(self.decimate, self.lowpass)
-        return data if self.lowpass is None else data.filtered(self.lowpass)
 
 
 class BandsTable(FileTable):

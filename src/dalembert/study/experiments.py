@@ -215,23 +215,25 @@ def _model(study: "Study", data: "Measurements", table: DataTable) -> ForwardMod
     sensors = {name: table.sensor for name, table in study.file.sensors.items() if name in data.channels}
     stamps, start = data.coordinate.values, table.unknown_start
     if study.has_system and start is None:
-        _refuse_late(table, stamps)
+        _refuse_late(table, data)
     if not sensors and start is None:
         return study.forward(data.channels, stamps)
     samples = _fine(study, stamps, sensors, start) if study.has_system else stamps
     return Sensors(study.forward(data.channels, samples), sensors, stamps, start)
 
 
-def _refuse_late(table: DataTable, stamps: np.ndarray) -> None:
+def _refuse_late(table: DataTable, data: "Measurements") -> None:
     """Refuse a record that begins late, and of which nobody says when the motion began.
 
     Raises
     ------
     DataError
     """
+    stamps = data.coordinate.values
     if table.start is not None or table.between is not None or len(stamps) < 2:
         return
-    if stamps[0] > LATE * np.median(np.diff(stamps)):
+    steps = [np.diff(stamps[rows]) for rows in data.taken.T]
+    if stamps[0] > LATE * max(np.median(own) if len(own) else 0.0 for own in steps):
         raise DataError(
             f"{table.file}, column {table.time!r}: the times begin at {stamps[0]:.6g} s, and a motion begins at 0. If "
             "it begins with the record, give start = 'first'; if it began at 0 s of the file, give start = 0"

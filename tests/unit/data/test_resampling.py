@@ -172,3 +172,24 @@ def test_uneven_stamps_have_few_gaps(seed):
     jittered = np.arange(1000) + draw.uniform(-0.2, 0.2, 1000)
     assert len(gaps(jittered)) == 0
     assert len(gaps(np.cumsum(draw.exponential(size=1000)))) < 25
+
+
+def test_the_longest_step_that_is_no_gap_can_be_given():
+    times = np.concatenate([np.arange(60), np.arange(109, 201)]) * 0.01
+    data = Measurements.of(times, {"x": np.sin(3 * times)}, deviations=1e-6)
+    new = np.arange(201) * 0.01
+    assert data.resampled(new, gap=0.5).present.all()
+    assert data.resampled(new, gap=0.4).present.sum() == 201 - 49
+    assert not data.resampled(new[:-1] + 0.005, gap=0.005).present.any()
+    whole = data.with_derivative("x", "rate", gap=0.5, window=9)
+    assert derivative(data, "x", gap=0.005 + 0.01, window=9).values[59] != whole.values[59, 1]
+
+
+def test_many_stamps_lost_at_random_are_seen_with_a_given_gap():
+    """Where a tenth of the stamps is lost, twice the step is a usual one; a given gap finds each loss."""
+    kept = np.random.default_rng(0).random(1000) > 0.1
+    kept[[0, -1]] = True
+    times = np.arange(1000)[kept] * 0.01
+    data = Measurements.of(times, {"x": times})
+    found = data.resampled(np.arange(1000) * 0.01, gap=0.015)
+    np.testing.assert_array_equal(found.present[:, 0], kept)

@@ -6,6 +6,7 @@ import pytest
 from dalembert.errors import DataError, InputError
 from dalembert.inverse import Prediction
 from dalembert.study import load, plan, report_run, run_study
+from dalembert.study.experiments import posed
 from dalembert.study.runner import unknowns
 from pages import read_page
 
@@ -356,3 +357,62 @@ def test_files_with_other_time_stamps_belong_to_one_experiment(write, tmp_path):
     assert study.data().present.sum(axis=0).tolist() == [61, 40]
     _, outcome = run_study(study, tmp_path / "run")
     assert outcome.best["values"] == pytest.approx({"drag": 0.2, "begin": np.deg2rad(30)}, rel=1e-5)
+
+
+def two_files(folder, offset=0.0):
+    """Two channels of different rates in two files: an angle each 2 ms, and a way each 33 ms."""
+    fast, slow = np.arange(601) * 0.002 + offset, np.arange(37) * 0.033
+    for name, along, values in (("angle", fast, np.sin(3 * fast)), ("way", slow, np.cos(3 * slow))):
+        rows = [f"{t:.6f},{x:.9f}" for t, x in zip(along, values, strict=True)]
+        (folder / f"{name}.csv").write_text("\n".join([f"t,{name}", *rows]))
+
+
+FILES = '[data]\nfile = "angle.csv"\ncolumns = { "rod.end.angle" = "angle" }\n'
+MORE = 'more = [{ file = "way.csv", columns = { "rod.end.x" = "way" } }]\n'
+
+
+def test_each_of_several_files_is_filtered_and_decimated_for_itself(write, tmp_path):
+    two_files(tmp_path)
+    text = PENDULUM + FILES + 'decimate = 5\nlowpass = "30 Hz"\n' + MORE.replace(" } }", ' }, lowpass = "10 Hz" }')
+    data = load(write(text + 'derivatives = { way = "rod.end.x" }\n[identify]\n')).data()
+    assert data.taken.sum(axis=0).tolist() == [121, 37, 37]
+    rate = data.values[data.taken[:, 2], 2]
+    along = data.coordinate.values[data.taken[:, 2]]
+    np.testing.assert_allclose(rate[8:-8], -3 * np.sin(3 * along[8:-8]), atol=0.02)
+
+
+def test_every_does_not_count_the_samples_of_several_files(write, tmp_path):
+    two_files(tmp_path)
+    with pytest.raises(InputError) as raised:
+        load(write(PENDULUM + FILES + MORE + "every = 5\n[identify]\n"))
+    assert "every is given with more; give decimate for each file, whose time stamps differ" in str(raised.value)
+
+
+def test_errors_of_a_further_file_name_it_alone(write, tmp_path):
+    two_files(tmp_path)
+    study = load(write(PENDULUM + FILES + MORE.replace(" } }", ' }, lowpass = "100 Hz" }') + "[identify]\n"))
+    with pytest.raises(DataError) as raised:
+        study.data()
+    assert "way.csv: the cutoff frequency" in str(raised.value)
+    assert "angle.csv" not in str(raised.value)
+
+
+def test_close_stamps_of_two_files_are_no_late_record(write, tmp_path):
+    """Both begin within half a step: the motion does not begin late, however close their stamps lie to each other."""
+    stamps = 0.005 + np.arange(60) * 0.01
+    for name, shift in (("angle", 0.0), ("way", 1e-4)):
+        rows = [f"{t + shift:.6f},{np.sin(t):.9f}" for t in stamps]
+        (tmp_path / f"{name}.csv").write_text("\n".join([f"t,{name}", *rows]))
+    weights = '[identify]\nweights = { "rod.end.angle" = 1.0, "rod.end.x" = 1.0 }\n'
+    model, data = posed(load(write(PENDULUM + FILES + MORE + weights)))
+    assert len(model.coordinate.values) == len(data.coordinate.values) == 120
+
+
+def test_a_study_says_the_longest_step_that_is_no_gap(write, tmp_path):
+    stamps = np.delete(np.arange(101) * 0.01, np.arange(40, 60))
+    rows = [f"{t:.2f},{np.sin(t):.9f}" for t in stamps]
+    (tmp_path / "angle.csv").write_text("\n".join(["t,angle", *rows]))
+    resample = 'resample = { end = 1.0, every = "10 ms" }\nmissing = "leave-out"\n'
+    for gap, missing in (("", 20), ('gap = "0.3 s"\n', 0)):
+        data = load(write(PENDULUM + FILES + resample + gap + "[identify]\n")).data()
+        assert np.count_nonzero(~data.present) == missing

@@ -26,9 +26,10 @@ def measured(data: MeasurementsLike, *, title: str = "") -> go.Figure:
     figure, along = go.Figure(), data.coordinate
     mode = "markers" if len(along.values) <= FEW else "lines"
     for place, name in enumerate(data.channels):
-        values, colour = data.values[:, place], LIGHT.series[place % len(LIGHT.series)]
+        taken = data.taken[:, place]
+        values, colour = data.values[taken, place], LIGHT.series[place % len(LIGHT.series)]
         kept = thin(values)
-        figure.add_scatter(x=along.values[kept], y=values[kept], mode=mode, name=plain(name))
+        figure.add_scatter(x=along.values[taken][kept], y=values[kept], mode=mode, name=plain(name))
         figure.update_traces(
             marker={"color": colour, "size": 5}, line={"color": colour}, selector={"name": plain(name)}
         )

@@ -58,8 +58,10 @@ def _channel(figure: go.Figure, result: PredictionLike, column: int, colour: str
         draw_line(figure, at, (upper - lower) / 2, f"{name}, ± {word}", name, look, row=2)
     draw_line(figure, along, centre, f"{name} predicted", name, {"color": colour, "width": 2}, row=1, legend=True)
     if result.data is not None and result.channels[column] in result.data.channels:
-        measured = result.data.values[:, result.data.channels.index(result.channels[column])]
-        kept, when = thin(measured), result.data.coordinate.values
+        place = result.data.channels.index(result.channels[column])
+        taken = result.data.taken[:, place]
+        measured, when = result.data.values[taken, place], result.data.coordinate.values[taken]
+        kept = thin(measured)
         size = 6 if len(when) <= FEW else 3
         figure.add_scatter(
             x=when[kept],

@@ -60,21 +60,23 @@ def responses(
 
 def _channel(figure: go.Figure, fit: ResponseLike, column: int, colour: str) -> None:
     at, name = fit.data.coordinate.values, plain(fit.data.channels[column])
+    taken = np.flatnonzero(fit.data.taken[:, column])
     measured, residual = fit.data.values[:, column], fit.residuals[:, column]
     computed, nearest = fit.response[:, column], measured + residual
     computed = np.where(np.abs(computed - nearest) > 1, nearest, computed)  # whole turns away, where they do not count
-    few = len(at) <= FEW
+    few = len(taken) <= FEW
     dots = (
         {"color": colour, "size": 7, "symbol": "circle-open"} if few else {"color": colour, "size": 3, "opacity": 0.4}
     )
     small = {"color": colour, "size": 4}
     for word, values, row, style in (
-        ("measured", measured, 1, {"mode": "markers", "marker": dots}),
+        ("measured", measured[taken], 1, {"mode": "markers", "marker": dots}),
         ("computed", computed, 1, {"mode": "lines", "line": {"color": colour, "width": 2}}),
-        ("residual", residual, 2, {"mode": "lines+markers" if few else "lines", "marker": small}),
+        ("residual", residual[taken], 2, {"mode": "lines+markers" if few else "lines", "marker": small}),
     ):
         kept = thin(values)
-        trace = go.Scatter(x=at[kept], y=values[kept], name=f"{name} {word}", legendgroup=name, showlegend=row == 1)
+        along = at if word == "computed" else at[taken]
+        trace = go.Scatter(x=along[kept], y=values[kept], name=f"{name} {word}", legendgroup=name, showlegend=row == 1)
         figure.add_trace(trace.update(style), row=row, col=1)
     figure.update_traces(line={"color": colour, "width": 1}, selector={"name": f"{name} residual"})
     if fit.data.deviations is not None:

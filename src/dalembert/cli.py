@@ -136,12 +136,13 @@ def check(
         from dalembert.study.channels import channel_lines
         from dalembert.study.duration import spoken, within
         from dalembert.study.runner import looked
+        from dalembert.study.sources import source_lines
         from dalembert.study.table import placed
 
         read = load(study)
         with placed(study.name), placed(study.name, ModelError):
             typer.echo(f"{study}: in order; it {plan(read)}")
-            for line in channel_lines(read):
+            for line in (*source_lines(read), *channel_lines(read)):
                 typer.echo(line)
             try:
                 for sentence in within(limit, lambda: looked(read, limit)):

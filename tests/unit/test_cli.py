@@ -118,6 +118,22 @@ def test_check_lists_the_channels_of_a_mechanism(dalembert, tmp_path):
     ]
 
 
+def test_check_says_what_each_file_was_taken_to_be(dalembert, tmp_path):
+    bar = 'kind = "RigidBar"\nname = "bar"\nlength = 1\nmass = "m"\nangle = 0\n'
+    more = 'more = [{ file = "b.json", columns = { "bar.end.x" = "x" } }]\n'
+    data = f'[data]\nfile = "a.txt"\ncolumns = {{ "bar.end.y" = "y" }}\n{more}'
+    (tmp_path / "a.txt").write_text("Rig 7\nt;y\ns;mm\n0,0;1,5\n0,1;1,0\n0,2;0,5\n")
+    (tmp_path / "b.json").write_text('{"t": [0.0, 0.15], "x": [1.0, 0.9]}')
+    weights = '[identify]\nweights = { "bar.end.y" = 1.0, "bar.end.x" = 1.0 }\n'
+    solver = "[parameters]\nm = { lower = 1, upper = 2 }\n[solver]\nstep = 0.1\n"
+    (tmp_path / "bar.toml").write_text(f"{solver}{data}{weights}[[model.body]]\n{bar}")
+    lines = dalembert("check", "bar.toml").stdout.splitlines()
+    assert lines[1:3] == [
+        "Data: a.txt: cells separated by semicolons, decimal commas, names in line 2, units in line 3",
+        "Data: b.json: JSON",
+    ]
+
+
 def test_exit_code_1_if_the_solver_could_not(dalembert, tmp_path):
     (tmp_path / "decay.toml").write_text(SWEEP.replace("2 1/s", "3 1/s"))
     ran = dalembert("run", "decay.toml")

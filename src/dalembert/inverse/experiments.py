@@ -403,5 +403,6 @@ def _measurements(experiments: Sequence[Experiment], model: JointModel) -> Measu
         np.concatenate(deviations) if deviations else None,
         missing="leave-out",
         wraps=tuple(f"{item.name}.{name}" for item in experiments for name in item.data.wraps),
+        origin="; ".join(dict.fromkeys(filter(None, (item.data.origin for item in experiments)))),
         sampled=sampled,
     )

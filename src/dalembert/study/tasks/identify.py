@@ -257,8 +257,7 @@ class Identify(Task):
         return 0 if study.table.shooting is None else 2
 
     def foreseen(self, study: "Study") -> tuple[str, ...]:
-        model, data = posed(study)
-        return (*_origins(model, data), *telling.foreseen(model, data))
+        return telling.foreseen(*posed(study))
 
     def unknowns(self, study: "Study") -> tuple[str, ...]:
         return unknown_names(study)
@@ -307,12 +306,6 @@ def _wrong_shooting(file: Any) -> list[str]:
     if not isinstance(settings(table.method), Squares):
         wrong.append("[identify.shooting] is a way of least squares; leave it or the method out")
     return wrong
-
-
-def _origins(model: Any, data: Any) -> list[str]:
-    """What text files were taken to be."""
-    told = [item.data.origin for item in model] if data is None else [data.origin]
-    return [f"Read {origin}." for origin in dict.fromkeys(told) if ": " in origin]
 
 
 def _measured(model: Any, data: Any) -> str:

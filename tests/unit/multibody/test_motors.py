@@ -242,6 +242,26 @@ def test_all_integrators_agree_with_the_equation_of_motion(name: str) -> None:
     np.testing.assert_allclose(angle, by_hand(times), atol=tolerance)
 
 
+STEADY = {
+    "Radau IIA": mb.RadauIIA(tolerance=1e-8),
+    "automatic": mb.Automatic(),
+    "Runge-Kutta 4": mb.RungeKutta4(1e-3),
+    "DOP853": mb.OdeSolver("DOP853", 1e-8, 1e-10, most_steps=20_000),
+}
+
+
+@pytest.mark.parametrize("name", STEADY)
+def test_a_steady_rate_against_two_dampers_is_kept(name: str) -> None:
+    """The accelerations are the rounding of forces in balance."""
+    system = mb.System(gravity=(0.0, 0.0))
+    body = system.add(mb.RigidBody("disc", mass=1.0, inertia=INERTIA))
+    system.add(mb.RevoluteJoint("bearing", system.ground, body.centre, viscous=0.04))
+    system.add(mb.TorsionSpring("grease", system.ground, body.centre, stiffness=0.0, damping=0.02))
+    system.add(mb.Torque("belt", body.centre, 1.51))
+    rate = mb.simulate(system, 2.0, STEADY[name]).channels(["bearing.rate"])[-1, 0]
+    assert rate == pytest.approx(1.51 / 0.06, rel=1e-6)
+
+
 def bar_on_a_beam(**fields):
     system = mb.System()
     beam = system.add(mb.AncfCable("beam", 1.0, 2, youngs_modulus=1e9, density=1e3, height=0.01, width=0.01))

@@ -16,6 +16,7 @@ from dalembert.multibody.integrators.least_squares import (
 from dalembert.multibody.integrators.lifting import lift
 from dalembert.multibody.integrators.partitioning import Partition, room
 from dalembert.multibody.integrators.problem import Problem
+from dalembert.multibody.integrators.settling import balanced
 from dalembert.multibody.kernels.assembly import constraint_rates, residual, set_signals, tangent
 from dalembert.multibody.kernels.dual import STEP
 from dalembert.multibody.kernels.linear import Factors, factorise, storage
@@ -56,6 +57,7 @@ class Tools(NamedTuple):
     gap: Reals
     answer: Reals
     second: Reals
+    still: Reals
     partition: Partition
     surplus: Surplus
     base: Motion
@@ -66,10 +68,10 @@ class Tools(NamedTuple):
 def make_tools(problem: Problem, terms: Terms, work: int, dual_work: int, directions: int) -> Tools:
     """Work for a model, with derivatives if there are any directions."""
     width = problem.exact_layout.size + 1
-    vector = np.zeros((3, width))
+    vector = np.zeros((4, width))
     return Tools(
         work, dual_work, storage(problem.exact_layout), np.zeros((7, width), np.complex128), vector[0], vector[1],
-        vector[2], room(problem, directions if terms.way == PARTITIONED else 0),
+        vector[2], vector[3], room(problem, directions if terms.way == PARTITIONED else 0),
         surplus_room(problem, terms.redundant, directions), resting(width), resting(width),
         demand_along.address if directions else 0,
     )  # fmt: skip
@@ -111,6 +113,13 @@ def _size(values, begin, end):
     return largest
 
 
+@inner
+def _rests(problem, model, state, tools):
+    """Whether accelerations are nothing but rounding of forces in balance."""
+    residual(model, problem.n, state.x, state.v, state.a, tools.work, 1.0, tools.gap)
+    return balanced(model, problem.n, state, tools.work, tools.gap, tools.answer, tools.second, tools.still)
+
+
 @kernel
 def demand(
     problem: Problem, terms: Terms, model: Address, dual: Address, directions: Integers, t: float, within: float,
@@ -139,7 +148,9 @@ def demand(
         )
         if iteration > 0 and moved <= _QUADRATIC:
             break
-    if not _size(state.a, 0, n) + _size(state.x, n, last) < 1e100 or (nonlinear and not moved <= 1e-6):
+    if not _size(state.a, 0, n) + _size(state.x, n, last) < 1e100:
+        return False
+    if nonlinear and not moved <= 1e-6 and not _rests(problem, model, state, tools):
         return False
     if len(dstates.x) > 0:
         _demand_along_at(tools.along, problem, terms, directions, t, within, state, dstates, tools)

@@ -93,18 +93,24 @@ def _finished(iteration, norm, before, size):
 
 
 @inner
-def _balanced(model, n, state, work, moved):
+def balanced(model, n, state, work, f, unheld, at, still):
     """Whether what is left of the equations of motion is rounding against their forces, as of a mechanism at rest.
 
-    Its accelerations are nothing but rounding, so that no correction is small against them.
+    Its accelerations are nothing but rounding, so that no correction is small against them. Forces without those of the
+    joints show it at rest, those at zero velocity where a drive turns steadily against its dampers. ``f`` is what is
+    left, the other vectors (N + 1,) are room.
     """
-    f, unheld, at = moved[2], moved[3], moved[4]
-    for i in range(len(at)):
-        at[i] = state.x[i] if i < n else 0.0
-    residual(model, n, at, state.v, state.a, work, 1.0, unheld)
     left, largest = 0.0, 0.0
+    for i in range(len(at)):
+        at[i], still[i] = state.x[i] if i < n else 0.0, 0.0
     for i in range(n):
-        left, largest = max(left, abs(f[i])), max(largest, abs(unheld[i]))
+        left = max(left, abs(f[i]))
+    residual(model, n, at, state.v, state.a, work, 1.0, unheld)
+    for i in range(n):
+        largest = max(largest, abs(unheld[i]))
+    residual(model, n, at, still, still, work, 1.0, unheld)
+    for i in range(n):
+        largest = max(largest, abs(unheld[i]))
     return left <= _LOOSE * largest
 
 
@@ -140,7 +146,9 @@ def settle(
             if done or not norm < 1e100:
                 break
             before = norm
-        if not done and not before <= _LOOSE * size and not (level == 2 and _balanced(model, n, state, work, moved)):
+        if done or before <= _LOOSE * size:
+            continue
+        if level < ACCELERATIONS or not balanced(model, n, state, work, f, rate, second, answer):
             return False
     return True
 

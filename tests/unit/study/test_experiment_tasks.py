@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.interpolate import make_interp_spline
 
 from dalembert.errors import DataError, InputError
 from dalembert.inverse import Prediction
@@ -142,6 +143,24 @@ def test_sensors_read_a_mechanism_between_the_steps_of_the_solver(write, tmp_pat
     assert folder.report.is_file()
 
 
+def test_the_lag_of_a_sensor_is_identified_in_the_unit_of_the_study(write, tmp_path):
+    data = '[data]\nfile = "x.csv"\ncolumns = { "rod.end.x" = "x" }\n'
+    text = PENDULUM + data + '[sensors."rod.end.x"]\nlag = [0, "100 ms"]\n[identify]\n'
+    fine, lag = np.arange(0, 150_001) * 1e-5, 0.04
+    study = load(write(PENDULUM + "[simulate]\nend = 1.5\n"))
+    steps = study.forward(["rod.end.x"], fine[::100]).evaluate(np.array([[0.2]])).only()[0, :, 0]
+    true, read = make_interp_spline(fine[::100], steps, k=5)(fine), np.empty_like(fine)
+    read[0] = true[0]
+    for k in range(len(fine) - 1):  # the trapezoidal rule for lag y' + y = x
+        half = 0.5e-5 / lag
+        read[k + 1] = ((1 - half) * read[k] + half * (true[k] + true[k + 1])) / (1 + half)
+    table(tmp_path / "x.csv", fine[::2500], read[::2500])
+    study = load(write(text))
+    assert unknowns(study) == ("drag", "rod.end.x lag")
+    _, outcome = run_study(study, tmp_path / "run")
+    assert outcome.best["values"] == pytest.approx({"drag": 0.2, "rod.end.x lag": lag}, rel=1e-4)
+
+
 def test_experiments_may_differ_in_constants(write, tmp_path):
     times = np.arange(0, 41) * 0.05
     texts = []
@@ -208,6 +227,10 @@ def test_each_experiment_has_its_prediction(write, tmp_path):
         (
             TWO + "[sensors.x]\ngain = [2.0, 0.5]\n[identify]\n",
             "gain is between 2 and 0.5; expected the lower bound first",
+        ),
+        (
+            TWO + "[sensors.x]\nlag = [-0.1, 0.5]\n[identify]\n",
+            "lag may be -0.1 s; expected bounds of zero or more",
         ),
         (
             TWO + "[sensors.x]\nat_rest = true\n[identify]\n",

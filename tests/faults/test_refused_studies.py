@@ -238,7 +238,7 @@ def test_the_check_ends_at_its_time_limit():
     began = time.monotonic()
     done = checked("--limit", "0.5")
     assert (done.returncode, done.stderr) == (0, "")
-    assert done.stdout.splitlines()[1] == "The check ends at its time limit, 0.5 s, during a simulation. Raise --limit."
+    assert "The check ends at its time limit, 0.5 s, during a simulation. Raise --limit." in done.stdout.splitlines()
     assert time.monotonic() - began < 15
 
 
@@ -247,9 +247,8 @@ def test_what_would_take_longer_than_the_limit_is_left_out():
     Path("study.toml").write_text(HEAD.replace("swing", "pause") + DATA + "[identify]\n")
     done = checked("--limit", "1.4")
     assert done.returncode == 0, done.stderr
-    assert done.stdout.splitlines()[2] == (
-        "The check ends before its time limit, 1.4 s: what it would simulate next takes 1.6 s. Raise --limit."
-    )
+    expected = "The check ends before its time limit, 1.4 s: what it would simulate next takes 1.6 s. Raise --limit."
+    assert expected in done.stdout.splitlines()
 
 
 @pytest.mark.parametrize(

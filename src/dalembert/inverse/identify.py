@@ -235,7 +235,6 @@ def identify(
             model,
             method,
             data=data.fingerprint,
-            **({"source": data.origin} if data.origin else {}),
             seed=seed,
             starts=starts,
             start=None if start is None else model.parameters.vector(start).tolist(),

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from correlated_noise import autoregressive
-from dalembert.data import Measurements, merged, read
+from dalembert.data import Measurements, merged
 from dalembert.forward import PythonModel
 from dalembert.inverse import Experiment, Fit, identify
 from dalembert.report import charts
@@ -76,14 +76,3 @@ def test_experiments_keep_the_samples_of_their_channels():
     fit = identify([Experiment(name, model(data), data) for name, data in parts.items()])
     for part in fit.experiments:
         np.testing.assert_array_equal(part.data.taken, parts[part.name].taken)
-
-
-def test_a_fit_says_what_the_files_were_taken_to_be(tmp_path):
-    (tmp_path / "run.txt").write_text(
-        "\n".join(["t;angle", *(f"{t:.2f};{x:.6f}" for t, x in zip(FAST, motion(FAST)[0], strict=True))])
-    )
-    data = read(tmp_path / "run.txt")
-    said = f"{tmp_path / 'run.txt'}: cells separated by semicolons, names in line 1"
-    one = PythonModel(lambda rate: TRUE["size"] * np.cos(rate * FAST), {"rate": (2.0, 2.5)}, ["angle"], FAST)
-    for posed in ((one, data), ([Experiment("first", one, data), Experiment("second", one, data)],)):
-        assert identify(*posed).provenance["source"] == said

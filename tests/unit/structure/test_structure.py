@@ -19,7 +19,7 @@ def test_a_node_with_several_directions_asks_for_one() -> None:
 
 
 def test_an_unknown_name_lists_near_ones() -> None:
-    with pytest.raises(InputError, match=says("unknown degree of freedom 'b.y'; did you mean 'b.x' or 'a.y'?")):
+    with pytest.raises(InputError, match=says("unknown degree of freedom 'b.y'; did you mean 'a.y' or 'b.x'?")):
         DOFS.index("b.y")
 
 

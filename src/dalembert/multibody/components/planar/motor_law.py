@@ -103,6 +103,7 @@ def drive_kind(
         out[2], out[3] = _torque(current, rate, p), current
         out[4] = p.resistance * current + p.back_emf * p.ratio * rate
 
+    residual.__module__ = commanded.__module__  # where other processes find the kind
     return Kind(
         name,
         coordinates=pairs.COORDINATES,

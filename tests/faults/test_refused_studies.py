@@ -74,7 +74,10 @@ REFUSED = {
     "simulate: open": (SOLVED + OPEN + "[simulate]\nend = 1.0\n", "stays open by 1 (m or rad)"),
     "simulate: channel": (SOLVED + '[simulate]\nend = 1.0\nchannels = ["bar.end.q"]\n', "[simulate], channels: "),
     "simulate: memory": (SOLVED.replace("1 ms", "1e-13 s") + "[simulate]\nend = 1.0\n", "GB of memory"),
-    "shooting: no deviations": (HEAD + DATA + SHOOTING, "shooting: the data have no deviations"),
+    "shooting: no states": (
+        HEAD + DATA + "[identify]\nshooting = true\n",
+        "shooting: a PythonModel cannot begin at a later state",
+    ),
     "shooting: uneven": (
         HEAD.replace("swing", "uneven") + KNOWN.replace("x.csv", "uneven.csv") + SHOOTING.replace('"v"', '"x"'),
         "shooting: the samples are between",

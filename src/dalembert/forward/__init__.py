@@ -11,6 +11,13 @@ from dalembert.forward.python_model import PythonModel
 from dalembert.forward.recorded import Recorded
 from dalembert.forward.refinement import Refinable, Refinement, error_factor, refined
 from dalembert.forward.responses import Responses
+from dalembert.forward.restart import (
+    Restartable,
+    StateChart,
+    begun_later,
+    restartable,
+    restarted,
+)
 from dalembert.forward.sensors import Sensor, Sensors
 from dalembert.forward.wrapped import clock, findings_at, starting
 
@@ -26,8 +33,11 @@ __all__ = [
     "Refinable",
     "Refinement",
     "Responses",
+    "Restartable",
     "Sensor",
     "Sensors",
+    "StateChart",
+    "begun_later",
     "check_derivatives",
     "clock",
     "connected",
@@ -37,6 +47,8 @@ __all__ = [
     "on_cluster",
     "prefetched",
     "refined",
+    "restartable",
+    "restarted",
     "starting",
     "takes_executor",
 ]

@@ -16,7 +16,8 @@ class End:
     """Where a start ended: a search point (parameters,), its fitness over all samples, and how it was reached.
 
     At a ``stationary`` end a finer descent would change nothing; at a ``rough`` one the response is not smooth enough
-    for it. Multiple shooting adds the ``nodes`` of its segments. ``begun`` is the fitness where the descent over all
+    for it. Multiple shooting adds the ``nodes`` of its segments, and a ``spread`` S (parameters, parameters)
+    with the covariance S Sᵀ of the parameters at unit variance. ``begun`` is the fitness where the descent over all
     samples began.
     """
 
@@ -29,6 +30,7 @@ class End:
     nodes: Nodes | None = None
     rough: bool = False
     begun: float = np.inf
+    spread: np.ndarray | None = None
 
 
 class Memo:

@@ -62,6 +62,22 @@ def estimate(slopes: np.ndarray, scale: np.ndarray, variance: float | np.ndarray
     return Estimate(np.where(lost, np.inf, np.sqrt(variance) * size * scale), correlation, singular, directions)
 
 
+def estimate_of(spread: np.ndarray, scale: np.ndarray, variance: float | np.ndarray) -> Estimate:
+    """Return the estimate of the covariance s² S Sᵀ, with S = ``spread`` (parameters, any).
+
+    Of a variance with correlated residuals the largest one counts.
+    """
+    if isinstance(variance, np.ndarray):
+        variance = float(np.linalg.eigvalsh(variance)[-1])
+    directions, values, _ = np.linalg.svd(spread / scale[:, None], full_matrices=False)
+    size = np.linalg.norm(spread, axis=1)
+    unit = spread / np.maximum(size, np.finfo(float).tiny)[:, None]
+    correlation = np.clip(unit @ unit.T, -1, 1)
+    np.fill_diagonal(correlation, 1.0)
+    singular = 1 / np.maximum(values, np.finfo(float).tiny)
+    return Estimate(np.sqrt(variance) * size, correlation, singular[::-1], directions.T[::-1])
+
+
 def unknown_estimate(parameters: int) -> Estimate:
     """Return NaN deviations and correlations, for a response without a jacobian."""
     lost, square = np.full(parameters, np.nan), np.full((parameters, parameters), np.nan)

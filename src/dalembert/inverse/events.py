@@ -90,6 +90,11 @@ class Step:
         How response sensitivity took the step that led there.
     gap : float, optional
         Of multiple shooting, the largest gap between two segments, in parts of the states' ranges.
+    minimised : float, optional
+        Of multiple shooting, what is made least: the misfit and the weighted squares of the gaps. Their weight grows
+        from rung to rung, and with it the misfit.
+    of : int, optional
+        Samples that are compared in the end.
     """
 
     kind: ClassVar[str] = "iteration"
@@ -101,6 +106,8 @@ class Step:
     samples: int
     regularised: RegularisedStep | None = None
     gap: float | None = None
+    minimised: float | None = None
+    of: int | None = None
 
 
 @dataclass(frozen=True, eq=False)

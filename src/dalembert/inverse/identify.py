@@ -12,11 +12,13 @@ from dalembert.errors import DalembertError, InputError, SolveError, StorageErro
 from dalembert.forward import Executor, ForwardModel, check_derivatives, findings_at, takes_executor
 from dalembert.forward.provenance import provenance
 from dalembert.inverse.correlation import CorrelatedResiduals, correlation, correlation_findings
-from dalembert.inverse.estimate import Estimate, estimate, unknown_estimate
+from dalembert.inverse.descent import End
+from dalembert.inverse.estimate import Estimate, estimate, estimate_of, unknown_estimate
 from dalembert.inverse.events import Finished, OnEvent
 from dalembert.inverse.experiments import Experiment, JointModel, Part, begun, joint, joint_weights, placed
 from dalembert.inverse.explained import explained_findings
 from dalembert.inverse.fit import Fit
+from dalembert.inverse.growth import growth_findings
 from dalembert.inverse.integration import integration_bias, integration_findings
 from dalembert.inverse.journal import Journal
 from dalembert.inverse.loss import loss_of
@@ -31,6 +33,7 @@ from dalembert.inverse.rivals import rival_findings, rivals
 from dalembert.inverse.roughness import roughness_findings
 from dalembert.inverse.runs import Method, polished, runs
 from dalembert.inverse.shooting import MultipleShooting, shots
+from dalembert.inverse.smoothed import noise_findings, smooth_noise
 from dalembert.inverse.spread import SPREADS
 from dalembert.inverse.status import status
 from dalembert.inverse.suspect_units import unit_findings
@@ -162,17 +165,19 @@ def identify(
         raise InputError(unknown("spread", str(spread), SPREADS))
     model, data, weights, parts = _joined(begun(placed(model, executor), start), data, weights)
     given = data.deviations is not None and weights is None
+    smooth = None if shooting is None or given or weights is not None else smooth_noise(data, parts)
     journal = Journal(len(data.coordinate.values), on_event)
-    posed = replace(pose(model, data, weights, journal), loss=loss_of(loss, loss_scale, known=given))
+    weighed = weights if smooth is None else np.broadcast_to(smooth**-2.0, data.values.shape)
+    posed = replace(pose(model, data, weighed, journal), loss=loss_of(loss, loss_scale, known=given))
     parted = split(posed, validation)
     problem, journal.samples = parted.part, parted.part.samples
     origin = None if start is None else _origin(problem, start)
-    floor = noise_floor(problem)
+    floor = noise_floor(problem, smooth)
 
     first = _origin(problem, model.parameters.start) if origin is None else origin
     if shooting is not None:  # before anything is simulated
-        check_segments(model, data, shooting.states, shooting.segments, weighed=weights is not None)
-        check_restart(problem, shooting.states, shooting.segments, problem.search.vectors(first))
+        check_segments(problem, shooting)
+        check_restart(problem, shooting, problem.search.vectors(first))
     if squares:
         check_derivatives(problem.model, problem.search.vectors(first))
     if shooting is not None and isinstance(method, Squares):
@@ -196,10 +201,10 @@ def identify(
     known = given or problem.priors > 0
     reached = best.fitness <= floor.fitness
     exact = reached and floor.source == "arithmetic"
-    told, correlated = _told(problem, response, at, best.fitness, known=known, exact=exact)
+    told, correlated = _told(problem, response, at, best, known=known, exact=exact)
     rounded = reached and floor.source == "rounding of the data"
     findings = correlation_findings(correlated, told.deviations, explained=rounded)
-    found = integration_bias(problem, at, 1 if best.nodes is None else best.nodes.segments)
+    found = integration_bias(problem, at, best.nodes)
     biased = (
         ()
         if exact
@@ -214,6 +219,8 @@ def identify(
     whole = response if problem is posed else posed.responses(vector[None])[0]
     predicted = parted.validation(whole)
     unexplained = () if predicted is None else explained_findings(predicted.explained)
+    doubtful = best.fitness > floor.fitness and (correlated is not None or floor.known or not best.success)
+    grown = tuple(growth_findings(problem, vector)) if squares and shooting is None and doubtful else ()
     fit = Fit(
         parameters=model.parameters,
         values=vector,
@@ -238,7 +245,7 @@ def identify(
             seed=seed,
             starts=starts,
             start=None if start is None else model.parameters.vector(start).tolist(),
-            weights="given" if weights is not None else "data",
+            weights="given" if weights is not None else "data" if smooth is None else "smoothed",
             polish=polish,
             horizon=horizon,
             spread=spread,
@@ -248,6 +255,7 @@ def identify(
         validation=predicted,
         nodes=best.nodes,
         findings=(
+            *noise_findings(data, smooth),
             *undetermined,
             *too_few_findings(problem, known=known),
             *rival_findings(problem, best, others, floor),
@@ -257,6 +265,7 @@ def identify(
             *followed,
             *biased,
             *unexplained,
+            *grown,
             *findings_at(model, vector),
         ),
         integration=found,
@@ -311,7 +320,7 @@ def _linearised(problem: Problem, vector: np.ndarray) -> Linearisation | None:
 
 
 def _told(
-    problem: Problem, response: np.ndarray, at: Linearisation | None, fitness: float, *, known: bool, exact: bool
+    problem: Problem, response: np.ndarray, at: Linearisation | None, best: End, *, known: bool, exact: bool
 ) -> tuple[Estimate, CorrelatedResiduals | None]:
     """Deviations and correlations, NaN without a jacobian; the noise is known, or estimated from the residuals.
 
@@ -319,7 +328,7 @@ def _told(
     """
     scale, plain = problem.model.parameters.scale, replace(problem, loss=None)
     freedom = problem.compared - len(scale)
-    variance = 1.0 if known else fitness / freedom if freedom > 0 else np.nan
+    variance = 1.0 if known else best.fitness / freedom if freedom > 0 else np.nan
     residual, slopes = plain.residual(response), None if at is None else plain.slopes(at, scale)
     if problem.loss is not None:
         counted = problem.weights.ravel() > 0
@@ -328,7 +337,10 @@ def _told(
     correlated = None if exact else correlation(problem, response, slopes, residual, variance, known=known)
     if slopes is None:
         return unknown_estimate(len(scale)), correlated
-    return estimate(slopes, scale, variance if correlated is None else correlated.noise), correlated
+    noise = variance if correlated is None else correlated.noise
+    if best.spread is not None:
+        return estimate_of(best.spread, scale, noise), correlated
+    return estimate(slopes, scale, noise), correlated
 
 
 def _joined(

@@ -10,8 +10,12 @@ from dalembert.errors import ClusterError, StorageError, told
 from dalembert.findings import Finding
 from dalembert.forward import refined
 from dalembert.inverse.estimate import UNSEEN
+from dalembert.inverse.nodes import Nodes
 from dalembert.inverse.prior import prior_residual
 from dalembert.inverse.problem import Linearisation, Problem
+
+CHAOTIC = 1e3
+"""Growth of a small change of the state from which on the bias is not linear in the error of the response."""
 
 LARGE = 0.5
 """Bias, in deviations of the parameter or of the misfit, from which it is a finding."""
@@ -54,16 +58,18 @@ class IntegrationBias:
         return bool(np.isnan(self.fitness))
 
 
-def integration_bias(problem: Problem, at: Linearisation | None, segments: int) -> IntegrationBias | None:
+def integration_bias(problem: Problem, at: Linearisation | None, nodes: Nodes | None) -> IntegrationBias | None:
     """Return the bias by the integrator at a minimum; None for a model that cannot be simulated more exactly.
 
-    ``segments`` is the number of runs that the response consists of, by multiple shooting.
+    ``nodes`` are those of multiple shooting. Where errors grow much, the bias is not linear in that of the response.
     """
     finer = None if at is None else refined(problem.model)
     if at is None or finer is None:
         return None
-    if segments > 1:
-        return _unknown(at, f"the response is that of {segments} segments, which one simulation does not follow")
+    if nodes is not None and nodes.segments > 1:
+        return _unknown(at, f"the response is that of {nodes.segments} segments, which one simulation does not follow")
+    if nodes is not None and nodes.growth > CHAOTIC:
+        return _unknown(at, f"a small change of the initial state grows {nodes.growth:.2g} times")
     problem.journal.simulations += 1
     try:
         responses = finer.model.evaluate(at.vector[None])

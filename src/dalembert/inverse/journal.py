@@ -57,8 +57,10 @@ class Journal:
         samples: int,
         regularised: RegularisedStep | None = None,
         gap: float | None = None,
+        minimised: float | None = None,
     ) -> None:
-        step = Step(len(self.starts), self._iteration, self.simulations, best, values, samples, regularised, gap)
+        number, spent = self._iteration, self.simulations
+        step = Step(len(self.starts), number, spent, best, values, samples, regularised, gap, minimised, self.samples)
         self._iteration += 1
         if samples == self.samples:
             self.history.append(step)

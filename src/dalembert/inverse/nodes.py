@@ -1,6 +1,6 @@
 """Where the segments of multiple shooting meet."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -12,17 +12,24 @@ class Nodes:
     Parameters
     ----------
     states : tuple of str
-        Parameters of the initial state, which the columns are.
+        Parameters of the initial state, or coordinates and rates of a mechanism, which the columns are.
     samples : array of int, shape (nodes,)
-        Where the segments meet.
+        Where the segments meet: samples of the experiment of each node.
     ends, begins : array, shape (nodes, states)
-        State at the end of the segment before, and at the beginning of the one after.
+        State at the end of the segment before, and at the beginning of the one after; NaN for coordinates that a
+        mechanism does not begin with there.
     gap : float
         Largest difference of the two, in parts of the states' ranges.
     growth : float
         How much a small change of the initial state has grown by the last node, both in parts of the ranges.
     segments : int
-        Those that the fit consists of: 1 where they merged into one run.
+        Those that the fit of each motion consists of, at most: 1 where they merged into one run.
+    units : tuple of str
+        Of the states.
+    experiments : tuple of str
+        Of each node; empty names for a single experiment.
+    times : array, shape (nodes,)
+        Values of the coordinate at the nodes.
     """
 
     states: tuple[str, ...]
@@ -32,14 +39,20 @@ class Nodes:
     gap: float
     growth: float
     segments: int
+    units: tuple[str, ...] = ()
+    experiments: tuple[str, ...] = ()
+    times: np.ndarray = field(default_factory=lambda: np.zeros(0))
 
     def __str__(self) -> str:
         """How the segments ended, in a sentence."""
-        met = f"{len(self.samples) + 1} segments meet within {self.gap:.1g} of the states' ranges"
+        motions = max(1, len(set(self.experiments)))
+        which = f" of {motions} experiments" if motions > 1 else ""
+        run = "one run of each" if motions > 1 else "one run"
+        met = f"{len(self.samples) + motions} segments{which} meet within {self.gap:.1g} of the states' ranges"
         if self.segments == 1:
-            return f"The {met}, and merged into one run."
+            return f"The {met}, and merged into {run}."
         return (
-            f"The {met}. They did not merge into one run, since a small change of its beginning grows "
+            f"The {met}. They did not merge into {run}, since a small change of its beginning grows "
             f"{self.growth:.2g} times: the response is that of {self.segments} segments, and a "
             "simulation from the identified values leaves the data."
         )

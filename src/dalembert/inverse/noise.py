@@ -30,19 +30,35 @@ class NoiseFloor:
     source: str
     conclusive: bool
 
+    @property
+    def known(self) -> bool:
+        """Whether deviations of the data were given."""
+        return self.source == "given deviations"
 
-def noise_floor(problem: Problem) -> NoiseFloor:
+
+def noise_floor(problem: Problem, smooth: np.ndarray | None = None) -> NoiseFloor:
     """Floor from given deviations, from the digits that the data are rounded to, and from arithmetic.
+
+    ``smooth`` (channels,) are deviations that were estimated by local polynomials.
 
     The variance of a value is the given one, plus q²/12 for data rounded to multiples of q, plus the square of a
     millionth of its channel's spread.
     """
     data, weights = problem.data, problem.weights
     given = np.zeros(len(data.channels)) if data.deviations is None else data.deviations
+    given = given if smooth is None else smooth
     quanta = np.array([quantum(column[there]) for column, there in zip(data.values.T, data.present.T, strict=True)])
     spread = _filled(problem).std(axis=0)
     expected = float(np.sum(weights * (given**2 + quanta**2 / 12 + (1e-6 * spread) ** 2))) + problem.priors
-    source = "given deviations" if given.any() else "rounding of the data" if quanta.any() else "arithmetic"
+    source = (
+        "local polynomials"
+        if smooth is not None
+        else "given deviations"
+        if given.any()
+        else "rounding of the data"
+        if quanta.any()
+        else "arithmetic"
+    )
     return NoiseFloor(
         expected * float(chdtri(problem.compared, 0.001)) / problem.compared,
         source,

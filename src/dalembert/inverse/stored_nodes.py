@@ -16,6 +16,7 @@ def stored_nodes(nodes: Nodes | None) -> dict[str, Any]:
         "node_samples": ("node", nodes.samples.astype(np.int64)),
         "node_ends": (("node", "state"), nodes.ends),
         "node_begins": (("node", "state"), nodes.begins),
+        "node_times": ("node", nodes.times),
     }
 
 
@@ -28,6 +29,8 @@ def told_nodes(nodes: Nodes | None) -> dict[str, Any] | None:
         "gap": nodes.gap,
         "growth": nodes.growth,
         "segments": nodes.segments,
+        "units": list(nodes.units),
+        "experiments": list(nodes.experiments),
     }
 
 
@@ -35,5 +38,7 @@ def nodes_of(arrays: Mapping[str, np.ndarray], told: Mapping[str, Any] | None) -
     """The nodes again."""
     if told is None:
         return None
-    samples, ends, begins = (arrays[f"node_{name}"] for name in ("samples", "ends", "begins"))
-    return Nodes(tuple(told["states"]), samples, ends, begins, told["gap"], told["growth"], told["segments"])
+    samples, ends, begins, times = (arrays[f"node_{name}"] for name in ("samples", "ends", "begins", "times"))
+    units, experiments = tuple(told["units"]), tuple(told["experiments"])
+    found = told["gap"], told["growth"], told["segments"]
+    return Nodes(tuple(told["states"]), samples, ends, begins, *found, units, experiments, times)

@@ -39,12 +39,24 @@ def search_of(
     regularised = steps_of(a, len(a["step_start"]))
     columns = ("step_start", "step_iteration", "step_simulations", "step_best", "step_values")
     gaps = a.get("step_gap", np.full(len(a["step_start"]), np.nan))
-    history = zip(*(a[column] for column in columns), regularised, gaps, strict=True)
+    least = a.get("step_minimised", np.full(len(gaps), np.nan))
+    history = zip(*(a[column] for column in columns), regularised, gaps, least, strict=True)
     starts = zip(a["start_values"], a["end_values"], a["end_fitness"], ends, a["start_simulations"], strict=True)
     return (
         tuple(
-            Step(int(start), int(iteration), int(simulations), float(best), values, samples, how, _gap(gap))
-            for start, iteration, simulations, best, values, how, gap in history
+            Step(
+                int(start),
+                int(iteration),
+                int(simulations),
+                float(best),
+                values,
+                samples,
+                how,
+                _gap(gap),
+                _gap(sum_),
+                samples,
+            )
+            for start, iteration, simulations, best, values, how, gap, sum_ in history
         ),
         tuple(
             StartEnd(start, end, float(fitness), bool(how["success"]), str(how["message"]), int(simulations))
@@ -58,7 +70,11 @@ def _stored_gaps(history: Sequence[Step]) -> dict[str, Any]:
     gaps = [step.gap for step in history]
     if all(gap is None for gap in gaps):
         return {}
-    return {"step_gap": ("step", np.array([np.nan if gap is None else gap for gap in gaps]))}
+    sums = [step.minimised for step in history]
+    return {
+        "step_gap": ("step", np.array([np.nan if gap is None else gap for gap in gaps])),
+        "step_minimised": ("step", np.array([np.nan if one is None else one for one in sums])),
+    }
 
 
 def _gap(stored: float) -> float | None:

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from dalembert.arguments import names_of
 from dalembert.errors import InputError, ModelError, SolveError, told, unknown
 from dalembert.findings import Finding
-from dalembert.forward import Channel, Coordinate, Refinement, Responses, ensemble, error_factor
+from dalembert.forward import Channel, Coordinate, Refinement, Responses, StateChart, ensemble, error_factor
 from dalembert.forward.builders import built, check_function, cores, inexact, restructured
 from dalembert.forward.complex_steps import Compared
 from dalembert.forward.differences import COMPLEX_STEP, DERIVATIVES, central_differences
@@ -28,6 +28,7 @@ from dalembert.multibody.kernels.dual import STEP
 from dalembert.multibody.long_runs import check_pace, check_steps
 from dalembert.multibody.lowering import Lowered, lower
 from dalembert.multibody.observe import Observer, observer
+from dalembert.multibody.restart import MotionSegment, chart
 from dalembert.multibody.simulation import begin_time, checked, integrator, simulate
 from dalembert.multibody.skipped_samples import skipped_samples
 from dalembert.multibody.slip_rates import rubbing
@@ -263,6 +264,81 @@ class TimeResponse:
         """
         return self._sampled(times, begin=self.begin + begin_time("TimeResponse.later", begin))
 
+    def state_chart(
+        self,
+        vector: np.ndarray,
+        state: np.ndarray | None = None,
+        *,
+        whole: bool = False,
+        like: StateChart | None = None,
+    ) -> StateChart:
+        """Return the independent coordinates and rates of a state, from which the joints make the others.
+
+        Parameters
+        ----------
+        vector : array, shape (parameters,)
+        state : array, shape (2n,), optional
+            Coordinates and rates of the mechanism; those of the start at ``vector`` if not given.
+        whole : bool
+            Whether all coordinates and rates are named, dependent ones too.
+        like : StateChart, optional
+            Its coordinates are kept where they determine the others well.
+
+        Examples
+        --------
+        >>> from dalembert.multibody import PointMass, RevoluteJoint, RigidBar, System, TimeResponse
+        >>> def pendulum(angle):
+        ...     system = System()
+        ...     bar = system.add(RigidBar("bar", length=1.0, mass=1.0, angle=angle))
+        ...     system.add(RevoluteJoint("pin", system.ground, bar.start))
+        ...     return system
+        >>> model = TimeResponse(pendulum, {"angle": (-1.0, 1.0)}, ["bar.end.x"], [0.5, 1.0])
+        >>> model.state_chart(np.array([0.3])).names
+        ('bar.angle', 'bar.angle rate')
+        """
+        if state is not None:
+            return chart(self.lowered_at(vector, self.begin, closed=False), np.asarray(state), whole, like)
+        lowered = self._lower(self.parameters.real_vector(vector))
+        n = lowered.structure.n
+        return chart(lowered, np.concatenate([lowered.x[:n], lowered.v[:n]]), whole, like)
+
+    def restarted(
+        self, begin: float, times: ArrayLike, chart: StateChart | None, ends: StateChart | None
+    ) -> MotionSegment:
+        """Return the model of a segment of the motion, which begins at independent coordinates and rates.
+
+        Parameters
+        ----------
+        begin : float
+            s, measured from the start of this model's motion.
+        times : array, shape (samples,)
+            Samples in s, measured from the start of the segment.
+        chart : StateChart or None
+            Names the numbers that the segment begins at: parameters behind those of this model. The segment begins as
+            this model's motion if None.
+        ends : StateChart or None
+            Names numbers of the state that are channels behind those of this model.
+
+        Examples
+        --------
+        The second half of a swing, from the state in its middle:
+
+        >>> from dalembert.multibody import RevoluteJoint, RigidBar, System, TimeResponse
+        >>> def pendulum(angle):
+        ...     system = System()
+        ...     bar = system.add(RigidBar("bar", length=1.0, mass=1.0, angle=angle))
+        ...     system.add(RevoluteJoint("pin", system.ground, bar.start))
+        ...     return system
+        >>> model = TimeResponse(pendulum, {"angle": (-1.0, 1.0)}, ["bar.end.x"], [0.5, 1.0])
+        >>> start = model.state_chart(np.array([0.3]))
+        >>> whole = model.restarted(0.0, [0.5, 1.0], None, start).evaluate([[0.3]]).values[0]
+        >>> half = model.restarted(0.5, [0.5], start, None)
+        >>> np.allclose(half.evaluate([[0.3, *whole[0, 1:]]]).values[0, 0], whole[1, 0], atol=1e-6)
+        True
+        """
+        later = self.begin + begin_time("TimeResponse.restarted", begin)
+        return MotionSegment(self, later, checked(times), chart, ends)
+
     def part(self, share: float) -> "tuple[TimeResponse, float]":
         """The same model until a share of its time, and that share; a simulation takes about this part of the time."""
         end = share * self.times[-1]
@@ -369,23 +445,56 @@ class TimeResponse:
             return []
         return self.solver.integrate(samples, (), self._frame.problem, self.times[-1], logged=False)
 
-    def _lower(self, vector: np.ndarray) -> Lowered:
-        """Arrays of one sample, in the structure of the first."""
-        return self._fit(assembled(self.system(vector), begin=self.begin))
+    @property
+    def frame(self) -> "_Frame":
+        """What all samples share."""
+        return self._frame
 
-    def _tilt(self, vector: np.ndarray, column: int) -> Lowered:
-        """Arrays of the model along one parameter, moved by a complex step of its scale."""
+    def prepare_derivatives(self) -> None:
+        """Compile, or load, what sensitivities need."""
+        self._prepare(self._frame.lowered, self._frame.observer, derivatives=True)
+
+    def placed(self, vector: np.ndarray, begin: float) -> tuple[Lowered, tuple[Lowered, ...]]:
+        """Arrays of the mechanism as placed, and those moved along each parameter; kept for the last vector.
+
+        Segments of one motion share them, unless signals depend on when they begin.
+        """
+        moment = begin if len(self._frame.lowered.structure.signals) > 1 else 0.0
+        key = vector.tobytes(), moment
+        kept = vars(self).get("_placed")
+        if kept is None or kept[0] != key:
+            lowered = self.lowered_at(vector, moment, closed=False)
+            tilted = tuple(self.tilted_at(vector, column, moment, closed=False) for column in range(len(vector)))
+            kept = vars(self)["_placed"] = key, (lowered, tilted)
+        return kept[1]
+
+    def lowered_at(self, vector: np.ndarray, begin: float, *, closed: bool) -> Lowered:
+        """Arrays of the mechanism at a parameter vector and a time of the signals; as placed if not ``closed``."""
+        system = self.system(vector)
+        return self._fit(assembled(system, begin=begin) if closed else lower(system, begin))
+
+    def tilted_at(self, vector: np.ndarray, column: int, begin: float, *, closed: bool) -> Lowered:
+        """The arrays of :meth:`lowered_at`, moved by a complex step of the scale of one parameter."""
         tilted = vector.astype(complex)
         tilted[column] += 1j * STEP * self.parameters.scale[column]
         given: dict[str, complex] = dict(self.parameters.mapping(vector))
         given[self.parameters.names[column]] = complex(tilted[column])
         try:
-            return self._fit(assembled(built(self.builder, given, System), tilted=True, begin=self.begin))
+            system = built(self.builder, given, System)
+            return self._fit(assembled(system, tilted=True, begin=begin) if closed else lower(system, begin))
         except (TypeError, ModelError, np.exceptions.ComplexWarning) as error:
             error = error.__cause__ if isinstance(error, ModelError) else error
             if not isinstance(error, TypeError | np.exceptions.ComplexWarning):
                 raise
             raise inexact(self.parameters.names[column], error) from error
+
+    def _lower(self, vector: np.ndarray) -> Lowered:
+        """Arrays of one sample, in the structure of the first."""
+        return self.lowered_at(vector, self.begin, closed=True)
+
+    def _tilt(self, vector: np.ndarray, column: int) -> Lowered:
+        """Arrays of the model along one parameter, moved by a complex step of its scale."""
+        return self.tilted_at(vector, column, self.begin, closed=True)
 
     def _fit(self, lowered: Lowered) -> Lowered:
         structure = self._frame.lowered.structure

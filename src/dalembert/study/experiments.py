@@ -195,29 +195,26 @@ def posed(study: "Study") -> "tuple[ForwardModel | list[Experiment], Measurement
     """Model and data of a study, or its experiments and None: the first arguments of ``identify``."""
     from dalembert.inverse import Experiment
 
+    states = getattr(getattr(study.table, "shooting", None), "states", None) or {}
+    later = tuple(state.channel for state in states.values())
     if study.file.data is not None:
         data = study.data()
-        shooting = getattr(study.table, "shooting", None)
-        if shooting is None:
-            return _model(study, data, study.file.data), data
-        later = (state.channel for state in shooting.states.values())
-        channels = tuple(dict.fromkeys((*data.channels, *later)))
-        return study.forward(channels, data.coordinate.values), data
+        return _model(study, data, study.file.data, later), data
     experiments = []
     for table in study.file.experiments:
         data, variant = table.read(), table.variant(study)
-        experiments.append(Experiment(table.name, _model(variant, data, table), data, table.alone))
+        experiments.append(Experiment(table.name, _model(variant, data, table, later), data, table.alone))
     return experiments, None
 
 
-def _model(study: "Study", data: "Measurements", table: DataTable) -> ForwardModel:
-    """The model at the samples of data, seen by the sensors that there are."""
+def _model(study: "Study", data: "Measurements", table: DataTable, later: Sequence[str] = ()) -> ForwardModel:
+    """The model at the samples of data, seen by the sensors that there are; with channels that are states later."""
     sensors = {name: table.sensor for name, table in study.file.sensors.items() if name in data.channels}
     stamps, start = data.coordinate.values, table.unknown_start
     if study.has_system and start is None:
         _refuse_late(table, data)
     if not sensors and start is None:
-        return study.forward(data.channels, stamps)
+        return study.forward(tuple(dict.fromkeys((*data.channels, *later))), stamps)
     samples = _fine(study, stamps, sensors, start) if study.has_system else stamps
     return Sensors(study.forward(data.channels, samples), sensors, stamps, start)
 

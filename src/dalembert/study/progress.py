@@ -42,11 +42,15 @@ class Told:
         """Text of an event, and how much is done of how much."""
         match event:
             case {"event": "iteration", "best": best, "values": values, "start": start, "simulations": simulations}:
+                said = f"start {start + 1} · {simulations} simulations"
+                least = event.get("minimised")
+                if least is not None and best is not None:  # it weighs gaps ever more, so that no two compare
+                    return f"{said} · {_in_segments(least, best, event['gap'])}{self._listed(values)}", 0, None
                 if event.get("samples") != self._samples:  # a fitness over more samples is another one
                     self._samples, self._best = event.get("samples"), float("inf")
                 if best is not None and best < self._best:
                     self._best, self._values = best, values
-                return f"start {start + 1} · {simulations} simulations · {self._found}", 0, None
+                return f"{said} · {_horizon(event)}{self._found}", 0, None
             case {"event": "swept", "parameter": name, "value": value, "done": done, "total": total}:
                 return f"{name} = {value:.6g} · {done} of {total}", done, total
             case {"event": "ran", "method": method, "runs": runs, "failed": failed, "most": most}:
@@ -72,8 +76,23 @@ class Told:
 
     @property
     def _found(self) -> str:
-        pairs = zip(self.names, self._values, strict=False)
-        return f"best {self._best:.4g} · " + ", ".join(f"{name} = {value:.6g}" for name, value in pairs)
+        return f"best {self._best:.4g} · {self._listed(self._values)}"
+
+    def _listed(self, values: list[float]) -> str:
+        return ", ".join(f"{name} = {value:.6g}" for name, value in zip(self.names, values, strict=False))
+
+
+def _in_segments(least: float, misfit: float, gap: float) -> str:
+    """What multiple shooting minimises, in words."""
+    return f"minimised {least:.4g} = misfit {misfit:.4g} + weighted gaps, largest gap {gap:.2g} · "
+
+
+def _horizon(event: Event) -> str:
+    """The samples that the best fitness is of, while they are not all: more of them make it rise."""
+    samples, of = event.get("samples"), event.get("of")
+    if samples is None or of is None or samples == of:
+        return ""
+    return f"first {samples} of {of} samples, more of which raise the best · "
 
 
 @dataclass

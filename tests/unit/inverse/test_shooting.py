@@ -5,13 +5,14 @@ import pytest
 
 from dalembert.data import Measurements
 from dalembert.errors import InputError
-from dalembert.forward import ForwardModel, PythonModel
+from dalembert.forward import PythonModel
 from dalembert.inverse import Experiment, Fit, MultipleShooting, State, identify, predict, profile
 from dalembert.inverse.continuity import Chain
+from dalembert.inverse.cuts import Cut, Named, Node, guess, segments
 from dalembert.inverse.journal import Journal
 from dalembert.inverse.problem import pose
-from dalembert.inverse.segments import Segments
-from dalembert.inverse.shooting import first_guess
+from dalembert.inverse.shooting import first_cuts
+from dalembert.inverse.tracks import tracks
 from support import says
 
 TIMES = np.linspace(0, 4, 41)
@@ -27,7 +28,6 @@ def swing(place, speed, stiffness):
 SWING = PythonModel(swing, {"place": (-2.0, 2.0), "speed": (-3.0, 3.0), "stiffness": (2.0, 30.0)}, ["x", "v"], TIMES)
 STATES = {"place": State("x", -2.0, 2.0), "speed": State("v", -9.0, 9.0)}
 TRUE = np.array([1.0, -0.5, 9.0])
-PIECES = Segments(SWING, STATES, ("x",), np.array([0, 10, 21, 41 - 1]))
 
 
 def measured(noise=0.0, **options):
@@ -41,73 +41,70 @@ def together():
     return np.concatenate([TRUE, motion[10], motion[21]])
 
 
+def chain(noise=0.01, states=STATES, cuts=(10, 21)):
+    """Segments of the swing between given samples, and their problem."""
+    problem = pose(SWING, measured(noise, deviations=0.01), None, Journal(41))
+    (track,) = tracks(problem)
+    lower, upper = (np.array([getattr(state, side) for state in states.values()]) for side in ("lower", "upper"))
+    nodes = [Node(cut, tuple(states), ("", ""), np.zeros(2), lower, upper, upper - lower) for cut in cuts]
+    return Chain(problem, segments(problem, [Cut(track, Named(states), tuple(nodes))]))
+
+
 def test_segments_of_one_motion_are_that_motion_and_meet():
-    assert isinstance(PIECES, ForwardModel)
-    assert PIECES.parameters.names[3:] == ("place at 10", "speed at 10", "place at 21", "speed at 21")
-    assert [channel.name for channel in PIECES.channels] == [
-        "x from 0",
-        "x from 10",
-        "x from 21",
-        "place gap at 10",
-        "speed gap at 10",
-        "place gap at 21",
-        "speed gap at 21",
-    ]
-    response = PIECES.evaluate(together()[None]).only()[0]
-    x = swing(*TRUE)[:, 0]
-    np.testing.assert_allclose(response[:11, 0], x[:11], atol=1e-12)
-    np.testing.assert_allclose(response[:12, 1], x[10:22], atol=1e-12)
-    np.testing.assert_allclose(response[:, 2], x[21:], atol=1e-12)
-    np.testing.assert_allclose(response[:, 3:], 0, atol=1e-12)
-    np.testing.assert_array_equal(response[11:, 0], 0)
-    data = PIECES.at(measured(deviations=0.1))
-    assert np.nanmax(np.abs(data.difference(response))) < 1e-12
-    assert np.count_nonzero(data.present) == 41  # a sample at which segments meet counts once
-    np.testing.assert_allclose(PIECES.joined(response)[:, 0], x, atol=1e-12)
-    np.testing.assert_allclose(PIECES.gaps(response), 0, atol=1e-12)
+    pieces = chain().segments
+    assert pieces.parameters.names[3:] == ("place at 10", "speed at 10", "place at 21", "speed at 21")
+    response = pieces.evaluate(together())
+    np.testing.assert_allclose(response.values, swing(*TRUE)[:, :1], atol=1e-12)
+    np.testing.assert_allclose(response.gaps, 0, atol=1e-12)
+    rows = np.concatenate([piece.rows for piece in pieces.pieces])
+    np.testing.assert_array_equal(rows, np.arange(41))  # a sample at which segments meet counts once
 
 
 def test_a_gap_is_the_end_of_a_segment_less_the_beginning_of_the_next():
     apart = together()
     apart[3] += 0.25
-    response = PIECES.evaluate(apart[None]).only()[0]
-    assert response[10, 3] == pytest.approx(-0.25)
+    assert chain().segments.evaluate(apart).gaps[0] == pytest.approx(-0.25 / 4)  # in parts of the state's range
 
 
 def test_derivatives_are_those_of_differences():
-    vector, step = together() + 0.1, 1e-6
-    moved = [PIECES.evaluate(np.stack([vector + step * way, vector - step * way])).only() for way in np.eye(7)]
-    differences = np.stack([(up - down) / (2 * step) for up, down in moved], axis=2)
-    response, jacobian = PIECES.linearise(vector)
-    np.testing.assert_allclose(jacobian, differences, atol=1e-7)
-    np.testing.assert_allclose(response, PIECES.evaluate(vector[None]).only()[0], atol=1e-14)
-
-
-def chain(noise=0.01, states=STATES, cuts=(0, 10, 21, 40)):
-    data = measured(noise, deviations=0.01)
-    return Chain(pose(SWING, data, None, Journal(41)), states, np.array(cuts))
+    pieces, vector, step = chain().segments, together() + 0.1, 1e-6
+    moved = [(pieces.evaluate(vector + step * way), pieces.evaluate(vector - step * way)) for way in np.eye(7)]
+    at = pieces.linearise(vector)
+    of_values = np.stack([(up.values - down.values) / (2 * step) for up, down in moved], axis=2)
+    of_gaps = np.stack([(up.gaps - down.gaps) / (2 * step) for up, down in moved], axis=1)
+    np.testing.assert_allclose(pieces.jacobian(at), of_values, atol=1e-7)
+    np.testing.assert_allclose(pieces.slopes_of_gaps(at), of_gaps, atol=1e-7)
+    np.testing.assert_allclose(at.response.values, pieces.evaluate(vector).values, atol=1e-14)
 
 
 def test_gaps_are_closed_and_the_misfit_is_that_of_one_run():
-    segments = chain()
-    found = segments.closed(segments.inner.search.points(together() + 0.05))
+    own = chain()
+    found = own.closed(own.search.points(together() + 0.05))
     one = identify(SWING, measured(0.01, deviations=0.01), start=TRUE, starts=1)
     assert found.gap < 1e-8
     assert found.misfit == pytest.approx(one.fitness, rel=1e-6)
-    np.testing.assert_allclose(segments.inner.search.vectors(found.point)[:3], one.values, rtol=1e-5)
+    np.testing.assert_allclose(own.search.vectors(found.point)[:3], one.values, rtol=1e-5)
 
 
 def test_segments_that_meet_have_the_jacobian_of_one_run():
-    segments = chain()
-    at = segments.linearised(segments.inner.search.points(together()))
+    own = chain()
+    at = own.linearised(own.search.points(together()))
     response, jacobian = SWING.linearise(TRUE)
     np.testing.assert_allclose(at.response, response[:, :1], atol=1e-12)
     np.testing.assert_allclose(at.jacobian, jacobian[:, :1], atol=1e-12)
 
 
+def test_segments_that_meet_have_the_covariance_of_one_run():
+    own = chain(noise=0.0)
+    spread = own.spread(own.search.points(together()))
+    slopes = SWING.jacobian(TRUE)[:, 0] / 0.01
+    np.testing.assert_allclose(spread @ spread.T, np.linalg.inv(slopes.T @ slopes), rtol=1e-9)
+
+
 def test_growth_is_that_of_the_state_from_the_beginning_to_the_last_node():
-    segments = chain()
-    begins, gaps, growth = segments.met(segments.inner.search.points(together()))
+    own = chain()
+    begins, gaps = own.met(own.search.points(together()))
+    growth = own.growth(own.search.points(together()), [np.array([0, 1])])
     ranges = np.array([4.0, 18.0])
     exact = SWING.jacobian(TRUE)[21][:, :2] * ranges / ranges[:, None]
     np.testing.assert_allclose(begins, swing(*TRUE)[[10, 21]].ravel())
@@ -133,14 +130,20 @@ def test_merged_segments_end_as_one_run(segments):
     assert min(gap for gap in gaps if gap) < 1e-8
 
 
+def first_guess(noise, states, values):
+    problem = pose(SWING, measured(noise, deviations=0.01), None, Journal(41))
+    cuts, values = first_cuts(problem, MultipleShooting(states, 4), np.array(values))
+    return guess(values, cuts)
+
+
 def test_the_first_guess_is_measured_or_follows_from_the_segment_before():
-    segments, exact = chain(noise=0.0), swing(*TRUE)
-    guess = first_guess(segments, np.array([0.0, -0.5, 9.0]))
-    np.testing.assert_allclose(guess[[0, 3, 5]], exact[[0, 10, 21], 0])
-    np.testing.assert_allclose(guess[4], exact[10, 1])  # the true parameters lead there from the true beginning
+    exact = swing(*TRUE)
+    found = first_guess(0.0, STATES, [0.0, -0.5, 9.0])
+    np.testing.assert_allclose(found[[0, 3, 5, 7]], exact[[0, 10, 20, 30], 0])
+    np.testing.assert_allclose(found[4], exact[10, 1])  # the true parameters lead there from the true beginning
     rate = {**STATES, "speed": State("v", -9.0, 9.0, rate_of="x")}
-    guess = first_guess(chain(noise=0.0, states=rate), np.array([0.0, 3.0, 20.0]))
-    np.testing.assert_allclose(guess[[1, 4, 6]], np.clip(exact[[0, 10, 21], 1], -9, 9), atol=0.3)
+    found = first_guess(0.0, rate, [0.0, 3.0, 20.0])
+    np.testing.assert_allclose(found[[1, 4, 6]], np.clip(exact[[0, 10, 20], 1], -9, 9), atol=0.3)
 
 
 def test_wrapping_angles_are_taken_near_the_initial_state():
@@ -188,12 +191,12 @@ def test_simulations_of_all_fits_are_counted_as_runs_over_all_samples():
         (
             {"states": {}},
             "MultipleShooting: no states were given; expected all parameters of the initial state, each with the "
-            "channel that it is later",
+            "channel that it is later; or leave states out for a mechanism",
         ),
         (
-            {"data": measured()},
-            "shooting: the data have no deviations, which say how a misfit weighs against a gap between segments; "
-            "give them, or weights",
+            {"states": None},
+            "shooting: a PythonModel cannot begin at a later state; leave out sensors and an unknown start, or name "
+            "its states: MultipleShooting({parameter: State(channel, lower, upper)})",
         ),
         (
             {"states": {"plac": State("x", -2, 2)}},
@@ -237,12 +240,39 @@ def test_bounds_of_a_state_in_order():
         State("x", 2, -2)
 
 
-def test_several_experiments_are_refused():
-    one = Experiment("one", SWING, measured(deviations=0.1))
-    with pytest.raises(
-        InputError, match=says("shooting: several experiments were given; expected one, or leave shooting out")
-    ):
-        identify([one], shooting=MultipleShooting(STATES, 4))
+def test_experiments_are_cut_each_for_itself():
+    other = PythonModel(swing, SWING.parameters, ["x", "v"], TIMES)
+    true = {"first": TRUE, "second": np.array([-0.7, 1.2, 9.0])}
+    noise = 0.01 * np.random.default_rng(3).standard_normal((2, 41))
+    experiments = [
+        Experiment(name, other, Measurements.of(TIMES, {"x": swing(*own)[:, 0] + wrong}, 0.01), ("place", "speed"))
+        for (name, own), wrong in zip(true.items(), noise, strict=True)
+    ]
+    fit = identify(experiments, shooting=MultipleShooting(STATES, 4))
+    one = identify(experiments)
+    np.testing.assert_allclose(fit.values, one.values, rtol=1e-6)
+    np.testing.assert_allclose(fit.deviations, one.deviations, rtol=1e-4)
+    assert fit.nodes.experiments == ("first",) * 3 + ("second",) * 3
+    assert "The 8 segments of 2 experiments meet" in fit.status
+    assert "and merged into one run of each." in fit.status
+
+
+def test_noise_that_is_not_given_is_estimated_and_said():
+    fit = identify(SWING, measured(0.01), shooting=MultipleShooting(STATES, 4))
+    (finding,) = [one for one in fit.findings if one.code == "smoothed-noise"]
+    assert finding.values["x"] == pytest.approx(0.01, rel=0.4)
+    assert "Their noise was estimated by local polynomials: 'x' 0.0" in str(finding)
+    assert "(known from local polynomials)" in fit.status
+    given = identify(SWING, measured(0.01, deviations=0.01), shooting=MultipleShooting(STATES, 4))
+    np.testing.assert_allclose(fit.values, given.values, rtol=1e-6)
+
+
+def test_progress_tells_what_is_minimised():
+    told = []
+    identify(SWING, measured(0.01, deviations=0.01), shooting=MultipleShooting(STATES, 4), on_event=told.append)
+    steps = [event for event in told if event.kind == "iteration" and event.gap is not None]
+    assert all(step.minimised >= step.best for step in steps)
+    assert steps[0].minimised > steps[0].best
 
 
 def test_uneven_samples_are_told():

@@ -47,6 +47,22 @@ def test_events_are_told_in_a_line(event, text):
     assert _printed(event) == text
 
 
+ITERATION = {"event": "iteration", "start": 0, "iteration": 2, "simulations": 85, "best": 2.5, "values": [0.75]}
+
+
+def test_segments_are_told_with_what_is_minimised():
+    told = _printed(ITERATION | {"minimised": 4.5, "gap": 0.013}, ("mass",))
+    minimised = "minimised 4.5 = misfit 2.5 + weighted gaps, largest gap 0.013"
+    assert told == f"start 1 · 85 simulations · {minimised} · mass = 0.75"
+
+
+def test_a_growing_horizon_says_why_the_best_rises():
+    told = _printed(ITERATION | {"samples": 25, "of": 100}, ("mass",))
+    horizon = "first 25 of 100 samples, more of which raise the best"
+    assert told == f"start 1 · 85 simulations · {horizon} · best 2.5 · mass = 0.75"
+    assert "samples" not in _printed(ITERATION | {"samples": 100, "of": 100}, ("mass",))
+
+
 def test_the_best_values_have_the_names_of_the_unknowns():
     event = {"event": "iteration", "start": 0, "iteration": 2, "simulations": 85, "best": 1e-6, "values": [0.75, 0.05]}
     told = _printed(event, ("theta1 middle", "theta1 radius"))

@@ -93,10 +93,6 @@ def test_a_study_shoots_and_reports_where_its_segments_meet(write, tmp_path):
             "[identify.shooting] cannot be used with [sensors]; leave one of them out",
         ),
         (
-            '[[experiments]]\nname = "a"\nfile = "swing.csv"\ncolumns = { x = "x" }\n[identify]\n' + SHOOTING,
-            "[identify.shooting] cannot be used with [[experiments]]; leave one of them out",
-        ),
-        (
             DATA + '[identify]\nmethod = "improved-swarm"\n' + SHOOTING,
             "[identify.shooting] is a way of least squares; leave it or the method out",
         ),

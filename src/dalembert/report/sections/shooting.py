@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
+import numpy as np
+
 from dalembert.report import charts
 from dalembert.report.needs import FitLike, NodesLike
 from dalembert.report.plot import Plot
@@ -33,18 +35,23 @@ class Shooting(Section):
 
     @property
     def table(self) -> Table:
-        nodes, along = self.nodes, self.fit.data.coordinate
-        units = {item.name: item.unit for item in self.fit.parameters}
-        states = [f"{name} ({units[name]})" if units.get(name) else name for name in nodes.states]
+        nodes, named = self.nodes, any(self.nodes.experiments)
+        records = [self.fit, *getattr(self.fit, "experiments", ())]
+        along = records[-1].data.coordinate
+        states = [f"{name} ({unit})" if unit else name for name, unit in zip(nodes.states, nodes.units, strict=True)]
         columns = ("sample", f"{along.name} ({along.unit})" if along.unit else along.name, *states, "largest gap")
-        apart = abs(nodes.ends - nodes.begins).max(axis=1)
+        apart = np.nanmax(abs(nodes.ends - nodes.begins), axis=1)
         rows = [
             (
+                *([cell(name)] if named else []),
                 cell(int(sample)),
-                cell(float(along.values[sample])),
-                *(cell(float(value)) for value in begins),
+                cell(float(time)),
+                *(cell("" if np.isnan(value) else float(value)) for value in begins),
                 cell(float(gap), digits=2),
             )
-            for sample, begins, gap in zip(nodes.samples, nodes.begins, apart, strict=True)
+            for name, sample, time, begins, gap in zip(
+                nodes.experiments, nodes.samples, nodes.times, nodes.begins, apart, strict=True
+            )
         ]
+        columns = ("experiment", *columns) if named else columns
         return Table("nodes", "States found where segments meet", columns, rows)

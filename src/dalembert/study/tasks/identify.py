@@ -19,7 +19,7 @@ from dalembert.study.experiments import measured_channels, posed, unknown_names
 from dalembert.study.numbers import fixed
 from dalembert.study.table import Read, StudyTable, checked
 from dalembert.study.tasks import telling
-from dalembert.study.tasks.shooting import ShootingTable
+from dalembert.study.tasks.shooting import Shooting, ShootingTable
 from dalembert.study.tasks.task import Outcome, Task, concluded
 from dalembert.study.tasks.wrong import needs_parameters, needs_solver, unmatched, unnamed
 
@@ -68,8 +68,9 @@ class IdentifyTable(StudyTable):
         description="share of the samples at the end, or names of experiments, that are predicted, not fitted; a table "
         "gives the length of the first part of each experiment that is fitted",
     )
-    shooting: ShootingTable | None = Field(
-        None, description="segments that must meet, in place of the growing horizon: for chaotic motion"
+    shooting: Shooting = Field(
+        None,
+        description="true, or a table: segments that must meet, in place of the growing horizon: for chaotic motion",
     )
     profile: bool = Field(False, description="whether to make the profile likelihood of each parameter too")
     prediction: bool = Field(False, description="whether to make bands of the response and of new measurements too")
@@ -109,8 +110,8 @@ def _cost(method: Any, starts: int | None, parameters: int, shooting: ShootingTa
     if shooting is not None:
         one, most = STEPS_IN_SEGMENTS * (1 + parameters), starts or 3
         return (
-            f"{name} in {shooting.segments} segments that must meet: about {one} simulations a start, sensitivities "
-            f"counted, and at most {most} starts"
+            f"{name} in {_segments(shooting)} that must meet: about {one} simulations a start, sensitivities counted, "
+            f"and at most {most} starts"
         )
     if isinstance(method, Squares):
         one = 10 * (1 + parameters)
@@ -119,6 +120,13 @@ def _cost(method: Any, starts: int | None, parameters: int, shooting: ShootingTa
         sizes = f"{starts or 1} x {method.particles} particles x {method.iterations} iterations"
         return f"{name}: {sizes} = {method.particles * method.iterations * (starts or 1)} simulations"
     return f"{name} {getattr(method, 'name', '')}: as many simulations as it asks for"
+
+
+def _segments(shooting: ShootingTable) -> str:
+    """How many segments there are to begin with, in words."""
+    if shooting.segments is None and shooting.states is None:
+        return "segments within which errors grow at most tenfold, and"
+    return f"{shooting.settings().count} segments"
 
 
 def _expected(
@@ -298,9 +306,9 @@ def _wrong_shooting(file: Any) -> list[str]:
     table = file.identify
     if table.shooting is None:
         return []
-    wrong = unnamed(table.shooting.states, file.parameters, "[identify.shooting], states")
-    for key, given in (("[[experiments]]", file.experiments), ("[sensors]", file.sensors)):
-        wrong += [f"[identify.shooting] cannot be used with {key}; leave one of them out"] if given else []
+    wrong = unnamed(table.shooting.states or {}, file.parameters, "[identify.shooting], states")
+    if file.sensors:
+        wrong.append("[identify.shooting] cannot be used with [sensors]; leave one of them out")
     if table.validation is not None:
         wrong.append("[identify.shooting] cannot be used with validation; leave one of the keys out")
     if not isinstance(settings(table.method), Squares):

@@ -1,8 +1,8 @@
 """Multiple shooting in a study file."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
-from pydantic import Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
 from dalembert.study.intervals import Number
 from dalembert.study.table import StudyTable, checked
@@ -29,8 +29,15 @@ class StateTable(StudyTable):
 class ShootingTable(StudyTable):
     """Segments that must meet, for chaotic motion."""
 
-    segments: int = Field(8, description="to begin with; they are merged two by two")
-    states: dict[str, StateTable] = Field(description="all parameters of the initial state")
+    segments: int | None = Field(
+        None,
+        description="to begin with; from the growth of errors if not given, 8 where states are named",
+    )
+    states: dict[str, StateTable] | None = Field(
+        None,
+        description="all parameters of the initial state, of a model that cannot begin at a later state; those of a "
+        "mechanism follow from its joints",
+    )
 
     @model_validator(mode="after")
     def _check(self) -> "ShootingTable":
@@ -41,4 +48,14 @@ class ShootingTable(StudyTable):
         """The settings of the method."""
         from dalembert.inverse import MultipleShooting
 
-        return MultipleShooting({name: table.state() for name, table in self.states.items()}, self.segments)
+        states = None if self.states is None else {name: table.state() for name, table in self.states.items()}
+        return MultipleShooting(states, self.segments)
+
+
+def _table(given: object) -> object:
+    """The table that ``shooting = true`` stands for."""
+    return {} if given is True else None if given is False else given
+
+
+Shooting = Annotated[ShootingTable | None, BeforeValidator(_table, json_schema_input_type=ShootingTable | bool | None)]
+"""The key ``shooting``: true, or a table."""

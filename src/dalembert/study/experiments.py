@@ -1,6 +1,6 @@
 """The tables of several experiments and of sensors, and the models and data that they make."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np

@@ -317,7 +317,7 @@ class MotionSegment:
 
     def _read(self, lowered: Lowered, model: Any, x: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
         """Channels of the model and numbers of the state, (samples, channels)."""
-        values = self._frame.observer.read(lowered, model, x, v, a)
+        values = self._frame.observer.read(lowered, model, x, v, a, self.times)
         if self.ends is None:
             return values
         n = lowered.structure.n

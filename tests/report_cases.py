@@ -24,7 +24,7 @@ from frequency_cases import FREQUENCY_CASES
 from report_case import Case
 from small_models import DECAY, LINE, TIMES, banded, measured
 from stepped_models import TIMES as STEPPED_TIMES
-from stepped_models import Stepped, decay_in_steps, exact, failing, slow_in_steps
+from stepped_models import Stepped, decay_in_steps, exact, failing, growing_in_steps, slow_in_steps
 
 NOW = np.zeros(1)
 DISC = PythonModel(lambda x, y: np.array([x**2 + y**2]), {"x": (-2.0, 2.0), "y": (-2.0, 2.0)}, ["r"], NOW)
@@ -470,6 +470,15 @@ CASES: dict[str, Case] = {
             starts=1,
         ),
         ("the response is that of 2 segments, which one simulation does not follow",),
+    ),
+    "errors that grow, of a model with steps": Case(
+        lambda: da.identify(
+            Stepped(method=growing_in_steps),
+            Measurements.of(STEPPED_TIMES, {"x": growing_in_steps(2.8, 2.0, 0.0)}, 1.0),
+            shooting=da.MultipleShooting({"size": da.State("x", 0.01, 1e6)}, segments=4),
+            starts=1,
+        ),
+        ("a small change of the initial state grows",),
     ),
     # ── identification: what was kept for validation, and several experiments ───────────────────────────────────────
     "a share of the samples": Case(

@@ -23,6 +23,11 @@ def slow_in_steps(rate, size, step, times=TIMES):
     return size * np.exp(-rate * (1 + 0.01 * step**2) * times)
 
 
+def growing_in_steps(rate, size, step, times=TIMES):
+    """A growth whose error is of second order in the step."""
+    return size * np.exp(rate * times) + 0.02 * step**2 * rate * np.sin(3 * times)
+
+
 @dataclass(frozen=True)
 class Stepped(PythonModel):
     """A decay with a step; ``finer`` tells what is made of the refined model."""

@@ -76,7 +76,7 @@ REFUSED = {
     "simulate: memory": (SOLVED.replace("1 ms", "1e-13 s") + "[simulate]\nend = 1.0\n", "GB of memory"),
     "shooting: no states": (
         HEAD + DATA + "[identify]\nshooting = true\n",
-        "shooting: a PythonModel cannot begin at a later state",
+        "shooting: the model cannot begin at a later state",
     ),
     "shooting: uneven": (
         HEAD.replace("swing", "uneven") + KNOWN.replace("x.csv", "uneven.csv") + SHOOTING.replace('"v"', '"x"'),

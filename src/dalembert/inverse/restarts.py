@@ -31,7 +31,7 @@ def check_segments(problem: Problem, shooting: MultipleShooting) -> None:
         if shooting.states is None:
             if restartable(track.model) is None:
                 raise InputError(
-                    f"shooting: {track.where}a {type(track.model).__name__} cannot begin at a later state; leave out "
+                    f"shooting: {track.where}the model cannot begin at a later state; leave out "
                     "sensors and an unknown start, or name its states: MultipleShooting({parameter: State(channel, "
                     "lower, upper)})"
                 )

@@ -195,7 +195,7 @@ def test_simulations_of_all_fits_are_counted_as_runs_over_all_samples():
         ),
         (
             {"states": None},
-            "shooting: a PythonModel cannot begin at a later state; leave out sensors and an unknown start, or name "
+            "shooting: the model cannot begin at a later state; leave out sensors and an unknown start, or name "
             "its states: MultipleShooting({parameter: State(channel, lower, upper)})",
         ),
         (

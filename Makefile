@@ -4,7 +4,7 @@ SHELL := /bin/sh
 .DEFAULT_GOAL := help
 .SUFFIXES:
 .DELETE_ON_ERROR:
-.PHONY: help demo names checks kernels test verify validation docs bench wheel clean
+.PHONY: help demo names checks kernels test wording verify validation docs bench wheel clean
 
 DEMO_STUDY := studies/flexible-pendulum/identify.toml
 DEMO_RUN := runs/demo
@@ -26,6 +26,7 @@ help:
 	@echo "make demo        identify a flexible double pendulum from measured motion, and write its report"
 	@echo "make names       write the index of components and the stubs of public names from the sources"
 	@echo "make test        format, lint, types, layers, tests (what a change must pass)"
+	@echo "make wording     write the messages of today into the snapshots of tests, for example TESTS=tests/unit/data"
 	@echo "make verify      make test, the slow tests too, and whether the validation page is up to date"
 	@echo "make validation  regenerate docs/validation.md from a full run of the verification tests"
 	@echo "make docs        the documentation, as HTML in docs/_build"
@@ -53,6 +54,10 @@ kernels: .venv/test.stamp
 
 test: checks kernels
 	$(BIN)/pytest -n auto --dist loadfile
+
+# Messages in tests are snapshots. This writes the messages of today into the tests below TESTS: read the difference.
+wording: .venv/test.stamp
+	$(BIN)/pytest -n 0 --inline-snapshot=create,fix $(TESTS)
 
 verify: checks kernels
 	$(BIN)/pytest -n auto --dist loadfile -m "$(ALL)" --evidence=$(EVIDENCE)

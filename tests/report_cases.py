@@ -24,7 +24,7 @@ from frequency_cases import FREQUENCY_CASES
 from report_case import Case
 from small_models import DECAY, LINE, TIMES, banded, measured
 from stepped_models import TIMES as STEPPED_TIMES
-from stepped_models import Stepped, decay_in_steps, exact, failing, growing_in_steps, slow_in_steps
+from stepped_models import Stepped, decay_in_steps, exact, failing, growing_in_steps, quick_in_steps, slow_in_steps
 
 NOW = np.zeros(1)
 DISC = PythonModel(lambda x, y: np.array([x**2 + y**2]), {"x": (-2.0, 2.0), "y": (-2.0, 2.0)}, ["r"], NOW)
@@ -453,6 +453,18 @@ CASES: dict[str, Case] = {
     "coarse steps": Case(
         lambda: da.identify(Stepped(method=slow_in_steps), exact(1e-3, 1e-3), starts=1),
         ("The integrator biases", "with corrected values", "bias by the integrator", "leave residuals"),
+    ),
+    "coarse steps that bias no parameter": Case(
+        lambda: da.identify(Stepped(method=quick_in_steps), exact(1e-3, 1e-3), starts=1),
+        ("The integrator biases no parameter by more than 0.5 standard deviations.", "With converged steps the misfit"),
+    ),
+    "too narrow bands": Case(
+        lambda: da.identify(
+            DECAY,
+            Measurements.of(TIMES, {"x": np.where(TIMES < 2.05, 2.0, 3.0) * np.exp(-0.8 * TIMES)}, 0.02),
+            validation=0.4875,
+        ),
+        ("The 95 % bands contain", "% of the values that were not fitted", "of these values"),
     ),
     "data of the same steps": Case(
         lambda: da.identify(Stepped(), _of_the_same_steps(), starts=1),

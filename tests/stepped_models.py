@@ -28,6 +28,11 @@ def growing_in_steps(rate, size, step, times=TIMES):
     return size * np.exp(rate * times) + 0.02 * step**2 * rate * np.sin(3 * times)
 
 
+def quick_in_steps(rate, size, step, times=TIMES):
+    """A decay with an error of second order in the step that swings too quickly for a parameter to take it up."""
+    return size * np.exp(-rate * times) + 0.0025 * step**2 * np.sin(40 * times)
+
+
 @dataclass(frozen=True)
 class Stepped(PythonModel):
     """A decay with a step; ``finer`` tells what is made of the refined model."""

@@ -32,6 +32,8 @@ class Explained:
         Root mean square of the weighted residuals over that of the fitted values.
     white : bool
         Whether the residuals pass as white noise.
+    covered : float
+        Share of the held-out values inside their 95 % bands; NaN without bands.
     """
 
     record: str
@@ -40,6 +42,7 @@ class Explained:
     variation: float
     ratio: float
     white: bool
+    covered: float = np.nan
 
     @property
     def poor(self) -> bool:

@@ -8,10 +8,11 @@ from numpy.typing import ArrayLike
 
 from dalembert.arguments import check_whole, takes_checked
 from dalembert.data import Measurements
-from dalembert.errors import DalembertError, InputError, SolveError, StorageError, shown, unknown
+from dalembert.errors import InputError, SolveError, shown, unknown
 from dalembert.forward import Executor, ForwardModel, check_derivatives, findings_at, takes_executor
 from dalembert.forward.provenance import provenance
 from dalembert.inverse.correlation import CorrelatedResiduals, correlation, correlation_findings
+from dalembert.inverse.coverage import with_coverage
 from dalembert.inverse.descent import End
 from dalembert.inverse.estimate import Estimate, estimate, estimate_of, unknown_estimate
 from dalembert.inverse.events import Finished, OnEvent
@@ -196,7 +197,7 @@ def identify(
         best = polished(problem, method if isinstance(method, Squares) else LeastSquares(), best)
 
     vector = problem.search.vectors(best.point)
-    at = best.linearisation or _linearised(problem, vector)
+    at = best.linearisation or problem.linearised(vector)
     response = problem.responses(vector[None])[0] if at is None else at.response
     known = given or problem.priors > 0
     reached = best.fitness <= floor.fitness
@@ -272,6 +273,7 @@ def identify(
         correlated=correlated,
         halves=parts_of_time,
     )
+    fit = with_coverage(fit, posed)
     journal.tell(Finished(fit.success, fit.status, fit.fitness, fit.values, fit.simulations))
     return fit
 
@@ -307,16 +309,6 @@ def _origin(problem: Problem, start: Mapping[str, float] | ArrayLike) -> np.ndar
                 "widen the bounds or move the start"
             )
     return problem.search.points(vector)
-
-
-def _linearised(problem: Problem, vector: np.ndarray) -> Linearisation | None:
-    """Response and jacobian at the identified values; None where the model gives no jacobian."""
-    try:
-        return problem.linearise(vector)
-    except StorageError:
-        raise
-    except DalembertError:
-        return None
 
 
 def _told(

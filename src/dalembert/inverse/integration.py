@@ -174,6 +174,15 @@ def integration_findings(
             f"{size} The data contain the same error, as data simulated with the same steps do.",
         )  # fmt: skip
         return
+    if ratios[worst] <= LARGE:
+        values["change"] = float(change)
+        yield Finding(
+            "integration-bias", "note", values,
+            f"The integrator biases no parameter by more than {LARGE:g} standard deviations. With converged steps the "
+            f"misfit changes by {change:.2g} of its standard deviations.",
+            "Use a smaller step or a tighter tolerance for the best misfit.",
+        )  # fmt: skip
+        return
     ratio = np.sqrt(found.fitness / max(fitness, np.finfo(float).tiny))
     worse = f" With converged steps the same values leave residuals {ratio:.3g} times as large." if ratio > 1.05 else ""
     advice = "Identify again with a smaller step or a tighter tolerance."

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from dalembert.data import Measurements
-from dalembert.errors import InputError, SolveError, StorageError, told
+from dalembert.errors import DalembertError, InputError, SolveError, StorageError, told
 from dalembert.forward import ForwardModel
 from dalembert.inverse.journal import Journal
 from dalembert.inverse.loss import Loss
@@ -120,6 +120,15 @@ class Problem:
             raise SolveError(told(error)) from error
         self.journal.computed(vector, response[:, self.columns])
         return Linearisation(vector, response[:, self.columns], jacobian[:, self.columns])
+
+    def linearised(self, vector: np.ndarray) -> Linearisation | None:
+        """Response and jacobian at a parameter vector; None where the model gives no jacobian."""
+        try:
+            return self.linearise(vector)
+        except StorageError:
+            raise
+        except DalembertError:
+            return None
 
     def residual(self, response: np.ndarray) -> np.ndarray:
         """W^½ (R − data), transformed by the loss, as a vector, shape (samples × channels,)."""

@@ -69,6 +69,7 @@ def contents_of(fit: Fit) -> Contents:
             "misfit": fit.validation.misfit,
             "fitted": fit.validation.fitted,
             "explained": [asdict(item) for item in fit.validation.explained],
+            "covered": fit.validation.covered,
         },
     }
     return Contents(variables, coordinates, stored_facts(fit, FACTS, **told))
@@ -104,7 +105,5 @@ def from_xarray(dataset: "Dataset") -> Fit:
     )
 
 
-def _validation(
-    weights: np.ndarray, what: str, misfit: float, fitted: float, explained: Sequence[Mapping[str, Any]] = ()
-) -> Validation:
-    return Validation(what, weights, misfit, fitted, tuple(Explained(**item) for item in explained))
+def _validation(weights: np.ndarray, explained: Sequence[Mapping[str, Any]] = (), **facts: Any) -> Validation:
+    return Validation(weights=weights, explained=tuple(Explained(**item) for item in explained), **facts)

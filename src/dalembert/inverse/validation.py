@@ -28,6 +28,8 @@ class Validation:
         Root mean square of W^½ (R − data) over the values that were not fitted, and over those that were.
     explained : tuple of Explained
         Share of the variation that the response explains, of each record and channel.
+    covered : float
+        Share of the values that were not fitted which lie inside their 95 % bands; NaN without bands.
     """
 
     what: str
@@ -35,9 +37,14 @@ class Validation:
     misfit: float
     fitted: float
     explained: tuple[Explained, ...] = ()
+    covered: float = np.nan
 
     def __str__(self) -> str:
-        return " ".join(filter(None, [self._compared, percentages(self.explained)]))
+        return " ".join(filter(None, [self._compared, percentages(self.explained), self._covered]))
+
+    @property
+    def _covered(self) -> str:
+        return "" if np.isnan(self.covered) else f"The 95 % bands contain {100 * self.covered:.3g} % of these values."
 
     @property
     def _compared(self) -> str:

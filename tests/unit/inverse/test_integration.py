@@ -7,7 +7,7 @@ from dalembert.data import Measurements
 from dalembert.forward import Checkpoint, PythonModel, Recorded, Sensor, Sensors
 from dalembert.inverse import Experiment, Fit, MultipleShooting, State, identify
 from dalembert.parameters import Parameter
-from stepped_models import STEPPED_BOX, TIMES, TRUTH, Stepped, decay_in_steps, exact, failing, marked
+from stepped_models import STEPPED_BOX, TIMES, TRUTH, Stepped, decay_in_steps, exact, failing, marked, quick_in_steps
 
 
 def codes(fit):
@@ -32,6 +32,13 @@ def test_a_large_bias_is_a_finding_and_a_small_one_is_not():
     assert finding.values["deviations"] == pytest.approx(np.max(np.abs(fit.integration.bias / fit.deviations)))
     assert "at half the step" in finding.message
     assert "integration-bias" not in codes(identify(Stepped(0.01), exact(1e-3, 1e-3), starts=1))
+
+
+def test_an_error_that_biases_no_parameter_is_a_note():
+    fit = identify(Stepped(method=quick_in_steps), exact(1e-3, 1e-3), starts=1)
+    finding = next(finding for finding in fit.findings if finding.code == "integration-bias")
+    assert finding.severity == "note"
+    assert finding.values["deviations"] < 0.5 < abs(finding.values["change"])
 
 
 def test_the_misfit_with_converged_steps():

@@ -6,7 +6,7 @@ import pytest
 from dalembert.data import Measurements
 from dalembert.errors import InputError
 from dalembert.forward import PythonModel
-from dalembert.inverse import Experiment, Fit, identify
+from dalembert.inverse import Experiment, Fit, identify, predict
 from pages import read_page
 from small_models import DECAY, LINE, TIMES, measured
 from support import says
@@ -215,3 +215,40 @@ def test_a_perfect_fit_is_told_without_a_ratio():
         "Not fitted: the last 1 of 3 samples. There the weighted residuals are 0 in the root mean square, those of the "
         "fit 0."
     )
+
+
+def pieces(noise, damping=0.8, deviations=0.02):
+    """Three records of a decay; the last one is not fitted, and decays at another rate."""
+    true = [damping if name == "c" else 0.8 for name in "abc"]
+    return [
+        Experiment(name, DECAY, measured(DECAY, [2.0, rate], noise, seed, deviations=deviations))
+        for seed, (name, rate) in enumerate(zip("abc", true, strict=True))
+    ]
+
+
+@pytest.mark.parametrize("deviations", [0.02, None], ids=["known noise", "unknown noise"])
+def test_the_bands_of_a_right_model_contain_their_share_of_the_held_out_values(deviations):
+    fit = identify(pieces(0.02, deviations=deviations), validation="c")
+    assert 0.85 < fit.validation.covered <= 1.0
+    assert [item.covered for item in fit.validation.explained] == [fit.validation.covered]
+    assert "narrow-bands" not in {item.code for item in fit.findings}
+    assert f"The 95 % bands contain {100 * fit.validation.covered:.3g} % of these values." in str(fit.validation)
+
+
+def test_bands_that_contain_too_few_held_out_values_are_a_finding(tmp_path):
+    fit = identify(pieces(0.02, damping=0.6), validation="c")
+    finding = next(item for item in fit.findings if item.code == "narrow-bands")
+    assert finding.doubtful
+    assert finding.values["covered"] == fit.validation.covered < 0.7
+    assert (finding.values["record"], finding.values["channel"]) == ("c", "x")
+    fit.save(tmp_path / "fit.nc")
+    assert Fit.load(tmp_path / "fit.nc").validation.covered == fit.validation.covered
+
+
+def test_coverage_agrees_with_the_prediction_of_the_held_out_record():
+    items = pieces(0.02, damping=0.75)
+    fit = identify(items, validation="c")
+    bands = predict(items[2], fit)
+    values = items[2].data.values
+    inside = (bands.measured_lower <= values) & (values <= bands.measured_upper)
+    assert fit.validation.covered == pytest.approx(float(np.mean(inside)), abs=1e-12)

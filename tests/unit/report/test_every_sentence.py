@@ -21,7 +21,7 @@ SOURCES = [
     *(f"inverse/{name}.py" for name in ("descent", "doubts", "estimate", "prior", "sentences", "status", "validation")),
     *(
         f"inverse/{name}.py"
-        for name in ("correlation/findings", "explained", "integration", "suspect_units", "too_few")
+        for name in ("correlation/findings", "coverage", "explained", "integration", "suspect_units", "too_few")
     ),
     *(f"inverse/misfit/{name}.py" for name in ("delays", "halves", "model_misfit")),
     *(f"inverse/bands/{name}.py" for name in ("status", "telling")),

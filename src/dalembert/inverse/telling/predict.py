@@ -86,7 +86,7 @@ def predict(model: ForwardModel | Experiment, fit: Fit, level: float = 0.95) -> 
     jacobian[:, :, wiring] = own
     names = tuple(channel.name for channel in model.channels)
     wraps = [prefix + name in fit.data.wraps for name in names]
-    deviations, width = _deviations(fit, jacobian), quantile(fit, level)
+    deviations, width = response_deviations(fit, jacobian), quantile(fit, level)
     ends = [
         band_end(width * own, column, wraps=turns)
         for own, column, turns in zip(deviations.T, response.T, wraps, strict=True)
@@ -100,7 +100,7 @@ def predict(model: ForwardModel | Experiment, fit: Fit, level: float = 0.95) -> 
         units=tuple(channel.unit for channel in model.channels),
         response=response,
         deviations=deviations,
-        noise=np.array([_noise(fit, prefix + name) for name in names]),
+        noise=np.array([noise_deviation(fit, prefix + name) for name in names]),
         data=data if same else None,
         level=level,
         quantile=width,
@@ -161,8 +161,8 @@ def _wiring(names: list[str], fit: Fit) -> np.ndarray:
     return np.array([known.index(name) for name in names], dtype=int)
 
 
-def _deviations(fit: Fit, jacobian: np.ndarray) -> np.ndarray:
-    """Standard deviations (samples, channels) of a response with this jacobian (samples, channels, parameters)."""
+def response_deviations(fit: Fit, jacobian: np.ndarray) -> np.ndarray:
+    """Return standard deviations (samples, channels) of a response with a jacobian (samples, channels, parameters)."""
     singular, directions = fit.singular_values, fit.directions
     if not np.all(np.isfinite(singular)):
         return np.full(jacobian.shape[:2], np.nan)
@@ -178,25 +178,41 @@ def _deviations(fit: Fit, jacobian: np.ndarray) -> np.ndarray:
     return np.where(lost, np.inf, np.sqrt(squares))
 
 
+def noise_deviation(fit: Fit, channel: str) -> float:
+    """Return the standard deviation of a channel's noise; NaN for one that was not measured.
+
+    A channel of an experiment that was not fitted has the noise of the same channel in the experiments that were.
+    """
+    if channel not in fit.data.channels:
+        return np.nan
+    column = fit.data.channels.index(channel)
+    return float(np.sqrt(np.mean([_noise(fit, like, column) ** 2 for like in _fitted(fit, column)])))
+
+
+def _fitted(fit: Fit, column: int) -> list[int]:
+    """Columns with fitted values of the same channel: the column itself, or those of other experiments."""
+    names = {place: name for part in fit.parts for place, name in zip(part.columns, part.channels, strict=True)}
+    seen = np.any(fit.weights > 0, axis=0)
+    alike = [place for place, name in names.items() if seen[place] and name == names.get(column)]
+    return [column] if seen[column] or not alike else alike
+
+
+def _noise(fit: Fit, column: int, wanted: int) -> float:
+    """Deviation of the noise in a column, in proportion to the given one of the wanted column."""
+    found = () if fit.correlated is None else fit.correlated.processes
+    process = next((item for item in found if item.channel == fit.data.channels[column]), None)
+    weights = fit.weights[:, column]
+    if fit.data.deviations is not None and process is None:
+        return float(fit.data.deviations[wanted]) * _excess(fit, column)
+    if not np.any(weights > 0):
+        return np.nan
+    own = variance(fit) if process is None else max(process.variance, variance(fit) if noise_is_known(fit) else 0.0)
+    return float(np.sqrt(own / np.mean(weights[weights > 0])))
+
+
 def _excess(fit: Fit, column: int) -> float:
     """Residuals of a channel over their given deviation, in the root mean square; 1 where noise explains them."""
     there = fit.weights[:, column] > 0
     count = np.count_nonzero(there)
     squares = float(np.sum((fit.residuals[there, column] / fit.data.deviations[column]) ** 2))  # pyright: ignore[reportOptionalSubscript]
     return float(np.sqrt(squares / count)) if count and squares > chdtri(count, EXCESSIVE) else 1.0
-
-
-def _noise(fit: Fit, channel: str) -> float:
-    """Standard deviation of a channel's noise; NaN for one that was not measured."""
-    if channel not in fit.data.channels:
-        return np.nan
-    column = fit.data.channels.index(channel)
-    found = () if fit.correlated is None else fit.correlated.processes
-    process = next((item for item in found if item.channel == channel), None)
-    weights = fit.weights[:, column]
-    if fit.data.deviations is not None and process is None:
-        return float(fit.data.deviations[column]) * _excess(fit, column)
-    if not np.any(weights > 0):
-        return np.nan
-    own = variance(fit) if process is None else max(process.variance, variance(fit) if noise_is_known(fit) else 0.0)
-    return float(np.sqrt(own / np.mean(weights[weights > 0])))

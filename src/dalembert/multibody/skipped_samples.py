@@ -9,6 +9,23 @@ from dalembert.multibody.components.signals import Table
 from dalembert.multibody.system import System
 
 LOST = 0.05  # part of an input's variation that steps may miss
+LATE = 0.25  # time before the first sample, in parts of that from the first to the last
+
+
+def late_samples(times: np.ndarray) -> tuple[Finding, ...]:
+    """Return a finding on samples (samples,), s, that begin long after the motion does, which is at 0."""
+    first = float(times[0])
+    if len(times) < 3 or first <= LATE * (times[-1] - first):
+        return ()
+    return (
+        Finding(
+            "late-samples",
+            "note",
+            {"first": first},
+            f"The first sample is at {first:.6g} s, and the motion starts at 0 s.",
+            "If the motion starts with the record, use data.since('first').",
+        ),
+    )
 
 
 def skipped_samples(system: System, step: float | None, begin: float, end: float) -> tuple[Finding, ...]:

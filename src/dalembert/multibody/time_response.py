@@ -30,7 +30,7 @@ from dalembert.multibody.lowering import Lowered, lower
 from dalembert.multibody.observe import Observer, observer
 from dalembert.multibody.restart import MotionSegment, chart
 from dalembert.multibody.simulation import begin_time, checked, integrator, simulate
-from dalembert.multibody.skipped_samples import skipped_samples
+from dalembert.multibody.skipped_samples import late_samples, skipped_samples
 from dalembert.multibody.slip_rates import rubbing
 from dalembert.multibody.system import System
 from dalembert.parameters import Parameter, Parameters
@@ -378,14 +378,14 @@ class TimeResponse:
 
         With Coulomb friction the motion is simulated once.
         """
-        system = self.system(vector)
+        system, late = self.system(vector), late_samples(self.times)
         try:
             if not rubbing(system):
                 step, end = self.solver.fixed_step, float(self.times[-1])
-                return (*system.findings, *skipped_samples(system, step, self.begin, end))
-            return simulate(system, float(self.times[-1]), self.solver, begin=self.begin).findings
+                return (*system.findings, *late, *skipped_samples(system, step, self.begin, end))
+            return (*simulate(system, float(self.times[-1]), self.solver, begin=self.begin).findings, *late)
         except (ModelError, SolveError, InputError):  # no motion, or one that does not fit into memory
-            return system.findings
+            return (*system.findings, *late)
 
     def _sampled(self, times: ArrayLike, *, begin: float | None = None, solver: Integrator | None = None) -> Self:
         """The same model with other samples, start or solver, whose derivatives were compared if this model's were."""

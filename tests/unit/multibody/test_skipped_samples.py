@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 import dalembert.multibody as mb
-from dalembert.multibody.skipped_samples import skipped_samples
+from dalembert.data import Measurements
+from dalembert.inverse import identify
+from dalembert.multibody.skipped_samples import late_samples, skipped_samples
 
 TIMES = np.arange(2001) * 1e-3
 SMOOTH = np.sin(9.0 * TIMES)
@@ -58,3 +60,23 @@ def test_the_part_of_the_input_counts_that_the_motion_reads() -> None:
     late = np.where(TIMES < 1.0, SMOOTH, ROUGH)
     assert codes(skipped_samples(driven(late), 4e-3, 0.0, 0.9)) == []
     assert codes(skipped_samples(driven(late), 4e-3, 1.1, 0.8)) == ["skipped-samples"]
+
+
+@pytest.mark.parametrize(("begin", "late"), [(0.0, False), (0.2, False), (0.3, True), (48.0, True)])
+def test_samples_that_begin_long_after_the_motion_are_a_note(begin, late):
+    found = late_samples(begin + np.linspace(0.0, 1.0, 11))
+    assert codes(found) == (["late-samples"] if late else [])
+    assert all(item.severity == "note" for item in found)
+
+
+def test_a_fit_of_a_late_record_says_so():
+    def pendulum(length):
+        system = mb.System()
+        bar = system.add(mb.RigidBar("bar", length=length, mass=1.0, angle=-1.0))
+        system.add(mb.RevoluteJoint("pin", system.ground, bar.start))
+        return system
+
+    times = 5.0 + np.linspace(0.0, 0.5, 11)
+    model = mb.TimeResponse(pendulum, {"length": (0.5, 1.5)}, ["bar.end.x"], times, mb.RungeKutta4(step=5e-3))
+    fit = identify(model, Measurements.of(times, {"bar.end.x": model.evaluate([[1.0]]).values[0, :, 0]}), starts=1)
+    assert "late-samples" in codes(fit.findings)

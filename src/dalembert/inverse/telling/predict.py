@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from scipy.special import chdtri
+from scipy.special import chdtri, ndtri
 
 from dalembert.arguments import takes_checked
 from dalembert.errors import InputError, unknown
@@ -211,8 +211,18 @@ def _noise(fit: Fit, column: int, wanted: int) -> float:
 
 
 def _excess(fit: Fit, column: int) -> float:
-    """Residuals of a channel over their given deviation, in the root mean square; 1 where noise explains them."""
+    """Residuals of a channel over their given deviation, 1 where noise explains them.
+
+    It is the root mean square. With a robust loss it is the median over that of the normal distribution, which outliers
+    do not change; the standard error of that is 1.17/√n.
+    """
     there = fit.weights[:, column] > 0
     count = np.count_nonzero(there)
-    squares = float(np.sum((fit.residuals[there, column] / fit.data.deviations[column]) ** 2))  # pyright: ignore[reportOptionalSubscript]
-    return float(np.sqrt(squares / count)) if count and squares > chdtri(count, EXCESSIVE) else 1.0
+    ratios = np.abs(fit.residuals[there, column]) / fit.data.deviations[column]  # pyright: ignore[reportOptionalSubscript]
+    if not count:
+        return 1.0
+    if "loss" in fit.provenance:
+        size = float(np.median(ratios) / ndtri(0.75))
+        return size if size > 1 - 1.17 / np.sqrt(count) * ndtri(EXCESSIVE) else 1.0
+    squares = float(ratios @ ratios)
+    return float(np.sqrt(squares / count)) if squares > chdtri(count, EXCESSIVE) else 1.0

@@ -166,3 +166,14 @@ def test_a_given_deviation_that_is_too_small_does_not_narrow_the_band_of_measure
     unseen = times + 0.1 * noise[1]
     assert 0.9 < np.mean((told.measured_lower[:, 0] <= unseen) & (unseen <= told.measured_upper[:, 0])) < 0.99
     assert told.noise[0] == pytest.approx(0.1, rel=0.1)
+
+
+def test_outliers_of_a_robust_fit_do_not_widen_its_bands():
+    data = measured(DECAY, [2.0, 0.8], 0.02, 3, deviations=0.02)
+    values = data.values.copy()
+    values[10] += 3.0
+    spoilt = Measurements.of(data.coordinate.values, {"x": values[:, 0]}, 0.02)
+    fit = identify(DECAY, spoilt, loss="huber")
+    assert predict(DECAY, fit).noise[0] == 0.02
+    rough = Measurements.of(data.coordinate.values, {"x": measured(DECAY, [2.0, 0.8], 0.06, 3).values[:, 0]}, 0.02)
+    assert predict(DECAY, identify(DECAY, rough, loss="huber")).noise[0] == pytest.approx(0.06, rel=0.3)

@@ -1,8 +1,17 @@
 """Parameters from measurements."""
 
+from dalembert.inverse.assessment import (
+    Designs,
+    Prediction,
+    Profile,
+    Profiles,
+    design,
+    identifiability,
+    predict,
+    profile,
+)
 from dalembert.inverse.bands import BandFit, GlobalSurrogate, Nested, identify_bands
 from dalembert.inverse.correlation import CorrelatedResiduals, NoiseProcess
-from dalembert.inverse.estimate import Identifiability
 from dalembert.inverse.events import (
     Checked,
     Event,
@@ -16,16 +25,16 @@ from dalembert.inverse.events import (
     Step,
     as_record,
 )
-from dalembert.inverse.experiment_fit import ExperimentFit
-from dalembert.inverse.experiments import Experiment
-from dalembert.inverse.fit import Fit
+from dalembert.inverse.experiments.experiment_fit import ExperimentFit
+from dalembert.inverse.experiments.experiments import Experiment
+from dalembert.inverse.experiments.validation import Validation
+from dalembert.inverse.fit.fit import Fit
 from dalembert.inverse.identify import identify
-from dalembert.inverse.nodes import Nodes
-from dalembert.inverse.segments import State
+from dalembert.inverse.least_squares.estimate import Identifiability
 from dalembert.inverse.sets import ParameterSet, identify_set
-from dalembert.inverse.shooting import MultipleShooting
-from dalembert.inverse.telling import Designs, Prediction, Profile, Profiles, design, identifiability, predict, profile
-from dalembert.inverse.validation import Validation
+from dalembert.inverse.shooting.nodes import Nodes
+from dalembert.inverse.shooting.segments import State
+from dalembert.inverse.shooting.shooting import MultipleShooting
 
 __all__ = [
     "BandFit",

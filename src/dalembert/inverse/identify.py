@@ -12,34 +12,34 @@ from dalembert.errors import InputError, SolveError, shown, unknown
 from dalembert.forward import Executor, ForwardModel, check_derivatives, findings_at, takes_executor
 from dalembert.forward.provenance import provenance
 from dalembert.inverse.correlation import CorrelatedResiduals, correlation, correlation_findings
-from dalembert.inverse.coverage import with_coverage
-from dalembert.inverse.descent import End
-from dalembert.inverse.estimate import Estimate, estimate, estimate_of, unknown_estimate
 from dalembert.inverse.events import Finished, OnEvent
-from dalembert.inverse.experiments import Experiment, JointModel, Part, begun, joint, joint_weights, placed
-from dalembert.inverse.explained import explained_findings
-from dalembert.inverse.fit import Fit
-from dalembert.inverse.growth import growth_findings
-from dalembert.inverse.integration import integration_bias, integration_findings
-from dalembert.inverse.journal import Journal
-from dalembert.inverse.loss import loss_of
-from dalembert.inverse.matching import check_kinds
+from dalembert.inverse.experiments.coverage import with_coverage
+from dalembert.inverse.experiments.experiments import Experiment, JointModel, Part, begun, joint, joint_weights, placed
+from dalembert.inverse.experiments.explained import explained_findings
+from dalembert.inverse.experiments.smoothed import noise_findings, smooth_noise
+from dalembert.inverse.experiments.suspect_units import unit_findings
+from dalembert.inverse.experiments.validation import HeldOut, split
+from dalembert.inverse.fit.fit import Fit
+from dalembert.inverse.fit.integration import integration_bias, integration_findings
+from dalembert.inverse.fit.status import status
+from dalembert.inverse.least_squares.descent import End
+from dalembert.inverse.least_squares.estimate import Estimate, estimate, estimate_of, unknown_estimate
+from dalembert.inverse.least_squares.roughness import roughness_findings
+from dalembert.inverse.least_squares.too_few import too_few_findings
 from dalembert.inverse.misfit import misfit_conclusions
-from dalembert.inverse.multistart import HORIZONS, multistart
-from dalembert.inverse.noise import noise_floor
-from dalembert.inverse.problem import Linearisation, Problem, pose
-from dalembert.inverse.repeated import repeated
-from dalembert.inverse.restarts import check_restart, check_segments
-from dalembert.inverse.rivals import rival_findings, rivals
-from dalembert.inverse.roughness import roughness_findings
-from dalembert.inverse.runs import Method, polished, runs
-from dalembert.inverse.shooting import MultipleShooting, shots
-from dalembert.inverse.smoothed import noise_findings, smooth_noise
-from dalembert.inverse.spread import SPREADS
-from dalembert.inverse.status import status
-from dalembert.inverse.suspect_units import unit_findings
-from dalembert.inverse.too_few import too_few_findings
-from dalembert.inverse.validation import HeldOut, split
+from dalembert.inverse.problem.journal import Journal
+from dalembert.inverse.problem.loss import loss_of
+from dalembert.inverse.problem.matching import check_kinds
+from dalembert.inverse.problem.noise import noise_floor
+from dalembert.inverse.problem.problem import Linearisation, Problem, pose
+from dalembert.inverse.shooting.growth import growth_findings
+from dalembert.inverse.shooting.restarts import check_restart, check_segments
+from dalembert.inverse.shooting.shooting import MultipleShooting, shots
+from dalembert.inverse.starts.multistart import HORIZONS, multistart
+from dalembert.inverse.starts.repeated import repeated
+from dalembert.inverse.starts.rivals import rival_findings, rivals
+from dalembert.inverse.starts.runs import Method, polished, runs
+from dalembert.inverse.starts.spread import SPREADS
 from dalembert.optimize import LeastSquares, Minimiser, Squares
 
 

@@ -18,15 +18,17 @@ from report_cases import CASES
 SOURCE = Path(dalembert.__file__).parent
 SECTIONS = sorted(path.relative_to(SOURCE).as_posix() for path in (SOURCE / "report" / "sections").glob("*.py"))
 SOURCES = [
-    *(f"inverse/{name}.py" for name in ("descent", "doubts", "estimate", "prior", "sentences", "status", "validation")),
-    *(
-        f"inverse/{name}.py"
-        for name in ("correlation/findings", "coverage", "explained", "integration", "suspect_units", "too_few")
-    ),
+    "inverse/least_squares/descent.py",
+    "inverse/least_squares/estimate.py",
+    "inverse/least_squares/too_few.py",
+    "inverse/problem/prior.py",
+    "inverse/correlation/findings.py",
+    *(f"inverse/fit/{name}.py" for name in ("doubts", "integration", "sentences", "status")),
+    *(f"inverse/experiments/{name}.py" for name in ("coverage", "explained", "suspect_units", "validation")),
     *(f"inverse/misfit/{name}.py" for name in ("delays", "halves", "model_misfit")),
     *(f"inverse/bands/{name}.py" for name in ("status", "telling")),
     "inverse/sets/status.py",
-    *(f"inverse/telling/{name}.py" for name in ("designs", "prediction", "profiles", "walk")),
+    *(f"inverse/assessment/{name}.py" for name in ("designs", "prediction", "profiles", "walk")),
     *(f"optimize/{name}.py" for name in ("least_squares", "response_sensitivity", "swarm")),
     *(f"uncertainty/{name}.py" for name in ("chebyshev", "comparison", "optimise", "propagate", "taylor")),
     *SECTIONS,

@@ -10,9 +10,9 @@ from dalembert.contents import Contents
 from dalembert.data import Bands
 from dalembert.findings import Finding
 from dalembert.intervals import Box
-from dalembert.inverse.doubts import doubts
-from dalembert.inverse.estimate import Estimate, Identifiability
 from dalembert.inverse.events import StartEnd, Step
+from dalembert.inverse.fit.doubts import doubts
+from dalembert.inverse.least_squares.estimate import Estimate, Identifiability
 from dalembert.parameters import Parameters
 from dalembert.results import Result
 

@@ -8,9 +8,9 @@ from numpy.typing import ArrayLike
 from dalembert.data import Bands
 from dalembert.forward import ForwardModel
 from dalembert.inverse.bands.unknowns import Unknowns
-from dalembert.inverse.journal import Journal
-from dalembert.inverse.matching import check_samples, columns_of, weights_of
-from dalembert.inverse.simulated import simulated
+from dalembert.inverse.problem.journal import Journal
+from dalembert.inverse.problem.matching import check_samples, columns_of, weights_of
+from dalembert.inverse.problem.simulated import simulated
 
 
 @dataclass(frozen=True, eq=False)

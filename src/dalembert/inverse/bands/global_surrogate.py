@@ -13,8 +13,8 @@ from dalembert.inverse.bands.correction import corrected
 from dalembert.inverse.bands.descent import descend, screened
 from dalembert.inverse.bands.found import Found
 from dalembert.inverse.events import Checked
-from dalembert.inverse.matching import place
-from dalembert.inverse.surrogates import surrogate_of
+from dalembert.inverse.problem.matching import place
+from dalembert.inverse.problem.surrogates import surrogate_of
 from dalembert.optimize import LeastSquares, Minimum
 from dalembert.settings import expect, expect_at_least
 from dalembert.surrogate import Adaptive, Surrogate

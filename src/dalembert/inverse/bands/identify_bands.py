@@ -20,10 +20,10 @@ from dalembert.inverse.bands.global_surrogate import GlobalSurrogate
 from dalembert.inverse.bands.nested import Nested
 from dalembert.inverse.bands.status import status
 from dalembert.inverse.bands.unknowns import unknowns_of
-from dalembert.inverse.estimate import Estimate, estimate
 from dalembert.inverse.events import Finished, OnEvent
-from dalembert.inverse.journal import Journal
-from dalembert.inverse.matching import check_kinds
+from dalembert.inverse.least_squares.estimate import Estimate, estimate
+from dalembert.inverse.problem.journal import Journal
+from dalembert.inverse.problem.matching import check_kinds
 
 METHODS = {"global": GlobalSurrogate, "nested": Nested}
 

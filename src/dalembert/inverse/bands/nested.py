@@ -10,7 +10,7 @@ from dalembert.inverse.bands.band_problem import BandProblem
 from dalembert.inverse.bands.candidate import candidate
 from dalembert.inverse.bands.check import check
 from dalembert.inverse.bands.found import Found
-from dalembert.inverse.surrogates import surrogate_of
+from dalembert.inverse.problem.surrogates import surrogate_of
 from dalembert.optimize import ImprovedParticleSwarm, ParticleSwarm, Progress
 from dalembert.surrogate import ChebyshevPolynomial, TotalDegree, bounds
 from dalembert.surrogate.basis import chebyshev, products, total_degree

@@ -6,8 +6,8 @@ from scipy.special import ndtri
 from dalembert.inverse.bands.band_problem import BandProblem
 from dalembert.inverse.bands.check import scale
 from dalembert.inverse.bands.found import Found
-from dalembert.inverse.matching import place
-from dalembert.inverse.noise import quantum, random_residuals
+from dalembert.inverse.problem.matching import place
+from dalembert.inverse.problem.noise import quantum, random_residuals
 
 SMALL = 1e-2
 """Misfit, as a part of the bands' mean width, from which bands are said to be explained badly."""

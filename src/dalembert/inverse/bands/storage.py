@@ -10,7 +10,7 @@ from dalembert.data import Bands
 from dalembert.forward.stored_coordinate import coordinate_of, stored_coordinate
 from dalembert.intervals import Box
 from dalembert.inverse.bands.band_fit import BandFit
-from dalembert.inverse.stored_search import search_of, stored_ends, stored_search
+from dalembert.inverse.fit.stored_search import search_of, stored_ends, stored_search
 from dalembert.parameters import Parameter, Parameters
 from dalembert.results import facts_of, saved_findings, stored_facts, told_of
 

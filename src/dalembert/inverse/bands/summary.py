@@ -1,7 +1,7 @@
 """An identification from bands as text."""
 
 from dalembert.inverse.bands.band_fit import BandFit
-from dalembert.inverse.summary import table
+from dalembert.inverse.fit.summary import table
 from dalembert.results import fixed_lines
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from dalembert.inverse.bands.band_fit import BandFit
-from dalembert.inverse.sentences import untold
+from dalembert.inverse.fit.sentences import untold
 from dalembert.parameters import Parameter
 
 NOTHING = 1e-6

@@ -8,7 +8,7 @@ import numpy as np
 
 from dalembert.arguments import names_of
 from dalembert.errors import InputError
-from dalembert.inverse.search import Search
+from dalembert.inverse.problem.search import Search
 from dalembert.parameters import Parameters
 
 

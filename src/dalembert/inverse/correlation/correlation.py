@@ -10,8 +10,8 @@ from dalembert.inverse.correlation.correlated import CorrelatedResiduals, NoiseP
 from dalembert.inverse.correlation.ornstein_uhlenbeck import OrnsteinUhlenbeck, ornstein_uhlenbeck
 from dalembert.inverse.correlation.series import Series, series_of
 from dalembert.inverse.correlation.whiteness import LEVEL, is_first_order, p_value
-from dalembert.inverse.estimate import estimate, left_vectors, unknown_estimate
-from dalembert.inverse.problem import Problem
+from dalembert.inverse.least_squares.estimate import estimate, left_vectors, unknown_estimate
+from dalembert.inverse.problem.problem import Problem
 
 ROUNDS = 4
 """Corrections of the autocovariances for the parameters that were fitted; each reduces the bias by an order of 1/n."""

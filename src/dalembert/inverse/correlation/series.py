@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dalembert.inverse.experiments import JointModel
-from dalembert.inverse.problem import Problem
+from dalembert.inverse.experiments.experiments import JointModel
+from dalembert.inverse.problem.problem import Problem
 
 EVEN = 0.1
 """Largest deviation of a sample interval from a multiple of the usual one, in parts of it, for even samples."""

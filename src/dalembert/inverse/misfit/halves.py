@@ -8,11 +8,11 @@ import numpy as np
 from scipy.special import ndtr
 
 from dalembert.findings import Finding
-from dalembert.inverse.descent import End, refine
-from dalembert.inverse.estimate import UNSEEN
-from dalembert.inverse.journal import Journal
+from dalembert.inverse.least_squares.descent import End, refine
+from dalembert.inverse.least_squares.estimate import UNSEEN
 from dalembert.inverse.misfit.residuals import Residuals
-from dalembert.inverse.problem import Problem
+from dalembert.inverse.problem.journal import Journal
+from dalembert.inverse.problem.problem import Problem
 from dalembert.optimize import LeastSquares
 
 LEVEL = 0.001

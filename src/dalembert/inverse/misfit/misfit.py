@@ -7,7 +7,7 @@ from dalembert.inverse.misfit.delays import delay_findings, suspect_delays
 from dalembert.inverse.misfit.halves import Halves, halves, halves_findings
 from dalembert.inverse.misfit.model_misfit import misfit_findings, model_misfits
 from dalembert.inverse.misfit.residuals import Residuals
-from dalembert.inverse.problem import Linearisation, Problem
+from dalembert.inverse.problem.problem import Linearisation, Problem
 
 
 def misfit_conclusions(

@@ -16,10 +16,10 @@ from dalembert.inverse.correlation.correlation import (
     summaries,
 )
 from dalembert.inverse.correlation.series import Series, records_of, series_of
-from dalembert.inverse.estimate import left_vectors
+from dalembert.inverse.least_squares.estimate import left_vectors
 from dalembert.inverse.misfit.local_noise import local_deviation
-from dalembert.inverse.noise import quantum
-from dalembert.inverse.problem import Linearisation, Problem
+from dalembert.inverse.problem.noise import quantum
+from dalembert.inverse.problem.problem import Linearisation, Problem
 
 BOUND = 1e-6
 """Distance from a bound, as a part of the width between bounds, up to which a parameter is on it."""

@@ -12,15 +12,15 @@ from dalembert.forward import Executor, ForwardModel, clock, findings_at, on_clu
 from dalembert.forward.provenance import provenance
 from dalembert.intervals import Box
 from dalembert.inverse.events import Finished, OnEvent
-from dalembert.inverse.journal import Journal
-from dalembert.inverse.matching import check_finite, check_kinds, check_samples, check_sizes, columns_of
-from dalembert.inverse.search import Search
+from dalembert.inverse.problem.journal import Journal
+from dalembert.inverse.problem.matching import check_finite, check_kinds, check_samples, check_sizes, columns_of
+from dalembert.inverse.problem.search import Search
+from dalembert.inverse.problem.simulated import named, simulated
 from dalembert.inverse.sets.conclusions import conclusions
 from dalembert.inverse.sets.inner_box import inner_box
 from dalembert.inverse.sets.inversion import Inversion
 from dalembert.inverse.sets.parameter_set import ParameterSet
 from dalembert.inverse.sets.status import status
-from dalembert.inverse.simulated import named, simulated
 from dalembert.surrogate import Adaptive
 from dalembert.surrogate.scheme import Scheme
 

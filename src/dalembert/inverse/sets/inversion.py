@@ -8,9 +8,9 @@ import numpy as np
 
 from dalembert.data.measurements import TURN
 from dalembert.inverse.events import Paved
-from dalembert.inverse.journal import Journal
+from dalembert.inverse.problem.journal import Journal
+from dalembert.inverse.problem.surrogates import surrogate_of
 from dalembert.inverse.sets.paving import Limits, Paving, pave
-from dalembert.inverse.surrogates import surrogate_of
 from dalembert.surrogate import Surrogate
 from dalembert.surrogate.scheme import Scheme
 

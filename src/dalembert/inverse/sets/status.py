@@ -3,7 +3,7 @@
 import numpy as np
 
 from dalembert.data import Measurements
-from dalembert.inverse.matching import place
+from dalembert.inverse.problem.matching import place
 from dalembert.inverse.sets.inversion import Nearest
 from dalembert.inverse.sets.paving import Paving
 

@@ -7,8 +7,8 @@ import numpy as np
 
 from dalembert.contents import Contents
 from dalembert.intervals import Box
+from dalembert.inverse.fit.stored_data import data_labels, data_of, stored_data
 from dalembert.inverse.sets.parameter_set import ParameterSet
-from dalembert.inverse.stored_data import data_labels, data_of, stored_data
 from dalembert.parameters import Parameter, Parameters
 from dalembert.results import facts_of, saved_findings, stored_facts, told_of
 

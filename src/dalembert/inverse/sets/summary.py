@@ -1,7 +1,7 @@
 """A set of consistent parameters as text."""
 
+from dalembert.inverse.fit.summary import table
 from dalembert.inverse.sets.parameter_set import ParameterSet
-from dalembert.inverse.summary import table
 from dalembert.results import fixed_lines
 
 

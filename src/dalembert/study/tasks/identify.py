@@ -133,7 +133,7 @@ def _expected(
     method: Any, starts: int | None, parameters: int, shooting: ShootingTable | None
 ) -> tuple[int | None, int | None]:
     """About how many simulations a method takes at least and at most; None where it decides on the way."""
-    from dalembert.inverse.multistart import SCREENED
+    from dalembert.inverse.starts.multistart import SCREENED
 
     if isinstance(method, Swarm):
         count = method.particles * method.iterations * (starts or 1)
@@ -239,7 +239,7 @@ class Identify(Task):
         return [*wrong, *_wrong_shooting(file), *needs_solver(file)]
 
     def plan(self, study: "Study") -> str:
-        from dalembert.inverse.experiments import joint
+        from dalembert.inverse.experiments.experiments import joint
 
         table = study.table
         model, data = posed(study)
@@ -248,7 +248,7 @@ class Identify(Task):
         return f"identifies {', '.join(whole.parameters.names)} from {_measured(model, data)} by {cost}"
 
     def effort(self, study: "Study") -> "Effort":
-        from dalembert.inverse.experiments import joint
+        from dalembert.inverse.experiments.experiments import joint
         from dalembert.study.duration import TOGETHER, evaluated
 
         model, _ = posed(study)

@@ -13,7 +13,7 @@ from dalembert.inverse.bands.check import LOSS, check, scale
 from dalembert.inverse.bands.correction import corrected
 from dalembert.inverse.bands.descent import jacobian_of, screened
 from dalembert.inverse.bands.unknowns import unknowns_of
-from dalembert.inverse.journal import Journal
+from dalembert.inverse.problem.journal import Journal
 from dalembert.surrogate import Tensor, fit
 from small_models import banded
 

@@ -6,9 +6,9 @@ import pytest
 from correlated_noise import autoregressive, exponential, left, polynomials, series
 from dalembert.inverse.correlation.series import Series, even_grid, series_of
 from dalembert.inverse.correlation.whiteness import p_value
-from dalembert.inverse.experiments import Experiment, joint
-from dalembert.inverse.journal import Journal
-from dalembert.inverse.problem import pose
+from dalembert.inverse.experiments.experiments import Experiment, joint
+from dalembert.inverse.problem.journal import Journal
+from dalembert.inverse.problem.problem import pose
 from small_models import DECAY, measured
 
 

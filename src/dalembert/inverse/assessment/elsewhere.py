@@ -1,0 +1,78 @@
+"""Further intervals of a profile: values beyond its first crossings that the data do not contradict either."""
+
+from functools import partial
+
+import numpy as np
+import scipy
+
+from dalembert.errors import SolveError
+from dalembert.inverse.assessment.walk import Walk, walked
+from dalembert.inverse.least_squares.descent import Memo
+from dalembert.inverse.problem.prefetch import prefetched
+from dalembert.inverse.problem.problem import Problem
+from dalembert.inverse.starts.neighbours import dips
+
+SCANNED = 25
+"""Values of the parameter that are simulated across its bounds."""
+
+OTHERS = 2
+"""Points of the other parameters that are tried with each value, beside the identified one."""
+
+MOST = 3
+"""Dips of the scan that are descended into, the lowest ones."""
+
+
+def elsewhere(
+    problem: Problem, vector: np.ndarray, k: int, interval: tuple[float, float], walk: Walk
+) -> tuple[tuple[float, float], ...]:
+    """Intervals of parameter ``k`` beside the one around the identified ``vector`` (parameters,), increasing.
+
+    One batch scans the parameter between its bounds. From its lowest dips the misfit is made least over all
+    parameters, and where that ends below the threshold at another value, both sides are walked from there. A region
+    whose basin lies between two values of the scan is not seen.
+    """
+    found = [interval]
+    starts = list(_starts(problem, vector, k, interval))
+    for point in prefetched(problem, partial(_around, k, walk, found[:1]), starts):
+        further = _around(k, walk, found, problem, point)
+        if further is not None:
+            found.append(further)
+    return tuple(sorted(found[1:]))
+
+
+def _around(
+    k: int, walk: Walk, found: list[tuple[float, float]], problem: Problem, point: np.ndarray
+) -> tuple[float, float] | None:
+    """Interval around where the misfit is least near a search point, apart from those found; None if there is none."""
+    memo, search = Memo(problem), problem.search
+    try:
+        end = walk.method.minimise(memo.residual, memo.jacobian, search.lower, search.upper, point)
+        excess, there = (end.fitness - walk.best) / walk.variance, search.vectors(end.x)
+        if not excess < walk.threshold or any(lower <= there[k] <= upper for lower, upper in found):
+            return None
+        at = problem.linearise(there)
+    except SolveError:
+        return None
+    lower, upper = (walked(problem, at, k, side, walk, excess).end for side in (-1, 1))
+    return lower, upper
+
+
+def _starts(problem: Problem, vector: np.ndarray, k: int, interval: tuple[float, float]) -> np.ndarray:
+    """Search points (n, parameters) at the lowest dips of a scan outside of the interval."""
+    search = problem.search
+    values = np.linspace(search.lower[k], search.upper[k], SCANNED)
+    size = len(vector)
+    grid = np.repeat(search.points(vector)[None], 1 if size == 1 else 1 + OTHERS, axis=0)
+    if size > 1:
+        spread = scipy.stats.qmc.Halton(size, scramble=False).random(1 + OTHERS)[1:]  # its first point is a corner
+        grid[1:] = search.lower + spread * (search.upper - search.lower)
+    points = np.repeat(grid[None], SCANNED, axis=0)
+    points[:, :, k] = values[:, None]
+    fitness = problem.fitness(points.reshape(-1, size)).reshape(SCANNED, -1)
+    fitness = np.where(np.isfinite(fitness), fitness, np.inf)
+    best = np.argmin(fitness, axis=1)
+    chosen, lowest = points[np.arange(SCANNED), best], fitness[np.arange(SCANNED), best]
+    own = search.vectors(chosen)[:, k]
+    outside = (own < interval[0]) | (own > interval[1])
+    low = [n for n in dips(np.concatenate([[np.inf], lowest, [np.inf]])) - 1 if outside[n] and np.isfinite(lowest[n])]
+    return chosen[sorted(low, key=lambda n: lowest[n])[:MOST]]

@@ -1,0 +1,86 @@
+"""What data would tell, asked before anything is solved."""
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from dalembert.arguments import takes_checked
+from dalembert.data import Measurements
+from dalembert.errors import InputError
+from dalembert.forward import ForwardModel
+from dalembert.inverse.assessment.sensitivity import at_of, linearised, noise_of
+from dalembert.inverse.fit.sentences import foreseen
+from dalembert.inverse.least_squares.estimate import Identifiability, estimate
+from dalembert.inverse.problem.matching import check_samples, columns_of
+from dalembert.inverse.problem.prior import prior_slopes
+
+
+@takes_checked()
+def identifiability(
+    model: ForwardModel,
+    at: Mapping[str, float] | ArrayLike | None = None,
+    *,
+    data: Measurements | None = None,
+    deviations: Mapping[str, float] | ArrayLike | None = None,
+) -> Identifiability:
+    """What measurements can tell about the parameters, from one run with its sensitivities.
+
+    Parameters
+    ----------
+    model : ForwardModel
+    at : mapping by name, or array of shape (parameters,), optional
+        Where to look; the first guesses if not given. What the data tell may be different elsewhere.
+    data : Measurements, optional
+        Data that are there already: their channels, gaps and deviations count, their values do not.
+    deviations : number, mapping by channel, or array of shape (channels,), optional
+        Standard deviations of the noise of data that are not there yet; a mapping names the channels that will be.
+
+    Returns
+    -------
+    Identifiability
+        Singular values of W^½ ∂R/∂p · scale, the combinations that they belong to, the deviations to be expected (NaN
+        where the noise is not known), their correlation, and plain sentences.
+
+    Raises
+    ------
+    InputError
+        For data and deviations at once, an unknown channel or parameter.
+    DataError
+        For data that do not fit the model.
+    SolveError
+        If the simulation fails.
+
+    Examples
+    --------
+    Of a decay of unknown height, gain and rate, height and gain cannot be told apart.
+
+    >>> from dalembert.forward import PythonModel
+    >>> times = np.linspace(0, 2, 21)
+    >>> box = {"rate": (0.5, 2.0), "height": (0.1, 1.0), "gain": (0.5, 2.0)}
+    >>> model = PythonModel(lambda rate, height, gain: gain * height * np.exp(-rate * times), box, ["x"], times)
+    >>> identifiability(model, deviations=1e-3).sentences[0].partition(":")[0]
+    "'height' and 'gain' can only be told in combination"
+    """
+    if data is not None and deviations is not None:
+        raise InputError("identifiability: data and deviations were given; expected one of them")
+    vector, parameters = at_of(model, at, "identifiability"), model.parameters
+    if data is not None:
+        columns = columns_of(model, data)
+        check_samples(model, data)
+        weights, known = data.present.astype(float), data.deviations is not None
+        noise = data.deviations if data.deviations is not None else np.ones(len(columns))
+    else:
+        known = deviations is not None
+        _, columns, noise = noise_of(model, 1.0 if deviations is None else deviations, "identifiability")
+        weights = np.ones((len(model.coordinate.values), len(columns)))
+    slopes = (np.sqrt(weights) / noise)[:, :, None] * linearised(model, vector)[1][:, columns] * parameters.scale
+    rows = [slopes.reshape(-1, len(vector))] + ([prior_slopes(parameters, parameters.scale)] if known else [])
+    told = estimate(np.concatenate(rows), parameters.scale, 1.0 if known else np.nan)
+    return Identifiability(
+        told.singular_values,
+        told.directions,
+        foreseen(parameters, told, known),
+        told.deviations,
+        told.correlation,
+    )

@@ -1,0 +1,188 @@
+"""The result of a prediction: a response and its bands."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+import numpy as np
+
+from dalembert.contents import Contents
+from dalembert.data import Measurements
+from dalembert.errors import listed
+from dalembert.findings import Finding
+from dalembert.forward import Coordinate
+from dalembert.forward.stored_coordinate import coordinate_of, stored_coordinate
+from dalembert.inverse.fit.summary import table
+from dalembert.results import Result, facts_of, saved_findings, stored_facts, told_of
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+
+FACTS = ("level", "quantile", "simulations")
+
+
+@dataclass(frozen=True, eq=False)
+class Prediction(Result):
+    """Bands of a response, sample by sample, of a given probability.
+
+    Parameters
+    ----------
+    coordinate : Coordinate
+    channels, units : tuple of str
+    response : array, shape (samples, channels)
+        At the identified values.
+    deviations : array, shape (samples, channels)
+        Standard deviations of the response, from those of the parameters; NaN from where a band ends.
+    noise : array, shape (channels,)
+        Standard deviation of a measurement; NaN for channels that were not measured.
+    data : Measurements or None
+        What was fitted.
+    level : float
+    quantile : float
+        Deviations on either side.
+    known : bool
+        Whether the noise was known, or estimated from the residuals.
+    simulations : int
+    provenance : mapping
+    findings : tuple of Finding
+        What the method concludes about the result.
+    """
+
+    FORMAT: ClassVar[str] = "dalembert prediction 1"
+
+    coordinate: Coordinate
+    channels: tuple[str, ...]
+    units: tuple[str, ...]
+    response: np.ndarray
+    deviations: np.ndarray
+    noise: np.ndarray
+    data: Measurements | None
+    level: float
+    quantile: float
+    known: bool
+    simulations: int
+    provenance: Mapping[str, Any]
+    findings: tuple[Finding, ...] = ()
+
+    @property
+    def lower(self) -> np.ndarray:
+        """Lower ends of the band of the true response, (samples, channels)."""
+        return self.response - self.quantile * self.deviations
+
+    @property
+    def upper(self) -> np.ndarray:
+        """Upper ends of the band of the true response, (samples, channels)."""
+        return self.response + self.quantile * self.deviations
+
+    @property
+    def measured_lower(self) -> np.ndarray:
+        """Lower ends of the band of a new measurement, (samples, channels)."""
+        return self.response - self.quantile * np.hypot(self.deviations, self.noise)
+
+    @property
+    def measured_upper(self) -> np.ndarray:
+        """Upper ends of the band of a new measurement, (samples, channels)."""
+        return self.response + self.quantile * np.hypot(self.deviations, self.noise)
+
+    @property
+    def success(self) -> bool:
+        """Whether every band is finite."""
+        return bool(np.all(np.isfinite(self.deviations)))
+
+    @property
+    def status(self) -> str:
+        """How wide the bands are, and what they leave out, in full sentences."""
+        part = f"{100 * self.level:g} %"
+        if np.all(np.isnan(self.deviations)):
+            return "No bands: the fit has no deviations, since the model gave no sensitivities."
+        lost = [repr(name) for name, wide in zip(self.channels, self.deviations.T, strict=True) if np.isinf(wide).any()]
+        parts = []
+        if lost:
+            parts.append(
+                f"The band of {listed(lost)} is infinitely wide: it depends on a combination of the parameters that "
+                "the data did not tell."
+            )
+        ratio = (
+            2
+            * self.quantile
+            * np.fmax.reduce(self.deviations, axis=0)
+            / np.maximum(np.ptp(self.response, axis=0), 1e-300)
+        )
+        finite = np.flatnonzero(np.isfinite(ratio))
+        if len(finite):
+            widest = finite[np.argmax(ratio[finite])]
+            parts.append(
+                f"The {part} band of the response is at most {100 * ratio[widest]:.2g} % as wide as the response "
+                f"varies, in {self.channels[widest]!r}."
+            )
+        source = "given deviations" if self.known else "the residuals"
+        parts.append(
+            f"The noise is known from {source}; the bands hold if the model is right and nearly linear in the "
+            "parameters between their ends."
+        )
+        return " ".join(parts)
+
+    def summary(self) -> str:
+        """Widths of the bands as a text table with the status."""
+        rows = [("channel", "unit", "widest", "with noise")]
+        for k, (name, unit) in enumerate(zip(self.channels, self.units, strict=True)):
+            width = np.fmax.reduce(self.upper[:, k] - self.lower[:, k])
+            measured = np.fmax.reduce(self.measured_upper[:, k] - self.measured_lower[:, k])
+            rows.append((name, unit, f"{width:.4g}", "not measured" if np.isnan(measured) else f"{measured:.4g}"))
+        return "\n".join([*table(rows), "", self.status, *map(str, self.findings)])
+
+    def contents(self) -> Contents:
+        """Everything as arrays over sample and channel."""
+        from dalembert.inverse.fit.stored_data import stored_data
+
+        variables: dict[str, Any] = {
+            "response": (("sample", "channel"), self.response),
+            "deviations": (("sample", "channel"), self.deviations),
+            "lower": (("sample", "channel"), self.lower),
+            "upper": (("sample", "channel"), self.upper),
+            "noise": ("channel", self.noise),
+        }
+        told: dict[str, Any] = {"units": self.units, "provenance": self.provenance, "known": self.known}
+        if self.data is not None:
+            given = stored_data(self.data)
+            names = {"sample": "measured_sample", "channel": "measured_channel"}
+            for name, (over, *rest) in given.items():
+                over = over if isinstance(over, tuple) else (over,)
+                variables[name] = (tuple(names[dimension] for dimension in over), *rest)
+            variables["measured_at"] = stored_coordinate(self.data.coordinate, "measured_sample")
+            told["measured"] = self.data.channels
+        return Contents(
+            variables,
+            {
+                "channel": ("channel", list(self.channels)),
+                "coordinate": stored_coordinate(self.coordinate),
+            },
+            stored_facts(self, (*FACTS, "status"), **told),
+        )
+
+    @classmethod
+    def from_xarray(cls, dataset: "Dataset") -> Self:
+        """The prediction that :meth:`to_xarray` turned into a dataset."""
+        from dalembert.inverse.fit.stored_data import data_of
+
+        told = told_of(dataset)
+        data = None
+        if "measured" in told:
+            own = dataset.drop_vars(["channel", "coordinate"]).drop_dims(["sample", "channel"])
+            own = own.rename({"measured_sample": "sample", "measured_channel": "channel"})
+            own = own.rename_vars({"measured_at": "coordinate"}).assign_coords(channel=told["measured"])
+            data = data_of(own)
+        return cls(
+            coordinate=coordinate_of(dataset["coordinate"]),
+            channels=tuple(map(str, dataset["channel"].values)),
+            units=tuple(told["units"]),
+            response=dataset["response"].values,
+            deviations=dataset["deviations"].values,
+            noise=dataset["noise"].values,
+            data=data,
+            **facts_of(cls, dataset, FACTS),
+            known=bool(told["known"]),
+            provenance=told["provenance"],
+            findings=saved_findings(dataset),
+        )

@@ -1,0 +1,246 @@
+"""The result of a profile likelihood: how the misfit grows as one parameter after the other is held elsewhere."""
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+import numpy as np
+
+from dalembert.contents import Contents
+from dalembert.errors import listed
+from dalembert.findings import Finding
+from dalembert.inverse.fit.summary import table
+from dalembert.parameters import Parameter, Parameters
+from dalembert.results import Result, facts_of, fixed_lines, saved_findings, stored_facts, told_of
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+LOPSIDED = 1.5
+"""Ratio of an interval's two sides from which its standard deviation is said to mislead."""
+
+BETTER = 0.01
+"""Variances of the noise by which a point must explain the data better for the fit to be no minimum."""
+
+
+@dataclass(frozen=True, eq=False)
+class Profile:
+    """Least misfit over all other parameters, for values of one.
+
+    Parameters
+    ----------
+    name : str
+    values : array, shape (points,)
+        Increasing.
+    excess : array, shape (points,)
+        Misfit above that of the fit, in variances of the noise.
+    points : array, shape (points, parameters)
+        Where it is taken.
+    lower, upper : float
+        The interval; a bound of the parameter on a side that is open.
+    open : tuple of bool
+        Whether the misfit stays below the threshold up to the bound, on the lower and on the upper side.
+    broken : tuple of str
+        Why a side ends before threshold and bound, "" where it does not.
+    elsewhere : tuple of (float, float)
+        Further intervals, apart from this one, that the data do not contradict either.
+    """
+
+    name: str
+    values: np.ndarray
+    excess: np.ndarray
+    points: np.ndarray
+    lower: float
+    upper: float
+    open: tuple[bool, bool]
+    broken: tuple[str, str] = ("", "")
+    elsewhere: tuple[tuple[float, float], ...] = ()
+
+
+FACTS = ("level", "threshold", "variance", "simulations")
+
+
+@dataclass(frozen=True, eq=False)
+class Profiles(Result):
+    """Profile likelihoods of parameters, and the intervals where they stay below a threshold.
+
+    Parameters
+    ----------
+    parameters : Parameters
+    values : array, shape (parameters,)
+        Identified values.
+    deviations : array, shape (parameters,)
+        Their standard deviations, from the linearised response.
+    curves : tuple of Profile
+    level : float
+    threshold : float
+        Quantile of chi-square with one degree of freedom where the noise is known, else of F(1, freedom).
+    variance : float
+        Of a weighted residual, without the factor of each parameter that allows for correlated residuals.
+    known : bool
+        Whether the noise is known, or estimated from the residuals.
+    simulations : int
+    provenance : mapping
+    findings : tuple of Finding
+        What the method concludes about the result.
+    """
+
+    FORMAT: ClassVar[str] = "dalembert profiles 1"
+
+    parameters: Parameters
+    values: np.ndarray
+    deviations: np.ndarray
+    curves: tuple[Profile, ...]
+    level: float
+    threshold: float
+    variance: float
+    known: bool
+    simulations: int
+    provenance: Mapping[str, Any]
+    findings: tuple[Finding, ...] = ()
+
+    def __getitem__(self, name: str) -> Profile:
+        """The profile of a parameter."""
+        return next(curve for curve in self.curves if curve.name == name)
+
+    @property
+    def intervals(self) -> dict[str, tuple[float, float]]:
+        """Interval of each parameter by name."""
+        return {curve.name: (curve.lower, curve.upper) for curve in self.curves}
+
+    @property
+    def better(self) -> dict[str, float] | None:
+        """Parameters that explain the data better than the fit does, if some were met on the way."""
+        curve = min(self.curves, key=lambda curve: np.min(curve.excess))
+        place = int(np.argmin(curve.excess))
+        return self.parameters.mapping(curve.points[place]) if curve.excess[place] < -BETTER else None
+
+    @property
+    def success(self) -> bool:
+        """Whether every side ended at its threshold or at a bound, and no better point was met."""
+        return self.better is None and not any(reason for curve in self.curves for reason in curve.broken)
+
+    def sentences(self) -> tuple[str, ...]:
+        """What the profiles tell, in plain sentences."""
+        found = []
+        if self.better is not None:
+            there = ", ".join(f"{name} = {value:.6g}" for name, value in self.better.items())
+            found.append(f"A better minimum lies near {there}; identify again from there, and profile that fit.")
+        for curve in self.curves:
+            found += self._of_one(curve)
+        return tuple(found)
+
+    def _of_one(self, curve: Profile) -> list[str]:
+        k = self.parameters.names.index(curve.name)
+        item, value, found = self.parameters.items[k], self.values[k], []
+        for side, reason in zip(("lower", "upper"), curve.broken, strict=True):
+            if reason:
+                found.append(f"The {side} side of {curve.name!r} ends early: {reason}.")
+        if all(curve.open):
+            found.append(
+                f"{curve.name!r} is not told by the data: wherever it is between its bounds, they are explained within "
+                "their noise; fix it, or measure what tells it."
+            )
+        elif any(curve.open):
+            side = "lower" if curve.open[0] else "upper"
+            found.append(
+                f"{curve.name!r} has no {side} limit from the data: up to its bound {getattr(item, side):.6g} they are "
+                "explained within their noise."
+            )
+        elif not any(curve.broken):
+            below, above = value - curve.lower, curve.upper - value
+            if max(below, above) > LOPSIDED * min(below, above):
+                found.append(
+                    f"The interval of {curve.name!r} is lopsided, {below:.3g} below and {above:.3g} above its value: "
+                    f"the standard deviation {self.deviations[k]:.3g} misleads."
+                )
+        if curve.elsewhere:
+            parts = listed([f"{lower:.6g} to {upper:.6g}" for lower, upper in curve.elsewhere])
+            found.append(
+                f"Beside its interval the data do not contradict {curve.name!r} from {parts} either; measure what "
+                "tells these minima apart, or narrow the bounds."
+            )
+        return found
+
+    @property
+    def status(self) -> str:
+        """How the profiles went, in full sentences."""
+        names = listed([repr(curve.name) for curve in self.curves])
+        source = "given deviations" if self.known else "the residuals"
+        opening = (
+            f"{100 * self.level:g} % intervals of {names} from profile likelihoods, with noise known from {source}."
+        )
+        return " ".join([opening, *self.sentences()])
+
+    def summary(self) -> str:
+        """The intervals as a text table with the status."""
+        rows = [("parameter", "value", "lower", "upper", "unit", "± deviation")]
+        for curve in self.curves:
+            k = self.parameters.names.index(curve.name)
+            lower, upper = (
+                f"{end:.6g}" + (" (bound)" if is_open else "")
+                for end, is_open in zip((curve.lower, curve.upper), curve.open, strict=True)
+            )
+            item = self.parameters.items[k]
+            rows.append((curve.name, f"{self.values[k]:.7g}", lower, upper, item.unit, f"{self.deviations[k]:.2g}"))
+        return "\n".join([*table(rows), "", *fixed_lines(self), self.status, *map(str, self.findings)])
+
+    def contents(self) -> Contents:
+        """Everything as arrays over parameter, profile and point."""
+        told = {
+            "parameters": [asdict(item) for item in self.parameters.declared],
+            "known": self.known,
+            "broken": [curve.broken for curve in self.curves],
+            "elsewhere": [curve.elsewhere for curve in self.curves],
+            "provenance": self.provenance,
+        }
+        return Contents(
+            {
+                "values": ("parameter", self.values),
+                "deviations": ("parameter", self.deviations),
+                "lower": ("profile", np.array([curve.lower for curve in self.curves])),
+                "upper": ("profile", np.array([curve.upper for curve in self.curves])),
+                "open": (("profile", "side"), np.array([curve.open for curve in self.curves], dtype=np.int8)),
+                "count": ("profile", np.array([len(curve.values) for curve in self.curves], dtype=np.int64)),
+                "along": ("point", np.concatenate([curve.values for curve in self.curves])),
+                "excess": ("point", np.concatenate([curve.excess for curve in self.curves])),
+                "points": (("point", "parameter"), np.concatenate([curve.points for curve in self.curves])),
+            },
+            {
+                "parameter": ("parameter", list(self.parameters.names)),
+                "profile": ("profile", [curve.name for curve in self.curves]),
+            },
+            stored_facts(self, (*FACTS, "status"), **told),
+        )
+
+    @classmethod
+    def from_xarray(cls, dataset: "Dataset") -> Self:
+        """The profiles that :meth:`to_xarray` turned into a dataset."""
+        told = told_of(dataset)
+        a = {str(name): variable.values for name, variable in dataset.variables.items()}
+        ends = np.cumsum(a["count"])[:-1]
+        along, excess, points = (np.split(a[name], ends) for name in ("along", "excess", "points"))
+        curves = tuple(
+            Profile(
+                name=str(name),
+                values=along[n],
+                excess=excess[n],
+                points=points[n],
+                lower=float(a["lower"][n]),
+                upper=float(a["upper"][n]),
+                open=(bool(a["open"][n, 0]), bool(a["open"][n, 1])),
+                broken=(told["broken"][n][0], told["broken"][n][1]),
+                elsewhere=tuple((lower, upper) for lower, upper in told.get("elsewhere", [()] * (n + 1))[n]),
+            )
+            for n, name in enumerate(a["profile"])
+        )
+        return cls(
+            parameters=Parameters(tuple(Parameter(**item) for item in told["parameters"])),
+            values=a["values"],
+            deviations=a["deviations"],
+            curves=curves,
+            **facts_of(cls, dataset, FACTS),
+            known=bool(told["known"]),
+            provenance=told["provenance"],
+            findings=saved_findings(dataset),
+        )

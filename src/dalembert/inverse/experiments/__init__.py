@@ -1,0 +1,1 @@
+"""Several experiments in one fit, and validation with held-out data."""

@@ -1,0 +1,139 @@
+"""How much of the variation of held-out data a response explains."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from dalembert.findings import Finding
+from dalembert.inverse.correlation.series import records_of, series_of
+from dalembert.inverse.correlation.whiteness import LEVEL, p_value
+from dalembert.inverse.problem.problem import Problem
+
+GOOD = 0.9
+"""Share of the variation from which a record counts as explained."""
+
+
+@dataclass(frozen=True)
+class Explained:
+    """Share of the variation of one channel of a held-out record that the response explains.
+
+    Parameters
+    ----------
+    record : str
+        Name of the experiment; empty for a single one.
+    channel : str
+    share : float
+        1 − Σ W (R − data)² / Σ W (data − mean)² over the held-out values; negative where the mean of the data is better
+        than the response, NaN for data that do not vary.
+    variation : float
+        Σ W (data − mean)².
+    ratio : float
+        Root mean square of the weighted residuals over that of the fitted values.
+    white : bool
+        Whether the residuals pass as white noise.
+    covered : float
+        Share of the held-out values inside their 95 % bands; NaN without bands.
+    """
+
+    record: str
+    channel: str
+    share: float
+    variation: float
+    ratio: float
+    white: bool
+    covered: float = np.nan
+
+    @property
+    def poor(self) -> bool:
+        """Whether less than 0.9 is explained, and noise as in the fitted values is not the reason."""
+        return self.share < GOOD and not (self.white and self.ratio < WORSE)
+
+
+WORSE = 1.5
+"""Ratio of residuals from which a prediction is said to be worse than the fit."""
+
+
+def explained(problem: Problem, response: np.ndarray, weights: np.ndarray, fitted: float) -> tuple[Explained, ...]:
+    """Return the shares of all channels with held-out values.
+
+    Parameters
+    ----------
+    problem : Problem
+        The whole one.
+    response : array, shape (samples, channels)
+    weights : array, shape (samples, channels)
+        W of the held-out values, 0 for the others.
+    fitted : float
+        Root mean square of the weighted residuals of the fitted values.
+    """
+    data = problem.data
+    values, residual = data.continuous.ravel(), (np.sqrt(weights) * problem.misfit(response)).ravel()
+    records = records_of(problem)
+    series = list(series_of(problem, weights))
+    found = []
+    for own in series:
+        left, here, size = residual[own.rows], values[own.rows], weights.ravel()[own.rows]
+        variation = float(np.sum(size * (here - np.average(here, weights=size)) ** 2))
+        squares = float(left @ left)
+        record, channel = records[own.name]
+        found.append(
+            Explained(
+                record=record,
+                channel=channel,
+                share=1 - squares / variation if variation > 0 else np.nan,
+                variation=variation,
+                ratio=float(np.sqrt(squares / len(left)) / fitted) if fitted > 0 else np.inf,
+                white=p_value(own, left, np.zeros((len(left), 1))) >= LEVEL / len(series),
+            )
+        )
+    return tuple(found)
+
+
+def record_shares(shares: Sequence[Explained]) -> dict[str, float]:
+    """Return the share of the variation of all channels together, for each record.
+
+    >>> record_shares([Explained("a", "x", 0.5, 3.0, 1.0, True), Explained("a", "y", 1.0, 1.0, 1.0, True)])
+    {'a': 0.625}
+    """
+    found = {}
+    for record in dict.fromkeys(item.record for item in shares):
+        own = [item for item in shares if item.record == record and item.variation > 0]
+        total = sum(item.variation for item in own)
+        found[record] = sum(item.share * item.variation for item in own) / total if total > 0 else np.nan
+    return found
+
+
+def percentages(shares: Sequence[Explained]) -> str:
+    """Return the shares of records and channels as a sentence; empty without any."""
+    parts = []
+    for record, share in record_shares(shares).items():
+        own = [item for item in shares if item.record == record]
+        lead = f"{_percent(share)} of {record!r}" if record else _percent(share)
+        channels = [f"{item.channel!r} {_percent(item.share)}" for item in own]
+        parts.append(f"{lead} ({', '.join(channels)})" if len(own) > 1 else lead)
+    return f"Explained there of the data's variation: {'; '.join(parts)}." if parts else ""
+
+
+def explained_findings(shares: Sequence[Explained]) -> Iterator[Finding]:
+    """Yield a finding for each record of which too little is explained, though noise is not the reason."""
+    for record, share in record_shares(shares).items():
+        poor = [item for item in shares if item.record == record and item.poor]
+        if not poor:
+            continue
+        worst = min(poor, key=lambda item: item.share)
+        what = f"the held-out record {record!r}" if record else "the held-out samples"
+        yield Finding(
+            "validation-unexplained",
+            "warning",
+            {"record": record, "channel": worst.channel, "explained": share, "channel_explained": worst.share},
+            f"The response explains {_percent(share)} of the variation of {what}, "
+            f"{_percent(worst.share)} in {worst.channel!r}.",
+            "The model does not predict this motion. Fit such records too, or look for what the model lacks.",
+        )
+
+
+def _percent(share: float) -> str:
+    if np.isnan(share):
+        return "undefined (constant data)"
+    return "none" if share < 0 else f"{100 * share:.4g} %"

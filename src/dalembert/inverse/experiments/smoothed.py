@@ -1,0 +1,82 @@
+"""Measurements smoothed by local polynomials: what a segment begins with, and how exact the data are."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from dalembert.data import Measurements, derivative
+from dalembert.errors import DataError
+from dalembert.findings import Finding
+from dalembert.inverse.experiments.experiments import Part
+
+
+@dataclass(frozen=True, eq=False)
+class Smoothed:
+    """What was measured of a motion, and how fast it changed.
+
+    Parameters
+    ----------
+    values, rates : array, shape (samples, channels)
+        Without jumps of wrapping channels; interpolated over missing samples. Rates are NaN where there are too few
+        samples for them.
+    deviations, errors : array, shape (channels,)
+        Standard deviation of the noise of both.
+    """
+
+    values: np.ndarray
+    rates: np.ndarray
+    deviations: np.ndarray
+    errors: np.ndarray
+
+
+def smoothed(data: Measurements) -> Smoothed:
+    """Return measured values, their rates by local polynomials, and the noise of both."""
+    along, values = data.coordinate.values, data.continuous
+    rates, deviations, errors = np.full(values.shape, np.nan), np.zeros(values.shape[1]), np.ones(values.shape[1])
+    for column, name in enumerate(data.channels):
+        there = data.present[:, column]
+        values[:, column] = np.interp(along, along[there], values[there, column])
+        try:
+            found = derivative(data, name)
+        except DataError:  # too few samples beside each other
+            continue
+        known = np.isfinite(found.values)
+        rates[:, column] = np.interp(along, along[known], found.values[known])
+        deviations[column], errors[column] = found.deviation, max(found.error, 1e-12)
+    return Smoothed(values, rates, deviations, errors)
+
+
+LEAST = 1e-6
+"""Least noise of a channel, in parts of its spread: local polynomials leave almost none of a smooth one."""
+
+
+def smooth_noise(data: Measurements, parts: Sequence[Part]) -> np.ndarray:
+    """Return the standard deviation of each channel's noise, shape (channels,): what local polynomials leave.
+
+    Channels of several experiments are smoothed each over its own samples. Where samples are too few it is the spread
+    of the channel.
+    """
+    found = np.zeros(len(data.channels))
+    for own, columns in [(part.data(data), part.columns) for part in parts] or [(data, np.arange(len(found)))]:
+        seen = smoothed(own)
+        spread = np.std(seen.values, axis=0)
+        noise = np.where(seen.deviations > 0, np.maximum(seen.deviations, LEAST * spread), spread)
+        found[columns] = np.where(noise > 0, noise, 1.0)
+    return found
+
+
+def noise_findings(data: Measurements, noise: np.ndarray | None) -> tuple[Finding, ...]:
+    """Return the finding that the noise of the data was estimated by local polynomials; none where it was not."""
+    if noise is None:
+        return ()
+    listed = ", ".join(f"{name!r} {own:.3g}" for name, own in zip(data.channels, noise, strict=True))
+    return (
+        Finding(
+            "smoothed-noise",
+            "note",
+            dict(zip(data.channels, map(float, noise), strict=True)),
+            f"The data have no deviations. Their noise was estimated by local polynomials: {listed}.",
+            "Give deviations if you know them.",
+        ),
+    )

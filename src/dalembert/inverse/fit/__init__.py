@@ -1,0 +1,1 @@
+"""The result of an identification, its intervals, its text and its file."""

@@ -1,0 +1,1 @@
+"""Least squares from one start, and the standard deviations that follow."""

@@ -1,0 +1,112 @@
+"""One start of least squares: a local descent, its horizon growing if asked."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from dalembert.errors import SolveError
+from dalembert.inverse.problem.problem import Linearisation, Problem
+from dalembert.inverse.shooting.nodes import Nodes
+from dalembert.optimize import Progress, Squares
+
+
+@dataclass(frozen=True, eq=False)
+class End:
+    """Where a start ended: a search point (parameters,), its fitness over all samples, and how it was reached.
+
+    At a ``stationary`` end a finer descent would change nothing; at a ``rough`` one the response is not smooth enough
+    for it. Multiple shooting adds the ``nodes`` of its segments, and a ``spread`` S (parameters, parameters)
+    with the covariance S Sᵀ of the parameters at unit variance. ``begun`` is the fitness where the descent over all
+    samples began.
+    """
+
+    point: np.ndarray
+    fitness: float
+    success: bool
+    message: str
+    stationary: bool = False
+    linearisation: Linearisation | None = None
+    nodes: Nodes | None = None
+    rough: bool = False
+    begun: float = np.inf
+    spread: np.ndarray | None = None
+
+
+class Memo:
+    """Residual and jacobian of a problem at search points, so that a point is simulated at most twice.
+
+    After an accepted point the next one is simulated with its sensitivities at once, since it will most likely be
+    accepted too; after a rejected one without.
+    """
+
+    def __init__(self, problem: Problem, at: Linearisation | None = None) -> None:
+        self.problem, self.hopeful = problem, True
+        self.at = self.accepted = at
+
+    def residual(self, point: np.ndarray) -> np.ndarray:
+        vector, hopeful = self.problem.search.vectors(point), self.hopeful
+        if self.at is not None and np.array_equal(self.at.vector, vector):
+            return self.problem.residuals(vector, self.at.response)
+        self.hopeful = False
+        if not hopeful:
+            return self.problem.residuals(vector, self.problem.responses(vector[None])[0])
+        try:
+            at = self.problem.linearise(vector)
+        except SolveError:
+            return np.full(self.problem.weights.size + self.problem.priors, np.nan)
+        self.at = at
+        return self.problem.residuals(vector, at.response)
+
+    def jacobian(self, point: np.ndarray) -> np.ndarray:
+        vector = self.problem.search.vectors(point)
+        if self.at is None or not np.array_equal(self.at.vector, vector):
+            self.at = self.problem.linearise(vector)
+        self.hopeful, self.accepted = True, self.at
+        return self.problem.slopes(self.at)
+
+    def known(self, vector: np.ndarray) -> Linearisation | None:
+        """The linearisation at a vector (parameters,), if it is that of the last or of the last accepted point."""
+        both = (at for at in (self.at, self.accepted) if at is not None)
+        return next((at for at in both if np.array_equal(at.vector, vector)), None)
+
+
+def descend(ladder: Sequence[Problem], method: Squares, point: np.ndarray, fitness: float | None = None) -> End:
+    """Least squares from a search point on each problem of a ladder, the last one the whole problem.
+
+    The shorter horizons only lead the way and are left early. Where they lead to a larger fitness of the whole problem
+    than the point's ``fitness``, if that is known, the descent over the whole begins at the point.
+    """
+    led = point
+    for problem in ladder[:-1]:
+        led = _local(Memo(problem), replace(method, trials=10, tolerance=1e-3, gain=1e-2), led).point
+    memo = Memo(ladder[-1])
+    if fitness is not None and len(ladder) > 1:
+        residual = memo.residual(led)
+        led = led if residual @ residual <= fitness else point
+    return _local(memo, method, led)
+
+
+def refine(problem: Problem, method: Squares, end: End) -> End:
+    """Least squares from where a descent ended; what was simulated there is not simulated again."""
+    return _local(Memo(problem, end.linearisation), method, end.point)
+
+
+def _local(memo: Memo, method: Squares, point: np.ndarray) -> End:
+    problem, journal, search = memo.problem, memo.problem.journal, memo.problem.search
+    best, begun = End(point, np.inf, False, ""), np.inf
+
+    def progress(now: Progress) -> None:
+        nonlocal best, begun
+        begun = now.best if now.iteration == 0 else begun
+        best = End(now.x, now.best, False, "")
+        journal.step(now.best, search.vectors(now.x), problem.samples, now.regularised)
+
+    try:
+        found = method.minimise(memo.residual, memo.jacobian, search.lower, search.upper, point, on_iteration=progress)
+    except SolveError as error:
+        return replace(best, message=f"the sensitivities could not be computed: {error}")
+    reasons = [] if np.isfinite(found.fitness) else journal.failures[-1:]
+    message = ": ".join([found.message, *reasons])
+    kept = memo.known(search.vectors(found.x))
+    return End(found.x, found.fitness, found.success, message, found.stationary, kept, rough=found.rough, begun=begun)

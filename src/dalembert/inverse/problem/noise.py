@@ -1,0 +1,126 @@
+"""How small a misfit can become: the noise that the data are known to have."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import chdtri
+
+from dalembert.inverse.problem.problem import Problem
+
+SMALL = 1e-6
+"""Noise below this fraction (0.1 % squared) of the signal's squares is small: a minimum that reaches it is the one."""
+
+
+@dataclass(frozen=True)
+class NoiseFloor:
+    """Fitness that known noise alone explains.
+
+    Parameters
+    ----------
+    fitness : float
+        99.9 % quantile of the fitness at the true parameters.
+    source : str
+        Where the noise is known from.
+    conclusive : bool
+        Whether reaching the floor shows that no better minimum need be looked for: the noise is so small against the
+        signal that a false minimum would not get there.
+    """
+
+    fitness: float
+    source: str
+    conclusive: bool
+
+    @property
+    def known(self) -> bool:
+        """Whether deviations of the data were given."""
+        return self.source == "given deviations"
+
+
+def noise_floor(problem: Problem, smooth: np.ndarray | None = None) -> NoiseFloor:
+    """Floor from given deviations, from the digits that the data are rounded to, and from arithmetic.
+
+    ``smooth`` (channels,) are deviations that were estimated by local polynomials.
+
+    The variance of a value is the given one, plus q²/12 for data rounded to multiples of q, plus the square of a
+    millionth of its channel's spread.
+    """
+    data, weights = problem.data, problem.weights
+    given = np.zeros(len(data.channels)) if data.deviations is None else data.deviations
+    given = given if smooth is None else smooth
+    quanta = np.array([quantum(column[there]) for column, there in zip(data.values.T, data.present.T, strict=True)])
+    spread = _filled(problem).std(axis=0)
+    expected = float(np.sum(weights * (given**2 + quanta**2 / 12 + (1e-6 * spread) ** 2))) + problem.priors
+    source = (
+        "local polynomials"
+        if smooth is not None
+        else "given deviations"
+        if given.any()
+        else "rounding of the data"
+        if quanta.any()
+        else "arithmetic"
+    )
+    return NoiseFloor(
+        expected * float(chdtri(problem.compared, 0.001)) / problem.compared,
+        source,
+        expected < SMALL * signal(problem),
+    )
+
+
+def signal(problem: Problem) -> float:
+    """Σ W (data − mean)²: what a response that explains nothing leaves."""
+    values = _filled(problem)
+    return float(np.sum(problem.weights * (values - values.mean(axis=0)) ** 2))
+
+
+def _filled(problem: Problem) -> np.ndarray:
+    """Data without jumps by whole turns, their gaps filled with the channel's mean."""
+    data = problem.data
+    values, there = data.continuous, data.present
+    if np.all(there):
+        return values
+    mean = np.sum(np.where(there, values, 0.0), axis=0) / np.maximum(1, np.sum(there, axis=0))
+    return np.where(there, values, mean)
+
+
+def quantum(column: np.ndarray) -> float:
+    """Unit of the last decimal that data (samples,) are rounded to; 0 where they are not, or span too few units to say.
+
+    >>> quantum(np.array([0.1234, -0.5, 1.25])), quantum(np.array([0.0, 1.0, 2.0])), quantum(np.sqrt(np.arange(9.0)))
+    (0.0001, 0.0, 0.0)
+    """
+    for decimals in range(13):
+        scaled = column * 10.0**decimals
+        if np.all(np.abs(scaled - np.rint(scaled)) < 1e-6):
+            return 10.0**-decimals if np.ptp(scaled) > 1000 else 0.0
+    return 0.0
+
+
+def autocorrelation(residual: np.ndarray, shape: tuple[int, int], present: np.ndarray | None = None) -> float:
+    """Correlation of neighbouring samples of weighted residuals, flat from (samples, channels), over all channels.
+
+    ``present`` (samples, channels) masks the values that are there, all if not given; neighbours are those.
+
+    >>> autocorrelation(np.array([1.0, -1.0, 1.0, -1.0]), (4, 1))
+    -0.75
+    >>> gaps = np.array([1.0, 0.0, -1.0, 0.0, 1.0, 0.0, -1.0])
+    >>> autocorrelation(gaps, (7, 1), gaps[:, None] != 0)
+    -0.75
+    """
+    table = residual.reshape(shape)
+    if present is None or np.all(present):
+        neighbours = np.sum(table[1:] * table[:-1])
+    else:
+        there = [column[mask] for column, mask in zip(table.T, present.T, strict=True)]
+        neighbours = sum(np.sum(column[1:] * column[:-1]) for column in there)
+    return float(neighbours / max(np.sum(table**2), np.finfo(float).tiny))
+
+
+def random_residuals(
+    residual: np.ndarray, shape: tuple[int, int], present: np.ndarray | None = None, *, deviations: float = 3.0
+) -> bool:
+    """Whether residuals look like noise: their autocorrelation is within ``deviations`` of its own, 1/√values.
+
+    ``present`` (samples, channels) masks the values that are there, all if not given; the others' residuals are 0.
+    """
+    values = residual.size if present is None else np.count_nonzero(present)
+    return abs(autocorrelation(residual, shape, present)) < deviations / np.sqrt(values)

@@ -1,0 +1,79 @@
+"""What is known of parameters before any data: a standard deviation around the first guess."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from dalembert.errors import InputError, listed
+from dalembert.inverse.problem.combinations import moved, separated
+from dalembert.parameters import Parameters
+
+ALONE = 0.9
+"""Part of a prior's variance that is left with the data, from which the prior alone is said to have decided."""
+
+
+def priors(parameters: Parameters) -> np.ndarray:
+    """Numbers of the parameters that have a prior."""
+    return np.array([k for k, item in enumerate(parameters) if item.deviation is not None], dtype=int)
+
+
+def prior_deviations(parameters: Parameters) -> np.ndarray:
+    """Standard deviations of the priors, one for each of :func:`priors`."""
+    return np.array([item.deviation for item in parameters if item.deviation is not None], dtype=float)
+
+
+def prior_residual(parameters: Parameters, vectors: np.ndarray) -> np.ndarray:
+    """(p − start)/deviation of each prior: (..., priors) at parameter vectors (..., parameters)."""
+    known = priors(parameters)
+    return (vectors[..., known] - parameters.start[known]) / prior_deviations(parameters)
+
+
+def prior_slopes(parameters: Parameters, unit: np.ndarray) -> np.ndarray:
+    """Jacobian of :func:`prior_residual` with respect to p/unit, (priors, parameters)."""
+    known = priors(parameters)
+    rows = np.zeros((len(known), len(parameters)))
+    rows[np.arange(len(known)), known] = unit[known] / prior_deviations(parameters)
+    return rows
+
+
+def check_priors(parameters: Parameters, known: bool) -> None:
+    """Refuse priors beside data of unknown noise: which of the two to trust more would not be known.
+
+    Raises
+    ------
+    InputError
+    """
+    for k in () if known else priors(parameters)[:1]:
+        raise InputError(
+            f"parameter {parameters.names[k]!r} has a deviation, what is known of it before the data, but how exact "
+            "the data are is not known; give the data's deviations, or weights that are 1/variance"
+        )
+
+
+def told_by_priors(parameters: Parameters, deviations: np.ndarray, correlation: np.ndarray) -> Sequence[str]:
+    """Sentences on parameters and combinations that the data hardly tell more about than the priors did.
+
+    They are the directions, in units of the priors' deviations, in which most of the priors' variance is left.
+    """
+    known = priors(parameters)
+    if not len(known) or not np.all(np.isfinite(deviations[known])):
+        return ()
+    before = prior_deviations(parameters)
+    after = deviations[known] / before
+    left, directions = np.linalg.eigh(after[:, None] * correlation[np.ix_(known, known)] * after)
+    names = [parameters.names[k] for k in known]
+    found = []
+    for row in separated(directions.T[left > ALONE]):
+        parts = np.flatnonzero(np.abs(row) > 0.3 * np.max(np.abs(row)))
+        if len(parts) == 1:
+            k = parts[0]
+            found.append(
+                f"{names[k]!r} is known from its prior alone: its deviation was {before[k]:.3g} before the data and is "
+                f"{deviations[known[k]]:.3g} with them; measure what tells it."
+            )
+        else:
+            found.append(
+                f"{listed([repr(names[k]) for k in parts])} are told apart by their priors alone: moving "
+                f"{moved(names, row * before, before / 0.1)} together changes the response by less than its noise."
+            )
+    return tuple(found)

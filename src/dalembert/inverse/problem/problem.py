@@ -1,0 +1,201 @@
+"""The weighted misfit between a model and measurements."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from dalembert.data import Measurements
+from dalembert.errors import DalembertError, InputError, SolveError, StorageError, told
+from dalembert.forward import ForwardModel
+from dalembert.inverse.problem.journal import Journal
+from dalembert.inverse.problem.loss import Loss
+from dalembert.inverse.problem.matching import (
+    check_finite,
+    check_samples,
+    check_sizes,
+    check_weighted,
+    columns_of,
+    weights_of,
+)
+from dalembert.inverse.problem.prior import check_priors, prior_residual, prior_slopes
+from dalembert.inverse.problem.search import Search
+from dalembert.inverse.problem.simulated import named, simulated
+
+
+@dataclass(frozen=True, eq=False)
+class Linearisation:
+    """Response (samples, channels) and jacobian (samples, channels, parameters) at a vector (parameters,)."""
+
+    vector: np.ndarray
+    response: np.ndarray
+    jacobian: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """Fitness g(p) = Σ W (R(p) − data)² over samples and channels, + Σ ((p − start)/deviation)² over priors.
+
+    Values that are missing have W = 0; differences of wrapping channels count modulo a turn.
+
+    Parameters
+    ----------
+    model : ForwardModel
+    data : Measurements
+    columns : array of int, shape (channels,)
+        Where the data's channels stand among the model's.
+    weights : array, shape (samples, channels)
+        W.
+    search : Search
+    journal : Journal
+    loss : Loss, optional
+        The square if not given; all that is minimised are squares of residuals that it has transformed.
+    """
+
+    model: ForwardModel
+    data: Measurements
+    columns: np.ndarray
+    weights: np.ndarray
+    search: Search
+    journal: Journal
+    loss: Loss | None = None
+
+    @property
+    def samples(self) -> int:
+        return len(self.data.coordinate.values)
+
+    @property
+    def compared(self) -> int:
+        """Number of values that count, those of priors among them."""
+        return int(np.count_nonzero(self.weights)) + self.priors
+
+    @property
+    def priors(self) -> int:
+        """Number of parameters of which something is known before the data."""
+        return sum(item.deviation is not None for item in self.model.parameters)
+
+    def first(self, samples: int) -> "Problem":
+        """The same problem over the first ``samples`` samples."""
+        if samples == self.samples:
+            return self
+        return replace(
+            self, model=self.model.first(samples), data=self.data.first(samples), weights=self.weights[:samples]
+        )
+
+    def responses(self, vectors: np.ndarray) -> np.ndarray:
+        """Responses (batch, samples, channels) at parameter vectors (batch, parameters); NaN where a sample failed."""
+        return simulated(self.model, self.columns, self.journal, vectors)
+
+    def fitness(self, points: np.ndarray) -> np.ndarray:
+        """Fitness (batch,) at search points (batch, parameters); NaN where a sample failed."""
+        vectors = self.search.vectors(points)
+        responses = self.responses(vectors)
+        prior = np.sum(prior_residual(self.model.parameters, vectors) ** 2, axis=1)
+        if self.loss is not None:
+            return np.sum(self.squares(responses), axis=(1, 2)) + prior
+        with np.errstate(over="ignore"):
+            return np.einsum("sc,bsc->b", self.weights, self.misfit(responses) ** 2) + prior
+
+    def squares(self, responses: np.ndarray) -> np.ndarray:
+        """What each value adds to the fitness, both (..., samples, channels)."""
+        with np.errstate(over="ignore"):  # infinite squares are a failed sample's
+            if self.loss is not None:
+                return self.loss.residual(np.sqrt(self.weights) * self.misfit(responses)) ** 2
+            return self.weights * self.misfit(responses) ** 2
+
+    def misfit(self, response: np.ndarray) -> np.ndarray:
+        """R − data, both (..., samples, channels); 0 where a value is missing, NaN elsewhere if a sample failed."""
+        return np.where(self.data.present, self.data.difference(response), 0.0)
+
+    def linearise(self, vector: np.ndarray) -> Linearisation:
+        """Response and jacobian at a parameter vector.
+
+        Raises
+        ------
+        SolveError
+            Whatever goes wrong in the simulation at this vector.
+        """
+        self.journal.simulations += 1 + len(vector)
+        try:
+            response, jacobian = self.model.linearise(vector)
+            if not (np.all(np.isfinite(response)) and np.all(np.isfinite(jacobian))):
+                raise SolveError("the response or its jacobian is not finite")
+        except (InputError, StorageError):  # no other vector will do better
+            raise
+        except Exception as error:  # whatever a user's function raises is this vector's failure
+            self.journal.failures.append(f"{told(error)} (at {named(self.model, vector)})")
+            raise SolveError(told(error)) from error
+        self.journal.computed(vector, response[:, self.columns])
+        return Linearisation(vector, response[:, self.columns], jacobian[:, self.columns])
+
+    def linearised(self, vector: np.ndarray) -> Linearisation | None:
+        """Response and jacobian at a parameter vector; None where the model gives no jacobian."""
+        try:
+            return self.linearise(vector)
+        except StorageError:
+            raise
+        except DalembertError:
+            return None
+
+    def residual(self, response: np.ndarray) -> np.ndarray:
+        """W^½ (R − data), transformed by the loss, as a vector, shape (samples × channels,)."""
+        plain = (np.sqrt(self.weights) * self.misfit(response)).ravel()
+        return plain if self.loss is None else self.loss.residual(plain)
+
+    def residuals(self, vector: np.ndarray, response: np.ndarray) -> np.ndarray:
+        """:meth:`residual`, and the priors' behind it: what the fitness is the sum of squares of."""
+        return np.concatenate([self.residual(response), prior_residual(self.model.parameters, vector)])
+
+    def slopes(self, at: Linearisation, unit: np.ndarray | None = None) -> np.ndarray:
+        """Jacobian of :meth:`residuals` with respect to p/unit, (samples × channels + priors, parameters).
+
+        Without ``unit`` (parameters,) with respect to the search coordinates.
+        """
+        unit = self.search.slope(at.vector) if unit is None else unit
+        rows = (self.weighted(at.jacobian, at.response) * unit).reshape(-1, len(at.vector))
+        return np.concatenate([rows, prior_slopes(self.model.parameters, unit)]) if self.priors else rows
+
+    def weighted(self, table: np.ndarray, response: np.ndarray) -> np.ndarray:
+        """Changes (samples, channels, ...) of a response (samples, channels) as changes of the residuals."""
+        factor = np.sqrt(self.weights)
+        if self.loss is not None:
+            factor = factor * self.loss.slope(factor * self.misfit(response))
+        return factor.reshape(*factor.shape, *[1] * (table.ndim - 2)) * table
+
+    def gradient(self, point: np.ndarray) -> np.ndarray:
+        """Gradient of the fitness at a search point, both (parameters,); zero where the sample fails."""
+        try:
+            at = self.linearise(self.search.vectors(point))
+        except SolveError:
+            return np.zeros_like(point)
+        return 2 * self.slopes(at).T @ self.residuals(at.vector, at.response)
+
+
+def pose(model: ForwardModel, data: Measurements, weights: ArrayLike | None, journal: Journal) -> Problem:
+    """The problem of explaining data by a model, after checking that they fit together.
+
+    Raises
+    ------
+    DataError
+        For a NaN in data that do not leave it out, a channel that the model lacks, samples that lie elsewhere than
+        the model's.
+    InputError
+        For weights of another shape, or negative; for priors beside data of unknown noise.
+    """
+    check_priors(model.parameters, known=weights is not None or data.deviations is not None)
+    columns = columns_of(model, data)
+    check_finite(data)
+    check_samples(model, data)
+    check_sizes(data)
+    weighted = _weights(data, weights)
+    check_weighted(data, weighted)
+    return Problem(model, data, columns, weighted, Search(model.parameters), journal)
+
+
+def _weights(data: Measurements, given: ArrayLike | None) -> np.ndarray:
+    """W of shape (samples, channels), 0 where a value is missing."""
+    if given is None and data.deviations is not None:
+        weights = np.broadcast_to(data.deviations**-2.0, data.values.shape)
+    else:
+        weights = weights_of(given, data.values.shape)
+    return weights if np.all(data.present) else np.where(data.present, weights, 0.0)

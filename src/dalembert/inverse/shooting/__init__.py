@@ -1,0 +1,1 @@
+"""Multiple shooting: records divided into segments, and the growth of small changes."""

@@ -1,0 +1,231 @@
+"""How motions are cut into segments: at samples where each begins anew at a state."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Protocol
+
+import numpy as np
+
+from dalembert.data import derivative
+from dalembert.forward import StateChart, begun_later, restarted
+from dalembert.inverse.problem.problem import Problem
+from dalembert.inverse.shooting.segments import Piece, Segments, State
+from dalembert.inverse.shooting.tracks import Track
+from dalembert.parameters import Parameter, Parameters
+
+TURN = 2 * np.pi
+
+
+@dataclass(frozen=True, eq=False)
+class Node:
+    """A sample of one motion at which a segment begins.
+
+    Parameters
+    ----------
+    sample : int
+    names, units : tuple of str, length states
+        Of the numbers that the segment begins at.
+    values : array, shape (states,)
+        First guess.
+    lower, upper, ranges : array, shape (states,)
+        Bounds, and the sizes that gaps are measured by.
+    chart : StateChart, optional
+        What the numbers are in a model that can begin anew at them.
+    """
+
+    sample: int
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    values: np.ndarray
+    lower: np.ndarray
+    upper: np.ndarray
+    ranges: np.ndarray
+    chart: StateChart | None = None
+
+    def unknowns(self, track: Track) -> list[Parameter]:
+        """The numbers as parameters."""
+        free = self.chart is not None
+        return [
+            Parameter(
+                f"{track.prefix}{name} at {self.sample}", low, high, unit,
+                scale=size if free else None, log=False if free else None,
+            )
+            for name, low, high, unit, size in zip(
+                self.names, self.lower, self.upper, self.units, self.ranges, strict=True
+            )
+        ]  # fmt: skip
+
+
+class Way(Protocol):
+    """How segments of a motion are made, and begin at the same numbers as the motion does."""
+
+    @property
+    def first(self) -> tuple[str, ...]:
+        """Parameters of the model that are its initial state; none where it follows from others."""
+        ...
+
+    def piece(
+        self, track: Track, begin: Node | None, end: Node | None, own: np.ndarray, after: np.ndarray, last: int
+    ) -> Piece:
+        """Return a segment.
+
+        Parameters
+        ----------
+        track : Track
+        begin, end : Node or None
+            None at the first sample and the last one.
+        own, after : array of int, shape (states,)
+            Where the numbers of both nodes stand among all unknowns.
+        last : int
+            Its last sample.
+        """
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class Named:
+    """Segments whose states are parameters of the model's initial state.
+
+    Parameters
+    ----------
+    states : mapping of str to State
+        By the model's parameters.
+    """
+
+    states: Mapping[str, State]
+
+    @property
+    def first(self) -> tuple[str, ...]:
+        return tuple(self.states)
+
+    def piece(
+        self, track: Track, begin: Node | None, end: Node | None, own: np.ndarray, after: np.ndarray, last: int
+    ) -> Piece:
+        """Return a segment: the beginning of the motion with other parameters of the initial state."""
+        sample = 0 if begin is None else begin.sample
+        names, channels = track.model.parameters.names, [channel.name for channel in track.model.channels]
+        places = track.wiring.copy()
+        if begin is not None:
+            places[[names.index(name) for name in self.states]] = own
+        times = track.times[sample : last + 1] - track.times[sample]
+        later = begun_later(track.model, float(track.times[sample]), times) if sample else None
+        model = track.model.first(last + 1 - sample) if later is None else later
+        ends = [] if end is None else [channels.index(state.channel) for state in self.states.values()]
+        rows = track.rows[sample + (sample > 0) : last + 1]
+        return Piece(model, places, rows, track.columns, track.picked, np.array(ends, dtype=int), after)
+
+
+@dataclass(frozen=True, eq=False)
+class Begun:
+    """Segments that begin at independent coordinates and rates of a model that can begin anew at them."""
+
+    @property
+    def first(self) -> tuple[str, ...]:
+        return ()
+
+    def piece(
+        self, track: Track, begin: Node | None, end: Node | None, own: np.ndarray, after: np.ndarray, last: int
+    ) -> Piece:
+        """Return a segment of the motion."""
+        sample = 0 if begin is None else begin.sample
+        origin = float(track.times[sample]) if begin is not None else 0.0
+        times = track.times[sample : last + 1] - origin
+        chart, ends = (None if node is None else node.chart for node in (begin, end))
+        model = restarted(track.model, origin, times, chart, ends)
+        places = np.concatenate([track.wiring, own])
+        kept = len(track.model.channels) + np.arange(len(after))
+        rows = track.rows[sample + (sample > 0) : last + 1]
+        return Piece(model, places, rows, track.columns, track.picked, kept, after)
+
+
+@dataclass(frozen=True, eq=False)
+class Cut:
+    """One motion with the nodes at which it is cut."""
+
+    track: Track
+    way: Way
+    nodes: tuple[Node, ...]
+
+    @property
+    def count(self) -> int:
+        """Number of segments."""
+        return len(self.nodes) + 1
+
+    def merged(self) -> "Cut":
+        """The same with every second node, or the middle one of three."""
+        return self if len(self.nodes) < 2 else Cut(self.track, self.way, self.nodes[1::2])
+
+
+def segments(problem: Problem, cuts: Sequence[Cut]) -> Segments:
+    """Return the segments of all motions as functions of the parameters and of the states at the nodes."""
+    number = len(problem.model.parameters)
+    states = [one for cut in cuts for node in cut.nodes for one in node.unknowns(cut.track)]
+    pieces, place = [], number
+    for cut in cuts:
+        own = np.zeros(0, dtype=int)
+        ends: list[Node | None] = [*cut.nodes, None]
+        for begin, end in zip([None, *cut.nodes], ends, strict=True):
+            after = place + np.arange(0 if end is None else len(end.names))
+            last = len(cut.track.times) - 1 if end is None else end.sample
+            pieces.append(cut.way.piece(cut.track, begin, end, own, after, last))
+            own, place = after, place + len(after)
+    ranges = [node.ranges for cut in cuts for node in cut.nodes]
+    parameters = Parameters((*problem.model.parameters.declared, *states))
+    return Segments(tuple(pieces), parameters, np.concatenate(ranges), problem.weights.shape)
+
+
+def guess(values: np.ndarray, cuts: Sequence[Cut]) -> np.ndarray:
+    """First guess of all unknowns: parameters (parameters,), then the states of the nodes."""
+    return np.concatenate([values, *(node.values for cut in cuts for node in cut.nodes)])
+
+
+def named_cut(track: Track, states: Mapping[str, State], count: int, values: np.ndarray) -> tuple[Cut, np.ndarray]:
+    """Return a motion in ``count`` even segments, and its parameters (parameters,) with the measured initial state.
+
+    States begin at measured values, at rates of change of measured ones, or where the segment before ends.
+    """
+    seen = _seen(track, states, values)
+    names, channels = track.model.parameters.names, [channel.name for channel in track.model.channels]
+    for name, column in seen.items():
+        if np.isfinite(column[0]):
+            values = values.copy()
+            values[names.index(name)] = column[0]
+    values = track.model.parameters.clip(values)
+    units = tuple(next(item.unit for item in track.model.parameters if item.name == name) for name in states)
+    lower, upper = (np.array([getattr(state, side) for state in states.values()]) for side in ("lower", "upper"))
+    way, own, nodes = Named(states), values.copy(), []
+    places = np.rint(np.linspace(0, len(track.times) - 1, count + 1)).astype(int)
+    for begin, end in pairwise(places[:-1]):
+        times = track.times[begin : end + 1] - track.times[begin]
+        later = begun_later(track.model, float(track.times[begin]), times) if begin else None
+        model = track.model.first(int(end - begin) + 1) if later is None else later
+        ran = model.evaluate(own[None]).values[0, -1]
+        for name, state in states.items():
+            value = seen[name][end] if np.isfinite(seen[name][end]) else ran[channels.index(state.channel)]
+            value = value if np.isfinite(value) else (state.lower + state.upper) / 2
+            own[names.index(name)] = np.clip(value, state.lower, state.upper)
+        state = own[[names.index(name) for name in states]]
+        nodes.append(Node(int(end), tuple(states), units, state, lower, upper, upper - lower))
+    return Cut(track, way, tuple(nodes)), values
+
+
+def _seen(track: Track, states: Mapping[str, State], values: np.ndarray) -> dict[str, np.ndarray]:
+    """Each state as far as it was measured, or differentiated from what was: (samples,), NaN where it was not.
+
+    Wrapping channels are without jumps, and by whole turns near the initial state.
+    """
+    data, names = track.data, track.model.parameters.names
+    continuous = dict(zip(data.channels, data.continuous.T, strict=True))
+    seen = {}
+    for name, state in states.items():
+        if state.channel in continuous:
+            seen[name] = continuous[state.channel]
+            if state.channel in data.wraps:
+                first = seen[name][np.isfinite(seen[name])][0]
+                seen[name] = seen[name] + TURN * np.rint((values[names.index(name)] - first) / TURN)
+        elif state.rate_of is not None:
+            seen[name] = derivative(data, state.rate_of).values
+        else:
+            seen[name] = np.full(len(track.times), np.nan)
+    return seen

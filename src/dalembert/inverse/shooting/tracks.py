@@ -1,0 +1,69 @@
+"""The experiments of a problem, each with its model, its place in the joint response and its parameters."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from dalembert.data import Measurements
+from dalembert.forward import ForwardModel
+from dalembert.inverse.experiments.experiments import JointModel
+from dalembert.inverse.problem.problem import Problem
+
+
+@dataclass(frozen=True, eq=False)
+class Track:
+    """One experiment of a problem; a problem without experiments is a single one.
+
+    Parameters
+    ----------
+    name : str
+        Empty for a single one.
+    model : ForwardModel
+    data : Measurements
+    picked : array of int, shape (channels,)
+        The measured channels among those of the model.
+    rows, columns : array of int, shape (samples,) and (channels,)
+        Where its samples and measured channels stand in the problem's response.
+    wiring : array of int, shape (parameters,)
+        Where its parameters stand among the problem's.
+    """
+
+    name: str
+    model: ForwardModel
+    data: Measurements
+    picked: np.ndarray
+    rows: np.ndarray
+    columns: np.ndarray
+    wiring: np.ndarray
+
+    @property
+    def times(self) -> np.ndarray:
+        """Values of the coordinate, shape (samples,)."""
+        return self.data.coordinate.values
+
+    @property
+    def prefix(self) -> str:
+        """What stands before the names of its states."""
+        return f"{self.name}." if self.name else ""
+
+    @property
+    def where(self) -> str:
+        """What stands before a message on it."""
+        return f"experiment {self.name!r}: " if self.name else ""
+
+
+def tracks(problem: Problem) -> tuple[Track, ...]:
+    """Return the experiments of a problem."""
+    return tuple(_tracks(problem))
+
+
+def _tracks(problem: Problem) -> Iterator[Track]:
+    model, data = problem.model, problem.data
+    if not isinstance(model, JointModel):
+        samples, channels = (np.arange(size) for size in data.values.shape)
+        yield Track("", model, data, problem.columns, samples, channels, np.arange(len(model.parameters)))
+        return
+    for part, own, picked, wiring in zip(model.parts, model.models, model.picked, model.wiring, strict=True):
+        if part.name in model.active:
+            yield Track(part.name, own, part.data(data), picked, part.rows, part.columns, wiring)

@@ -1,0 +1,104 @@
+"""Other minima that the data cannot distinguish from the best one."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from dalembert.findings import Finding
+from dalembert.inverse.least_squares.descent import End, refine
+from dalembert.inverse.problem.journal import Journal
+from dalembert.inverse.problem.noise import NoiseFloor
+from dalembert.inverse.problem.problem import Problem
+from dalembert.inverse.problem.simulated import named
+from dalembert.optimize import LeastSquares
+
+ALIKE = 4.0
+"""Variances of the noise, two deviations, by which the misfits of two minima may differ before the data decide."""
+
+PROMISING = 2.0
+"""Ratio of misfits up to which the end of a start is refined: starts end before their descent has converged."""
+
+SAME = 1e-3
+"""Relative difference of values up to which two minima count as one."""
+
+
+def rivals(problem: Problem, best: End, floor: NoiseFloor, deviations: np.ndarray, *, known: bool) -> list[End]:
+    """Return other minima in which starts ended and whose misfit equals that of ``best`` within the noise.
+
+    Parameters
+    ----------
+    problem : Problem
+    best : End
+    floor : NoiseFloor
+    deviations : array, shape (parameters,)
+        Of the values at ``best``. Without them (NaN) minima that differ by 0.1 % are distinct.
+    known : bool
+        Whether the deviations follow from given ones of the data.
+
+    Notes
+    -----
+    Minima are distinct where a value differs by more than two deviations and by more than 0.1 %. The deviation of a
+    parameter that is not identifiable is infinite, so ends along a flat valley are one minimum. If the values of other
+    parameters differ along the valley, it is recognised by a descent from the middle that keeps the misfit.
+    """
+    variance = best.fitness / max(1, problem.compared - len(best.point))
+    noise = max(variance, 1.0 if floor.source == "given deviations" else floor.fitness / problem.compared)
+    inflation = np.sqrt(max(1.0, noise / max(1.0 if known else variance, np.finfo(float).tiny)))
+    with np.errstate(invalid="ignore"):  # 0 · inf
+        reach = 2.0 * inflation * deviations
+    quiet = replace(problem, journal=Journal(problem.samples))
+    found: list[End] = []
+    for start in sorted(problem.journal.starts, key=lambda start: start.fitness):
+        if not start.fitness < PROMISING * best.fitness + ALIKE * noise:
+            break
+        end = End(problem.search.points(start.end), start.fitness, start.success, start.message)
+        if not _new(problem, end, [best, *found], reach):
+            continue
+        if best.nodes is None or best.nodes.segments == 1:  # one run follows the motion
+            end = refine(quiet, LeastSquares(), end)
+        if not (end.success and end.fitness - best.fitness < ALIKE * noise):
+            continue
+        most = best.fitness + ALIKE * noise
+        if _new(problem, end, [best, *found], reach) and not _one_valley(quiet, best, end, deviations, most, reach):
+            found.append(end)
+    problem.journal.simulations += quiet.journal.simulations
+    return found
+
+
+def rival_findings(problem: Problem, best: End, others: list[End], floor: NoiseFloor) -> Iterator[Finding]:
+    """Yield the finding on other minima that explain the data as well as ``best``."""
+    if not others:
+        return
+    names = problem.model.parameters.names
+    vectors = [problem.search.vectors(end.point) for end in others]
+    values: dict[str, float] = {"minima": len(others)}
+    for number, (vector, end) in enumerate(zip(vectors, others, strict=True), 1):
+        values |= {f"other_{number}.{name}": float(value) for name, value in zip(names, vector, strict=True)}
+        values[f"other_{number}.fitness"] = float(end.fitness)
+    which = "Another minimum explains" if len(others) == 1 else f"{len(others)} other minima explain"
+    listed = "; ".join(named(problem.model, vector) for vector in vectors)
+    message = f"{which} the data as well, within the noise: {listed}."
+    if best.fitness > floor.fitness:  # below, a ratio means nothing
+        message += f" Misfit: {', '.join(f'{end.fitness / best.fitness:.4g}' for end in others)} times as large."
+    advice = "Measure another channel, or narrow the bounds so that they contain one minimum."
+    yield Finding("equal-minima", "warning", values, message, advice)
+
+
+def _new(problem: Problem, end: End, known: list[End], reach: np.ndarray) -> bool:
+    """Return True if an end lies apart from the known ones."""
+    return all(_apart(problem, end, other, reach) for other in known)
+
+
+def _apart(problem: Problem, one: End, other: End, reach: np.ndarray) -> bool:
+    a, b = (problem.search.vectors(end.point) for end in (one, other))
+    return bool(np.any(np.abs(a - b) > np.fmax(reach, SAME * np.maximum(np.abs(a), np.abs(b)))))
+
+
+def _one_valley(problem: Problem, best: End, end: End, deviations: np.ndarray, most: float, reach: np.ndarray) -> bool:
+    """Return True if a combination is not identifiable, and a descent between two ends keeps their misfit."""
+    widths = problem.model.parameters.upper - problem.model.parameters.lower
+    if not np.any(deviations > widths / np.sqrt(12)):
+        return False
+    between = refine(problem, LeastSquares(), replace(best, point=(best.point + end.point) / 2, linearisation=None))
+    return between.fitness < most and _new(problem, between, [best, end], reach)

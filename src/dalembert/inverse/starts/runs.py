@@ -1,0 +1,95 @@
+"""Starts of any other method than least squares, and the least squares that may polish them."""
+
+from functools import partial
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from dalembert.inverse.least_squares.descent import End, refine
+from dalembert.inverse.problem.noise import NoiseFloor
+from dalembert.inverse.problem.prefetch import prefetched
+from dalembert.inverse.problem.problem import Problem
+from dalembert.inverse.starts.spread import spread_points
+from dalembert.optimize import Minimiser, Minimum, Objective, OnIteration, Progress, Squares
+
+
+class Method(Protocol):
+    """A minimiser of a fitness that comes in batches, such as the swarms and :class:`~dalembert.optimize.Minimiser`."""
+
+    def minimise(
+        self,
+        objective: Objective,
+        lower: ArrayLike,
+        upper: ArrayLike,
+        seed: int,
+        *,
+        start: ArrayLike | None = None,
+        on_iteration: OnIteration | None = None,
+    ) -> Minimum: ...
+
+
+def runs(
+    problem: Problem,
+    method: Method,
+    floor: NoiseFloor,
+    *,
+    starts: int,
+    seed: int,
+    spread: str,
+    start: np.ndarray | None,
+) -> list[End]:
+    """Ends of up to ``starts`` runs, the first from the search point ``start`` if there is one, seeds counting up.
+
+    Local minimisers begin the other runs at points spread over the box; swarms scatter their own points.
+    """
+    points: list[np.ndarray | None] = [start, *[None] * (starts - 1)]
+    if isinstance(method, Minimiser):
+        points[1:] = list(spread_points(problem, starts, seed, spread))[1:]
+    ends: list[End] = []
+    attempts = list(enumerate(points))
+    alone = isinstance(method, Minimiser) and not method.batched
+    for number, point in prefetched(problem, partial(_ahead, method, seed), attempts) if alone else attempts:
+        ends.append(_run(problem, method, seed + number, point))
+        if floor.conclusive and ends[-1].fitness <= floor.fitness:
+            break
+    return ends
+
+
+def _ahead(method: Method, seed: int, problem: Problem, attempt: tuple[int, np.ndarray | None]) -> None:
+    """The same run on a worker of a cluster."""
+    number, point = attempt
+    _run(problem, method, seed + number, point)
+
+
+def polished(problem: Problem, method: Squares, best: End) -> End:
+    """Where least squares ends from ``best``, as a start of its own; ``best`` if it comes no further."""
+    journal, vector = problem.journal, problem.search.vectors(best.point)
+    journal.began(vector)
+    end = refine(problem, method, best)
+    journal.ended(vector, problem.search.vectors(end.point), end.fitness, end.success, f"polished: {end.message}")
+    return end if end.fitness <= best.fitness else best
+
+
+def _run(problem: Problem, method: Method, seed: int, point: np.ndarray | None) -> End:
+    journal, search = problem.journal, problem.search
+    begin = None if point is None else search.vectors(point)
+    minimise = method.minimise
+    if isinstance(method, Minimiser):
+        minimise = partial(method.minimise, gradient=problem.gradient)
+
+    def progress(now: Progress) -> None:
+        journal.step(now.best, search.vectors(now.x), problem.samples)
+
+    journal.began(begin)
+    found = minimise(problem.fitness, search.lower, search.upper, seed, start=point, on_iteration=progress)
+    end = End(found.x, found.fitness, found.success, found.message, found.stationary)
+    nowhere = np.full_like(search.lower, np.nan)
+    journal.ended(
+        nowhere if begin is None else begin,
+        search.vectors(end.point) if np.isfinite(end.fitness) else nowhere,
+        end.fitness,
+        end.success,
+        end.message,
+    )
+    return end

@@ -11,7 +11,7 @@ import numpy as np
 
 from benchmarks import timing
 from dalembert import HarmonicBalance, frequency_response
-from dalembert.vibration.equations import equations
+from dalembert.vibration.balance.equations import equations
 from dalembert.vibration.threads import one_thread
 
 STUDY = Path(__file__).parents[1] / "studies" / "patched-plate" / "plate.py"

@@ -9,7 +9,7 @@ from benchmarks import timing
 from benchmarks.peers import pyharm_models
 from dalembert import Elastic, FrictionContact, HarmonicBalance, HarmonicForce, VibrationSystem, frequency_response
 from dalembert.structure import Dofs, Structure, lumped
-from dalembert.vibration.equations import equations
+from dalembert.vibration.balance.equations import equations
 from dalembert.vibration.threads import one_thread
 
 HARMONICS, SAMPLES, STEP, REPEATS = 7, 1024, 0.03, 1

@@ -94,7 +94,7 @@ def _load_entries() -> None:
 def structure_parts() -> dict[str, tuple[type, ...]]:
     """What a vibrating structure is made of beside its matrices, by the names of the tables, the usual kind first."""
     from dalembert import vibration
-    from dalembert.vibration.system import Element
+    from dalembert.vibration.system.system import Element
 
     return {
         "mass": (LumpedMass,),
@@ -115,7 +115,7 @@ def balance() -> type:
 @cache
 def laws() -> dict[str, type]:
     """Laws of friction contacts, by the names that a study file gives them."""
-    from dalembert.vibration.contacts import Law
+    from dalembert.vibration.laws.contacts import Law
 
     return {kind.__name__: kind for kind in get_args(Law)}
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from dalembert.data import Bands, Measurements
     from dalembert.multibody import Trajectory
     from dalembert.vibration import HarmonicBalance
-    from dalembert.vibration.equations import Equations
+    from dalembert.vibration.balance.equations import Equations
 
 
 def _plain(value: Any) -> Any:
@@ -176,7 +176,7 @@ class Study:
 
     def equations(self) -> "Equations":
         """The structure's equations at the first guesses; what nothing holds is found here."""
-        from dalembert.vibration.equations import equations
+        from dalembert.vibration.balance.equations import equations
 
         found = equations(self.system(), self.balance)
         found.lowered.coordinates  # noqa: B018 (contacts that cannot be told apart are told as such)

@@ -5,16 +5,16 @@ from threading import Lock
 
 from dalembert.kernels.kernel import Compiled
 from dalembert.kernels.preparation import prepare
-from dalembert.vibration import event_sums_in_plane as in_plane
-from dalembert.vibration.contact_sums import Shape, has_events
-from dalembert.vibration.event_sums import sums_and_slopes, sums_complex, sums_real
-from dalembert.vibration.friction_period import forces_complex, forces_real
-from dalembert.vibration.friction_tangent import forces_and_slopes
-from dalembert.vibration.linearised_law import linearise
-from dalembert.vibration.lowering import ELASTIC, FrictionBlock, Lowered
-from dalembert.vibration.springs import BilinearStop, Gap
-from dalembert.vibration.time_elements import react, settle
-from dalembert.vibration.time_steps import go_through
+from dalembert.vibration.laws import event_sums_in_plane as in_plane
+from dalembert.vibration.laws.contact_sums import Shape, has_events
+from dalembert.vibration.laws.event_sums import sums_and_slopes, sums_complex, sums_real
+from dalembert.vibration.laws.friction_period import forces_complex, forces_real
+from dalembert.vibration.laws.friction_tangent import forces_and_slopes
+from dalembert.vibration.laws.linearised_law import linearise
+from dalembert.vibration.laws.springs import BilinearStop, Gap
+from dalembert.vibration.system.lowering import ELASTIC, FrictionBlock, Lowered
+from dalembert.vibration.time.elements import react, settle
+from dalembert.vibration.time.steps import go_through
 
 _TURN = Lock()
 """Threads of an ensemble start together: one of them compiles, and the others wait."""

@@ -30,7 +30,7 @@ def test_everything_is_listed_once_and_found_by_other_processes() -> None:
     symbols = [kernel.symbol for kernel in kernels]
     assert len(set(symbols)) == len(symbols)
     expected = generalized_alpha.integrate, radau_loop.integrate, *CABLE.all_kernels()
-    assert {kernel.symbol for kernel in expected} | {"dal_vibration_friction_period_forces_real"} < set(symbols)
+    assert {kernel.symbol for kernel in expected} | {"dal_vibration_laws_friction_period_forces_real"} < set(symbols)
     assert all(find(kernel.origin) is kernel for kernel in kernels)
 
 

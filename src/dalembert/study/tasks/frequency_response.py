@@ -89,7 +89,7 @@ class FrequencyResponseTable(StudyTable):
 
     @property
     def along(self) -> Any:
-        """Frequencies as :func:`~dalembert.vibration.frequency_response` takes them."""
+        """Frequencies as :func:`~dalembert.vibration.paths.frequency_response` takes them."""
         return tuple(self.between) if self.between is not None else np.array(self.frequencies)
 
 
@@ -182,8 +182,8 @@ class FrequencyResponseTask(Task):
         return wrong
 
     def plan(self, study: "Study") -> str:
-        from dalembert.vibration.amplitudes import Amplitude
-        from dalembert.vibration.hysteretic import require_viscous
+        from dalembert.vibration.paths.amplitudes import Amplitude
+        from dalembert.vibration.system.hysteretic import require_viscous
 
         table, problem = study.table, study.equations()
         for key, what in VISCOUS.items():
@@ -304,7 +304,7 @@ def _any_curve(study: "Study") -> None:
 
 def _points_told(study: "Study", emit: "Emit") -> Callable[["FollowedPoint"], None]:
     """Writes each point of a curve as it is found, with the amplitude that the study tells."""
-    from dalembert.vibration.amplitudes import Amplitude
+    from dalembert.vibration.paths.amplitudes import Amplitude
 
     size, dof = Amplitude(study.table.amplitude, study.balance.orders), study.table.dof
 

@@ -46,7 +46,7 @@ class TrackResonance(Task):
         )
 
     def plan(self, study: "Study") -> str:
-        from dalembert.vibration.amplitudes import Amplitude
+        from dalembert.vibration.paths.amplitudes import Amplitude
 
         table, lowered = study.table, study.equations().lowered
         with placed("[track_resonance], dof"):

@@ -1,0 +1,1 @@
+"""Harmonic balance: its equations, their Jacobian, and Newton's method."""

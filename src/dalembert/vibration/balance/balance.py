@@ -1,0 +1,334 @@
+r"""The equations of harmonic balance and their exact Jacobian.
+
+The unknowns are the harmonics U of the retained coordinates q. With Λ the harmonics of the elements' forces over
+sampled displacements (alternating frequency and time), :math:`R(U, \omega) = Z_q U + L^T \Lambda - F_q`.
+
+Elements with their own compliance see D = L U. A rigid contact sees a predicted displacement: with
+:math:`R_0` the residual without rigid contacts and ε the penalty, :math:`D = U - R_0/\varepsilon` at its own
+coordinates. Where the equations hold, :math:`-R_0` is the contact's force, and the law of a slider of stiffness ε at D
+says of that force and of U what the rigid law says. The velocity kind takes as its trial force
+:math:`-R_0 + \varepsilon\, \partial U/\partial\tau` at once, without a slider; since this does not see the place of a
+contact that sticks all period, the mean of such a one is held at zero, as by the displacement kind.
+
+The Jacobian is :math:`J = Z_q + L^T G\, \partial D/\partial U` with G block-diagonal: one block for each contact.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from dalembert.vibration.balance.condensation import Point
+from dalembert.vibration.balance.fourier import Fourier, real_blocks
+from dalembert.vibration.balance.tangents import BlockTangent, DenseTangent, Tangent
+from dalembert.vibration.laws.contact_sums import ContactSums, Shape, contact_sums
+from dalembert.vibration.laws.friction_law import GAP, NORMAL, STUCK, TANGENTIAL
+from dalembert.vibration.laws.springs import BilinearStop, Gap, UserElement
+from dalembert.vibration.system.lowering import ELASTIC, FrictionBlock, Lowered
+
+LARGE = 500
+"""Unknowns above which the Jacobian is kept by its structure. Measured where all of a row of sliders slip, the dearest
+case for it: a point of 480 unknowns took 28 ms densely and 31 by the structure, one of 555 took 43 and 25."""
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """Residual and what else is known of the equations at a point.
+
+    Parameters
+    ----------
+    residual : array, shape (q, coefficients)
+    forces : array, shape (rows, coefficients)
+        Of all elements, by the rows that they see.
+    states : tuple of array of uint8, shape (cells, samples)
+        Of each friction block.
+    """
+
+    residual: np.ndarray
+    forces: np.ndarray
+    states: tuple[np.ndarray, ...]
+
+
+@dataclass(frozen=True)
+class Balance:
+    """The elements of a system and a series, ready to be balanced with a condensed structure.
+
+    Parameters
+    ----------
+    lowered : Lowered
+    series : Fourier
+    events : bool
+        Whether the sums of contacts and stops are corrected at the events between samples.
+    """
+
+    lowered: Lowered
+    series: Fourier
+    events: bool = True
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Retained coordinates and coefficients."""
+        return self._combination.shape[1], self.series.count
+
+    @cached_property
+    def _combination(self) -> np.ndarray:
+        return self.lowered.coordinates.combination
+
+    @cached_property
+    def _retained(self) -> np.ndarray:
+        """Retained coordinate of each row, -1 where it is none."""
+        place = np.full(len(self.lowered.row_names), -1)
+        place[self.lowered.coordinates.rows] = np.arange(self.shape[0])
+        return place
+
+    @cached_property
+    def _terms(self) -> list[tuple[np.ndarray, np.ndarray]]:
+        """Retained coordinates and factors that make up each row."""
+        return [(np.flatnonzero(row), row[np.flatnonzero(row)]) for row in self._combination]
+
+    def displacements(self, unknowns: np.ndarray) -> np.ndarray:
+        """Of all rows that elements see, (rows, coefficients)."""
+        return self._combination @ unknowns
+
+    def linear(self, stiffness: np.ndarray, force: np.ndarray, unknowns: np.ndarray) -> np.ndarray:
+        """Z_q U - F_q, or the same of their derivatives, (q, coefficients)."""
+        phasors = self.series.phasors(unknowns)
+        return self.series.coefficients((stiffness @ phasors[:, :, None])[:, :, 0] - force)
+
+    def linearised(self, point: Point, unknowns: np.ndarray) -> tuple[Evaluation, Tangent]:
+        """Residual at a point, with its exact Jacobian and its derivative by ω."""
+        tangent = self.tangent(point, unknowns)
+        return self.residual(self.linear(point.stiffness, point.force, unknowns), unknowns, tangent), tangent
+
+    def tangent(self, point: Point, unknowns: np.ndarray) -> Tangent:
+        """The tangent of the structure alone, to which :meth:`residual` adds the elements."""
+        slope = self.linear(point.slope, point.force_slope, unknowns)
+        if unknowns.size > LARGE and self._separate and point.held:
+            return BlockTangent(point, self.series, slope, *self._references)
+        return DenseTangent(real_blocks(point.stiffness, self.series.mean), slope, point.held)
+
+    def stuck(self, point: Point) -> np.ndarray:
+        """Unknowns where all elastic contacts are closed and stick, without preload, (q, coefficients)."""
+        stiffness, force = point.stiffness.copy(), point.force.copy()
+        for block in self.lowered.blocks:
+            if block.kind != ELASTIC:
+                continue
+            for rows, penalties, numbers in zip(block.rows, _penalties(block), block.numbers, strict=True):
+                shapes = self._combination[rows]
+                stiffness += shapes.T @ (penalties[:, None] * shapes)
+                if block.normal and self.series.mean:
+                    force[0] += numbers[NORMAL] * numbers[GAP] * shapes[-1]
+        found = np.stack([np.linalg.lstsq(own, right)[0] for own, right in zip(stiffness, force, strict=True)])
+        return self.series.coefficients(found)
+
+    def touching(self, unknowns: np.ndarray) -> np.ndarray:
+        """Unknowns with the mean positions at which rigid contacts just touch: near motions that bounce on them."""
+        result = unknowns.copy()
+        for block in self.lowered.blocks:
+            if block.kind == ELASTIC or not block.normal or not self.series.mean:
+                continue
+            places = self._retained[block.rows[:, -1]]
+            varying = unknowns[places, 1:] @ self.series.synthesis[:, 1:].T
+            result[places, 0] = block.numbers[:, GAP] - varying.max(axis=1)
+        return result
+
+    def residual(self, linear: np.ndarray, unknowns: np.ndarray, tangent: Tangent | None = None) -> Evaluation:
+        """Residual from its linear part; the elements' part of the tangent is added to ``tangent``.
+
+        Without a tangent, in complex numbers where the linear part or the elements' numbers are complex.
+        """
+        kind = np.result_type(linear, unknowns, self._kind)
+        acting = np.zeros((len(self.lowered.row_names), self.series.count), dtype=kind)
+        states = [np.zeros((0, 0), dtype=np.uint8)] * len(self.lowered.blocks)
+        self._add_springs(acting, unknowns, tangent)
+        for rigid in (False, True):  # rigid contacts last: their prediction needs the residual without them
+            blocks = [number for number, block in enumerate(self.lowered.blocks) if (block.kind != ELASTIC) == rigid]
+            total = linear + self._combination.T @ acting if blocks and rigid else linear
+            before = tangent.copy() if isinstance(tangent, DenseTangent) and blocks and rigid else None
+            for number in blocks:
+                states[number] = self._add_friction(number, acting, unknowns, total, tangent, before)
+        return Evaluation(linear + self._combination.T @ acting, acting, tuple(states))
+
+    def _add_springs(self, acting: np.ndarray, unknowns: np.ndarray, tangent: Tangent | None) -> None:
+        """Elements without memory: their forces, and their local Jacobians in the global one."""
+        series = self.series
+        for rows, element in self.lowered.springs:
+            if self.events and isinstance(element, Gap | BilinearStop):
+                self._add_stop(rows, element, acting, unknowns, tangent)
+                continue
+            samples = (self._combination[rows] @ unknowns) @ series.synthesis.T
+            several = isinstance(element, UserElement)
+            force, slopes = element.law(samples if several else samples[0])
+            acting[rows] += np.atleast_2d(force) @ series.analysis.T
+            if tangent is None:
+                continue
+            slopes = slopes if several else slopes[None, None]
+            self._spread_spring(rows, series.analysis @ (slopes[:, :, :, None] * series.synthesis), tangent)
+
+    def _add_stop(
+        self,
+        rows: np.ndarray,
+        element: Gap | BilinearStop,
+        acting: np.ndarray,
+        unknowns: np.ndarray,
+        tangent: Tangent | None,
+    ) -> None:
+        """A stop: on both sides it is one on one side, and another one for the opposite displacement."""
+        sides = np.array([1.0]) if isinstance(element, Gap) else np.array([1.0, -1.0])
+        sums = contact_sums(
+            np.array([[0.0, element.stiffness, element.gap, 0.0, 0.0]] * len(sides)),
+            Shape(tangents=0, normal=True, memory=True), self.series, self.events,
+        )  # fmt: skip
+        displacements = sides[:, None, None] * (self._combination[rows] @ unknowns)
+        if tangent is None:
+            force, _ = sums.forces(displacements)
+        else:
+            force, _, local = sums.with_slopes(displacements)
+            self._spread_spring(rows, np.sum(local, axis=0)[None, None], tangent)
+        acting[rows] += sides @ force[:, 0]
+
+    def _spread_spring(self, rows: np.ndarray, blocks: np.ndarray, tangent: Tangent) -> None:
+        """Add the local Jacobian of an element, blocks (rows, rows, coefficients, coefficients), to the global one."""
+        if isinstance(tangent, BlockTangent):
+            local = np.swapaxes(blocks, 1, 2).reshape(1, len(rows) * self.series.count, -1)
+            tangent.add(self._retained[rows][None], local, np.zeros((1, len(rows))))
+            return
+        for i, row in enumerate(rows):
+            for j, column in enumerate(rows):
+                self._scatter(tangent.jacobian, row, column, blocks[i, j])
+
+    def _scatter(self, jacobian: np.ndarray, row: int, column: int, block: np.ndarray) -> None:
+        """Add the derivative of the force of one row by the displacement of another."""
+        for a, factor in zip(*self._terms[row], strict=True):
+            for b, other in zip(*self._terms[column], strict=True):
+                jacobian[a, :, b, :] += block if factor == other == 1.0 else factor * other * block
+
+    def _add_friction(
+        self,
+        number: int,
+        acting: np.ndarray,
+        unknowns: np.ndarray,
+        total: np.ndarray,
+        tangent: Tangent | None,
+        before: DenseTangent | None,
+    ) -> np.ndarray:
+        """Forces of a block's cells, and its part of the tangent; the states (cells, samples)."""
+        block = self.lowered.blocks[number]
+        displacements = self._predicted(block, unknowns, total)
+        if tangent is None:
+            result, states = self._sums[number].forces(displacements)
+        else:
+            result, states, local = self._sums[number].with_slopes(displacements)
+            if isinstance(tangent, BlockTangent):
+                tangent.add(self._retained[block.rows], local, _penalties(block))
+            elif before is None:
+                self._spread_elastic(block, local, tangent.jacobian)
+            else:
+                self._spread_rigid(block, local, tangent, before)
+        for cell in self._undetermined(block, states):
+            places = self._retained[block.rows[cell, : block.tangents]]
+            penalty = block.numbers[cell, TANGENTIAL]
+            result[cell, : block.tangents, 0] += penalty * unknowns[places, 0]
+            if isinstance(tangent, DenseTangent):
+                tangent.jacobian[places, 0, places, 0] += penalty
+        if block.distinct:
+            acting[block.rows] += result
+        else:
+            np.add.at(acting, block.rows, result)
+        return states
+
+    def _predicted(self, block: FrictionBlock, unknowns: np.ndarray, total: np.ndarray) -> np.ndarray:
+        """Displacements (cells, columns, coefficients) that the law is given."""
+        if block.kind == ELASTIC:
+            return (self._combination @ unknowns)[block.rows]
+        places = self._retained[block.rows]
+        moved = unknowns[places] - total[places] / _penalties(block)[:, :, None]
+        if block.memory:
+            return moved
+        tangents = places[:, : block.tangents]
+        penalty = block.numbers[:, TANGENTIAL, None, None]
+        trial = penalty * (unknowns[tangents] @ self.series.derivative.T) - total[tangents]
+        return np.concatenate([trial, moved[:, block.tangents :]], axis=1)
+
+    @cached_property
+    def _sums(self) -> list[ContactSums]:
+        """The sums of each block."""
+        return [
+            contact_sums(_given(block), Shape(block.tangents, block.normal, block.memory), self.series, self.events)
+            for block in self.lowered.blocks
+        ]
+
+    def _undetermined(self, block: FrictionBlock, states: np.ndarray) -> np.ndarray:
+        """Cells of the velocity kind that stick all period: nothing else determines their mean position."""
+        if block.memory or not self.series.mean:
+            return np.zeros(0, dtype=int)
+        return np.flatnonzero(np.all(states == STUCK, axis=1))
+
+    def _spread_elastic(self, block: FrictionBlock, local: np.ndarray, jacobian: np.ndarray) -> None:
+        """J += L^T G L."""
+        cells, columns = block.rows.shape
+        split = local.reshape(cells, columns, self.series.count, columns, self.series.count)
+        for cell in range(cells):
+            for i, row in enumerate(block.rows[cell]):
+                for j, column in enumerate(block.rows[cell]):
+                    self._scatter(jacobian, row, column, split[cell, i, :, j, :])
+
+    def _spread_rigid(
+        self, block: FrictionBlock, local: np.ndarray, tangent: DenseTangent, before: DenseTangent
+    ) -> None:
+        """J += G ∂D/∂U with ∂D/∂U = 1 - J_0/ε, or ε ∂/∂τ - J_0 for trial forces; the same for ω."""
+        count, columns = self.series.count, block.rows.shape[1]
+        own = np.tile(np.eye(count), (columns, 1, 1))
+        weights = 1 / _penalties(block)
+        if not block.memory:
+            weights[:, : block.tangents] = 1.0
+        for places, weight, numbers, gradient in zip(
+            self._retained[block.rows], weights, block.numbers, local, strict=True
+        ):
+            if not block.memory:
+                own[: block.tangents] = numbers[TANGENTIAL] * self.series.derivative
+            motion = -weight[:, None, None, None] * before.jacobian[places]
+            motion[np.arange(columns), :, places] += own
+            change = gradient @ motion.reshape(columns * count, -1)
+            tangent.jacobian[places] += change.reshape(motion.shape)
+            change = gradient @ (weight[:, None] * before.slope[places]).ravel()
+            tangent.slope[places] -= change.reshape(columns, count)
+
+    @cached_property
+    def _separate(self) -> bool:
+        """Whether elements depend on each other through the structure alone, so that the Jacobian has structure."""
+        return self.shape[0] == len(self.lowered.row_names) and all(block.memory for block in self.lowered.blocks)
+
+    @cached_property
+    def _references(self) -> tuple[np.ndarray, np.ndarray]:
+        """Stiffness of each retained coordinate's contact if it sticks, and whether that is rigid."""
+        stiffness, rigid = np.zeros(self.shape[0]), np.zeros(self.shape[0], dtype=bool)
+        for block in self.lowered.blocks:
+            np.add.at(stiffness, self._retained[block.rows], _penalties(block))
+            rigid[self._retained[block.rows]] = block.kind != ELASTIC
+        return stiffness, rigid
+
+    @cached_property
+    def _kind(self) -> np.dtype:
+        """Real or complex: of the elements' numbers."""
+        springs = [
+            value
+            for _, element in self.lowered.springs
+            for value in (getattr(element, "stiffness", 0.0), getattr(element, "gap", 0.0))
+        ]
+        return np.result_type(float, *(block.numbers for block in self.lowered.blocks), *springs)
+
+
+def _penalties(block: FrictionBlock) -> np.ndarray:
+    """Penalty of each row of a block, (cells, columns)."""
+    columns = [block.numbers[:, TANGENTIAL]] * block.tangents + [block.numbers[:, NORMAL]] * block.normal
+    return np.stack(columns, axis=1)
+
+
+def _given(block: FrictionBlock) -> np.ndarray:
+    """Numbers of a block's law; one that is given forces for displacements has a unit stiffness."""
+    numbers = np.ascontiguousarray(block.numbers, dtype=np.result_type(float, block.numbers))
+    if not block.memory:
+        numbers = numbers.copy()
+        numbers[:, TANGENTIAL] = 1.0
+    return numbers

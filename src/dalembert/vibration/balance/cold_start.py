@@ -1,0 +1,68 @@
+"""A first point of a curve by the path over the force, from little to all of it."""
+
+from dataclasses import dataclass, replace
+from itertools import islice
+
+import numpy as np
+
+from dalembert.vibration.balance.balance import Balance
+from dalembert.vibration.balance.condensation import Point
+from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
+from dalembert.vibration.balance.newton import Plane, Solution, correct
+from dalembert.vibration.paths.continuation import along
+
+FIRST_LOAD = 0.01
+"""Part of the force with which the path begins; contacts that are pressed at all then stick."""
+RESOLUTION = 0.1
+"""Of the path, whose points on the way nobody looks at."""
+MOST_STEPS = 120
+"""Points of the path after which it is given up."""
+
+
+@dataclass(frozen=True)
+class Loading:
+    """The equations at one frequency, with the part of the varying forces that acts in the place of the frequency.
+
+    Static forces act from the beginning: they may be what presses the contacts.
+
+    Parameters
+    ----------
+    balance : Balance
+    method : HarmonicBalance
+    point : Point
+        At the frequency, with all of the force.
+    """
+
+    balance: Balance
+    method: HarmonicBalance
+    point: Point
+
+    def at(self, load: float) -> Point:
+        """The structure with a part of the varying forces, and its derivatives by that."""
+        varying = np.where(self.point.frequencies[:, None] > 0, self.point.force, 0.0)
+        return replace(
+            self.point, slope=np.zeros_like(self.point.slope),
+            force=self.point.force + (load - 1.0) * varying, force_slope=varying,
+        )  # fmt: skip
+
+    def solve(self, unknowns: np.ndarray, load: float, samples: int, plane: Plane | None = None) -> Solution:
+        """Newton's method from a guess."""
+        return correct(self.balance, self, self.method, unknowns, load, plane)
+
+    def first(self, load: float) -> Solution:
+        """From where contacts are closed and stick."""
+        return self.solve(self.balance.stuck(self.at(load)), load, self.balance.series.samples)
+
+    def last(self) -> np.ndarray:
+        """Unknowns where the path over the force, past its folds, ends: with all of it, if it gets there."""
+        unknowns = np.zeros(self.balance.shape)
+        # A path may turn back, through none of the force even, before it comes to all of it.
+        for found in islice(along(self, -1.0, 1.0, self.first(FIRST_LOAD)), MOST_STEPS):
+            if found.solution.converged:
+                unknowns = found.solution.unknowns
+        return unknowns
+
+
+def by_force(balance: Balance, method: HarmonicBalance, point: Point) -> np.ndarray:
+    """Unknowns at a frequency, from rest by the path over the force."""
+    return Loading(balance, replace(method, resolution=RESOLUTION), point).last()

@@ -1,0 +1,403 @@
+r"""Dynamic stiffness of a structure at the coordinates of its nonlinear elements.
+
+With q the retained and l the interior coordinates, for each harmonic at :math:`s = h\omega`, exactly,
+
+.. math:: Z(s) = K - s^2 M + i s C + i \,\mathrm{sign}(s) D, \qquad Z_q = Z_{qq} - Z_{ql} Z_{ll}^{-1} Z_{lq}, \qquad
+          F_q = f_q - Z_{ql} Z_{ll}^{-1} f_l,
+
+with the loss matrix D of hysteretic damping, which does not act on the mean (s = 0); this
+is the inverse of the receptance :math:`S Z^{-1} S^T`, and is also there where that has none. The interior of a
+small structure is written in its modes with q held, so that :math:`Z_{ll}` is diagonal if the damping is; else it is
+factorised.
+"""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from scipy.linalg import LinAlgError, eigh, qr
+from scipy.sparse import csc_array, diags_array, eye_array, issparse
+from scipy.sparse.linalg import splu
+
+from dalembert.errors import ModelError, SolveError, listed
+from dalembert.structure import Structure
+from dalembert.vibration.balance.coordinates import Coordinates
+
+DENSE = 1500
+"""Size up to which a sparse interior is treated as a dense one."""
+COUPLED = 1e-9
+"""Damping between modes, as part of the largest of a mode, above which it counts."""
+FLOATING = 3e-14
+"""Smallest interior stiffness as part of the largest, below which it is none."""
+NEARLY = 1e-8
+"""Dynamic stiffness, as part of the stiffness, of an interior mode that has none: half the digits are left of both."""
+MOVING = 1e-6
+"""Part of the largest motion above which a degree of freedom is said to move."""
+SOFT = 1e-12
+"""Stiffness, as part of the largest, that makes a sparse interior that moves freely one that can be factorised."""
+DECOUPLED = 1e-10
+"""Stiffness or static force along a free motion, as part of the largest, that is rounding."""
+MOST_FREE = 24
+"""Free motions of a sparse interior that are looked for: four bodies in space."""
+NAMED = 4
+"""Degrees of freedom that a sentence names."""
+
+
+@dataclass(frozen=True)
+class Point:
+    """A condensed structure at one frequency, with what is needed to go back.
+
+    Parameters
+    ----------
+    frequencies : array, shape (orders,)
+        h ω, rad/s.
+    stiffness, slope : array, shape (orders, q, q), complex
+        Z_q and its derivative by ω.
+    force, force_slope : array, shape (orders, q), complex
+    follow : array, shape (orders, l, q), complex
+        Z_ll⁻¹ Z_lq: the interior follows q by the negative of it.
+    free : array, shape (orders, l), complex
+        Z_ll⁻¹ f_l: the interior with q held.
+    kept : dict
+        Factors that serve all iterations here.
+    shared : dict
+        What all frequencies have in common.
+    """
+
+    frequencies: np.ndarray
+    stiffness: np.ndarray
+    slope: np.ndarray
+    force: np.ndarray
+    force_slope: np.ndarray
+    follow: np.ndarray
+    free: np.ndarray
+    kept: dict[str, Any] = field(default_factory=dict, repr=False)
+    shared: dict[str, np.ndarray] = field(default_factory=dict, repr=False)
+
+    @cached_property
+    def load(self) -> float:
+        """Norm of the forces."""
+        return norm(self.force)
+
+    @cached_property
+    def stiffest(self) -> float:
+        """Largest entry of the stiffness."""
+        return float(np.abs(self.stiffness).max(initial=0.0))
+
+    @property
+    def free_motions(self) -> np.ndarray:
+        """Mean motions (q, motions) that the stiffness does not hold: only contacts can, and perhaps none does."""
+        if "free motions" not in self.shared:
+            self.shared["free motions"] = self._free_motions()
+        return self.shared["free motions"]
+
+    def _free_motions(self) -> np.ndarray:
+        if not len(self.frequencies) or self.frequencies[0] != 0 or not self.stiffness.shape[1]:
+            return np.zeros((self.stiffness.shape[1], 0))
+        values, vectors = np.linalg.eigh(np.real(self.stiffness[0]))
+        return vectors[:, values <= FLOATING * self.stiffest]
+
+    @property
+    def held(self) -> bool:
+        """Whether the stiffness alone holds the mean position."""
+        return not self.free_motions.size
+
+    def interior(self, retained: np.ndarray) -> np.ndarray:
+        """Interior coordinates (orders, l) where the retained ones are (orders, q)."""
+        return self.free - (self.follow @ retained[:, :, None])[:, :, 0]
+
+
+class Condensation:
+    """A structure ready to be condensed at any frequency.
+
+    Parameters
+    ----------
+    structure : Structure
+    coordinates : Coordinates
+    orders : tuple of int
+    loads : array, shape (orders, n), complex
+        Phasors of the forces.
+    """
+
+    def __init__(
+        self, structure: Structure, coordinates: Coordinates, orders: tuple[int, ...], loads: np.ndarray
+    ) -> None:
+        self.orders = np.array(orders, dtype=float)
+        size: int = structure.size
+        matrices = [_real(structure.stiffness), _real(structure.mass)]
+        matrices.append(matrices[0] * 0.0 if structure.damping is None else _real(structure.damping))
+        if structure.loss is not None:
+            matrices.append(_real(structure.loss))
+        retained, interior = coordinates.retained, coordinates.interior
+        dense = size <= DENSE or not issparse(structure.stiffness)
+        self.retained, self.back = retained.toarray(), interior.toarray() if dense else interior
+        inner = [_two_sided(self.back, matrix, self.back) for matrix in matrices]
+        if dense and interior.shape[1]:
+            inner = self._modal(inner)
+        self.inner: list[Any] = [block if dense else csc_array(block) for block in inner]
+        self.outer = [np.asarray(self.retained.T @ (matrix @ self.retained)) for matrix in matrices]
+        self.across = [np.asarray(self.back.T @ (matrix @ self.retained)).T for matrix in matrices]
+        self.loads, self.names = loads, structure.dofs.names
+        self.outer_loads, self.inner_loads = loads @ self.retained, np.asarray((self.back.T @ loads.T).T)
+        self._shared: dict[str, np.ndarray] = {}
+        self.free, self._pins = np.zeros((size, 0)), np.zeros(0, dtype=int)
+        if self.orders[0] == 0 and self.inner_loads.shape[1]:
+            self._set_free(_free_motions(self.inner[0]))
+
+    def at(self, omega: float) -> Point:
+        """The condensed structure at ω, rad/s."""
+        s = self.orders * omega
+        (outer, across, *inner), (outer_slope, across_slope, *inner_slope) = self._together(s)
+        if not self.inner_loads.shape[1]:
+            nothing = self.inner_loads
+            return Point(
+                s, outer, outer_slope, self.outer_loads, 0 * self.outer_loads, np.swapaxes(across, 1, 2), nothing,
+                shared=self._shared,
+            )  # fmt: skip
+        inner = inner[0] if inner else self._inner(s)
+        right = np.concatenate([np.swapaxes(across, 1, 2), self.inner_loads[:, :, None]], axis=2)
+        solved = self.solve(s, right, self._off_resonance(s, inner, right))
+        follow, free = solved[:, :, :-1], solved[:, :, -1]
+        turned = np.swapaxes(follow, 1, 2)
+        moved = _times(inner_slope[0], solved) if inner_slope else self._inner_slope(s, solved)
+        crossed = across_slope @ solved
+        return Point(
+            frequencies=s,
+            stiffness=outer - across @ follow,
+            slope=outer_slope - crossed[:, :, :-1] - np.swapaxes(crossed[:, :, :-1], 1, 2) + turned @ moved[:, :, :-1],
+            force=self.outer_loads - (turned @ self.inner_loads[:, :, None])[:, :, 0],
+            force_slope=-crossed[:, :, -1] + (turned @ moved[:, :, -1:])[:, :, 0],
+            follow=follow,
+            free=free,
+            shared=self._shared,
+        )
+
+    def full(self, retained: np.ndarray, interior: np.ndarray) -> np.ndarray:
+        """All degrees of freedom (orders, n) from the retained and the interior ones.
+
+        Where nothing holds a mean position, it is the smallest one: without a part along :attr:`free`.
+        """
+        motion = retained @ self.retained.T + np.asarray((self.back @ interior.T).T)
+        if self.free.size:
+            motion[0] -= self.free @ (self.free.T @ motion[0])
+        return motion
+
+    def _set_free(self, motions: np.ndarray) -> None:
+        """Keep the motions (l, motions) that nothing holds where the coordinates of the elements are held.
+
+        They carry mass and no mean force, so that periodic motions exist, each about any mean position.
+
+        Raises
+        ------
+        ModelError
+            For motions without mass, and for static forces along them.
+        """
+        if not motions.size:
+            return
+        moved = np.asarray(self.back @ motions)
+        size = np.abs(moved).max(axis=1)
+        mass = np.linalg.eigvalsh(motions.T @ _times_columns(self.inner[1], motions))
+        coupled = np.abs(self.across[0] @ motions).max(initial=0.0)
+        if mass[0] <= FLOATING * abs(self.inner[1]).max() or coupled > DECOUPLED * abs(self.outer[0]).max(initial=1.0):
+            raise ModelError(
+                f"the structure can move freely, at {_moving(self.names, size)}, without a mass, a spring or a contact "
+                "that holds it, so its motion is not determined; clamp it, or give it mass"
+            )
+        self.free = np.linalg.qr(moved)[0]
+        static = np.real(self.loads[0])
+        force = float(np.linalg.norm(self.free.T @ static))
+        if force > DECOUPLED * np.linalg.norm(static):
+            raise ModelError(
+                f"a mean force of {force:.3g} N acts along {_moving(self.names, size)}, where no spring and no contact "
+                "holds the structure, so it has no periodic motion; clamp it, or balance the static forces"
+            )
+        self._pins = qr(motions.T, mode="r", pivoting=True)[-1][: motions.shape[1]]
+
+    @property
+    def free_names(self) -> str:
+        """Degrees of freedom whose mean position nothing holds; empty without."""
+        return _moving(self.names, np.abs(self.free).max(axis=1)) if self.free.size else ""
+
+    def _pinned(self, inner: Any) -> Any:
+        """Interior stiffness of the mean position with a support for each free motion, which carries no force."""
+        support = float(abs(self.inner[0]).max()) or 1.0
+        if isinstance(inner, list):
+            places = np.zeros(inner[0].shape[0])
+            places[self._pins] = support
+            return [csc_array(inner[0] + diags_array(places)), *inner[1:]]
+        inner = inner.copy()
+        inner[(0, self._pins) if inner.ndim == 2 else (0, self._pins, self._pins)] += support
+        return inner
+
+    def solve(self, s: np.ndarray, right: np.ndarray, inner: Any = None) -> np.ndarray:
+        """Z_ll⁻¹ times right-hand sides (orders, l, columns)."""
+        inner = self._off_resonance(s, self._inner(s)) if inner is None else inner
+        if not isinstance(inner, list) and inner.ndim == 2:
+            return right / inner[:, :, None]
+        try:
+            if isinstance(inner, list):
+                return np.stack([splu(matrix).solve(columns) for matrix, columns in zip(inner, right, strict=True)])
+            return np.linalg.solve(inner, right)
+        except (RuntimeError, np.linalg.LinAlgError):
+            raise _resonance(s, "") from None
+
+    @cached_property
+    def _resonant(self) -> np.ndarray:
+        """Dynamic stiffness of each interior mode (l,) that is rounding of its stiffness and inertia."""
+        return 2 * FLOATING * np.abs(self.inner[0])
+
+    def _off_resonance(self, s: np.ndarray, inner: Any, right: np.ndarray | None = None) -> Any:
+        """Dynamic stiffness of the interior modes, a little of it where there is none.
+
+        That is exact where nothing moves such a mode, and close to it where the retained coordinates hold it.
+
+        Raises
+        ------
+        SolveError
+            Where forces, the last of the right-hand sides, move one that the retained coordinates do not hold.
+        """
+        if self._pins.size:
+            inner = self._pinned(inner)
+        if isinstance(inner, list) or inner.ndim > 2:
+            return inner
+        still = np.abs(inner) <= self._resonant
+        if not still.any():
+            return inner
+        if right is not None:
+            sizes = np.abs(right)
+            held = sizes[:, :, :-1].max(axis=2, initial=0.0) > FLOATING * sizes[:, :, :-1].max(initial=0.0)
+            free = still & ~held & (sizes[:, :, -1] > FLOATING * sizes[:, :, -1].max())
+            if free.any():
+                order, mode = np.argwhere(free)[0]
+                raise _resonance(s[order : order + 1], f", at {_moving(self.names, np.abs(self.back[:, mode]))},")
+        return np.where(still, NEARLY * np.abs(self.inner[0]), inner)
+
+    def interior_slope(self, point: Point, retained: np.ndarray) -> np.ndarray:
+        """Derivative of the interior coordinates by ω where the retained ones (orders, q) are held, (orders, l)."""
+        s, interior = point.frequencies, point.interior(retained)
+        across = np.swapaxes(self._slope(self.across, s), 1, 2) @ retained[:, :, None]
+        return -self.solve(s, self._inner_slope(s, interior[:, :, None]) + across)[:, :, 0]
+
+    def _modal(self, blocks: list[np.ndarray]) -> list[np.ndarray]:
+        """Interior matrices in modes with q held: vectors where they are diagonal. Without modes, as they are."""
+        stiffness, mass, *damped = blocks
+        try:
+            squares, shapes = eigh(stiffness, mass)
+        except LinAlgError:  # an interior without mass somewhere
+            return blocks
+        modal = [shapes.T @ matrix @ shapes for matrix in damped]
+        for matrix in modal:
+            off = np.abs(matrix - np.diag(np.diag(matrix))).max()
+            if off > COUPLED * max(np.abs(np.diag(matrix)).max(), np.finfo(float).tiny):
+                return blocks
+        self.back = self.back @ shapes
+        return [squares, np.ones_like(squares), *map(np.diag, modal)]
+
+    def _inner(self, s: np.ndarray) -> Any:
+        if issparse(self.inner[0]):
+            return [csc_array(_dynamic(self.inner, x)) for x in s]
+        return _dynamic(self.inner, s)
+
+    def _slope(self, blocks: list[np.ndarray], s: np.ndarray) -> np.ndarray:
+        """Derivative of K - s²M + i s C by ω."""
+        _, mass, damping = blocks[:3]
+        factor = self.orders.reshape(-1, *[1] * mass.ndim)
+        return factor * (1j * damping - 2 * s.reshape(factor.shape) * mass)
+
+    def _inner_slope(self, s: np.ndarray, solved: np.ndarray) -> np.ndarray:
+        """Derivative of Z_ll by ω, times columns (orders, l, columns)."""
+        _, mass, damping = self.inner[:3]
+        if issparse(mass):
+            return np.stack(
+                [h * (1j * (damping @ x) - 2 * w * (mass @ x)) for h, w, x in zip(self.orders, s, solved, strict=True)]
+            )
+        return _times(self._slope(self.inner, s), solved)
+
+    @cached_property
+    def _side_by_side(self) -> tuple[list[np.ndarray], list[tuple[slice, tuple[int, ...]]]]:
+        """Entries of the matrices that are not sparse, one after the other, and the place and shape of each."""
+        parts = [part for part in (self.outer, self.across, self.inner) if not issparse(part[0])]
+        ends = np.cumsum([part[0].size for part in parts]).tolist()
+        places = [(slice(end - part[0].size, end), part[0].shape) for part, end in zip(parts, ends, strict=True)]
+        return [np.concatenate([matrix.ravel() for matrix in kind]) for kind in zip(*parts, strict=True)], places
+
+    def _together(self, s: np.ndarray) -> tuple[list[np.ndarray], list[np.ndarray]]:
+        """Dynamic stiffness of the matrices that are not sparse, and its derivative by ω: outer, across, inner."""
+        entries, places = self._side_by_side
+        both = _dynamic(entries, s), self._slope(entries, s)
+        first, second = ([flat[:, own].reshape(len(s), *shape) for own, shape in places] for flat in both)
+        return first, second
+
+
+def norm(array: np.ndarray) -> float:
+    """Square root of the sum of squares, without what :func:`numpy.linalg.norm` asks before it."""
+    return float(np.sqrt(np.vdot(array, array).real))
+
+
+def _times(inner: np.ndarray, columns: np.ndarray) -> np.ndarray:
+    """Matrices (orders, l, l), or their diagonals (orders, l), times columns (orders, l, columns)."""
+    return inner[:, :, None] * columns if inner.ndim == 2 else inner @ columns
+
+
+def _dynamic(blocks: list[Any], s: Any) -> Any:
+    """Z at frequencies (orders,), or at one."""
+    stiffness, mass, damping, *loss = blocks
+    if np.ndim(s):
+        s = s.reshape(-1, *[1] * mass.ndim)
+    result = stiffness - s**2 * mass + 1j * s * damping
+    return result + 1j * np.sign(s) * loss[0] if loss else result
+
+
+def _two_sided(left: Any, matrix: Any, right: Any) -> Any:
+    return left.T @ (matrix @ right)
+
+
+def _real(matrix: Any) -> Any:
+    return matrix.real if np.iscomplexobj(matrix) else matrix
+
+
+def _times_columns(matrix: Any, columns: np.ndarray) -> np.ndarray:
+    """A matrix (l, l), or its diagonal (l,), times columns (l, columns)."""
+    return matrix[:, None] * columns if matrix.ndim == 1 else np.asarray(matrix @ columns)
+
+
+def _moving(names: tuple[str, ...], motion: np.ndarray) -> str:
+    """Names of the degrees of freedom that move in a motion (n,) of sizes."""
+    moving = [repr(name) for name, size in zip(names, motion / motion.max(), strict=True) if size > MOVING]
+    if len(moving) > NAMED:
+        moving = [*moving[:NAMED], f"{len(moving) - NAMED} more degrees of freedom"]
+    return listed(moving)
+
+
+def _resonance(s: np.ndarray, where: str) -> SolveError:
+    frequencies = listed([f"{value / (2 * np.pi):.9g}" for value in s if value])
+    return SolveError(
+        f"the structure resonates without damping{where} at {frequencies} Hz, where its motion has no bound; give it "
+        "damping, or choose another frequency"
+    )
+
+
+def _free_motions(stiffness: Any) -> np.ndarray:
+    """Motions (l, motions) that a stiffness does not resist."""
+    if stiffness.ndim == 1:
+        return np.eye(len(stiffness))[:, np.abs(stiffness) <= FLOATING * np.abs(stiffness).max()]
+    if not issparse(stiffness):
+        return _unresisted(stiffness, np.eye(len(stiffness)))
+    try:
+        pivots = np.abs(splu(csc_array(stiffness)).U.diagonal())
+    except RuntimeError:  # a pivot is zero
+        pivots = np.zeros(1)
+    if pivots.min() > FLOATING * pivots.max():
+        return np.zeros((stiffness.shape[0], 0))
+    nearly = splu(csc_array(stiffness + SOFT * (abs(stiffness).max() or 1.0) * eye_array(stiffness.shape[0])))
+    basis = np.random.default_rng(0).standard_normal((stiffness.shape[0], min(MOST_FREE, stiffness.shape[0])))
+    for _ in range(3):
+        basis = np.linalg.qr(nearly.solve(basis))[0]
+    return _unresisted(stiffness, basis)
+
+
+def _unresisted(stiffness: Any, basis: np.ndarray) -> np.ndarray:
+    """Of the motions of an orthonormal basis (l, motions), those that a stiffness does not resist."""
+    values, shapes = np.linalg.eigh(basis.T @ (stiffness @ basis))
+    return basis @ shapes[:, np.abs(values) <= FLOATING * (abs(stiffness).max() or 1.0)]

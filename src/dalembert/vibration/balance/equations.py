@@ -1,0 +1,179 @@
+"""The equations of a system under harmonic balance, ready to be solved at any frequency."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+
+from dalembert.errors import InputError
+from dalembert.vibration.balance.balance import Balance
+from dalembert.vibration.balance.cold_start import by_force
+from dalembert.vibration.balance.condensation import Condensation, Point, norm
+from dalembert.vibration.balance.fourier import Fourier
+from dalembert.vibration.balance.harmonic_balance import AUTOMATIC, MOST_SAMPLES, HarmonicBalance
+from dalembert.vibration.balance.newton import Plane, Solution, correct
+from dalembert.vibration.laws.springs import BilinearStop, CubicSpring
+from dalembert.vibration.preparation import prepare_balance
+from dalembert.vibration.system.lowering import ELASTIC, Lowered, lower
+from dalembert.vibration.system.system import StaticForce, VibrationSystem
+
+
+@dataclass(frozen=True)
+class Equations:
+    """A lowered system and a method.
+
+    Parameters
+    ----------
+    lowered : Lowered
+        Real.
+    method : HarmonicBalance
+    """
+
+    lowered: Lowered
+    method: HarmonicBalance
+    _balances: dict[int, Balance] = field(default_factory=dict, repr=False, compare=False)
+
+    @cached_property
+    def condensation(self) -> Condensation:
+        """The structure at any frequency."""
+        series = Fourier(self.method.orders, self.method.first_samples)
+        loads = series.phasors(np.real(self.lowered.loads(series)))
+        return Condensation(self.lowered.structure, self.lowered.coordinates, self.method.orders, loads)
+
+    @property
+    def nonlinear(self) -> bool:
+        """Whether there are contacts or springs."""
+        return bool(self.lowered.blocks or self.lowered.springs)
+
+    def balance(self, samples: int) -> Balance:
+        """The elements with this many samples of a period."""
+        if samples not in self._balances:
+            self._balances[samples] = Balance(self.lowered, Fourier(self.method.orders, samples), self.method.events)
+        return self._balances[samples]
+
+    def solve(
+        self,
+        unknowns: np.ndarray,
+        omega: float,
+        samples: int,
+        plane: Plane | None = None,
+        point: Point | None = None,
+    ) -> Solution:
+        """Newton's method from a guess, with as many samples as it needs, and at least those given.
+
+        Where nothing holds a mean position, few samples may leave a mean force that more of them remove.
+        """
+        solution = correct(self.balance(samples), self.condensation, self.method, unknowns, omega, plane, point)
+        while solution.error <= self.method.sampling and not solution.converged and self._doubles(solution):
+            finer = self.balance(2 * solution.samples)
+            near = solution.unknowns, solution.omega
+            solution = correct(finer, self.condensation, self.method, *near, plane, solution.point)
+        while solution.converged:
+            solution = replace(solution, sampling_error=self._sampling_error(solution))
+            if solution.sampling_error <= self.method.sampling or not self._doubles(solution):
+                break
+            finer = self.balance(2 * solution.samples)
+            found = (solution.unknowns, solution.omega)
+            better = correct(finer, self.condensation, self.method, *found, plane, solution.point)
+            solution = replace(better, iterations=solution.iterations + better.iterations)
+        return solution
+
+    def first(self, omega: float) -> Solution:
+        """A first point: from closed contacts that stick, from the motion without contacts, with more force.
+
+        With little varying force contacts stick, so that this is the way of a friction limit from infinity to its own.
+        """
+        point, samples = self.condensation.at(omega), self.method.first_samples
+        balance = self.balance(samples)
+        pressed = any(block.normal and block.kind == ELASTIC for block in self.lowered.blocks)
+        best = self.solve(balance.stuck(point) if pressed else np.zeros(balance.shape), omega, samples, point=point)
+        if best.converged:
+            return best
+        try:
+            free = np.linalg.solve(point.stiffness, point.force[:, :, None])[:, :, 0]
+        except np.linalg.LinAlgError:  # springs without a linear part hold the structure
+            free = (np.linalg.pinv(point.stiffness) @ point.force[:, :, None])[:, :, 0]
+        moved = balance.series.coefficients(free)
+        other = self.solve(moved, omega, samples, point=point)
+        if other.converged:
+            return other
+        best = min(best, other, key=lambda one: one.error)
+        if self.method.halvings:
+            loaded = self.solve(by_force(balance, self.method, point), omega, samples, point=point)
+            if loaded.converged:
+                return loaded
+            best = min(best, loaded, key=lambda one: one.error)
+        if not any(block.normal and block.kind != ELASTIC for block in self.lowered.blocks):
+            return best
+        touching = self.solve(balance.touching(moved), omega, samples, point=point)
+        return touching if touching.converged else min(best, touching, key=lambda one: one.error)
+
+    def once(self, what: str, solution: Solution, compute: Callable[[], np.ndarray]) -> np.ndarray:
+        """What follows from a solution, by name; it is kept where solutions are."""
+        return compute()
+
+    def _doubles(self, solution: Solution) -> bool:
+        """Whether more samples may be taken."""
+        return self.method.samples == AUTOMATIC and solution.samples < MOST_SAMPLES
+
+    def _sampling_error(self, solution: Solution) -> float:
+        finer = self.balance(2 * solution.samples)
+        linear = finer.linear(solution.point.stiffness, solution.point.force, solution.unknowns)
+        evaluation = finer.residual(linear, solution.unknowns)
+        return norm(evaluation.residual) / (solution.point.load + norm(evaluation.forces) or 1.0)
+
+
+def equations(
+    system: VibrationSystem,
+    method: HarmonicBalance,
+    *,
+    residuals: bool = True,
+    stability: bool = False,
+    derivatives: bool = False,
+) -> Equations:
+    """Return the equations of a system. Their kernels are compiled or loaded.
+
+    Parameters
+    ----------
+    system : VibrationSystem
+    method : HarmonicBalance
+    residuals, stability, derivatives : bool
+        What is computed in addition to residuals with their Jacobians: residuals alone (:meth:`Equations.solve` needs
+        them), the stability of solutions by the time map, derivatives with respect to parameters.
+
+    Raises
+    ------
+    InputError
+        For parts on degrees of freedom that are not there, and for odd harmonics where something acts in one direction.
+    ModelError
+        For rigid contacts that depend on each other, and for mean forces along a motion that nothing holds.
+    """
+    lowered = lower(system).real
+    if method.odd_only:
+        _require_symmetry(lowered)
+    prepare_balance(lowered, method.events, residuals=residuals, stability=stability, derivatives=derivatives)
+    return Equations(lowered, method)
+
+
+def _require_symmetry(lowered: Lowered) -> None:
+    lopsided = [f"the static force on {force.dof!r}" for force in lowered.forces if isinstance(force, StaticForce)]
+    lopsided += [f"the normal direction of {lowered.contacts[b.contacts[0]]!r}" for b in lowered.blocks if b.normal]
+    lopsided += [
+        f"the element {element.name!r}"
+        for _, element in lowered.springs
+        if not isinstance(element, CubicSpring | BilinearStop) and not _odd(element, len(_))
+    ]
+    if lopsided:
+        raise InputError(
+            f"HarmonicBalance: odd_only=True with {lopsided[0]}, which acts in one direction; keep all harmonics"
+        )
+
+
+def _odd(element: object, count: int) -> bool:
+    """Whether a law of the user's is odd at some displacements."""
+    if not hasattr(element, "function"):
+        return False
+    u = np.random.default_rng(0).normal(size=(count, 16))
+    there, back = element.function(u), element.function(-u)  # type: ignore[attr-defined]
+    return bool(np.allclose(there, -back, rtol=1e-9, atol=1e-12 * np.abs(there).max(initial=0.0)))

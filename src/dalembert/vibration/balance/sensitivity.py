@@ -1,0 +1,75 @@
+r"""Exact derivatives of a balanced response by parameters.
+
+With :math:`R(U, p) = 0`, :math:`\mathrm{d}U/\mathrm{d}p = -J^{-1}\, \partial R/\partial p`. A system built with a
+parameter moved by a complex step carries the derivatives of its matrices, forces and laws in its imaginary parts. Those
+of the condensed structure follow without condensing it again: with V the motion of the whole structure under unit
+motions of the retained coordinates, and x that of the solution,
+:math:`\partial (Z_q U - F_q)/\partial p = V^T (Z' x - f')`.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from dalembert.vibration.balance.balance import Balance
+from dalembert.vibration.balance.equations import Equations
+from dalembert.vibration.balance.newton import Solution
+from dalembert.vibration.system.lowering import Lowered
+
+STEP = 1e-30
+"""Size of the imaginary step; second-order terms vanish below the rounding of the first."""
+
+
+def sensitivities(problem: Equations, solution: Solution, tilted: Sequence[Lowered]) -> np.ndarray:
+    """Derivatives of all degrees of freedom' coefficients, (parameters, n, coefficients).
+
+    Parameters
+    ----------
+    problem : Equations
+    solution : Solution
+        Converged.
+    tilted : sequence of Lowered
+        The system along each parameter, moved by a complex step.
+    """
+    series, condensation, point = problem.balance(solution.samples).series, problem.condensation, solution.point
+    retained = series.phasors(solution.unknowns)
+    motion = condensation.full(retained, point.interior(retained))
+    linear = problem.balance(solution.samples).linear(point.stiffness, point.force, solution.unknowns)
+    given, residuals = [], []
+    for own in tilted:
+        push = series.phasors(_step(own.loads(series))) - _unbalanced(own, point.frequencies, motion)
+        outer, inner = push @ condensation.retained, np.asarray((condensation.back.T @ push.T).T)
+        condensed = outer - (np.swapaxes(point.follow, 1, 2) @ inner[:, :, None])[:, :, 0]
+        elements = replace(problem.lowered, blocks=own.blocks, springs=own.springs)
+        stepped = linear - 1j * STEP * series.coefficients(condensed)
+        residuals.append(
+            _step(Balance(elements, series, problem.method.events).residual(stepped, solution.unknowns).residual)
+        )
+        given.append(inner)
+    moved = -np.moveaxis(solution.tangent.solve(np.stack(residuals, axis=2)), 2, 0)
+    result = []
+    for change, inner in zip(moved, given, strict=True):
+        shift = series.phasors(change)
+        interior = condensation.solve(point.frequencies, inner[:, :, None])[:, :, 0]
+        interior = interior - (point.follow @ shift[:, :, None])[:, :, 0]
+        result.append(series.coefficients(condensation.full(shift, interior)))
+    return np.stack(result)
+
+
+def _unbalanced(own: Lowered, frequencies: np.ndarray, motion: np.ndarray) -> np.ndarray:
+    """Z' x, (orders, n), from the imaginary parts of the matrices."""
+    structure = own.structure
+    stiffness, mass = (_step(matrix) @ motion.T for matrix in (structure.stiffness, structure.mass))
+    total = stiffness - mass * frequencies**2
+    if structure.damping is not None:
+        total = total + 1j * (_step(structure.damping) @ motion.T) * frequencies
+    if structure.loss is not None:
+        total = total + 1j * (_step(structure.loss) @ motion.T) * np.sign(frequencies)
+    return np.asarray(total.T)
+
+
+def _step(array: Any) -> Any:
+    """Derivative in an imaginary part; zero where there is none."""
+    return array.imag / STEP if np.iscomplexobj(array) else 0.0 * array

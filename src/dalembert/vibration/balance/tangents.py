@@ -1,0 +1,102 @@
+"""The Jacobian of the balance as one dense matrix or by its structure, alone and with a row beside it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from dalembert.vibration.balance.block_tangent import EXACT, BlockTangent
+
+FREE = 1e-11
+"""Singular value, as part of the largest, of what nothing holds."""
+
+
+@dataclass(frozen=True)
+class DenseTangent:
+    """Derivatives of the residual.
+
+    Parameters
+    ----------
+    jacobian : array, shape (q, coefficients, q, coefficients)
+    slope : array, shape (q, coefficients)
+        By ω.
+    held : bool
+        Whether the structure holds its mean position. Else contacts may leave it undetermined, and of all solutions
+        the smallest is taken.
+    """
+
+    jacobian: np.ndarray
+    slope: np.ndarray
+    held: bool = True
+
+    def copy(self) -> "DenseTangent":
+        """The same in other places of memory."""
+        return DenseTangent(self.jacobian.copy(), self.slope.copy(), self.held)
+
+    @property
+    def matrix(self) -> np.ndarray:
+        """The Jacobian as a matrix, (unknowns, unknowns)."""
+        return self.jacobian.reshape(self.slope.size, self.slope.size)
+
+    def solve(self, right: np.ndarray, tolerance: float = EXACT) -> np.ndarray:
+        """J⁻¹ times right-hand sides (q, coefficients, columns); to rounding, whatever the tolerance."""
+        return solution(self.matrix, right.reshape(self.slope.size, right.shape[2]), self.held).reshape(right.shape)
+
+
+Tangent = DenseTangent | BlockTangent
+
+
+def solution(matrix: np.ndarray, right: np.ndarray, held: bool) -> np.ndarray:
+    """Solution of linear equations; the smallest one that leaves the least, if the mean position may be free."""
+    return np.linalg.solve(matrix, right) if held else np.linalg.lstsq(matrix, right, rcond=FREE)[0]
+
+
+def bordered(
+    tangent: Tangent,
+    direction: np.ndarray,
+    scales: tuple[float, float, float],
+    top: np.ndarray,
+    bottom: float,
+    tolerance: float = EXACT,
+) -> tuple[np.ndarray, float]:
+    """Solution with the tangent and a row beside it, regular at a fold too: changes of U/size and ω/width.
+
+    Parameters
+    ----------
+    tangent : DenseTangent or BlockTangent
+    direction : array, shape (unknowns + 1,)
+        The row.
+    scales : (size, width, force)
+    top : array, shape (q, coefficients)
+        Right-hand side, as part of the force.
+    bottom : float
+    tolerance : float
+        As :class:`BlockTangent` takes it.
+    """
+    size, width, force = scales
+    if isinstance(tangent, DenseTangent):
+        matrix = _with_row(tangent, direction, scales)
+        change = solution(matrix, np.append(top.ravel(), bottom), tangent.held)
+        return change[:-1].reshape(top.shape), float(change[-1])
+    right = np.stack([top * (force / size), tangent.slope * (width / size)], axis=2)
+    solved = tangent.solve(right, tolerance)
+    row, (still, moving) = direction[:-1], np.moveaxis(solved, 2, 0)
+    turned = (bottom - float(row @ still.ravel())) / (float(direction[-1]) - float(row @ moving.ravel()))
+    return still - turned * moving, turned
+
+
+def orientation(tangent: Tangent, direction: np.ndarray, scales: tuple[float, float, float]) -> float:
+    """Sign of the determinant of the tangent with a row, which a direction along a path keeps; 0 where it is 0."""
+    if isinstance(tangent, DenseTangent):
+        return float(np.linalg.slogdet(_with_row(tangent, direction, scales))[0])
+    size, width, _ = scales
+    moving = tangent.solve(tangent.slope[:, :, None])[:, :, 0] * (width / size)
+    return tangent.sign * float(np.sign(direction[-1] - direction[:-1] @ moving.ravel()))
+
+
+def _with_row(tangent: DenseTangent, direction: np.ndarray, scales: tuple[float, float, float]) -> np.ndarray:
+    size, width, force = scales
+    matrix = np.empty((len(direction), len(direction)))
+    matrix[:-1, :-1] = tangent.matrix * (size / force)
+    matrix[:-1, -1] = tangent.slope.ravel() * (width / force)
+    matrix[-1] = direction
+    return matrix

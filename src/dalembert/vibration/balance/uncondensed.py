@@ -1,0 +1,107 @@
+r"""The balance with all coordinates as unknowns, for what a condensed structure does not say: growth, and damping.
+
+With y = (q, l) the retained coordinates of the elements and the interior ones side by side, and L(Y) the linear part of
+the balance, the derivative of the residual is :math:`W\,\mathrm{d}L + B\,\mathrm{d}U` in the rows of q, and
+:math:`\mathrm{d}L` in those of l. Elastic elements have W = 1 and B their stiffness; a rigid contact with the local
+Jacobian G and the penalty ε has :math:`W = 1 - G/\varepsilon` and B = G.
+"""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from scipy.sparse import issparse
+
+from dalembert.errors import InputError
+from dalembert.vibration.balance.balance import Balance, Evaluation
+from dalembert.vibration.balance.condensation import Condensation
+from dalembert.vibration.balance.fourier import Fourier
+from dalembert.vibration.balance.tangents import DenseTangent
+from dalembert.vibration.system.hysteretic import require_viscous
+from dalembert.vibration.system.lowering import ELASTIC, Lowered
+
+REMEMBERING = "displacement"
+
+
+class Local(NamedTuple):
+    """The elements at a place: what they do, and W and B, (q · coefficients, q · coefficients); W None for the unit."""
+
+    evaluation: Evaluation
+    weight: np.ndarray | None
+    stiffness: np.ndarray
+
+
+@dataclass(frozen=True)
+class Uncondensed:
+    """A system in its retained and interior coordinates.
+
+    Parameters
+    ----------
+    lowered : Lowered
+        Real. Rigid contacts of the velocity kind are taken as such of the displacement kind, which say the same of a
+        solution and also of its mean.
+    condensation : Condensation
+        Which splits the structure.
+    series : Fourier
+    events : bool
+        As :class:`Balance` takes it.
+    """
+
+    lowered: Lowered
+    condensation: Condensation
+    series: Fourier
+    events: bool = True
+
+    def __post_init__(self) -> None:
+        blocks = tuple(
+            block if block.memory else replace(block, kind=REMEMBERING, numbers=block.numbers)
+            for block in self.lowered.blocks
+        )
+        object.__setattr__(self, "lowered", replace(self.lowered, blocks=blocks))
+
+    @cached_property
+    def balance(self) -> Balance:
+        """The elements."""
+        return Balance(self.lowered, self.series, self.events)
+
+    @property
+    def retained(self) -> int:
+        """Number of retained coordinates, which are the first."""
+        return self.balance.shape[0]
+
+    @cached_property
+    def matrices(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """K, M and C in these coordinates, (n, n) each.
+
+        Raises
+        ------
+        InputError
+            For a structure so large that its interior is kept sparse, and for hysteretic damping.
+        """
+        own = self.condensation
+        require_viscous(self.lowered.structure, "stability and nonlinear modes")
+        if any(map(issparse, own.inner)):
+            raise InputError(
+                f"stability and nonlinear modes take dense matrices of all {self.lowered.structure.size} degrees of "
+                "freedom; reduce the structure first (craig_bampton)"
+            )
+        return tuple(
+            np.block([[outer, across], [across.T, np.diag(inner) if inner.ndim == 1 else inner]])
+            for outer, across, inner in zip(own.outer[:3], own.across[:3], own.inner[:3], strict=True)
+        )  # type: ignore[return-value]
+
+    def elements(self, linear: np.ndarray, unknowns: np.ndarray) -> Local:
+        """The elements where the linear part and the retained coordinates, (q, coefficients), are these."""
+        rigid = [block.numbers[:, :2].max() for block in self.lowered.blocks if block.kind != ELASTIC]
+        evaluation, stiffness = self._tangent(0.0, linear, unknowns)
+        if not rigid:
+            return Local(evaluation, None, stiffness)
+        scale = float(max(rigid))
+        return Local(evaluation, (self._tangent(scale, linear, unknowns)[1] - stiffness) / scale, stiffness)
+
+    def _tangent(self, scale: float, linear: np.ndarray, unknowns: np.ndarray) -> tuple[Evaluation, np.ndarray]:
+        """Residual, and its Jacobian where that of the linear part is a multiple of the unit matrix."""
+        jacobian = scale * np.eye(unknowns.size).reshape(*unknowns.shape, *unknowns.shape)
+        tangent = DenseTangent(jacobian, np.zeros_like(unknowns))
+        return self.balance.residual(linear, unknowns, tangent), tangent.matrix

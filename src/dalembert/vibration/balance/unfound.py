@@ -1,0 +1,134 @@
+"""Why points of a curve were not found, and what is free in those that were."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from dalembert.errors import listed
+from dalembert.findings import Finding
+from dalembert.vibration.balance.condensation import FLOATING, MOVING, NAMED, NEARLY
+from dalembert.vibration.balance.equations import Equations
+from dalembert.vibration.balance.newton import VERIFIED, Solution
+from dalembert.vibration.laws.springs import UserElement
+
+LEFT = 0.1
+"""Part of the residual, along a motion that no stiffness holds, from which this motion is the cause."""
+
+
+@dataclass(frozen=True)
+class Unfound:
+    """A point that was not found.
+
+    Parameters
+    ----------
+    frequency : float
+        Hz.
+    residual : float
+        As part of the forces.
+    motion : str
+        Coordinates that move where no contact balances their mean force and the structure has no stiffness; empty for
+        other causes.
+    force : float
+        This mean force, N.
+    element : str
+        Element whose function has no finite force where Newton's method goes; empty for other causes.
+    resonance : bool
+        Whether the structure resonates here without damping.
+    """
+
+    frequency: float
+    residual: float
+    motion: str = ""
+    force: float = 0.0
+    element: str = ""
+    resonance: bool = False
+
+
+def unfound(problem: Equations, solution: Solution) -> Unfound | None:
+    """Return the cause if a point was not found."""
+    if solution.converged:
+        return None
+    frequency, residual = float(solution.omega) / (2 * np.pi), solution.evaluation.residual
+    motions = solution.point.free_motions
+    along = motions.T @ residual[:, 0]
+    largest = max(LEFT * float(np.linalg.norm(residual)), VERIFIED * solution.point.load)
+    if not np.linalg.norm(along) > largest:
+        return Unfound(
+            frequency, solution.error, element=_not_finite(problem, solution), resonance=_resonates(solution)
+        )
+    balance = problem.balance(solution.samples)
+    moved = np.abs(balance.displacements((motions @ along)[:, None])[:, 0])
+    names = [repr(balance.lowered.row_names[row]) for row in np.flatnonzero(moved > MOVING * moved.max())]
+    return Unfound(frequency, solution.error, listed(names[:NAMED]), float(np.linalg.norm(along)))
+
+
+def _not_finite(problem: Equations, solution: Solution) -> str:
+    """Name of the user's element whose force is not finite here or after Newton's next step; empty if there is none."""
+    balance = problem.balance(solution.samples)
+    try:
+        step = solution.tangent.solve(solution.evaluation.residual[:, :, None])[:, :, 0]
+    except np.linalg.LinAlgError:
+        step = np.zeros_like(solution.unknowns)
+    for part in (0.0, 1.0):
+        motion = balance.displacements(solution.unknowns - part * step) @ balance.series.synthesis.T
+        for rows, element in balance.lowered.springs:
+            if isinstance(element, UserElement) and not np.all(np.isfinite(element.law(motion[rows])[0])):
+                return element.name
+    return ""
+
+
+def _resonates(solution: Solution) -> bool:
+    """Whether the structure has no dynamic stiffness in some motion at a harmonic that forces act in."""
+    point = solution.point
+    forced = np.abs(point.force).max(axis=1, initial=0.0) > FLOATING * point.load
+    stiffness = point.stiffness[forced & (point.frequencies > 0)]
+    if not stiffness.size:
+        return False
+    smallest = np.linalg.svd(stiffness, compute_uv=False)[:, -1]
+    return bool(np.any(smallest <= NEARLY * point.stiffest))
+
+
+def unfound_findings(points: int, lost: Iterable[Unfound]) -> tuple[Finding, ...]:
+    """Return the finding on the points of a curve, of so many, that were not found."""
+    lost = list(lost)
+    if not lost:
+        return ()
+    count = f"{len(lost)} of {points} points were not found."
+    for one in lost:
+        if one.motion:
+            values = {"points": len(lost), "frequency": one.frequency, "motion": one.motion, "force": one.force}
+            message = (
+                f"{count} At {one.frequency:.6g} Hz no contact balances a mean force of {one.force:.3g} N along "
+                f"{one.motion}, where the structure has no stiffness."
+            )
+            advice = (
+                "The static forces exceed the limit of friction, or no static force presses the contact. Change "
+                "them or the preload, or hold the structure by a spring."
+            )
+            return (Finding("unbalanced-mean", "error", values, message, advice),)
+    for one in lost:
+        where, values = f"{count} At {one.frequency:.6g} Hz", {"points": len(lost), "frequency": one.frequency}
+        if one.element:
+            message = f"{where} the function of {one.element!r} returns forces that are not finite."
+            advice = "Let it return finite forces at all displacements."
+            return (Finding("force-not-finite", "error", {**values, "element": one.element}, message, advice),)
+        if one.resonance:
+            message = f"{where} the structure resonates without damping, and no element limits its motion."
+            advice = "Give it damping, or choose another frequency."
+            return (Finding("undamped-resonance", "error", values, message, advice),)
+    worst = max(lost, key=lambda one: one.residual)
+    values = {"points": len(lost), "frequency": worst.frequency, "residual": worst.residual}
+    message = f"{count} The largest residual is {worst.residual:.1e} of the forces, at {worst.frequency:.6g} Hz."
+    advice = "Follow the curve by arc length, or with smaller steps of frequency, more harmonics or more samples."
+    return (Finding("points-not-found", "warning", values, message, advice),)
+
+
+def free_findings(problem: Equations) -> tuple[Finding, ...]:
+    """Return the finding on motions of the structure that nothing holds."""
+    names = problem.condensation.free_names
+    if not names:
+        return ()
+    message = f"No spring and no contact holds the mean position along {names}; the smallest one was chosen."
+    advice = "Look at changes of these displacements, or hold the structure by a spring."
+    return (Finding("free-mean-position", "note", {"motion": names}, message, advice),)

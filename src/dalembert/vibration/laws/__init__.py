@@ -1,0 +1,1 @@
+"""Laws of contacts and springs, and their sums over a period."""

@@ -1,0 +1,260 @@
+r"""Compiled: the angle φ of the force of a contact that slips in two directions, and its gradient.
+
+With a = k_t u and the limit L = mu N, a prime for the derivative by the phase, the force is L e(φ), where
+e = (cos φ, sin φ) and n = (-sin φ, cos φ), and the slider moves along the force:
+
+    L φ' = a'·n(φ),   while a'·e(φ) > L'
+
+This is solved by Radau IIA of order five, which bears L = 0, where φ is the direction of a'. The gradients (columns,)
+are by the displacements' coefficients and by the two numbers of the slider at the start of the period; the last column
+is by the angle at which a step ends.
+
+Source: E. Hairer and G. Wanner, Solving Ordinary Differential Equations II, Springer 1996, section IV.5.
+"""
+
+import numpy as np
+
+from dalembert.kernels.kernel import inner
+from dalembert.vibration.laws.event_sums import REFINEMENTS, SETTLED, evaluate, waves
+from dalembert.vibration.laws.friction_law import FRICTION, NORMAL, TANGENTIAL
+
+ROOT = 6.0**0.5
+NODES = ((4.0 - ROOT) / 10.0, (4.0 + ROOT) / 10.0, 1.0)
+WEIGHTS = (
+    ((88.0 - 7.0 * ROOT) / 360.0, (296.0 - 169.0 * ROOT) / 1800.0, (-2.0 + 3.0 * ROOT) / 225.0),
+    ((296.0 + 169.0 * ROOT) / 1800.0, (88.0 + 7.0 * ROOT) / 360.0, (-2.0 - 3.0 * ROOT) / 225.0),
+    ((16.0 - ROOT) / 36.0, (16.0 + ROOT) / 36.0, 1.0 / 9.0),
+)
+"""Radau IIA of order five: nodes and weights of its stages, of which the last is the end of the step."""
+ITERATIONS = 12
+"""Of Newton's method for the stages of a step; a step that needs more is halved."""
+FAR = 100.0
+"""Change of a stage in an iteration from which the method does not return; the imaginary parts would overflow."""
+
+#: Rows of signals: both trial forces k u, and the load N. Rows of gradients.
+PRESSED = 2
+PLACE, OPENED, MOVE, STAGES, JUMPS, ROWS = 0, 2, 3, 4, 7, 16
+
+
+@inner
+def direction(x, y):
+    """Angle of a vector; the step of Newton's method carries directions of differentiation."""
+    angle = np.arctan2(y.real, x.real)
+    c, s = np.cos(angle), np.sin(angle)
+    return angle + (c * y - s * x) / (c * x + s * y)
+
+
+@inner
+def at(angle, orders, mean, signals, constants, table, values):
+    """Set a table of waves at an angle, and the signals' values there."""
+    waves(angle, orders, mean, table, 5)
+    evaluate(signals, constants, table, values)
+
+
+@inner
+def slides(values, phi, friction):
+    """Velocity of a slipping slider along the force, times k_t: a'·e - L'."""
+    return values[1, 0] * np.cos(phi) + values[1, 1] * np.sin(phi) - friction * values[1, PRESSED]
+
+
+@inner
+def step(begin, end, phi, friction, orders, mean, signals, constants, tables, stages, radau):
+    """One step of φ: its change, and whether it was found.
+
+    ``radau`` (7, 3) keeps the changes κ of the stages, their φ, and the inverse of their matrix (rows 2 to 4); the
+    derivative of the stages by the end of the step (row 5).
+    """
+    size, found, done = end - begin, False, False
+    for j in range(3):
+        at(begin + NODES[j] * size, orders, mean, signals, constants, tables[j], stages[j])
+        radau[0, j] = 0.0 * phi
+    for _ in range(ITERATIONS):
+        moved = 0.0
+        for j in range(3):
+            angle = phi
+            for i in range(3):
+                angle += WEIGHTS[j][i] * radau[0, i]
+            c, s, limit = np.cos(angle), np.sin(angle), friction * stages[j, 0, PRESSED]
+            across, along = c * stages[j, 1, 1] - s * stages[j, 1, 0], c * stages[j, 1, 0] + s * stages[j, 1, 1]
+            radau[1, j], radau[6, j] = angle, size * across - limit * radau[0, j]
+            for i in range(3):
+                radau[2 + j, i] = size * along * WEIGHTS[j][i]
+            radau[2 + j, j] += limit
+        if done:
+            found = True
+        if not invert(radau):
+            return 0.0 * phi, False
+        for j in range(3):
+            change = radau[2 + j, 0] * radau[6, 0] + radau[2 + j, 1] * radau[6, 1] + radau[2 + j, 2] * radau[6, 2]
+            if not abs(change.real) <= FAR:
+                return 0.0 * phi, False
+            radau[0, j] += change
+            moved = max(moved, abs(change.real))
+        if found:
+            break
+        done = moved <= SETTLED
+    total = 0.0 * phi
+    for i in range(3):
+        total += WEIGHTS[2][i] * radau[0, i]
+    for j in range(3):
+        angle = radau[1, j]
+        c, s = np.cos(angle), np.sin(angle)
+        across, bent = c * stages[j, 1, 1] - s * stages[j, 1, 0], c * stages[j, 2, 1] - s * stages[j, 2, 0]
+        push = size * bent - radau[0, j] * friction * stages[j, 1, PRESSED]
+        radau[6, j] = across + NODES[j] * push
+    for j in range(3):
+        radau[5, j] = radau[2 + j, 0] * radau[6, 0] + radau[2 + j, 1] * radau[6, 1] + radau[2 + j, 2] * radau[6, 2]
+    return total, found
+
+
+@inner
+def invert(radau):
+    """Invert the rows 2 to 4; whether they can be inverted."""
+    a, b, c = radau[2, 0], radau[2, 1], radau[2, 2]
+    d, e, f = radau[3, 0], radau[3, 1], radau[3, 2]
+    g, h, i = radau[4, 0], radau[4, 1], radau[4, 2]
+    first, second, third = e * i - f * h, f * g - d * i, d * h - e * g
+    determinant = a * first + b * second + c * third
+    if determinant.real == 0.0:
+        return False
+    radau[2, 0], radau[3, 0], radau[4, 0] = first / determinant, second / determinant, third / determinant
+    radau[2, 1], radau[3, 1] = (c * h - b * i) / determinant, (a * i - c * g) / determinant
+    radau[4, 1] = (b * g - a * h) / determinant
+    radau[2, 2], radau[3, 2] = (b * f - c * e) / determinant, (c * d - a * f) / determinant
+    radau[4, 2] = (a * e - b * d) / determinant
+    return True
+
+
+@inner
+def speed(radau):
+    """Derivative of φ at the end of a step by this end."""
+    return WEIGHTS[2][0] * radau[5, 0] + WEIGHTS[2][1] * radau[5, 1] + WEIGHTS[2][2] * radau[5, 2]
+
+
+@inner
+def carry(begin, end, numbers, normal, wanted, tables, stages, radau, grads):
+    """Carry the gradient of φ over a step whose end is fixed; its last entry is by the end."""
+    size, count, friction = end - begin, tables.shape[2], numbers[FRICTION]
+    unknowns, own = grads.shape[1] - 3, numbers[FRICTION] * numbers[NORMAL]
+    for j in range(3):
+        c, s, kappa = np.cos(radau[1, j]), np.sin(radau[1, j]), radau[0, j]
+        along, across = c * stages[j, 1, 0] + s * stages[j, 1, 1], c * stages[j, 1, 1] - s * stages[j, 1, 0]
+        bent = c * stages[j, 2, 1] - s * stages[j, 2, 0]
+        shift = (1.0 - NODES[j]) * (size * bent - kappa * friction * stages[j, 1, PRESSED]) - across
+        for m in range(unknowns + 2):
+            grads[STAGES + j, m] = shift * grads[OPENED, m] - size * along * grads[PLACE, m]
+        if wanted:
+            factor = size * numbers[TANGENTIAL]
+            for q in range(count):
+                grads[STAGES + j, q] -= factor * s * tables[j, 1, q]
+                grads[STAGES + j, count + q] += factor * c * tables[j, 1, q]
+            if normal:
+                for q in range(count):
+                    grads[STAGES + j, 2 * count + q] -= kappa * own * tables[j, 0, q]
+    weights = (0.0 * radau[0, 0], 0.0 * radau[0, 0], 0.0 * radau[0, 0])
+    for j in range(3):
+        weights = (
+            weights[0] + WEIGHTS[2][j] * radau[2 + j, 0],
+            weights[1] + WEIGHTS[2][j] * radau[2 + j, 1],
+            weights[2] + WEIGHTS[2][j] * radau[2 + j, 2],
+        )
+    for m in range(unknowns + 2):
+        grads[PLACE, m] += (
+            weights[0] * grads[STAGES, m] + weights[1] * grads[STAGES + 1, m] + weights[2] * grads[STAGES + 2, m]
+        )
+        grads[OPENED, m] = 0.0
+    grads[PLACE, unknowns + 2] = speed(radau)
+
+
+@inner
+def stop_slip(begin, end, phi, friction, orders, mean, signals, constants, tables, stages, radau):
+    """The angle in a step at which the slider stops, as a length from its beginning; the last step was to this end."""
+    low, high = 0.0, (end - begin).real
+    place = 0.5 * high
+    length, close = place + 0.0 * phi, False
+    for _ in range(REFINEMENTS):
+        change, found = step(
+            begin, begin + length, phi, friction, orders, mean, signals, constants, tables, stages, radau
+        )  # fmt: skip
+        angle = phi + change
+        size = slides(stages[2], angle, friction)
+        c, s = np.cos(angle), np.sin(angle)
+        rate = stages[2, 2, 0] * c + stages[2, 2, 1] * s - friction * stages[2, 2, PRESSED]
+        rate += (c * stages[2, 1, 1] - s * stages[2, 1, 0]) * speed(radau)
+        if close and found:  # the last step carries directions of differentiation
+            return length - size / rate
+        if found and size.real > 0.0:
+            low = place
+        else:
+            high = place
+        trial = place - size.real / rate.real if found and rate.real != 0.0 else low
+        if not low < trial < high:
+            trial = 0.5 * (low + high)
+        close = abs(trial - place) <= SETTLED * (end - begin).real
+        place = trial
+        length = place + 0.0 * phi
+    return length
+
+
+@inner
+def add_signal(target, row, order, factor, numbers, table):
+    """Add to a gradient that of a signal's derivative of an order."""
+    count = table.shape[1]
+    own = factor * (numbers[NORMAL] if row == PRESSED else numbers[TANGENTIAL])
+    for q in range(count):
+        target[row * count + q] += own * table[order, q]
+
+
+@inner
+def pull(values, zx, zy, friction):
+    """What makes a stuck contact slip where it becomes positive, |f|² - L², and its derivative."""
+    x, y, limit = values[0, 0] - zx, values[0, 1] - zy, friction * values[0, PRESSED]
+    size = x * x + y * y - limit * limit
+    return size, 2.0 * (x * values[1, 0] + y * values[1, 1] - limit * friction * values[1, PRESSED])
+
+
+@inner
+def first_slip(begin, end, zx, zy, friction, least, orders, mean, signals, constants, table, values):
+    """The first angle between two at which a stuck contact begins to slip, or a negative number.
+
+    Of two such changes between them the first is found by the largest force that they enclose.
+    """
+    at(end, orders, mean, signals, constants, table, values)
+    size, rate = pull(values, zx, zy, friction)
+    low, high = begin, end
+    if size.real <= least:
+        if rate.real >= 0.0:
+            return -1.0
+        at(begin, orders, mean, signals, constants, table, values)
+        _, rate = pull(values, zx, zy, friction)
+        if rate.real <= 0.0:
+            return -1.0
+        for _ in range(REFINEMENTS):
+            middle = 0.5 * (low + high)
+            at(middle, orders, mean, signals, constants, table, values)
+            size, rate = pull(values, zx, zy, friction)
+            if size.real > least or high - low <= SETTLED * (end - begin):
+                break
+            if rate.real > 0.0:
+                low = middle
+            else:
+                high = middle
+        if size.real <= least:
+            return -1.0
+        low, high = begin, middle
+    place = 0.5 * (low + high)
+    for _ in range(REFINEMENTS):
+        at(place, orders, mean, signals, constants, table, values)
+        size, rate = pull(values, zx, zy, friction)
+        if size.real > 0.0:
+            high = place
+        else:
+            low = place
+        trial = place - size.real / rate.real if rate.real != 0.0 else low
+        if not low < trial < high:
+            trial = 0.5 * (low + high)
+        close = abs(trial - place) <= SETTLED * (end - begin)
+        place = trial
+        if close:
+            break
+    return place

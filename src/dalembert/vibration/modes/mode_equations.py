@@ -1,0 +1,282 @@
+r"""The equations of a nonlinear mode, and Newton's method for them.
+
+What friction and dampers take from the motion is given back by a negative damping in proportion to the mass (extended
+periodic motion concept),
+
+.. math:: M \ddot x + (C - 2 \zeta \omega M) \dot x + K x + \lambda = 0,
+
+so that ω and the damping ratio ζ belong to the amplitude as those of a linear mode do. The unknowns are the harmonics
+of all coordinates, ω, ξ = 2 ζ ω and the amplitude; the first harmonic of one degree of freedom has the amplitude as its
+cosine and no sine, and a plane across the path tells one motion from the next.
+"""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import cast
+
+import numpy as np
+from scipy.linalg import eig
+
+from dalembert.errors import InputError, SolveError
+from dalembert.vibration.balance.equations import Equations
+from dalembert.vibration.balance.fourier import Fourier
+from dalembert.vibration.balance.harmonic_balance import AUTOMATIC, MOST_SAMPLES
+from dalembert.vibration.balance.newton import DAMPINGS, ROUNDING
+from dalembert.vibration.balance.uncondensed import Local, Uncondensed
+
+
+@dataclass(frozen=True)
+class Linear:
+    """A linear mode about a position at rest, in coordinates y (n,) and degrees of freedom (n,)."""
+
+    omega: float
+    growth: float
+    rest: np.ndarray
+    moved: np.ndarray
+    shape: np.ndarray
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A motion without force: harmonics (n, coefficients), ω, ξ = 2 ζ ω and amplitude, and how it was found."""
+
+    harmonics: np.ndarray
+    omega: float
+    growth: float
+    size: float
+    iterations: int = 0
+    error: float = 0.0
+    converged: bool = False
+    samples: int = 0
+
+
+@dataclass(frozen=True)
+class Plane:
+    """A plane across the path of motions, in (Y/scale, log ω, ξ/ω, log a), through a motion."""
+
+    direction: np.ndarray
+    at: Motion
+    scale: float
+
+    def from_here(self, motion: Motion) -> np.ndarray:
+        """The way from the plane's own motion to another."""
+        change = (motion.harmonics - self.at.harmonics).ravel() / self.scale
+        others = [
+            np.log(motion.omega / self.at.omega),
+            (motion.growth - self.at.growth) / self.at.omega,
+            np.log(motion.size / self.at.size),
+        ]
+        return np.append(change, others)
+
+    def distance(self, motion: Motion) -> float:
+        """Of a motion from the plane."""
+        return float(self.direction @ self.from_here(motion))
+
+    def moved(self, motion: Motion, step: np.ndarray) -> Motion:
+        """A motion some step on."""
+        return replace(
+            motion,
+            harmonics=motion.harmonics + self.scale * step[:-3].reshape(motion.harmonics.shape),
+            omega=float(motion.omega * np.exp(np.clip(step[-3], -1.0, 1.0))),
+            growth=float(motion.growth + self.at.omega * step[-2]),
+            size=float(motion.size * np.exp(np.clip(step[-1], -1.0, 1.0))),
+        )
+
+
+@dataclass(frozen=True)
+class _Trial:
+    """A place in Newton's method."""
+
+    motion: Motion
+    local: Local
+    residual: np.ndarray
+    error: float
+    floor: float
+
+
+@dataclass(frozen=True)
+class ModeEquations:
+    """The equations of a nonlinear mode, whose amplitude is measured at a row of the structure."""
+
+    problem: Equations
+    row: int
+
+    def system(self, samples: int) -> Uncondensed:
+        """The elements with this many samples."""
+        series = Fourier(self.problem.method.orders, samples)
+        return Uncondensed(self.problem.lowered, self.problem.condensation, series, self.problem.method.events)
+
+    @cached_property
+    def basis(self) -> np.ndarray:
+        """Degrees of freedom from the coordinates, (n, n)."""
+        own = self.problem.condensation
+        back = own.back if isinstance(own.back, np.ndarray) else own.back.toarray()
+        return np.hstack([own.retained, back])
+
+    @cached_property
+    def static(self) -> np.ndarray:
+        """Static forces on the coordinates, (n, coefficients)."""
+        own = self.problem.condensation
+        loads = np.concatenate([own.outer_loads, own.inner_loads], axis=1)
+        return Fourier(self.problem.method.orders, 1).coefficients(loads)
+
+    def linear(self, mode: int) -> Linear:
+        """A linear mode about the position in which the static forces hold the system."""
+        first = self.system(self.problem.method.first_samples)
+        (stiffness, mass, damping), series = first.matrices, first.series
+        rest = self._at_rest(first)
+        size, cosine = first.retained, series.mean
+        local = first.elements(self._linear_part(first, rest, 0.0, 0.0)[:size], rest[:size])
+        stiff = _weighted(first, local, stiffness, cosine)
+        stiff[:size, :size] += _block(local.stiffness, first, cosine)
+        pairs = eig(stiff, _weighted(first, local, mass, cosine))
+        values, shapes = cast(tuple[np.ndarray, np.ndarray], pairs)
+        squares, off = np.real(values), np.abs(np.imag(values))
+        plausible = np.isfinite(values) & (squares > 0) & (off < 1e-6 * np.abs(squares))
+        order = [int(place) for place in np.argsort(squares, kind="stable") if plausible[place]]
+        if not 1 <= mode <= len(order):
+            raise InputError(
+                f"backbone: mode {mode} is asked for; expected 1 to {len(order)}, as many as the system has where its "
+                "contacts stick"
+            )
+        moved = np.real(shapes[:, order[mode - 1]])
+        growth = float(moved @ damping @ moved / (moved @ mass @ moved))
+        omega = float(np.sqrt(squares[order[mode - 1]]))
+        return Linear(omega, growth, rest, moved, self.basis @ moved)
+
+    def scale(self, motion: Motion) -> float:
+        """Size of the oscillating part of a motion."""
+        return float(np.linalg.norm(motion.harmonics[:, int(self.problem.method.orders[0] == 0) :]))
+
+    def at_size(self, guess: Motion, size: float, samples: int) -> Motion:
+        """The motion at an amplitude, from a guess at any."""
+        level = np.zeros(guess.harmonics.size + 3)
+        level[-1] = 1.0
+        at = replace(guess, size=size)
+        return self.solve(at, Plane(level, at, self.scale(guess)), samples)
+
+    def solve(self, guess: Motion, plane: Plane, samples: int) -> Motion:
+        """Newton's method on a plane across the path, with as many samples as it needs, and at least those given."""
+        method = self.problem.method
+        motion = self._corrected(guess, plane, samples)
+        while motion.converged and method.samples == AUTOMATIC and motion.samples < MOST_SAMPLES:
+            if self._at(self.system(2 * motion.samples), motion, plane).error <= method.sampling:
+                break
+            better = self._corrected(motion, plane, 2 * motion.samples)
+            motion = replace(better, iterations=motion.iterations + better.iterations)
+        return motion
+
+    def direction(self, motion: Motion, before: np.ndarray) -> np.ndarray:
+        """Unit tangent of the path at a motion, to the same side as a direction before."""
+        plane = Plane(before, motion, self.scale(motion))
+        system = self.system(motion.samples)
+        matrix = self._jacobian(system, self._at(system, motion, plane), plane)
+        tangent = np.linalg.solve(matrix, np.append(np.zeros(len(matrix) - 1), 1.0))
+        return tangent / np.linalg.norm(tangent)
+
+    def _at_rest(self, system: Uncondensed) -> np.ndarray:
+        """Harmonics (n, coefficients) of the position in which the static forces hold the system: a mean alone."""
+        rest, method, size = np.zeros_like(self.static), self.problem.method, system.retained
+        if not system.series.mean:
+            return rest
+        for _ in range(method.iterations):
+            linear = self._linear_part(system, rest, 0.0, 0.0)
+            local = system.elements(linear[:size], rest[:size])
+            residual = np.vstack([local.evaluation.residual, linear[size:]])[:, 0]
+            matrix = _weighted(system, local, system.matrices[0], 0)
+            matrix[:size, :size] += _block(local.stiffness, system, 0)
+            scale = np.linalg.norm(self.static) + np.linalg.norm(local.evaluation.forces)
+            if np.linalg.norm(residual) <= method.tolerance * (scale or 1.0):
+                return rest
+            try:
+                rest[:, 0] -= np.linalg.solve(matrix, residual)
+            except np.linalg.LinAlgError:
+                break
+        raise SolveError("backbone: the static forces found no balance; give smaller ones, or hold the structure")
+
+    def _linear_part(self, system: Uncondensed, harmonics: np.ndarray, omega: float, growth: float) -> np.ndarray:
+        """L(Y), (n, coefficients)."""
+        (stiffness, mass, damping), turn = system.matrices, system.series.derivative
+        velocity = omega * harmonics @ turn.T
+        inertia = mass @ (omega * velocity @ turn.T)
+        return stiffness @ harmonics + (damping - growth * mass) @ velocity + inertia - self.static
+
+    def _at(self, system: Uncondensed, motion: Motion, plane: Plane) -> _Trial:
+        count, harmonics, size = system.retained, motion.harmonics, motion.size
+        linear = self._linear_part(system, harmonics, motion.omega, motion.growth)
+        local = system.elements(linear[:count], harmonics[:count])
+        residual = np.vstack([local.evaluation.residual, linear[count:]])
+        scale = self._scale(system, motion, local)
+        first = system.series.mean
+        wrong = (self.basis[self.row] @ harmonics)[first : first + 2] - [size, 0.0]
+        everything = np.concatenate([residual.ravel() / scale, wrong / size, [plane.distance(motion)]])
+        floor = ROUNDING * np.abs(system.matrices[0]).max() * np.linalg.norm(harmonics) / scale
+        error = float(np.linalg.norm(everything))
+        return _Trial(motion, local, everything, error, float(floor))
+
+    def _scale(self, system: Uncondensed, motion: Motion, local: Local) -> float:
+        """Size of the forces that are in balance."""
+        stiffness, mass, _ = system.matrices
+        elastic = np.linalg.norm(stiffness @ motion.harmonics) + np.linalg.norm(local.evaluation.forces)
+        return float(elastic + np.linalg.norm(mass @ motion.harmonics) * motion.omega**2)
+
+    def _corrected(self, guess: Motion, plane: Plane, samples: int) -> Motion:
+        system, method = self.system(samples), self.problem.method
+        at, iterations = self._at(system, guess, plane), 0
+        while not (converged := at.error <= max(method.tolerance, at.floor)) and iterations < method.iterations:
+            try:
+                step = np.linalg.solve(self._jacobian(system, at, plane), -at.residual)
+            except np.linalg.LinAlgError:
+                break
+            trials = []
+            for part in DAMPINGS:
+                trials.append(self._at(system, plane.moved(at.motion, part * step), plane))
+                if trials[-1].error <= (1 - 0.1 * part) * at.error:
+                    break
+            finite = [trial for trial in trials if np.isfinite(trial.error)]
+            if not finite:
+                break
+            at, iterations = min(finite, key=lambda trial: trial.error), iterations + 1
+        return replace(at.motion, iterations=iterations, error=at.error, converged=converged, samples=samples)
+
+    def _jacobian(self, system: Uncondensed, at: _Trial, plane: Plane) -> np.ndarray:
+        """Of the residual by Y, log ω, ξ and log a in the scales of the plane."""
+        (stiffness, mass, damping), turn = system.matrices, system.series.derivative
+        motion = at.motion
+        count, rows = motion.harmonics.size, slice(0, system.retained * system.series.count)
+        extended = damping - motion.growth * mass
+        matrix = np.zeros((count + 3, count + 3))
+        matrix[:count, :count] = (
+            np.kron(stiffness, np.eye(len(turn)))
+            + np.kron(extended, motion.omega * turn)
+            + np.kron(mass, motion.omega**2 * turn @ turn)
+        )
+        velocity = motion.harmonics @ turn.T
+        change = extended @ velocity + 2 * motion.omega * mass @ velocity @ turn.T
+        matrix[:count, -3] = motion.omega * change.ravel()
+        matrix[:count, -2] = -plane.at.omega * motion.omega * (mass @ velocity).ravel()
+        if at.local.weight is not None:
+            matrix[rows, : count + 2] = at.local.weight @ matrix[rows, : count + 2]
+        matrix[rows, rows] += at.local.stiffness
+        matrix[:count] /= self._scale(system, motion, at.local)
+        first = system.series.mean
+        matrix[count : count + 2, :count] = np.kron(self.basis[self.row], np.eye(len(turn))[first : first + 2])
+        matrix[count : count + 2] /= motion.size
+        matrix[count, -1] = -1.0
+        matrix[:, :count] *= plane.scale
+        matrix[-1] = plane.direction
+        return matrix
+
+
+def _block(matrix: np.ndarray, system: Uncondensed, place: int) -> np.ndarray:
+    """How one coefficient of all retained coordinates acts on itself, (q, q)."""
+    q, count = system.retained, system.series.count
+    return matrix.reshape(q, count, q, count)[:, place, :, place]
+
+
+def _weighted(system: Uncondensed, local: Local, matrix: np.ndarray, place: int) -> np.ndarray:
+    """W times a matrix (n, n) for one coefficient."""
+    result = matrix.copy()
+    if local.weight is not None:
+        result[: system.retained] = _block(local.weight, system, place) @ matrix[: system.retained]
+    return result

@@ -1,0 +1,276 @@
+r"""Nonlinear modes: periodic motions without force, over their amplitude."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, replace
+
+import numpy as np
+import scipy
+
+import dalembert
+from dalembert.arguments import numbers_of, takes_checked
+from dalembert.errors import InputError
+from dalembert.forward import Checkpoint
+from dalembert.vibration.balance.equations import Equations, equations
+from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
+from dalembert.vibration.modes.backbone import Backbone
+from dalembert.vibration.modes.mode_equations import Linear, ModeEquations, Motion, Plane
+from dalembert.vibration.modes.recorded_modes import recorded_modes
+from dalembert.vibration.paths.continuation import EASY, MOST_POINTS, SHORTEST, STEADY
+from dalembert.vibration.system.system import StaticForce, VibrationSystem
+from dalembert.vibration.threads import one_thread
+
+SMALLER = (1.0, 0.1, 1e-2, 1e-3, 1e-4)
+"""Parts of the first amplitude from which it is approached where it is not found at once."""
+CORNER = 1e-2
+"""Step behind a corner of the path, as part of the longest."""
+RETRACED = 1e-3
+"""Difference of frequencies, as part of them, by which a path that comes back to its begin has lost its way."""
+SAME = 0.7
+"""Cosine of the angle between two motions, weighted by the mass, below which they belong to different modes."""
+
+
+@takes_checked("amplitudes")
+def backbone(
+    system: VibrationSystem,
+    amplitudes: np.ndarray | Sequence[float] | tuple[float, float],
+    mode: int = 1,
+    method: HarmonicBalance | None = None,
+    *,
+    dof: str | None = None,
+    checkpoint: Checkpoint | None = None,
+) -> Backbone:
+    r"""Frequency and damping of a nonlinear mode over its amplitude, by the extended periodic motion concept.
+
+    Parameters
+    ----------
+    system : VibrationSystem
+        Its harmonic forces are left out.
+    amplitudes : array, shape (points,), or (first, last)
+        Of the first harmonic of ``dof``, m, positive. A tuple of two: the path between them by arc length, past places
+        where the amplitude turns back, with points as dense as it needs. An array: from each to the next.
+    mode : int
+        Number among the linear modes at rest, where contacts under load stick, from 1 for the lowest frequency.
+    method : HarmonicBalance, optional
+    dof : str, optional
+        Degree of freedom by which the amplitude is measured; the one that moves most in the linear mode if not given.
+    checkpoint : Checkpoint, optional
+        Where motions are kept as they are found; begun again with the same file the mode is followed to where it was
+        in a part of the time, and on from there to the same bits.
+
+    Returns
+    -------
+    Backbone
+        Given amplitudes at which no motion is found, from the one before nor by halves of the step, are marked; so are
+        those at which only another mode is, whose motion lies across that before.
+
+    Raises
+    ------
+    InputError
+        For amplitudes that are not positive, or ends that are equal, a mode that is not there, an unknown degree of
+        freedom, and a structure that is too large for dense matrices.
+    SolveError
+        Where the static forces find no balance.
+
+    Notes
+    -----
+    Source: Krack, "Nonlinear modal analysis of nonconservative systems: extension of the periodic motion concept",
+    Computers & Structures 154, 2015. The amplitude is that of one degree of freedom here, not a modal one. Where
+    contacts begin to slip the path has corners; one that is not passed ends it, and the last point is marked.
+
+    Examples
+    --------
+    The spring of a slider stiffens a mode until it slips:
+
+    >>> import numpy as np
+    >>> from dalembert.structure import lumped
+    >>> from dalembert.vibration import Elastic, FrictionContact, VibrationSystem
+    >>> system = VibrationSystem(lumped({"m": 1.0}, [("m", None, 1.0, 0.0)]))
+    >>> slider = FrictionContact("slider", "m", friction=0.5, preload=2.0, law=Elastic(tangential_stiffness=0.8))
+    >>> added = system.add(slider)
+    >>> found = backbone(system, np.array([1.0, 10.0, 1000.0]))
+    >>> (2 * np.pi * found.frequencies).round(3).tolist(), found.damping.round(3).tolist()
+    ([1.342, 1.028, 1.0], [0.0, 0.053, 0.001])
+    """
+    method = method or HarmonicBalance()
+    sizes = np.atleast_1d(numbers_of(amplitudes, "backbone", "amplitudes"))
+    if sizes.ndim != 1 or not len(sizes) or not np.all(np.isfinite(sizes) & (sizes > 0)):
+        raise InputError(f"backbone: the amplitudes are {amplitudes}; expected positive numbers in m")
+    ends = isinstance(amplitudes, tuple)
+    if ends and (len(sizes) != 2 or sizes[0] == sizes[1]):
+        raise InputError(f"backbone: the ends are {amplitudes}; expected two different amplitudes in m")
+    with one_thread():
+        free = _without_harmonic_forces(equations(system, method, residuals=False))
+        linear = ModeEquations(free, -1).linear(mode)
+        names = free.lowered.structure.dofs
+        row = int(np.abs(linear.shape).argmax()) if dof is None else names.index(dof)
+        own, start = recorded_modes(free, row, checkpoint), _scaled(linear, row, names.names[row])
+        first = _first(own, start, float(sizes[0]))
+        if ends:
+            found = list(_along(own, first, float(sizes[0]), float(sizes[1])))
+        else:
+            found = list(_at_sizes(own, first, sizes, start.rest))
+        return _kept(own, mode, found)
+
+
+def _without_harmonic_forces(problem: Equations) -> Equations:
+    static = tuple(force for force in problem.lowered.forces if isinstance(force, StaticForce))
+    return Equations(replace(problem.lowered, forces=static), problem.method)
+
+
+def _scaled(linear: Linear, row: int, name: str) -> Linear:
+    """With unit motion of a degree of freedom."""
+    if abs(linear.shape[row]) < 1e-9 * np.abs(linear.shape).max():
+        raise InputError(f"backbone: {name!r} does not move in this mode; measure the amplitude elsewhere, dof=...")
+    return replace(linear, moved=linear.moved / linear.shape[row], shape=linear.shape / linear.shape[row])
+
+
+def _first(own: ModeEquations, linear: Linear, size: float) -> Motion:
+    """The motion at the first amplitude, or at a smaller one where the linear mode is too far from it."""
+    for part in SMALLER:
+        harmonics = linear.rest.copy()
+        harmonics[:, int(own.problem.method.orders[0] == 0)] += part * size * linear.moved
+        guess = Motion(harmonics, linear.omega, linear.growth, part * size)
+        motion = own.at_size(guess, part * size, own.problem.method.first_samples)
+        if _accepted(own, guess, motion):
+            break
+    return motion
+
+
+def _accepted(own: ModeEquations, known: Motion, found: Motion) -> bool:
+    """Whether a motion was found, and is one of the same mode."""
+    if not found.converged:
+        return False
+    matrix, mean = own.system(found.samples).matrices[1], int(own.problem.method.orders[0] == 0)
+    one, other = (motion.harmonics[:, mean : mean + 2] for motion in (known, found))
+    inner = [float(np.sum(left * (matrix @ right))) for left, right in ((one, other), (one, one), (other, other))]
+    return inner[0] > SAME * np.sqrt(inner[1] * inner[2])
+
+
+def _at_sizes(own: ModeEquations, first: Motion, sizes: np.ndarray, rest: np.ndarray) -> Iterator[Motion]:
+    """Motions at one amplitude after the other."""
+    known = first
+    for size in sizes:
+        motion = _towards(own, known, float(size), rest) if known.converged else replace(first, size=float(size))
+        known = motion if motion.converged else known
+        yield motion
+
+
+def _towards(own: ModeEquations, known: Motion, size: float, rest: np.ndarray) -> Motion:
+    """The motion at an amplitude from that at another, by halves of the way, as ratios, where need be."""
+    way = [size]
+    worst = None
+    while way:
+        if way[-1] == known.size:
+            way.pop()
+            continue
+        guess = replace(known, harmonics=rest + (known.harmonics - rest) * (way[-1] / known.size))
+        found = own.at_size(guess, way[-1], known.samples)
+        if _accepted(own, known, found):
+            known = found
+            way.pop()
+        elif len(way) > own.problem.method.halvings:
+            return replace(worst or found, size=size, converged=False)
+        else:
+            worst = worst or found
+            way.append(float(np.sqrt(known.size * way[-1])))
+    return known
+
+
+def _along(own: ModeEquations, first: Motion, begin: float, end: float) -> Iterator[Motion]:
+    """Motions along the path from one amplitude to another, by arc length."""
+    low, high = min(begin, end), max(begin, end)
+    known, onward = first, np.zeros(first.harmonics.size + 3)
+    onward[-1] = np.sign(end - begin)
+    if first.size == begin:
+        yield known
+    if not known.converged:
+        return
+    longest = 10 * own.problem.method.resolution
+    step, direction = longest / 4, own.direction(known, onward)
+    for _ in range(MOST_POINTS):
+        scale = own.scale(known)
+        plane = Plane(direction, known, scale)
+        guess = plane.moved(known, step * direction)
+        motion = own.solve(guess, replace(plane, at=guess), known.samples)
+        after = own.direction(motion, direction) if _accepted(own, known, motion) else None
+        bent = after is not None and float(direction @ after) < STEADY
+        if after is None or (bent and step > 1e-2 * longest):
+            step /= 2
+            if step > SHORTEST * longest:
+                continue
+            turned = _around_a_corner(own, known, direction, CORNER * longest)
+            if turned is None:
+                yield replace(motion, converged=False)
+                return
+            (motion, after), step = turned, CORNER * longest
+        if not low <= motion.size <= high and motion.size * direction[-1] > known.size * direction[-1]:
+            last = own.at_size(motion, low if motion.size < low else high, motion.samples)
+            retraced = last.size == begin and abs(last.omega / first.omega - 1) < RETRACED
+            yield replace(last, converged=last.converged and not retraced)
+            return
+        if low <= motion.size <= high:
+            yield motion
+        known, direction = motion, after
+        step = min(longest, step * (1.5 if motion.iterations <= EASY else 0.7))
+
+
+def _around_a_corner(
+    own: ModeEquations, known: Motion, direction: np.ndarray, step: float
+) -> tuple[Motion, np.ndarray] | None:
+    """A motion behind a corner of the path, such as where a contact begins to slip, and the direction there.
+
+    The tangent behind it is that of the equations a little beyond; of its two senses one leads on, the other back.
+    """
+    scale = own.scale(known)
+    beyond = Plane(direction, known, scale).moved(known, step * direction)
+    tangent = own.direction(beyond, direction)
+    for way in (tangent, -tangent):
+        plane = Plane(way, known, scale)
+        guess = plane.moved(known, step * way)
+        motion = own.solve(guess, replace(plane, at=guess), known.samples)
+        if not _accepted(own, known, motion):
+            continue
+        moved = plane.from_here(motion)
+        if float(direction @ moved) > -0.5 * np.linalg.norm(moved):
+            return motion, own.direction(motion, moved)
+    return None
+
+
+def _kept(own: ModeEquations, mode: int, found: list[Motion]) -> Backbone:
+    names = own.problem.lowered.structure.dofs.names
+    converged = np.array([motion.converged for motion in found])
+    energies, works = np.array([_energy_and_work(own, motion) for motion in found]).T
+    omegas, growths, sizes = (
+        np.array([getattr(motion, name) for motion in found]) for name in ("omega", "growth", "size")
+    )
+    shapes = np.stack([own.basis @ motion.harmonics for motion in found])
+    numbers = {"frequencies": omegas / (2 * np.pi), "damping": growths / (2 * omegas), "energies": energies,
+               "forces": growths * works / sizes}  # fmt: skip
+    return Backbone(
+        mode=mode,
+        dof=names[own.row],
+        dofs=tuple(names),
+        orders=own.problem.method.orders,
+        amplitudes=sizes,
+        **{name: np.where(converged, values, np.nan) for name, values in numbers.items()},
+        shapes=np.where(converged[:, None, None], shapes, np.nan),
+        iterations=np.array([motion.iterations for motion in found]),
+        residuals=np.array([motion.error for motion in found]),
+        converged=converged,
+        samples=np.array([motion.samples for motion in found]),
+        provenance={
+            "version": dalembert.__version__,
+            "numpy": np.__version__,
+            "scipy": scipy.__version__,
+            "method": asdict(own.problem.method),
+        },
+    )
+
+
+def _energy_and_work(own: ModeEquations, motion: Motion) -> tuple[float, float]:
+    """Largest kinetic energy, J, and ω Σ h² X_h^T M X_h, whose product with ξ π is what a period loses."""
+    system = own.system(motion.samples)
+    velocity = motion.omega * motion.harmonics @ system.series.derivative.T
+    mass, samples = system.matrices[1], velocity @ system.series.synthesis.T
+    kinetic = 0.5 * np.einsum("it,it->t", samples, mass @ samples)
+    return float(kinetic.max()), float(np.sum(velocity * (mass @ velocity)) / motion.omega)

@@ -1,0 +1,1 @@
+"""Responses over frequency, their continuation, and what follows from them."""

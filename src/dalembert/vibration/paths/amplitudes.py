@@ -1,0 +1,93 @@
+"""Sizes of periodic motions of observed degrees of freedom, from their harmonics."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from dalembert.errors import InputError, unknown
+from dalembert.vibration.balance.fourier import synthesis
+
+PHASES = 4096
+"""Instants of a period among which a peak is sought."""
+KINDS = "'peak', 'rms', or 'harmonic K' with K among the harmonics kept"
+
+
+@dataclass(frozen=True)
+class Amplitude:
+    """A size of a periodic motion: its largest absolute value, its root mean square, or one harmonic's amplitude.
+
+    Parameters
+    ----------
+    kind : str
+        ``"peak"``, ``"rms"``, or ``"harmonic 1"`` and so on.
+    orders : tuple of int
+
+    Raises
+    ------
+    InputError
+        For another kind.
+    """
+
+    kind: str
+    orders: tuple[int, ...]
+
+    def __post_init__(self) -> None:
+        if self.kind not in ("peak", "rms") and self._order() not in self.orders:
+            raise InputError(f"the kind of amplitude is {self.kind!r}; expected {KINDS}: {_listed(self.orders)}")
+
+    def of(self, coefficients: np.ndarray) -> np.ndarray:
+        """Sizes of motions, from coefficients (..., coefficients)."""
+        if self.kind == "peak":
+            return np.abs(coefficients @ self._waves.T).max(axis=-1)
+        return np.sqrt(coefficients**2 @ self._weights())
+
+    def slope(self, coefficients: np.ndarray) -> np.ndarray:
+        """Derivative of the size by the coefficients; both (..., coefficients)."""
+        if self.kind == "peak":
+            waves = self._waves
+            samples = coefficients @ waves.T
+            largest = np.abs(samples).argmax(axis=-1)
+            sign = np.sign(np.take_along_axis(samples, largest[..., None], axis=-1))
+            return sign * waves[largest]
+        size = self.of(coefficients)[..., None]
+        return coefficients * self._weights() / np.where(size > 0, size, 1.0)
+
+    def instant(self, coefficients: np.ndarray) -> float:
+        """Phase, rad, at which a motion (coefficients,) is largest, to a 4096th of the period."""
+        return float(2 * np.pi * np.abs(self._waves @ coefficients).argmax() / PHASES)
+
+    def _order(self) -> int:
+        word, _, number = self.kind.partition(" ")
+        return int(number) if word == "harmonic" and number.isdigit() else -1
+
+    @cached_property
+    def _waves(self) -> np.ndarray:
+        return synthesis(self.orders, 2 * np.pi * np.arange(PHASES) / PHASES)
+
+    def _weights(self) -> np.ndarray:
+        """Weight of each squared coefficient."""
+        each = np.array([h for h in self.orders for _ in range(1 if h == 0 else 2)])
+        if self.kind == "rms":
+            return np.where(each == 0, 1.0, 0.5)
+        return np.where(each == self._order(), 1.0, 0.0)
+
+
+def _listed(orders: tuple[int, ...]) -> str:
+    return ", ".join(map(str, orders))
+
+
+def observed_column(dofs: Sequence[str], dof: str) -> int:
+    """Place of a degree of freedom among the observed ones; a node with only one may stand alone.
+
+    Raises
+    ------
+    InputError
+        For one that was not observed.
+    """
+    own = [name for name in dofs if name.rpartition(".")[0] == dof]
+    name = own[0] if len(own) == 1 else dof
+    if name not in dofs:
+        raise InputError(unknown("observed degree of freedom", dof, dofs))
+    return dofs.index(name)

@@ -1,0 +1,290 @@
+"""Following the response over frequency: from one given frequency to the next, or along the curve past its folds."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from itertools import islice
+from typing import Protocol, cast
+
+import numpy as np
+from scipy.optimize import brentq
+
+from dalembert.vibration.balance.condensation import norm
+from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
+from dalembert.vibration.balance.newton import Plane, Solution
+from dalembert.vibration.balance.tangents import bordered, orientation
+
+STEADY = 0.9
+"""Cosine of the angle between directions of a path, below which a step was too long."""
+EASY = 4
+"""Newton iterations that a step may take and the next still be longer."""
+SHORTEST = 1e-7
+"""Step, as part of the longest, at which a path is given up."""
+SHARP = 1e-3
+"""Step, as part of the longest, from which on the path may have a sharp turn."""
+REACHES = (1.0, 4.0, 16.0, 64.0)
+"""Steps beyond a sharp turn, in parts of the one that failed before it."""
+BEHIND = 2.0
+"""Part of the way between two frequencies by which the curve from one to the other may turn back behind the first, as
+long as it keeps half of that."""
+MOST_AROUND = 500
+"""Points of that curve after which the second is given up."""
+STILL = 1e-3
+"""Motion, as part of what the forces would cause on the stiffness of the structure alone, that counts as none."""
+MOST_POINTS = 20_000
+
+
+class Problem(Protocol):
+    """Equations with a parameter, the frequency or another, in which paths are followed."""
+
+    @property
+    def method(self) -> HarmonicBalance: ...
+
+    def solve(self, unknowns: np.ndarray, omega: float, samples: int, plane: Plane | None = None, /) -> Solution: ...
+
+    def first(self, omega: float, /) -> Solution: ...
+
+
+@dataclass(frozen=True)
+class Found:
+    """A point of a curve.
+
+    Parameters
+    ----------
+    solution : Solution
+    fold : bool
+        Whether the curve turns back here, or where the turn is sharp, just before.
+    returned : bool
+        Whether the curve comes back here to the frequencies that were asked for.
+    """
+
+    solution: Solution
+    fold: bool = False
+    returned: bool = False
+
+
+def at_frequencies(equations: Problem, omegas: np.ndarray, start: Solution | None) -> Iterator[Found]:
+    """Solutions at given frequencies, each from the one before; a point that is not found does not end the curve."""
+    known = start
+    for omega in omegas:
+        solution = equations.first(omega) if known is None else _towards(equations, known, omega)
+        known = solution if solution.converged else known
+        yield Found(solution)
+
+
+def _towards(equations: Problem, known: Solution, omega: float) -> Solution:
+    """The solution at a frequency from a known one, by halves of the way where need be."""
+    way = [omega]
+    worst = None
+    while way:
+        solution = equations.solve(_predicted(known, way[-1]), way[-1], known.samples)
+        if solution.converged:
+            known = solution
+            way.pop()
+        elif len(way) > equations.method.halvings:
+            fresh = equations.first(omega)
+            return fresh if fresh.converged else _around(equations, known, omega) or worst or solution
+        else:
+            worst = worst or solution
+            way.append((known.omega + way[-1]) / 2)
+    return known
+
+
+def _around(equations: Problem, known: Solution, omega: float) -> Solution | None:
+    """The solution at a frequency from a known one along the curve, past folds where no motion is near by."""
+    if known.omega == omega or not equations.method.halvings:
+        return None
+    for found in islice(along(equations, known.omega, omega, known, _behind(known.omega, omega)), MOST_AROUND):
+        if found.solution.converged and found.solution.omega == omega:
+            return found.solution
+    return None
+
+
+def _predicted(known: Solution, omega: float) -> np.ndarray:
+    if omega == known.omega:
+        return known.unknowns
+    try:
+        return known.unknowns + (omega - known.omega) * known.rate()
+    except np.linalg.LinAlgError:
+        return known.unknowns
+
+
+def natural(equations: Problem, begin: float, end: float, start: Solution | None) -> Iterator[Found]:
+    """Solutions from one frequency to another, with steps as long as Newton's method allows."""
+    known = start if start is not None else equations.first(begin)
+    yield Found(known)
+    longest = (end - begin) * equations.method.resolution
+    step = longest / 4
+    while known.omega != end:
+        target = known.omega + step
+        target = end if abs(end - target) < 1e-3 * abs(step) or (end - target) * step < 0 else target
+        guess = _predicted(known, target) if known.converged else known.unknowns
+        solution = equations.solve(guess, target, known.samples)
+        if not solution.converged and abs(step) > abs(longest) * 2.0**-equations.method.halvings:
+            step /= 2
+            continue
+        if not solution.converged:
+            fresh = equations.first(target)
+            solution = fresh if fresh.converged else solution
+        yield Found(solution)
+        known = solution if solution.converged else replace(known, omega=target)
+        step = min(2 * step, longest, key=abs) if solution.iterations <= EASY else step
+
+
+def along(equations: Problem, begin: float, end: float, start: Solution | None, behind: float = 0.0) -> Iterator[Found]:
+    """Points along the curve from one frequency to another, by arc length, with its folds.
+
+    It may turn back behind its beginning, by a part of the way.
+    """
+    known = start if start is not None else equations.first(begin)
+    yield Found(known)
+    if not known.converged:
+        return
+    width = abs(end - begin) / 10
+    longest = 10 * equations.method.resolution
+    low, high = sorted((begin - behind * (end - begin), end))
+    onward = np.zeros(known.unknowns.size + 1)
+    onward[-1] = np.sign(end - begin)
+    step, points = longest / 4, 1
+    path = Path(known, direction_at(known, onward, width), width)
+    while points < MOST_POINTS:
+        solution, direction = path.step(equations, step)
+        if direction is None and step <= SHARP * longest:
+            beyond = path.turned(equations, solution, step)
+            if beyond is not None:
+                yield Found(beyond.known, fold=bool(beyond.direction[-1] * path.direction[-1] < 0))
+                path, points = beyond, points + 1
+                continue
+        bent = direction is not None and float(path.direction @ direction) < STEADY
+        if direction is None or (bent and step > longest * 1e-2):
+            step /= 2
+            if step < SHORTEST * longest:
+                yield Found(solution)
+                return
+            continue
+        if not low <= solution.omega <= high:
+            border = low if solution.omega < low else high
+            last = equations.solve(*_on_border(path.known, solution, border), solution.samples)
+            yield Found(last)
+            return
+        folds = bool(direction[-1] * path.direction[-1] < 0)
+        fold = _fold(equations, path, step) if folds else None
+        if fold is not None:
+            yield Found(fold, fold=True)
+        yield Found(solution, fold=folds and fold is None)
+        points += 1
+        path = Path(solution, direction_at(solution, direction, width), width)
+        step = min(longest, step * (1.5 if solution.iterations <= EASY else 0.7))
+
+
+def across(equations: Problem, begin: float, end: float, start: Solution | None) -> Iterator[Found]:
+    """Points of :func:`along` between two frequencies, where the curve may leave and come back at the first of them."""
+    low, high = min(begin, end), max(begin, end)
+    before: Solution | None = None
+    outside = 0
+    for found in along(equations, begin, end, start, _behind(begin, end)):
+        solution, leaves = found.solution, not low <= found.solution.omega <= high
+        if before is not None and leaves != bool(outside) and solution.converged:
+            border = equations.solve(*_on_border(before, solution, begin), solution.samples)
+            yield Found(border, returned=not leaves)
+        if not leaves:
+            yield found
+        outside = outside + 1 if leaves else 0
+        if outside > MOST_AROUND:
+            return
+        before = solution
+
+
+def _behind(begin: float, end: float) -> float:
+    return min(BEHIND, 0.5 * abs(begin / (end - begin)))
+
+
+@dataclass(frozen=True)
+class Path:
+    """A known point of a curve and the direction in which it goes on, in scaled unknowns."""
+
+    known: Solution
+    direction: np.ndarray
+    width: float
+
+    @property
+    def size(self) -> float:
+        return _size(self.known)
+
+    def step(self, equations: Problem, length: float) -> tuple[Solution, np.ndarray | None]:
+        """The point some length on, and the direction there in the scales of here, or None if it is not found."""
+        moved = self.direction[:-1].reshape(self.known.unknowns.shape) * (length * self.size)
+        guess, omega = self.known.unknowns + moved, self.known.omega + self.direction[-1] * length * self.width
+        plane = Plane(self.direction, guess, omega, self.size, self.width)
+        solution = equations.solve(guess, omega, self.known.samples, plane)
+        if not solution.converged:
+            return solution, None
+        return solution, direction_at(solution, self.direction, self.width, self.size)
+
+    def turned(self, equations: Problem, failed: Solution, length: float) -> "Path | None":
+        """The path beyond a sharp turn, by the tangent where a step over it failed.
+
+        The tangent is oriented by the sign of the determinant with the direction as a row, which a path keeps.
+        """
+        sign = _sign(self.known, self.direction, self.width, self.size)
+        if not sign:
+            return None
+        try:
+            beyond = direction_at(failed, self.direction, self.width, self.size)
+        except np.linalg.LinAlgError:
+            return None
+        if not np.all(np.isfinite(beyond)):
+            return None
+        beyond *= sign * _sign(failed, beyond, self.width, self.size)
+        for reach in REACHES if np.any(beyond) else ():
+            solution, direction = replace(self, direction=beyond).step(equations, reach * length)
+            if direction is None or float(direction @ beyond) < STEADY:
+                continue
+            if _sign(solution, direction, self.width, self.size) == sign:
+                return Path(solution, direction_at(solution, direction, self.width), self.width)
+        return None
+
+
+def _sign(known: Solution, direction: np.ndarray, width: float, size: float) -> float:
+    return orientation(known.tangent, direction, (size, width, _scale(known)))
+
+
+def _scale(known: Solution) -> float:
+    return known.point.load + norm(known.evaluation.forces) or 1.0
+
+
+def _size(known: Solution) -> float:
+    """Size of the unknowns; where all contacts stick and these are rounding, a part of what the forces could move."""
+    return max(norm(known.unknowns), STILL * known.point.load / (known.point.stiffest or 1.0)) or 1.0
+
+
+def direction_at(known: Solution, before: np.ndarray, width: float, size: float | None = None) -> np.ndarray:
+    """Unit tangent of the curve in scaled unknowns, to the same side as the one before."""
+    size = size or _size(known)
+    change, turned = bordered(known.tangent, before, (size, width, _scale(known)), np.zeros_like(known.unknowns), 1.0)
+    tangent = np.append(change, turned)
+    return tangent / np.linalg.norm(tangent)
+
+
+def _on_border(before: Solution, after: Solution, border: float) -> tuple[np.ndarray, float]:
+    """Guess where the way between two points crosses the border of the frequencies."""
+    part = (border - before.omega) / (after.omega - before.omega)
+    return before.unknowns + part * (after.unknowns - before.unknowns), border
+
+
+def _fold(equations: Problem, path: Path, step: float) -> Solution | None:
+    """The point of a step at which the frequency turns back: a zero of the direction's last component."""
+    tried: dict[float, Solution] = {}
+
+    def turning(length: float) -> float:
+        if length == 0.0:
+            return float(path.direction[-1])
+        solution, direction = path.step(equations, length)
+        tried[length] = solution
+        return float("nan") if direction is None else float(direction[-1])
+
+    try:
+        length = float(cast(float, brentq(turning, 0.0, step, xtol=1e-6 * step)))
+    except (ValueError, RuntimeError):  # a step in between was not found
+        return None
+    solution = tried.get(length)
+    return solution if solution is not None else path.step(equations, length)[0]

@@ -1,0 +1,257 @@
+"""A response over frequency."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+from scipy.optimize import minimize_scalar
+
+from dalembert.contents import Contents
+from dalembert.errors import InputError, unknown
+from dalembert.findings import Finding
+from dalembert.results import Result
+from dalembert.units import unit_of
+from dalembert.vibration.balance.fourier import synthesis
+from dalembert.vibration.paths.amplitudes import Amplitude, observed_column
+from dalembert.vibration.storage import fields_of, stored
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+_DIMENSIONS = {
+    "frequencies": ("point",),
+    "response": ("point", "dof", "coefficient"),
+    "displacements": ("point", "coordinate", "coefficient"),
+    "forces": ("point", "coordinate", "coefficient"),
+    "states": ("point", "contact", "phase"),
+    "unknowns": ("point", "retained", "coefficient"),
+    "iterations": ("point",),
+    "residuals": ("point",),
+    "converged": ("point",),
+    "fold": ("point",),
+    "samples": ("point",),
+    "sampling_errors": ("point",),
+    "stable": ("point",),
+}
+_UNITS = {"frequencies": "Hz", "response": "m", "displacements": "m", "forces": "N", "unknowns": "m"}
+_NAMES = ("dofs", "coordinates", "contacts", "orders", "markers")
+
+
+class Peak(NamedTuple):
+    """The largest response of a curve: frequency in Hz, and amplitude."""
+
+    frequency: float
+    amplitude: float
+
+
+_ROUNDING = 1e-10  # of the work done in and out in a period: energies below it are none
+
+
+@dataclass(frozen=True, eq=False)
+class FrequencyCurve(Result):
+    """Periodic responses of a system along a path over frequency, as :func:`frequency_response` returns them.
+
+    Parameters
+    ----------
+    dofs, coordinates, contacts : tuple of str
+        Names of the observed degrees of freedom, of the coordinates that elements see, and of the friction contacts.
+    orders : tuple of int
+        Harmonics; the coefficients are the mean, if it is kept, then a cosine and a sine for each other one.
+    frequencies : array, shape (points,)
+        Hz, in the order of the path.
+    response : array, shape (points, dofs, coefficients)
+        m; NaN where a point was not found.
+    displacements, forces : array, shape (points, coordinates, coefficients)
+        m and N, of the elements; normal forces are those beyond the preload.
+    states : array of uint8, shape (points, contacts, phases)
+        0 separated, 1 stuck, 2 slipping, over the period; of several cells the one that gives way most.
+    unknowns : array, shape (points, retained, coefficients)
+        From which a curve can be restarted.
+    iterations : array of int, shape (points,)
+    residuals : array, shape (points,)
+        As part of the forces.
+    converged : array of bool, shape (points,)
+    fold : array of bool, shape (points,)
+        Where the path turns back in frequency.
+    samples : array of int, shape (points,)
+        Of a period.
+    sampling_errors : array, shape (points,)
+        Change of the residual with twice as many, as part of the forces.
+    stable : array of int8, shape (points,)
+        1 stable, 0 unstable, -1 where it was not asked for, the point was not found, or a stop is touched and twice
+        the harmonics change the largest growth by more than this growth. A fold has what comes before.
+    markers : tuple of (str, int)
+        Bifurcations and their points: ``"fold"``, and where stability was asked for ``"torus"``, ``"period doubling"``
+        and ``"branch point"``.
+    provenance : mapping
+        Versions, method, settings.
+    findings : tuple of Finding
+        ``"unbalanced-mean"``, ``"force-not-finite"``, ``"undamped-resonance"`` or ``"points-not-found"`` where points
+        were not found; ``"few-harmonics"``; ``"free-mean-position"`` where nothing holds a mean position.
+    """
+
+    FORMAT: ClassVar[str] = "dalembert frequency curve 1"
+
+    dofs: tuple[str, ...]
+    coordinates: tuple[str, ...]
+    contacts: tuple[str, ...]
+    orders: tuple[int, ...]
+    frequencies: np.ndarray
+    response: np.ndarray
+    displacements: np.ndarray
+    forces: np.ndarray
+    states: np.ndarray
+    unknowns: np.ndarray
+    iterations: np.ndarray
+    residuals: np.ndarray
+    converged: np.ndarray
+    fold: np.ndarray
+    samples: np.ndarray
+    sampling_errors: np.ndarray
+    stable: np.ndarray
+    markers: tuple[tuple[str, int], ...]
+    provenance: Mapping[str, Any]
+    findings: tuple[Finding, ...] = ()
+
+    def __len__(self) -> int:
+        return len(self.frequencies)
+
+    def harmonics(self, dof: str) -> np.ndarray:
+        """Coefficients of an observed degree of freedom, (points, coefficients); a node with only one may stand alone.
+
+        Raises
+        ------
+        InputError
+            For one that was not observed.
+        """
+        return self.response[:, observed_column(self.dofs, dof)]
+
+    def amplitude(self, dof: str, kind: str = "peak") -> np.ndarray:
+        """Size of the motion at each point, m, (points,): ``"peak"``, ``"rms"`` or ``"harmonic 1"`` and so on.
+
+        Raises
+        ------
+        InputError
+            For another kind, or a degree of freedom that was not observed.
+        """
+        return Amplitude(kind, self.orders).of(self.harmonics(dof))
+
+    def motion(self, dof: str, point: int, phases: np.ndarray) -> np.ndarray:
+        """Displacement, m, at phases of the period (rad), (phases,)."""
+        return synthesis(self.orders, np.asarray(phases, dtype=float)) @ self.harmonics(dof)[point]
+
+    def loop(self, coordinate: str, point: int, count: int = 256) -> tuple[np.ndarray, np.ndarray]:
+        """Displacement (m) and force (N) of an element's coordinate over a period, (count + 1,) each."""
+        if coordinate not in self.coordinates:
+            raise InputError(unknown("coordinate", coordinate, self.coordinates))
+        waves = synthesis(self.orders, np.linspace(0, 2 * np.pi, count + 1))
+        row = self.coordinates.index(coordinate)
+        return waves @ self.displacements[point, row], waves @ self.forces[point, row]
+
+    def dissipated(self, coordinate: str) -> np.ndarray:
+        """Energy that an element takes from the motion in a period along a coordinate, J, (points,).
+
+        ∮ λ du, which of all harmonics of the force takes those that the displacement has too; 0 where it is rounding.
+        """
+        if coordinate not in self.coordinates:
+            raise InputError(unknown("coordinate", coordinate, self.coordinates))
+        row = self.coordinates.index(coordinate)
+        u, force = self.displacements[:, row], self.forces[:, row]
+        total, size = np.zeros(len(self)), np.zeros(len(self))
+        mean = int(self.orders[0] == 0)
+        for number, order in enumerate(self.orders[mean:]):
+            c = mean + 2 * number
+            ahead, behind = np.pi * order * force[:, c] * u[:, c + 1], np.pi * order * force[:, c + 1] * u[:, c]
+            total, size = total + ahead - behind, size + np.abs(ahead) + np.abs(behind)
+        return np.where(np.abs(total) > _ROUNDING * size, total, 0.0)
+
+    @property
+    def folds(self) -> np.ndarray:
+        """Frequencies at which the path turns back, Hz, (folds,)."""
+        return self.frequencies[self.fold]
+
+    def peak(self, dof: str, kind: str = "peak") -> Peak:
+        """The largest response, between the points by a cubic spline of the harmonics along the path.
+
+        Raises
+        ------
+        InputError
+            For another kind, a degree of freedom that was not observed, or a curve without any point.
+        """
+        size, harmonics = Amplitude(kind, self.orders), self.harmonics(dof)[self.converged]
+        amplitude, frequency = size.of(harmonics), self.frequencies[self.converged]
+        if not len(amplitude):
+            raise InputError("no point of the curve was found, so it has no peak; see its residuals")
+        top = int(amplitude.argmax())
+        if not 0 < top < len(amplitude) - 1:
+            return Peak(float(frequency[top]), float(amplitude[top]))
+        rows = slice(max(top - 4, 0), top + 5)
+        near = np.column_stack([frequency[rows], harmonics[rows]])
+        lengths = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(harmonics[rows], axis=0), axis=1)))
+        lengths = lengths / (lengths[-1] or 1.0)  # as parts of the way: a spline through few points solves for them
+        kept = np.append(True, np.diff(lengths) > 0)
+        spline, place = CubicSpline(lengths[kept], near[kept]), lengths[top - rows.start]
+        inner = lengths[top - rows.start - 1], lengths[top - rows.start + 1]
+        found: Any = minimize_scalar(lambda s: -size.of(spline(s)[1:]), bounds=inner, method="bounded")
+        best = spline(found.x if -found.fun > amplitude[top] else place)
+        return Peak(float(best[0]), float(size.of(best[1:])))
+
+    @property
+    def success(self) -> bool:
+        """Whether every point was found, and no finding is an error."""
+        return bool(self.converged.all()) and all(finding.severity != "error" for finding in self.findings)
+
+    @property
+    def status(self) -> str:
+        """How many points were found, in a sentence, and which were not, with residuals as part of the forces."""
+        text = f"{int(self.converged.sum())} of {len(self)} points found"
+        worst = ", ".join(f"{value:.6g} Hz ({error:.1e})" for value, error in self._lost()[:5])
+        return f"{text}; not found, with residuals as part of the forces: {worst}" if worst else text
+
+    def summary(self) -> str:
+        """A few lines: points, iterations, samples, and the largest responses."""
+        found, lines = int(self.converged.sum()), []
+        lines.append(
+            f"{found} of {len(self)} points found between {self.frequencies.min():.6g} and "
+            f"{self.frequencies.max():.6g} Hz, {self.iterations.mean():.2f} Newton iterations a point"
+        )
+        if found < len(self):
+            worst = ", ".join(f"{value:.6g} Hz ({error:.1e})" for value, error in self._lost()[:5])
+            lines.append(f"not found, with residuals as part of the forces: {worst}")
+        if found:
+            lines.append(
+                f"{self.samples.max()} samples of a period; twice as many change the forces by up to "
+                f"{np.nanmax(self.sampling_errors):.1e}"
+            )
+            lines += self._bifurcations()
+            for dof in self.dofs[:8]:
+                peak = self.peak(dof)
+                lines.append(f"{dof}: largest {peak.amplitude:.6g} {unit_of(dof)} at {peak.frequency:.6g} Hz")
+        return "\n".join([*lines, *map(str, self.findings)])
+
+    def _bifurcations(self) -> list[str]:
+        """A line a kind, and one on stability."""
+        kinds: dict[str, list[str]] = {}
+        for kind, point in self.markers:
+            kinds.setdefault(kind, []).append(f"{self.frequencies[point]:.6g}")
+        lines = [f"{kind} at {', '.join(places)} Hz" for kind, places in kinds.items()]
+        asked = int(np.sum(self.stable >= 0))
+        return lines + [f"{np.sum(self.stable == 1)} of {asked} points stable"] * bool(asked)
+
+    def _lost(self) -> list[tuple[float, float]]:
+        lost = ~self.converged
+        return list(zip(self.frequencies[lost].tolist(), self.residuals[lost].tolist(), strict=True))
+
+    def contents(self) -> Contents:
+        return stored(self, _DIMENSIONS, _UNITS, _NAMES)
+
+    @classmethod
+    def from_xarray(cls, dataset: "Dataset") -> "FrequencyCurve":
+        """The curve that :meth:`to_xarray` turned into a dataset."""
+        values = fields_of(dataset, _DIMENSIONS, ("converged", "fold"))
+        if "stable" not in values:  # written before curves kept their stability
+            values["stable"] = np.full(len(values["fold"]), -1, dtype=np.int8)
+            values["markers"] = tuple(("fold", int(point)) for point in np.flatnonzero(values["fold"]))
+        return cls(**values)

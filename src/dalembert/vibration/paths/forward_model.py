@@ -1,0 +1,294 @@
+"""The response of a vibrating system over frequency as a forward model."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from dalembert.arguments import names_of, samples_of
+from dalembert.errors import InputError, ModelError, SolveError, told, unknown
+from dalembert.forward import Channel, Coordinate, Refinement, Responses, ensemble, error_factor
+from dalembert.forward.builders import built, check_function, cores, inexact, restructured
+from dalembert.forward.complex_steps import Compared
+from dalembert.forward.differences import COMPLEX_STEP, DERIVATIVES, central_differences
+from dalembert.parameters import Parameter, Parameters
+from dalembert.units import unit_of
+from dalembert.vibration.balance.equations import Equations, equations
+from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
+from dalembert.vibration.balance.newton import Solution
+from dalembert.vibration.balance.sensitivity import STEP, sensitivities
+from dalembert.vibration.laws.springs import UserElement
+from dalembert.vibration.paths.amplitudes import Amplitude
+from dalembert.vibration.paths.continuation import at_frequencies
+from dalembert.vibration.paths.curve import FrequencyCurve
+from dalembert.vibration.paths.frequency_response import frequency_response, response_of
+from dalembert.vibration.system.complex_steps import check_laws, check_numbers
+from dalembert.vibration.system.fingerprint import fingerprint
+from dalembert.vibration.system.lowering import Lowered, lower
+from dalembert.vibration.system.system import VibrationSystem
+from dalembert.vibration.threads import one_thread
+
+
+@dataclass(frozen=True)
+class FrequencyResponse:
+    """Amplitudes of a vibrating system at given frequencies, as a function of parameters.
+
+    Parameters
+    ----------
+    builder : callable
+        ``builder(**parameters) -> VibrationSystem``; called with floats, and with complex numbers for derivatives.
+    parameters : mapping of str to (lower, upper), or Parameters
+    channels : sequence of str
+        A degree of freedom and a kind of amplitude: ``"m2 peak"``, ``"m2 rms"`` or ``"m2 harmonic 1"`` and so on.
+    frequencies : array, shape (samples,)
+        Hz; the response is followed from each to the next, so the first should lie where there is only one.
+    method : HarmonicBalance, optional
+    workers : int, optional
+        Threads of an ensemble; as many as there are cores if not given.
+    derivative : {"complex-step", "central-differences"}
+        The complex step is exact, and needs a builder that runs in complex numbers. When it is first used, and when an
+        identification starts, it is compared with differences of the system's numbers, and of what functions of the
+        user's return.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from dalembert.structure import lumped
+    >>> from dalembert.vibration import FrequencyResponse, HarmonicForce, VibrationSystem
+    >>> def oscillator(stiffness):
+    ...     system = VibrationSystem(lumped({"m": 1.0}, [("m", None, stiffness, 0.04)]))
+    ...     system.add(HarmonicForce("m", 1.0))
+    ...     return system
+    >>> model = FrequencyResponse(oscillator, {"stiffness": (0.5, 2.0)}, ["m harmonic 1"], np.array([0.1, 0.2]))
+    >>> model.evaluate(np.array([[1.0]])).values.round(3).tolist()
+    [[[1.651], [1.72]]]
+    >>> model.jacobian(np.array([1.0])).round(3).tolist()
+    [[[-2.723]], [[2.948]]]
+    """
+
+    builder: Callable[..., VibrationSystem]
+    parameters: Parameters
+    channel_names: tuple[str, ...]
+    frequencies: np.ndarray
+    method: HarmonicBalance
+    workers: int = field(default=1, compare=False)
+    derivative: str = COMPLEX_STEP
+
+    def __init__(
+        self,
+        builder: Callable[..., VibrationSystem],
+        parameters: Parameters | Mapping[str, Parameter | tuple[float, float]],
+        channels: Sequence[str],
+        frequencies: np.ndarray,
+        method: HarmonicBalance | None = None,
+        workers: int | None = None,
+        derivative: str = COMPLEX_STEP,
+    ) -> None:
+        if derivative not in DERIVATIVES:
+            raise InputError(unknown("derivative", derivative, DERIVATIVES, "FrequencyResponse"))
+        frequencies = samples_of(frequencies, "FrequencyResponse", "frequencies")
+        if frequencies.ndim != 1 or not len(frequencies) or not np.all(np.isfinite(frequencies) & (frequencies > 0)):
+            raise InputError("FrequencyResponse: expected one or more frequencies, positive numbers in Hz")
+        channels = names_of(channels, "FrequencyResponse", "channels")
+        if not channels:
+            raise InputError("FrequencyResponse: no channels were given; name at least one, such as 'm2 peak'")
+        parameters = Parameters.of(parameters)
+        check_function("FrequencyResponse", builder, [item.name for item in parameters.declared])
+        for name, value in (
+            ("builder", builder),
+            ("parameters", parameters),
+            ("channel_names", channels),
+            ("frequencies", frequencies),
+            ("method", method or HarmonicBalance()),
+            ("workers", workers or cores()),
+            ("derivative", derivative),
+        ):
+            object.__setattr__(self, name, value)
+
+    @property
+    def channels(self) -> tuple[Channel, ...]:
+        """Channels with their units."""
+        return tuple(Channel(name, unit_of(name.partition(" ")[0])) for name in self.channel_names)
+
+    @property
+    def coordinate(self) -> Coordinate:
+        """The frequencies of the samples."""
+        return Coordinate("frequency", "Hz", self.frequencies)
+
+    @property
+    def fingerprint(self) -> str:
+        """Hash of the system at the parameters' first guesses, the channels, the frequencies and the method."""
+        return self._fingerprint
+
+    @cached_property
+    def _fingerprint(self) -> str:
+        differences = [self.derivative] * (self.derivative != COMPLEX_STEP)
+        asked = self.parameters.identity, self.channel_names, *differences
+        return fingerprint(lower(self.system(self.parameters.start)), self.method, *asked)
+
+    def evaluate(self, vectors: np.ndarray) -> Responses:
+        """Responses of a batch over all cores; ``vectors`` (batch, parameters), values (batch, samples, channels).
+
+        A sample one of whose points is not found is marked with the reason, and its values are NaN.
+        """
+        vectors = self.parameters.batch(vectors)
+        values = np.full((len(vectors), len(self.frequencies), len(self.channel_names)), np.nan)
+        failures: list[str | None] = [None] * len(vectors)
+
+        def work(row: int) -> None:
+            try:
+                values[row] = self._sizes(vectors[row])
+            except Exception as error:  # the user's builder raised: this sample's failure, not the batch's
+                failures[row] = told(error)
+
+        with one_thread():
+            list(ensemble(work, range(len(vectors)), workers=self.workers))
+        return Responses(values, tuple(failures))
+
+    def jacobian(self, vector: np.ndarray) -> np.ndarray:
+        """Exact derivative of the balanced response, (samples, channels, parameters)."""
+        return self.linearise(vector)[1]
+
+    def linearise(self, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Response (samples, channels) and its exact derivative (samples, channels, parameters).
+
+        The derivative of the balance by a parameter comes from a complex step through the builder and the laws, that of
+        the response from the Jacobian of the balance (implicit function).
+
+        Raises
+        ------
+        InputError
+            Where the builder, or a law of the user's, cannot run in complex numbers, or loses the imaginary part.
+        SolveError
+            Where a point is not found.
+        """
+        vector = self.parameters.real_vector(vector)
+        if self.derivative != COMPLEX_STEP:
+            return central_differences(self, vector)
+        with one_thread():
+            return self._linearise(vector)
+
+    def check_derivatives(self, vector: np.ndarray) -> None:
+        """Compare the complex step with differences of the system's numbers at a vector (parameters,).
+
+        Nothing is solved. Laws of the user's are compared by the next derivative, at its first solution.
+
+        Raises
+        ------
+        InputError
+            With the parameter, the component and its number, where the builder drops the imaginary part.
+        """
+        if self.derivative == COMPLEX_STEP:
+            self._compared.once(vector, lambda thorough: check_numbers(self.builder, self.parameters, vector, thorough))
+
+    def first(self, samples: int) -> "FrequencyResponse":
+        """The same model, cut to its first ``samples`` frequencies."""
+        own = FrequencyResponse(
+            self.builder, self.parameters, self.channel_names, self.frequencies[:samples], self.method, self.workers,
+            self.derivative,
+        )  # fmt: skip
+        vars(own)["_compared"] = self._compared
+        return own
+
+    def part(self, share: float) -> "tuple[FrequencyResponse, float]":
+        """The same model at about a share of its frequencies, the first ones, and that share."""
+        samples = int(np.ceil(share * len(self.frequencies))) or 1
+        return self.first(samples), samples / len(self.frequencies)
+
+    def refined(self) -> Refinement | None:
+        """Return the same model with twice the harmonics and one more; None beyond the limits of the method."""
+        method = self.method.refined()
+        if method is None:
+            return None
+        model = FrequencyResponse(
+            self.builder,
+            self.parameters,
+            self.channel_names,
+            self.frequencies,
+            method,
+            self.workers,
+            self.derivative,
+        )
+        return Refinement(model, error_factor(None), f"with {method.harmonics} harmonics")
+
+    def system(self, vector: np.ndarray) -> VibrationSystem:
+        """The system at a parameter vector (parameters,)."""
+        return built(self.builder, self.parameters.mapping(vector), VibrationSystem)
+
+    def curve(self, vector: np.ndarray) -> FrequencyCurve:
+        """The whole result at a parameter vector (parameters,)."""
+        return frequency_response(self.system(vector), self.frequencies, self.method, check=False)
+
+    def _linearise(self, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        problem = equations(self.system(vector), self.method, derivatives=True)
+        places = self._places(problem.lowered)
+        values = np.empty((len(self.frequencies), len(places)))
+        jacobian = np.empty((*values.shape, len(vector)))
+        tilted = [self._tilted(vector, column, problem.lowered) for column in range(len(vector))]
+        for number, solution in enumerate(self._solutions(problem)):
+            self._check(vector, problem, solution)
+            response = response_of(problem, solution)
+            slopes = sensitivities(problem, solution, tilted)
+            for channel, (row, size) in enumerate(places):
+                values[number, channel] = size.of(response[row])
+                jacobian[number, channel] = slopes[:, row] @ size.slope(response[row])
+        return values, jacobian / self.parameters.scale
+
+    @cached_property
+    def _compared(self) -> Compared:
+        return Compared()
+
+    def _check(self, vector: np.ndarray, problem: Equations, solution: Solution) -> None:
+        """Compare the complex step with differences, where that was not done."""
+        if not self._compared.vectors:
+            self.check_derivatives(vector)
+        if not self._compared.functions:
+            motion = problem.balance(solution.samples).displacements(solution.unknowns)
+            samples = motion @ problem.balance(solution.samples).series.synthesis.T
+            own = {
+                element.name: samples[rows]
+                for rows, element in problem.lowered.springs
+                if isinstance(element, UserElement)
+            }
+            check_laws(self.builder, self.parameters, vector, own)
+            self._compared.functions = True
+
+    def _solutions(self, problem: Equations) -> Iterator[Solution]:
+        """The solution at each frequency; one after the other, since each holds matrices."""
+        for found in at_frequencies(problem, 2 * np.pi * self.frequencies, None):
+            if not found.solution.converged:
+                raise SolveError(
+                    f"at {found.solution.omega / (2 * np.pi):.6g} Hz the harmonics were not found: after "
+                    f"{found.solution.iterations} iterations {found.solution.error:.1e} of the forces are not "
+                    "balanced; give more frequencies on the way there, or fewer harmonics"
+                )
+            yield found.solution
+
+    def _places(self, lowered: Lowered) -> list[tuple[int, Amplitude]]:
+        """Degree of freedom and amplitude of each channel."""
+        parts = [name.partition(" ") for name in self.channel_names]
+        return [(lowered.structure.dofs.index(dof), Amplitude(kind, self.method.orders)) for dof, _, kind in parts]
+
+    def _sizes(self, vector: np.ndarray) -> np.ndarray:
+        """Values of the channels, (samples, channels)."""
+        problem = equations(self.system(vector), self.method)
+        places = self._places(problem.lowered)
+        responses = (response_of(problem, solution) for solution in self._solutions(problem))
+        return np.array([[size.of(response[row]) for row, size in places] for response in responses])
+
+    def _tilted(self, vector: np.ndarray, column: int, real: Lowered) -> Lowered:
+        """The system along one parameter, moved by a complex step of its scale."""
+        name = self.parameters.names[column]
+        given: dict[str, complex] = dict(self.parameters.mapping(vector))
+        given[name] = complex(vector[column], STEP * self.parameters.scale[column])
+        try:
+            tilted = lower(built(self.builder, given, VibrationSystem))
+        except (TypeError, ModelError, np.exceptions.ComplexWarning) as error:
+            error = error.__cause__ if isinstance(error, ModelError) else error
+            if not isinstance(error, TypeError | np.exceptions.ComplexWarning):
+                raise
+            raise inexact(name, error) from error
+        if tilted.row_names != real.row_names or tilted.structure.dofs.names != real.structure.dofs.names:
+            raise restructured()
+        return tilted

@@ -1,0 +1,292 @@
+"""The response of a vibrating system over frequency."""
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import asdict, dataclass
+from typing import NamedTuple
+
+import numpy as np
+import scipy
+
+import dalembert
+from dalembert.arguments import numbers_of, takes_checked
+from dalembert.errors import InputError, unknown
+from dalembert.forward import Checkpoint
+from dalembert.vibration.balance.equations import Equations, equations
+from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
+from dalembert.vibration.balance.newton import Solution
+from dalembert.vibration.balance.truncation import largest, truncation_findings
+from dalembert.vibration.balance.unfound import free_findings, unfound, unfound_findings
+from dalembert.vibration.paths.continuation import across, at_frequencies, natural
+from dalembert.vibration.paths.curve import FrequencyCurve
+from dalembert.vibration.paths.recorded import recorded
+from dalembert.vibration.stability.bifurcations import Judged, judged, unjudged
+from dalembert.vibration.system.hysteretic import require_viscous
+from dalembert.vibration.system.lowering import Lowered
+from dalembert.vibration.system.system import VibrationSystem
+from dalembert.vibration.threads import one_thread
+
+NATURAL, ARC_LENGTH = "natural", "arc-length"
+PHASES = 64
+"""Instants of a period at which a curve keeps the contacts' states."""
+ALL = 60
+"""Size up to which all degrees of freedom are observed if none are named."""
+
+
+@dataclass(frozen=True)
+class FollowedPoint:
+    """A point of a curve when it is found.
+
+    Parameters
+    ----------
+    frequency : float
+        Hz.
+    response : array, shape (dofs, coefficients)
+        Of the observed degrees of freedom, m; NaN where the point was not found.
+    dofs : tuple of str
+    done : float
+        Part of the way between the first and the last frequency that the curve has come, at its farthest.
+    """
+
+    frequency: float
+    response: np.ndarray
+    dofs: tuple[str, ...]
+    done: float
+
+
+OnPoint = Callable[[FollowedPoint], object]
+
+
+@takes_checked("frequencies", "continuation", "observe")
+def frequency_response(
+    system: VibrationSystem,
+    frequencies: np.ndarray | tuple[float, float],
+    method: HarmonicBalance | None = None,
+    *,
+    continuation: str = NATURAL,
+    observe: Sequence[str] | None = None,
+    start: tuple[FrequencyCurve, int] | None = None,
+    stability: bool = False,
+    check: bool = True,
+    checkpoint: Checkpoint | None = None,
+    on_point: OnPoint | None = None,
+) -> FrequencyCurve:
+    """Periodic responses over frequency by harmonic balance.
+
+    Parameters
+    ----------
+    system : VibrationSystem
+    frequencies : array, shape (points,), or pair of float
+        Hz, positive. A tuple of two: points between them, as dense as the curve needs.
+    method : HarmonicBalance, optional
+    continuation : {"natural", "arc-length"}
+        From a frequency to the next, or along the curve past its folds, which needs (begin, end).
+    observe : sequence of str, optional
+        Degrees of freedom, nodes or sets of nodes whose motion is kept; all of a small structure, and of a large one
+        those with forces and contacts, if not given.
+    start : (FrequencyCurve, int), optional
+        A curve of the same system and harmonics and the number of one of its points, from which to go on.
+    stability : bool
+        Whether the stability of each point is found too, and the places where it changes: by Hill's method, or with
+        friction by the linearised motion over a period (see :func:`floquet_multipliers`). On paths between two
+        frequencies these places are points of their own; with given frequencies the first one behind is marked.
+    check : bool
+        Whether the largest motion is computed again with twice the harmonics. A change is the finding
+        ``"few-harmonics"``.
+    checkpoint : Checkpoint, optional
+        Where solutions are kept as they are found; begun again with the same file the curve is followed to where it was
+        in a part of the time, and on from there to the same bits.
+    on_point : callable, optional
+        Called with each point, a :class:`FollowedPoint`, as it is found.
+
+    Returns
+    -------
+    FrequencyCurve
+        A point that Newton's method does not find, from the one before nor by halves of the step, is marked there and
+        the curve goes on.
+
+    Raises
+    ------
+    InputError
+        For frequencies that are not positive, unknown degrees of freedom, a start that does not fit, and stability of
+        a structure that is too large for dense matrices, has hysteretic damping, or where several degrees of freedom
+        share one mass.
+    ModelError
+        For rigid contacts that depend on each other, and for mean forces along a motion that nothing holds.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from dalembert.structure import lumped
+    >>> from dalembert.vibration import Elastic, FrictionContact, HarmonicForce, VibrationSystem
+    >>> system = VibrationSystem(lumped({"m": 1.0}, [("m", None, 1.0, 0.04)]))
+    >>> force = system.add(HarmonicForce("m", 1.0))
+    >>> law = Elastic(tangential_stiffness=0.8)
+    >>> damper = system.add(FrictionContact("damper", "m", friction=0.5, preload=2.0, law=law))
+    >>> curve = frequency_response(system, np.array([1.12]) / (2 * np.pi), HarmonicBalance(harmonics=5))
+    >>> curve.amplitude("m").round(3).tolist()
+    [3.625]
+    """
+    method = method or HarmonicBalance()
+    ends = isinstance(frequencies, tuple)
+    if not system.forces:
+        raise InputError(
+            "frequency_response: no force acts on the system, so that it stands still; add a HarmonicForce, or use "
+            "backbone for motions without force"
+        )
+    omegas = 2 * np.pi * np.atleast_1d(numbers_of(frequencies, "frequency_response", "frequencies"))
+    if omegas.ndim != 1 or not len(omegas) or not np.all(np.isfinite(omegas) & (omegas > 0)):
+        raise InputError(f"frequency_response: the frequencies are {frequencies}; expected positive numbers in Hz")
+    if ends and (len(omegas) != 2 or omegas[0] == omegas[1]):
+        raise InputError(f"frequency_response: the ends are {frequencies}; expected two different frequencies in Hz")
+    if continuation not in (NATURAL, ARC_LENGTH):
+        raise InputError(unknown("continuation", continuation, (NATURAL, ARC_LENGTH), "frequency_response"))
+    if continuation == ARC_LENGTH and not ends:
+        raise InputError(
+            "frequency_response: a path by arc length finds its own frequencies; give a tuple of two, (begin, end)"
+        )
+    settings = {"continuation": continuation, "frequencies": list(map(float, frequencies)) if ends else "given"}
+    if stability:
+        require_viscous(system.structure, "stability and Floquet multipliers")
+    with one_thread():
+        problem = recorded(equations(system, method, stability=stability), checkpoint)
+        return _followed(problem, omegas, settings, observe, start, stability, check, on_point)
+
+
+def _followed(
+    problem: Equations,
+    omegas: np.ndarray,
+    settings: dict,
+    observe: Sequence[str] | None,
+    start: tuple[FrequencyCurve, int] | None,
+    stability: bool,
+    check: bool,
+    on_point: OnPoint | None,
+) -> FrequencyCurve:
+    """The curve through given frequencies, or between two."""
+    known = None if start is None else restarted(problem, *start, "frequency_response")
+    given = settings["frequencies"] == "given"
+    if given:
+        found = at_frequencies(problem, omegas, known)
+    else:
+        follow = across if settings["continuation"] == ARC_LENGTH else natural
+        found = follow(problem, float(omegas[0]), float(omegas[1]), known)
+    points = judged(problem, found, located=not given) if stability else unjudged(found)
+    return _curve(problem, points, observed(problem.lowered, observe), settings, omegas, check, on_point)
+
+
+def restarted(problem: Equations, curve: FrequencyCurve, point: int, where: str) -> Solution:
+    """The point of a curve, solved again; ``where`` says whose start it is if the curve is another system's."""
+    if not -len(curve) <= point < len(curve):
+        raise InputError(
+            f"{where}: the point is {point}; expected a number below {len(curve)}, the points of the curve"
+        )
+    unknowns, samples = curve.unknowns[point], int(curve.samples[point])
+    if unknowns.shape != problem.balance(samples).shape or curve.orders != problem.method.orders:
+        raise InputError(
+            f"{where}: the start has unknowns of shape {unknowns.shape} and harmonics {curve.orders}; the "
+            f"system has {problem.balance(samples).shape} and {problem.method.orders}; "
+            "start from a curve of the same system"
+        )
+    return problem.solve(unknowns, 2 * np.pi * float(curve.frequencies[point]), samples)
+
+
+def observed(lowered: Lowered, names: Sequence[str] | None) -> np.ndarray:
+    """Rows of the observed degrees of freedom: of those named, or of all, or of those with forces and elements."""
+    structure = lowered.structure
+    if names is not None:
+        return np.array(structure.rows(names), dtype=int)
+    if structure.size <= ALL:
+        return np.arange(structure.size)
+    forced = [structure.dofs.index(force.dof) for force in lowered.forces]
+    return np.unique([*forced, *lowered.matrix.nonzero()[1]]).astype(int)
+
+
+def _curve(
+    problem: Equations,
+    points: Iterable[Judged],
+    rows: np.ndarray,
+    settings: dict,
+    omegas: np.ndarray,
+    check: bool,
+    on_point: OnPoint | None,
+) -> FrequencyCurve:
+    lowered, records, lost, done = problem.lowered, [], [], 0.0
+    top: Solution | None = None
+    dofs = tuple(lowered.structure.dofs.names[row] for row in rows)
+    for one in points:
+        records.append(_Record.of(problem, one, rows))
+        lost.append(unfound(problem, one.found.solution))
+        top = largest(top, one.found.solution) if check else None
+        if on_point is not None:
+            given, omega = settings["frequencies"] == "given", one.found.solution.omega
+            come = len(records) / len(omegas) if given else (omega - omegas[0]) / (omegas[1] - omegas[0])
+            done = float(max(done, min(come, 1.0)))
+            on_point(FollowedPoint(records[-1].frequencies, records[-1].response, dofs, done))
+    kept = {name: np.array([getattr(one, name) for one in records]) for name in _Record._fields if name != "marker"}
+    provenance = {"version": dalembert.__version__, "numpy": np.__version__, "scipy": scipy.__version__}
+    return FrequencyCurve(
+        dofs=dofs,
+        coordinates=lowered.row_names,
+        contacts=lowered.contacts,
+        orders=problem.method.orders,
+        **{**kept, "stable": kept["stable"].astype(np.int8)},
+        markers=tuple((one.marker, number) for number, one in enumerate(records) if one.marker),
+        provenance={**provenance, "method": asdict(problem.method), **settings},
+        findings=(
+            *unfound_findings(len(records), filter(None, lost)),
+            *free_findings(problem),
+            *(() if top is None else truncation_findings(problem, top)),
+        ),
+    )
+
+
+class _Record(NamedTuple):
+    """What a curve keeps of a point, by the names of its arrays: not its matrices, some megabytes each."""
+
+    frequencies: float
+    unknowns: np.ndarray
+    iterations: int
+    residuals: float
+    converged: bool
+    fold: bool
+    samples: int
+    sampling_errors: float
+    stable: int
+    marker: str
+    response: np.ndarray
+    displacements: np.ndarray
+    forces: np.ndarray
+    states: np.ndarray
+
+    @classmethod
+    def of(cls, problem: Equations, one: Judged, rows: np.ndarray) -> "_Record":
+        """Of a point, with the response in some rows of the structure."""
+        solution = one.found.solution
+        return cls(
+            solution.omega / (2 * np.pi), solution.unknowns, solution.iterations, solution.error, solution.converged,
+            one.found.fold, solution.samples, solution.sampling_error, one.stable, one.marker,
+            *_read(problem, solution, rows),
+        )  # fmt: skip
+
+
+def _read(
+    problem: Equations, solution: Solution, rows: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Response, elements' displacements and forces, and states of the contacts."""
+    balance, lowered = problem.balance(solution.samples), problem.lowered
+    states = np.zeros((len(lowered.contacts), PHASES), dtype=np.uint8)
+    instants = np.arange(PHASES) * solution.samples // PHASES
+    for block, own in zip(lowered.blocks, solution.evaluation.states, strict=True):
+        np.maximum.at(states, block.contacts, own[:, instants])
+    response = response_of(problem, solution)[rows]
+    displacements, forces = balance.displacements(solution.unknowns), solution.evaluation.forces
+    if not solution.converged:
+        response, displacements, forces = (np.full_like(array, np.nan) for array in (response, displacements, forces))
+    return response, displacements, forces, states
+
+
+def response_of(problem: Equations, solution: Solution) -> np.ndarray:
+    """Coefficients of all degrees of freedom at a solution, (n, coefficients)."""
+    series = problem.balance(solution.samples).series
+    retained = series.phasors(solution.unknowns)
+    return series.coefficients(problem.condensation.full(retained, solution.point.interior(retained)))

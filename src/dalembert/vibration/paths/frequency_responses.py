@@ -1,0 +1,183 @@
+"""Responses over frequency for several values of a parameter: over this machine's cores, or on a cluster."""
+
+import hashlib
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import closing
+from dataclasses import dataclass
+from threading import Event
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+from dalembert.arguments import numbers_of, takes_checked
+from dalembert.errors import DalembertError, InputError, SolveError, StorageError, told
+from dalembert.forward import Checkpoint, Executor, ensemble
+from dalembert.forward.builders import check_function
+from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
+from dalembert.vibration.paths.curve import FrequencyCurve
+from dalembert.vibration.paths.curve_family import CurveFamily
+from dalembert.vibration.paths.frequency_response import FollowedPoint, frequency_response
+from dalembert.vibration.paths.recorded import keep_curve, kept_curve
+from dalembert.vibration.system.fingerprint import fingerprint
+from dalembert.vibration.system.lowering import lower
+from dalembert.vibration.system.system import VibrationSystem
+from dalembert.vibration.threads import one_thread
+
+Found = tuple[FrequencyCurve | None, DalembertError | None, float]
+"""A curve or why there is none, and the seconds that it took."""
+
+
+@takes_checked("frequencies", "values", "executor")
+def frequency_responses(
+    builder: Callable[..., VibrationSystem],
+    parameter: str,
+    values: Sequence[float] | np.ndarray,
+    frequencies: np.ndarray | tuple[float, float],
+    method: HarmonicBalance | None = None,
+    *,
+    unit: str = "",
+    workers: int | None = None,
+    executor: Executor = None,
+    checkpoint: Checkpoint | None = None,
+    on_curve: Callable[[int, FrequencyCurve | None, str | None], None] | None = None,
+    **options: Any,
+) -> CurveFamily:
+    """Responses over frequency for several values of a parameter, over all cores or on a cluster.
+
+    Parameters
+    ----------
+    builder : callable
+        ``builder(**{parameter: value}) -> VibrationSystem``.
+    parameter : str
+    values : array, shape (values,)
+        The first is what reductions are measured by: for a preload 0, with which contacts are free.
+    frequencies, method
+        As of :func:`frequency_response`.
+    unit : str
+        Of the parameter, for labels.
+    workers : int, optional
+        Threads; as many as there are cores if not given.
+    executor : str or distributed.Client, optional
+        Address of a Dask cluster, such as ``"tcp://10.0.0.1:8786"``, or a client of one, whose workers follow a curve
+        each; the bits are the same.
+    checkpoint : Checkpoint, optional
+        Where solutions are kept as they are found, or from a cluster whole curves.
+    on_curve : callable, optional
+        Called with the number of each value, its curve and why there is none, in the order of the values.
+    options
+        Others of :func:`frequency_response`: ``continuation``, ``observe``, ``stability`` and so on.
+
+    Returns
+    -------
+    CurveFamily
+        A value for which there is no curve is marked with the reason, and the others return.
+
+    Raises
+    ------
+    InputError
+        Where no values are given, and where no cluster answers.
+    DalembertError
+        Where there is no curve for any of them: the reason of the first.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from dalembert.structure import lumped
+    >>> from dalembert.vibration import Elastic, FrictionContact, HarmonicForce, VibrationSystem
+    >>> def damped(preload):
+    ...     system = VibrationSystem(lumped({"m": 1.0}, [("m", None, 1.0, 0.04)]))
+    ...     system.add(HarmonicForce("m", 1.0))
+    ...     system.add(FrictionContact("damper", "m", friction=0.5, preload=preload, law=Elastic(0.8)))
+    ...     return system
+    >>> family = frequency_responses(damped, "preload", [0.0, 1.0, 2.0, 10.0], np.linspace(0.12, 0.25, 40))
+    >>> family.best("m"), family.reduction("m").round(2).tolist()
+    (2.0, [0.0, 0.59, 0.85, 0.72])
+    """
+    check_function("frequency_responses", builder, [parameter])
+    given = numbers_of(values, "frequency_responses", "values")
+    if given.ndim != 1 or not len(given):
+        raise InputError(f"frequency_responses: the values of {parameter} are {values}; expected one or more numbers")
+    one = _One(builder, parameter, frequencies, method or HarmonicBalance(), options)
+    stopped = Event()
+
+    def here(value: float) -> Found:
+        """In a thread of this process, which ends at its next point where nobody waits for it."""
+
+        def go_on(_: FollowedPoint) -> None:
+            if stopped.is_set():
+                raise InputError("stopped")
+
+        return one(value, checkpoint=checkpoint, on_point=go_on)
+
+    kept = [None if checkpoint is None else one.recall(checkpoint, value) for value in given.tolist()]
+    missing = [value for value, curve in zip(given.tolist(), kept, strict=True) if curve is None]
+    work: Callable[[float], Found] = here if executor is None else one
+    curves: list[FrequencyCurve | None] = []
+    errors: list[DalembertError | None] = []
+    found = ensemble(work, missing, workers=workers, executor=executor, on_stop=stopped.set)
+    with one_thread(), closing(found):
+        for row, (value, known) in enumerate(zip(given.tolist(), kept, strict=True)):
+            answer = next(found) if known is None else (known, None, 0.0)
+            if known is None and executor is not None and checkpoint is not None:
+                one.keep(checkpoint, value, answer)
+            curve, error, _ = answer
+            curves.append(curve)
+            errors.append(error)
+            if on_curve is not None:
+                on_curve(row, curve, None if error is None else str(error))
+    if errors[0] is not None and all(curve is None for curve in curves):
+        raise errors[0]
+    failures = tuple(None if error is None else str(error) for error in errors)
+    return CurveFamily(parameter, unit, given, tuple(curves), failures)
+
+
+@dataclass(frozen=True)
+class _One:
+    """The curve at one value, as it is followed here or on a worker."""
+
+    builder: Callable[..., VibrationSystem]
+    parameter: str
+    frequencies: np.ndarray | tuple[float, float]
+    method: HarmonicBalance
+    options: Mapping[str, Any]
+
+    def __call__(self, value: float, **more: Any) -> Found:
+        began = perf_counter()
+        try:
+            curve = frequency_response(
+                self.system(value), self.frequencies, self.method, check=False, **self.options, **more
+            )
+        except StorageError:  # no other value will do better
+            raise
+        except DalembertError as error:
+            return None, error, 0.0
+        except Exception as error:  # the user's builder or law raised: this value's failure, not the others'
+            return None, SolveError(told(error)), 0.0
+        return curve, None, perf_counter() - began
+
+    def system(self, value: float) -> VibrationSystem:
+        """The system at a value."""
+        return self.builder(**{self.parameter: value})
+
+    def recall(self, checkpoint: Checkpoint, value: float) -> FrequencyCurve | None:
+        """The whole curve, where a checkpoint holds it."""
+        try:
+            return kept_curve(checkpoint, self._key(value))
+        except Exception:  # a system that cannot be made is told when its turn comes
+            return None
+
+    def keep(self, checkpoint: Checkpoint, value: float, found: Found) -> None:
+        """Keep a whole curve."""
+        curve, _, seconds = found
+        if curve is not None:
+            keep_curve(checkpoint, self._key(value), curve, seconds)
+
+    def _key(self, value: float) -> bytes:
+        """Hash of all that the curve depends on."""
+        settings = {name: option for name, option in self.options.items() if name != "start"}
+        start = self.options.get("start")
+        begin = b"" if start is None else start[0].unknowns[start[1]].tobytes()
+        ends, along = isinstance(self.frequencies, tuple), np.asarray(self.frequencies, dtype=float)
+        told = fingerprint(lower(self.system(value)).real, self.method, ends, sorted(settings.items()))
+        return hashlib.sha256(b"curve" + told.encode() + along.tobytes() + begin).digest()

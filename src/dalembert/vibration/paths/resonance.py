@@ -1,0 +1,302 @@
+r"""Following the peak of a response over a parameter, without whole curves.
+
+At a peak the amplitude a(U, ω) neither rises nor falls along the path of solutions,
+:math:`\nabla a \cdot (\mathrm{d}U, \mathrm{d}\omega) = 0`, with the tangent of the path from the exact Jacobian. That
+place is bracketed by steps of arc length, so that a peak beside a fold is found too, and narrowed by Brent's method.
+From one value of the parameter to the next the solution is corrected on a plane across the path.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import asdict, dataclass, replace
+from typing import cast
+
+import numpy as np
+import scipy
+from scipy.optimize import brentq
+
+import dalembert
+from dalembert.arguments import numbers_of, takes_checked
+from dalembert.errors import InputError
+from dalembert.forward import Checkpoint
+from dalembert.forward.builders import check_function
+from dalembert.vibration.balance.equations import Equations, equations
+from dalembert.vibration.balance.fourier import synthesis
+from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
+from dalembert.vibration.balance.newton import Plane, Solution
+from dalembert.vibration.paths.amplitudes import Amplitude
+from dalembert.vibration.paths.continuation import Path, direction_at
+from dalembert.vibration.paths.curve import FrequencyCurve
+from dalembert.vibration.paths.frequency_response import ARC_LENGTH, frequency_response, response_of, restarted
+from dalembert.vibration.paths.recorded import recorded
+from dalembert.vibration.paths.resonance_track import ResonanceTrack
+from dalembert.vibration.system.system import VibrationSystem
+from dalembert.vibration.threads import one_thread
+
+WIDTH = 0.1
+"""Change of ω, as part of itself, that counts as much along the path as the whole motion."""
+FIRST, LONGEST, SHORTEST = 0.02, 0.3, 1e-6
+"""Steps along the path, as part of the motion."""
+BEYOND = 1.5
+"""Step that is to pass the peak, as part of the way to it by the curvature at the peak before."""
+MOST_STEPS = 60
+NARROW = 1e-6
+"""Length along the path to which a peak is found."""
+
+
+@takes_checked("values")
+def track_resonance(
+    builder: Callable[..., VibrationSystem],
+    parameter: str,
+    values: Sequence[float] | np.ndarray,
+    start: tuple[float, float] | FrequencyCurve,
+    method: HarmonicBalance | None = None,
+    *,
+    dof: str,
+    kind: str = "peak",
+    unit: str = "",
+    checkpoint: Checkpoint | None = None,
+) -> ResonanceTrack:
+    """The peak of a response over a parameter of the system, such as a preload or the level of a force.
+
+    Parameters
+    ----------
+    builder : callable
+        ``builder(**{parameter: value}) -> VibrationSystem``.
+    parameter : str
+    values : sequence of float
+        In the order in which the peak is followed.
+    start : pair of float, or FrequencyCurve
+        Hz, around the peak at the first value, where one curve is followed to find it; or a curve at that value.
+    method : HarmonicBalance, optional
+    dof : str
+        Degree of freedom, or a node with only one.
+    kind : str
+        ``"peak"``, ``"rms"``, or ``"harmonic 1"`` and so on.
+    unit : str
+        Of the parameter.
+    checkpoint : Checkpoint, optional
+        Where solutions are kept as they are found; begun again with the same file the peak is followed to where it was
+        in a part of the time, and on from there to the same bits.
+
+    Returns
+    -------
+    ResonanceTrack
+        Values at which the peak is not found, from the one before nor by halves of the step, are marked. It is a peak
+        of the path that goes on from the one before; another one may have become larger.
+
+    Raises
+    ------
+    InputError
+        For values that are not numbers, an unknown degree of freedom or kind, and a start that does not fit.
+
+    Examples
+    --------
+    A preload in between damps the most: less takes less, and more holds the mass by the slider's spring.
+
+    >>> import numpy as np
+    >>> from dalembert.structure import lumped
+    >>> from dalembert.vibration import Elastic, FrictionContact, HarmonicForce, VibrationSystem
+    >>> def oscillator(preload):
+    ...     system = VibrationSystem(lumped({"m": 1.0}, [("m", None, 1.0, 0.04)]))
+    ...     system.add(HarmonicForce("m", 1.0))
+    ...     law = Elastic(tangential_stiffness=0.8)
+    ...     system.add(FrictionContact("damper", "m", friction=0.5, preload=preload, law=law))
+    ...     return system
+    >>> method = HarmonicBalance(3, samples=128)
+    >>> track = track_resonance(oscillator, "preload", [2.0, 4.0, 8.0], (0.1, 0.3), method, dof="m", unit="N")
+    >>> track.amplitudes.round(2).tolist(), track.best()
+    ([3.63, 3.68, 5.79], 2.0)
+    """
+    method, numbers = method or HarmonicBalance(), numbers_of(values, "track_resonance", "values")
+    check_function("track_resonance", builder, [parameter])
+    if numbers.ndim != 1 or not len(numbers) or not np.all(np.isfinite(numbers)):
+        raise InputError(f"track_resonance: the values of {parameter!r} are {values}; expected one or more numbers")
+
+    def problem(value: float) -> Equations:
+        return recorded(equations(builder(**{parameter: value}), method), checkpoint)
+
+    with one_thread():
+        first, size = problem(float(numbers[0])), Amplitude(kind, method.orders)
+        name = _name(first, dof)
+        curve = start
+        if not isinstance(curve, FrequencyCurve):
+            system = builder(**{parameter: float(numbers[0])})
+            curve = frequency_response(
+                system, curve, method, continuation=ARC_LENGTH, observe=[name], check=False, checkpoint=checkpoint
+            )
+        begin = restarted(first, curve, _top(curve, name, size), "track_resonance")
+        row = first.lowered.structure.dofs.index(name)
+        peaks = list(_followed(problem, _Climber(row, size), numbers, _Peak(float(numbers[0]), first, begin)))
+    solves = np.array([count for _, count in peaks])
+    solves[0] += 1 if isinstance(start, FrequencyCurve) else 1 + len(curve)
+    found = [(one.solution.omega / (2 * np.pi), one.amplitude) if one else (np.nan, np.nan) for one, _ in peaks]
+    return ResonanceTrack(
+        parameter=parameter,
+        unit=unit,
+        dof=name,
+        kind=kind,
+        values=numbers,
+        frequencies=np.array([frequency for frequency, _ in found]),
+        amplitudes=np.array([amplitude for _, amplitude in found]),
+        solves=solves,
+        converged=np.array([one is not None for one, _ in peaks]),
+        provenance={
+            "version": dalembert.__version__,
+            "numpy": np.__version__,
+            "scipy": scipy.__version__,
+            "method": asdict(method),
+        },
+    )
+
+
+def _name(problem: Equations, dof: str) -> str:
+    """Full name of a degree of freedom; a node with only one may stand alone."""
+    names = problem.lowered.structure.dofs
+    own = [name for name in names.names if name.rpartition(".")[0] == dof]
+    return names.names[names.index(own[0] if len(own) == 1 else dof)]
+
+
+def _top(curve: FrequencyCurve, name: str, size: Amplitude) -> int:
+    """Point of a curve with the largest response."""
+    sizes = size.of(curve.harmonics(name))
+    if not np.any(np.isfinite(sizes)):
+        raise InputError("track_resonance: no point of the first curve was found; begin with another window")
+    return int(np.nanargmax(sizes))
+
+
+@dataclass(frozen=True)
+class _Peak:
+    """A peak at a value of the parameter, and how the logarithm of the amplitude bends there along the path."""
+
+    value: float
+    problem: Equations
+    solution: Solution
+    amplitude: float = float("nan")
+    bend: float = float("nan")
+
+
+def _followed(
+    problem: Callable[[float], Equations], climber: "_Climber", values: np.ndarray, begin: _Peak
+) -> Iterator[tuple[_Peak | None, int]]:
+    """The peak at each value, None where it is not found, and the solutions that it took."""
+    known, before = begin, None
+    for value in values:
+        way, count, found = [float(value)], 0, None
+        while way:
+            own = problem(way[-1])
+            corrected, spent = _carried(own, known, before, way[-1])
+            peak, climbed = (None, 0) if corrected is None else climber.climb(own, corrected, known.bend)
+            count += spent + climbed
+            if peak is not None:
+                found = replace(peak, value=way.pop())
+                before, known = known, found
+            elif len(way) > own.method.halvings or way[-1] == known.value:
+                found = None
+                break
+            else:
+                way.append((known.value + way[-1]) / 2)
+        yield (found if found is not None and found.value == value else None), count
+
+
+def _carried(own: Equations, known: _Peak, before: _Peak | None, value: float) -> tuple[Solution | None, int]:
+    """A solution at another value near a known peak, on a plane across the path, and how many were tried."""
+    last, tries = known.solution, [0.0]
+    if before is not None and known.value != before.value:
+        tries.insert(0, (value - known.value) / (known.value - before.value))
+    width = WIDTH * last.omega
+    direction = direction_at(last, _upwards(last), width)
+    for number, part in enumerate(tries):
+        guess, omega = last.unknowns, last.omega
+        if part and before is not None and guess.shape == before.solution.unknowns.shape:
+            guess = guess + part * (guess - before.solution.unknowns)
+            omega = omega + part * (omega - before.solution.omega)
+        plane = Plane(direction, guess, omega, float(np.linalg.norm(last.unknowns)) or 1.0, width)
+        solution = own.solve(guess, omega, last.samples, plane)
+        if solution.converged and solution.omega > 0:
+            return solution, number + 1
+    return None, len(tries)
+
+
+def _upwards(solution: Solution) -> np.ndarray:
+    """The direction of growing frequency."""
+    direction = np.zeros(solution.unknowns.size + 1)
+    direction[-1] = 1.0
+    return direction
+
+
+@dataclass(frozen=True)
+class _Climber:
+    """Finds the top of a path, in the amplitude of a row of the structure."""
+
+    row: int
+    size: Amplitude
+
+    def climb(self, own: Equations, solution: Solution, bend: float) -> tuple[_Peak | None, int]:
+        """The peak next to a solution, and the solutions that it took."""
+        width = WIDTH * solution.omega
+        direction = direction_at(solution, _upwards(solution), width)
+        rise = self._rise(own, solution, direction, Path(solution, direction, width).size, width)
+        if rise < 0:
+            rise, direction = -rise, -direction
+        length = FIRST if np.isnan(bend) else float(np.clip(BEYOND * abs(rise / bend), SHORTEST, LONGEST))
+        for count in range(1, MOST_STEPS + 1):
+            path = Path(solution, direction, width)
+            ahead, onward = path.step(own, length)
+            if onward is None:
+                length /= 4
+                if length < SHORTEST:
+                    return None, count
+                continue
+            beyond = self._rise(own, ahead, onward, path.size, width)
+            if beyond < 0:
+                peak, spent = self._narrowed(own, path, (rise, beyond), length)
+                return peak, count + spent
+            solution, direction, rise = ahead, direction_at(ahead, onward, width), beyond
+            length = min(LONGEST, 2 * length)
+        return None, MOST_STEPS
+
+    def _narrowed(
+        self, own: Equations, path: Path, rises: tuple[float, float], length: float
+    ) -> tuple[_Peak | None, int]:
+        """The place between the ends of a step at which the amplitude no longer rises."""
+        tried: dict[float, Solution] = {}
+
+        def rise(part: float) -> float:
+            if part in (0.0, length):
+                return rises[int(part > 0)]
+            solution, onward = path.step(own, part)
+            tried[part] = solution
+            return float("nan") if onward is None else self._rise(own, solution, onward, path.size, path.width)
+
+        try:
+            part = float(cast(float, brentq(rise, 0.0, length, xtol=NARROW)))
+        except (ValueError, RuntimeError):  # a step in between was not found
+            return None, len(tried)
+        solution = tried[part] if part in tried else path.step(own, part)[0]
+        amplitude = float(self.size.of(response_of(own, solution)[self.row]))
+        return _Peak(np.nan, own, solution, amplitude, (rises[1] - rises[0]) / length), len(tried)
+
+    def _rise(self, own: Equations, solution: Solution, direction: np.ndarray, size: float, width: float) -> float:
+        """Derivative of the logarithm of the amplitude along the path."""
+        series, point = own.balance(solution.samples).series, solution.point
+        change = series.phasors(direction[:-1].reshape(solution.unknowns.shape) * size)
+        retained = series.phasors(solution.unknowns)
+        interior = own.condensation.interior_slope(point, retained) * (direction[-1] * width)
+        interior = interior - (point.follow @ change[:, :, None])[:, :, 0]
+        motion = response_of(own, solution)[self.row]
+        moved = series.coefficients(own.condensation.full(change, interior))[self.row]
+        return float(_gradient(self.size, motion) @ moved) / float(self.size.of(motion))
+
+
+def _gradient(size: Amplitude, motion: np.ndarray) -> np.ndarray:
+    """Derivative of an amplitude by the coefficients; of a peak at its own instant, not at the nearest sample."""
+    if size.kind != "peak":
+        return size.slope(motion)
+    angle = size.instant(motion)
+    orders = np.array([h for h in size.orders for _ in range(1 if h == 0 else 2)])
+    for _ in range(3):
+        waves = synthesis(size.orders, np.array([angle]))[0]
+        turned = synthesis(size.orders, np.array([angle + 1e-30j]))[0].imag / 1e-30
+        angle -= float(turned @ motion) / float(-(orders**2 * waves) @ motion)
+    waves = synthesis(size.orders, np.array([angle]))[0]
+    return np.sign(waves @ motion) * waves  # of two opposite peaks of one size, the sign of the one at this instant

@@ -1,0 +1,151 @@
+"""Where the stability of a path of periodic motions changes, and how."""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import cast
+
+import numpy as np
+from scipy.optimize import brentq
+
+from dalembert.vibration.balance.equations import Equations
+from dalembert.vibration.balance.newton import Plane, Solution
+from dalembert.vibration.paths.continuation import Found
+from dalembert.vibration.stability.stability import Exponents, exponents, remembers
+
+FOLD, TORUS, DOUBLING, BRANCH = "fold", "torus", "period doubling", "branch point"
+STABLE, UNSTABLE, NOT_ASKED = 1, 0, -1
+REAL = 1e-3
+"""Imaginary part of an exponent, as part of ω and beside a half or none of it, that is none."""
+PLACED = 1e-4
+"""Part of the way between two points to which a change is found."""
+
+
+@dataclass(frozen=True)
+class Judged:
+    """A point of a curve with its stability.
+
+    Parameters
+    ----------
+    found : Found
+    stable : int
+        1, 0, or -1 where it is not known.
+    marker : str
+        Kind of the bifurcation that lies here, or nothing.
+    """
+
+    found: Found
+    stable: int = NOT_ASKED
+    marker: str = ""
+
+
+def unjudged(path: Iterable[Found]) -> Iterator[Judged]:
+    """Points with no more than their folds."""
+    for one in path:
+        yield Judged(one, marker=FOLD if one.fold else "")
+
+
+def judged(problem: Equations, path: Iterable[Found], located: bool) -> Iterator[Judged]:
+    """Points with their stability, and where it changes.
+
+    Parameters
+    ----------
+    problem : Equations
+    path : iterable of Found
+    located : bool
+        Whether changes become points of their own; else the first point behind one is marked.
+    """
+    before: tuple[Solution, Exponents] | None = None
+    folded, adjacent = False, True
+    for one in path:
+        if one.returned:
+            before = None
+        if not one.solution.converged:
+            yield Judged(one)
+            before = None
+        elif one.fold:
+            # An exponent is zero here, up to rounding of either sign.
+            yield Judged(one, _said(before[1] if before else exponents(problem, one.solution)), FOLD)
+            folded = True
+        else:
+            own = exponents(problem, one.solution)
+            if not own.judged and np.isfinite(own.error):
+                # A change of sign within the error is no bifurcation: points further on show whether there is one.
+                yield Judged(one)
+                adjacent = False
+                continue
+            kind = ""
+            if before is not None and before[1].unstable != own.unstable and not folded:
+                kind = _kind(before[1], own)
+                if kind == BRANCH and not _branches(problem, before[0], one.solution):
+                    kind = ""
+                place = _located(problem, before, (one.solution, own)) if located and adjacent and kind else None
+                if place is not None:
+                    stable = _said(before[1]) if place[1].judged else NOT_ASKED
+                    yield Judged(Found(place[0]), stable, _kind(place[1], place[1], _rank(before[1], own)))
+                    kind = ""
+            yield Judged(one, _said(own), kind)
+            before, folded, adjacent = (one.solution, own), False, True
+
+
+def _said(own: Exponents) -> int:
+    if not own.judged:
+        return NOT_ASKED
+    return UNSTABLE if own.unstable else STABLE
+
+
+def _rank(before: Exponents, after: Exponents) -> int:
+    """Which exponent changes sides, in the order of growth."""
+    return max(before.unstable, after.unstable) - 1
+
+
+def _kind(before: Exponents, after: Exponents, rank: int | None = None) -> str:
+    """From the side on which the exponent grows."""
+    rank = _rank(before, after) if rank is None else rank
+    grows = before if before.unstable > after.unstable else after
+    turn, none = abs(grows.values[rank].imag) % 1.0, max(REAL, grows.error if np.isfinite(grows.error) else 0.0)
+    if min(turn, 1 - turn) < none:
+        return BRANCH
+    return DOUBLING if abs(turn - 0.5) < none else TORUS
+
+
+def _branches(problem: Equations, before: Solution, after: Solution) -> bool:
+    """Whether an exponent passes zero between two points without a fold, in the balance itself.
+
+    The steps of a time map shift a fold a little, so that its exponents may pass zero beside it.
+    """
+    if not remembers(problem):
+        return True
+    signs = [np.linalg.slogdet(one.tangent.jacobian.reshape(one.unknowns.size, -1))[0] for one in (before, after)]
+    return bool(signs[0] * signs[1] < 0)
+
+
+def _located(
+    problem: Equations, before: tuple[Solution, Exponents], after: tuple[Solution, Exponents]
+) -> tuple[Solution, Exponents] | None:
+    """The point between two at which the exponent that changes sides neither grows nor falls."""
+    (first, own), (last, other) = before, after
+    rank = _rank(own, other)
+    if len(own.values) <= rank or len(other.values) <= rank:
+        return None
+    tried: dict[float, tuple[Solution, Exponents]] = {0.0: before, 1.0: after}
+    size = float(np.linalg.norm(last.unknowns - first.unknowns)) or 1.0
+    width = abs(last.omega - first.omega) or 1.0
+    chord = np.append((last.unknowns - first.unknowns).ravel() / size, (last.omega - first.omega) / width)
+
+    def growth(part: float) -> float:
+        if part not in tried:
+            guess = first.unknowns + part * (last.unknowns - first.unknowns)
+            omega = first.omega + part * (last.omega - first.omega)
+            plane = Plane(chord / np.linalg.norm(chord), guess, omega, size, width)
+            solution = problem.solve(guess, omega, max(first.samples, last.samples), plane)
+            if not solution.converged:
+                return float("nan")
+            tried[part] = solution, exponents(problem, solution)
+        values = tried[part][1].values
+        return float(values[rank].real) if len(values) > rank else float("nan")
+
+    try:
+        part = float(cast(float, brentq(growth, 0.0, 1.0, xtol=PLACED)))
+    except (ValueError, RuntimeError):  # a point in between was not found, or lies on another branch
+        return None
+    return tried.get(part)

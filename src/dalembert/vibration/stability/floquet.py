@@ -1,0 +1,61 @@
+"""Floquet multipliers of a point of a curve."""
+
+import numpy as np
+
+from dalembert.arguments import takes_checked
+from dalembert.errors import InputError, unknown
+from dalembert.vibration.balance.equations import equations
+from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
+from dalembert.vibration.paths.curve import FrequencyCurve
+from dalembert.vibration.paths.frequency_response import restarted
+from dalembert.vibration.stability.stability import AUTOMATIC, HILL, TIME_MAP, exponents
+from dalembert.vibration.system.system import VibrationSystem
+from dalembert.vibration.threads import one_thread
+
+
+@takes_checked("way")
+def floquet_multipliers(system: VibrationSystem, curve: FrequencyCurve, point: int, way: str = AUTOMATIC) -> np.ndarray:
+    """Factors by which small disturbances of a periodic motion grow over a period.
+
+    Parameters
+    ----------
+    system : VibrationSystem
+        That of the curve.
+    curve : FrequencyCurve
+    point : int
+    way : {"automatic", "hill", "time map"}
+        Hill's method in frequency, which has the accuracy of the harmonics (twice as many as the curve's where a stop
+        is touched) but does not know the memory of sliders, or
+        trapezoidal steps of the linearised motion over a period, whose error falls with their square. Automatic: the
+        former without contacts with friction, the latter with such.
+
+    Returns
+    -------
+    array, shape (multipliers,), complex
+        The largest first; the motion is stable where none is larger than 1 in magnitude.
+
+    Raises
+    ------
+    InputError
+        For another way, a curve of another system, a structure that is too large for dense matrices, and, for the time
+        map, degrees of freedom that only together with others have a mass.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from dalembert.structure import lumped
+    >>> from dalembert.vibration import CubicSpring, HarmonicForce, VibrationSystem, frequency_response
+    >>> system = VibrationSystem(lumped({"m": 1.0}, [("m", None, 1.0, 0.1)]))
+    >>> force, spring = system.add(HarmonicForce("m", 0.1)), system.add(CubicSpring("cubic", "m", stiffness=0.1))
+    >>> curve = frequency_response(system, np.array([0.15]))
+    >>> factors = floquet_multipliers(system, curve, 0)
+    >>> float(np.prod(factors).real.round(6)), float(np.exp(-0.1 / 0.15).round(6))  # exp(-c T/m), Liouville's formula
+    (0.513417, 0.513417)
+    """
+    if way not in (AUTOMATIC, HILL, TIME_MAP):
+        raise InputError(unknown("way", way, (AUTOMATIC, HILL, TIME_MAP), "floquet_multipliers"))
+    with one_thread():
+        problem = equations(system, HarmonicBalance(**curve.provenance["method"]), stability=way != HILL)
+        begin = restarted(problem, curve, point, "floquet_multipliers")
+        factors = np.exp(2 * np.pi * exponents(problem, begin, way).values)
+    return factors[np.argsort(-np.abs(factors), kind="stable")]

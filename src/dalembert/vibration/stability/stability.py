@@ -1,0 +1,131 @@
+"""Floquet exponents of periodic motions, and whether these are stable."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from dalembert.vibration.balance.equations import Equations
+from dalembert.vibration.balance.fourier import Fourier, in_orders
+from dalembert.vibration.balance.newton import Solution
+from dalembert.vibration.balance.uncondensed import Uncondensed
+from dalembert.vibration.laws.springs import BilinearStop, Gap
+from dalembert.vibration.stability.hill import hill
+from dalembert.vibration.stability.time_map import monodromy
+
+HILL, TIME_MAP, AUTOMATIC = "hill", "time map", "automatic"
+NEUTRAL = 1e-8
+"""Growth, in parts of ω, that is none: rounding of undamped motions."""
+SPLIT = 1e-6
+"""Exponent of a free motion, in parts of ω, that is rounding: the root of that of the equations."""
+FEWEST = 512
+"""Steps of the map over a period, if the motion does not have more samples."""
+FINER = "hill with twice the harmonics"
+LARGEST = 600
+"""Most unknowns of Hill's method with twice the harmonics: some seconds a point."""
+TRUNCATED = 0.15 / (2 * np.pi)
+"""Error of Hill's method in parts of ω where a stop is touched and twice the harmonics are too many.
+
+Measured: two masses with a stop and 5 harmonics, whose labels are wrong up to multipliers of exp(0.144).
+"""
+FORGOTTEN = 1e-12
+"""Multiplier that is zero: what a slider that slips once in a period forgets."""
+
+
+@dataclass(frozen=True)
+class Exponents:
+    """Floquet exponents of a periodic motion.
+
+    Parameters
+    ----------
+    values : array, shape (exponents,), complex
+        In parts of ω, those that grow fastest first.
+    error : float
+        Of their real parts, in parts of ω; infinite where it is not known.
+    """
+
+    values: np.ndarray
+    error: float = 0.0
+
+    @property
+    def judged(self) -> bool:
+        """Whether the fastest growth is beyond its error."""
+        return bool(abs(np.max(np.real(self.values), initial=-np.inf)) >= self.error)
+
+    @property
+    def unstable(self) -> int:
+        """How many grow."""
+        return int(np.sum(np.real(self.values) > NEUTRAL))
+
+
+def remembers(problem: Equations) -> bool:
+    """Whether contacts with friction make the motion depend on its past, which Hill's method does not see."""
+    return bool(problem.lowered.blocks)
+
+
+def exponents(problem: Equations, solution: Solution, way: str = AUTOMATIC) -> Exponents:
+    """Floquet exponents at a solution: by Hill's method, or by the time map where there are contacts with friction.
+
+    The stiffness of a stop switches, so that its harmonics fall slowly. Where one is touched, the exponents are those
+    with twice the harmonics, and their change is the error.
+    """
+    if way == TIME_MAP or (way == AUTOMATIC and remembers(problem)):
+        return Exponents(_held(problem, problem.once(TIME_MAP, solution, lambda: _by_time_map(problem, solution))))
+    values = _held(problem, problem.once(HILL, solution, lambda: hill(problem, solution)))
+    if not _touches(problem, solution):
+        return Exponents(values)
+    method = problem.method.refined()
+    if method is None or problem.lowered.structure.size * (2 * method.harmonics + 1) > LARGEST:
+        return Exponents(values, TRUNCATED)
+    finer = problem.once(FINER, solution, lambda: _finer(Equations(problem.lowered, method), problem, solution))
+    if not finer.size:
+        return Exponents(values, np.inf)
+    finer = _held(problem, finer)
+    return Exponents(finer, _change(values, finer))
+
+
+def _held(problem: Equations, values: np.ndarray) -> np.ndarray:
+    """Exponents with those of free motions, of place and of speed, at zero: rounding splits such pairs."""
+    nearest = np.argsort(np.abs(values))[: 2 * problem.condensation.free.shape[1]]
+    result = values.copy()
+    result[nearest[np.abs(values[nearest]) < SPLIT]] = 0.0
+    return result
+
+
+def _change(values: np.ndarray, finer: np.ndarray) -> float:
+    """How much the growth of either's fastest exponent differs from that of the other's next to it.
+
+    Next to each other in the plane: beside a fold or a crossing the fastest ones of both are not the same exponent.
+    """
+    pairs = (complex(finer[0]), values), (complex(values[0]), finer)
+    return max(abs(one.real - float(np.real(others)[_nearest(one, others)])) for one, others in pairs)
+
+
+def _nearest(one: complex, others: np.ndarray) -> int:
+    """The exponent next to one, up to its copies and conjugates."""
+    turns = np.minimum(abs(np.imag(others) % 1 - one.imag % 1), abs(np.imag(others) % 1 - -one.imag % 1))
+    return int(np.argmin(np.hypot(np.real(others) - one.real, np.minimum(turns, 1 - turns))))
+
+
+def _finer(finer: Equations, problem: Equations, solution: Solution) -> np.ndarray:
+    """Exponents of the motion with more harmonics, by Hill's method; none where it is not found (near a fold)."""
+    begin = in_orders(solution.unknowns, problem.method.orders, finer.method.orders)
+    samples = max(finer.method.first_samples, solution.samples)
+    better = finer.solve(begin, solution.omega, samples)
+    return hill(finer, better) if better.converged else np.zeros(0, dtype=complex)
+
+
+def _touches(problem: Equations, solution: Solution) -> bool:
+    """Whether a stop acts at some time."""
+    stops = [rows for rows, element in problem.lowered.springs if isinstance(element, Gap | BilinearStop)]
+    return bool(stops) and bool(np.any(solution.evaluation.forces[np.concatenate(stops)]))
+
+
+def _by_time_map(problem: Equations, solution: Solution) -> np.ndarray:
+    balance = problem.balance(solution.samples)
+    linear = balance.linear(solution.point.stiffness, solution.point.force, solution.unknowns)
+    series = Fourier(problem.method.orders, max(FEWEST, solution.samples))
+    # The map goes from sample to sample, and so do the states that it takes from the elements.
+    system = Uncondensed(problem.lowered, problem.condensation, series, events=False)
+    factors = np.linalg.eigvals(monodromy(system, linear, solution.unknowns, solution.omega)).astype(complex)
+    values = np.log(factors[np.abs(factors) > FORGOTTEN]) / (2 * np.pi)
+    return np.array(sorted(values, key=lambda value: (-value.real, abs(value.imag), value.imag)))

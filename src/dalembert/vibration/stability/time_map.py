@@ -1,0 +1,224 @@
+r"""The linearised motion over a period, step by step in time: Floquet multipliers where laws have a memory.
+
+Disturbances of displacements, velocities and sliders are carried along the balanced motion by the trapezoidal rule
+
+.. math:: M \frac{v_+ - v}{h} + C \frac{v_+ + v}{2} + K \frac{y_+ + y}{2} + L^T \frac{\lambda_+ + \lambda}{2} = 0,
+          \qquad y_+ - y = h \frac{v_+ + v}{2},
+
+which neither damps nor excites by itself. Elements add what their linearised laws at each sample say, sliders with
+their memory. A rigid contact that sticks or is closed holds its coordinates, and where it begins to hold, it takes
+their velocities by an impulse; one that slips feels its normal force alone. Coordinates without mass are in balance at
+the end of each step.
+"""
+
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+from scipy.linalg import cholesky
+
+from dalembert.errors import InputError
+from dalembert.vibration.balance.uncondensed import Uncondensed
+from dalembert.vibration.laws.friction_law import FRICTION, SEPARATED, STUCK, TANGENTIAL
+from dalembert.vibration.laws.linearised_law import linearised
+from dalembert.vibration.laws.springs import UserElement
+from dalembert.vibration.system.lowering import ELASTIC
+
+MEMORY = 4_000_000
+"""Numbers that the steps made at once may have."""
+
+
+class Laws(NamedTuple):
+    """Linearised laws on the q retained coordinates and the z places of sliders that slip, at each sample.
+
+    Parameters
+    ----------
+    reaction : array, shape (samples, q, q)
+        Forces at the end of a step by displacements there.
+    memory : array, shape (samples, q, z)
+        The same by sliders at its begin.
+    following : array, shape (samples, z, q)
+        Sliders at the end by displacements there.
+    keeping : array, shape (samples, z, z)
+        The same by sliders at the begin.
+    stiffness, release : array, shape (samples, q, q) and (samples, q, z)
+        The same forces by displacements and sliders at the end, from which the next step begins.
+    """
+
+    reaction: np.ndarray
+    memory: np.ndarray
+    following: np.ndarray
+    keeping: np.ndarray
+    stiffness: np.ndarray
+    release: np.ndarray
+
+
+class Held(NamedTuple):
+    """What rigid contacts may hold: rows (r, q), whether they do (samples, r), and how they push (samples, r, q)."""
+
+    rows: np.ndarray
+    active: np.ndarray
+    push: np.ndarray
+
+
+def monodromy(system: Uncondensed, linear: np.ndarray, unknowns: np.ndarray, omega: float) -> np.ndarray:
+    """Disturbances after a period from those before, (states, states): displacements, velocities, sliders that slip.
+
+    Parameters
+    ----------
+    system : Uncondensed
+    linear, unknowns : array, shape (q, coefficients)
+        Linear part of the balance, and the motion.
+    omega : float
+
+    Raises
+    ------
+    InputError
+        For coordinates that only together with others have a mass.
+    """
+    mass = system.matrices[1]
+    light = _massless(mass)
+    laws, held = _laws(system, unknowns), _held(system, linear, unknowns)
+    n, samples = len(mass), system.series.samples
+    states = 2 * n + laws.memory.shape[2]
+    starts = _changes(laws, held)
+    lengths = np.diff(np.append(starts, samples))
+    result, chunk = np.eye(states), max(1, MEMORY // (states * (n + len(held.rows))))
+    begins = held.active & ~np.roll(held.active, 1, axis=0)
+    for first in range(0, len(starts), chunk):
+        steps = starts[first : first + chunk]
+        made = _steps(system, laws, held, light, 2 * np.pi / omega / samples, steps)
+        for t, step, length in zip(steps, made, lengths[first : first + chunk], strict=True):
+            if begins[t].any():
+                result[n : 2 * n] = _stopped(mass, result[n : 2 * n], held.rows[held.active[t]], light)
+            result = np.linalg.matrix_power(step, int(length)) @ result
+    return result
+
+
+def _changes(laws: Laws, held: Held) -> np.ndarray:
+    """Samples from which steps are others than before; between them friction in one direction repeats the same."""
+    samples = len(held.active)
+    begun = np.zeros(samples, dtype=bool)
+    begun[0] = True
+    ended = (np.roll(laws.stiffness, 1, axis=0), np.roll(laws.release, 1, axis=0))  # where the step before ended
+    for values in (laws.reaction, laws.memory, laws.following, laws.keeping, *ended, held.active, held.push):
+        begun |= np.any((values != np.roll(values, 1, axis=0)).reshape(samples, -1), axis=1)
+    return np.flatnonzero(begun)
+
+
+def _steps(system: Uncondensed, laws: Laws, held: Held, light: np.ndarray, h: float, steps: np.ndarray) -> np.ndarray:
+    """Matrices (steps, states, states) from each sample's predecessor to it."""
+    stiffness, mass, damping = system.matrices
+    n, q, z, r = len(mass), system.retained, laws.memory.shape[2], len(held.rows)
+    carried = 4 / h**2 * mass + 2 / h * damping
+    carried[light] = damping[light] / h
+    heavy = ~light
+    matrix, right = np.zeros((len(steps), n + r, n + r)), np.zeros((len(steps), n + r, 2 * n + z))
+    matrix[:, :n, :n] = carried + stiffness
+    matrix[:, :q, :q] += laws.reaction[steps]
+    matrix[:, n:, :q] = np.where(held.active[steps, :, None], held.rows, 0.0)
+    matrix[:, :q, n:] = np.swapaxes(held.push[steps], 1, 2)
+    matrix[:, np.arange(n, n + r), np.arange(n, n + r)] = ~held.active[steps]
+    right[:, :n, :n] = carried - stiffness * heavy[:, None]
+    right[:, :q, :q] -= laws.stiffness[steps - 1] * heavy[:q, None]
+    right[:, :n, n : 2 * n] = 4 / h * mass
+    right[:, :q, 2 * n :] = -laws.memory[steps] - laws.release[steps - 1] * heavy[:q, None]
+    right[:, n:, :q] = matrix[:, n:, :q]
+    places = np.linalg.solve(matrix, right)[:, :n]
+    result = np.zeros((len(steps), 2 * n + z, 2 * n + z))
+    result[:, :n] = places
+    result[:, n : 2 * n] = 2 / h * places
+    result[:, np.arange(n, 2 * n), np.arange(n)] -= 2 / h
+    result[:, np.arange(n, 2 * n), np.arange(n, 2 * n)] -= 1.0
+    result[:, n : 2 * n] *= heavy[:, None]
+    result[:, 2 * n :] = laws.following[steps] @ places[:, :q]
+    result[:, 2 * n :, 2 * n :] += laws.keeping[steps]
+    return result
+
+
+def _massless(mass: np.ndarray) -> np.ndarray:
+    """Which coordinates have no mass, (n,)."""
+    light = ~np.any(mass, axis=1)
+    try:
+        cholesky(mass[np.ix_(~light, ~light)])
+    except np.linalg.LinAlgError:
+        raise InputError(
+            "stability: some degrees of freedom with contacts have a mass only together with others; give each a mass"
+        ) from None
+    return light
+
+
+def _stopped(mass: np.ndarray, velocity: np.ndarray, rows: np.ndarray, light: np.ndarray) -> np.ndarray:
+    """Velocities after the impulses that stop what is held from here on."""
+    whole = np.zeros((len(rows), len(mass)))
+    whole[:, : rows.shape[1]] = rows
+    heavy = np.flatnonzero(~light)
+    whole = whole[np.any(whole[:, heavy], axis=1)][:, heavy]
+    back = np.linalg.solve(mass[np.ix_(heavy, heavy)], whole.T)
+    result = velocity.copy()
+    result[heavy] -= back @ np.linalg.solve(whole @ back, whole @ velocity[heavy])
+    return result
+
+
+def _held(system: Uncondensed, linear: np.ndarray, unknowns: np.ndarray) -> Held:
+    """What rigid contacts hold."""
+    combination, series = system.lowered.coordinates.combination, system.series
+    speed = (combination @ unknowns @ series.derivative.T) @ series.synthesis.T
+    rows, active, push = [], [], []
+    states = system.elements(linear, unknowns).evaluation.states
+    for block, own in zip(system.lowered.blocks, states, strict=True):
+        for cell, numbers, state in zip(block.rows, block.numbers, own, strict=True):
+            if block.kind == ELASTIC:
+                continue
+            sliding = speed[cell[: block.tangents]].T
+            sizes = np.linalg.norm(sliding, axis=1, keepdims=True)
+            way = np.where((state != STUCK)[:, None], sliding / np.where(sizes > 0, sizes, 1.0), 0.0)
+            for number, row in enumerate(combination[cell]):
+                rows.append(row)
+                active.append(state == STUCK if number < block.tangents else state != SEPARATED)
+                along = (
+                    0.0 if number < block.tangents else numbers[FRICTION] * way @ combination[cell[: block.tangents]]
+                )
+                push.append(np.where(active[-1][:, None], row + along, 0.0))
+    q, samples = len(unknowns), series.samples
+    if not rows:
+        return Held(np.zeros((0, q)), np.zeros((samples, 0), dtype=bool), np.zeros((samples, 0, q)))
+    return Held(np.array(rows), np.stack(active, axis=1), np.stack(push, axis=1))
+
+
+def _laws(system: Uncondensed, unknowns: np.ndarray) -> Laws:
+    """Of all elements but rigid contacts."""
+    combination, series = system.lowered.coordinates.combination, system.series
+    motion = (combination @ unknowns) @ series.synthesis.T
+    q, samples = unknowns.shape[0], series.samples
+    springs, parts = np.zeros((samples, q, q)), []
+    for rows, element in system.lowered.springs:
+        several = isinstance(element, UserElement)
+        slopes = element.law(motion[rows] if several else motion[rows[0]])[1]
+        slopes = slopes if several else slopes[None, None]
+        springs += np.einsum("ip,ijt,jr->tpr", combination[rows], slopes, combination[rows], optimize=True)
+    reaction, stiffness = springs, springs.copy()
+    for block in system.lowered.blocks:
+        columns, tangents = block.rows.shape[1], block.tangents
+        for rows, numbers in zip(block.rows, block.numbers, strict=True):
+            if block.kind != ELASTIC:
+                continue
+            own = linearised(np.ascontiguousarray(motion[rows]), numbers, tangents, block.normal)
+            seen = combination[rows]
+            reaction += seen.T @ own[:, :columns, :columns] @ seen
+            ended = own[:, :columns, :columns].copy()  # the spring's force, whatever the slider did: k (u - z)
+            ended[:, :tangents] = np.eye(tangents, columns) * numbers[TANGENTIAL]
+            stiffness += seen.T @ ended @ seen
+            if not np.allclose(own[:, columns:, columns:], np.eye(tangents)):  # else where it rests is given
+                parts.append((seen, own, columns, numbers[TANGENTIAL]))
+    ends = np.cumsum([0, *(own.shape[1] - columns for _, own, columns, _ in parts)])
+    memory, release = np.zeros((samples, q, ends[-1])), np.zeros((samples, q, ends[-1]))
+    following, keeping = np.zeros((samples, ends[-1], q)), np.zeros((samples, ends[-1], ends[-1]))
+    for (seen, own, columns, spring), (begin, end) in zip(parts, pairwise(ends), strict=True):
+        memory[:, :, begin:end] = seen.T @ own[:, :columns, columns:]
+        release[:, :, begin:end] = -spring * seen[: end - begin].T
+        following[:, begin:end], keeping[:, begin:end, begin:end] = (
+            own[:, columns:, :columns] @ seen,
+            own[:, columns:, columns:],
+        )
+    return Laws(reaction, memory, following, keeping, stiffness, release)

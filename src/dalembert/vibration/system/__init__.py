@@ -1,0 +1,1 @@
+"""Structures with contacts, springs and forces, and their arrays."""

@@ -1,0 +1,251 @@
+"""From a vibrating system to arrays: the rows that its elements see, their numbers, its loads."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from scipy.sparse import csc_array
+
+from dalembert.errors import InputError, ModelError
+from dalembert.structure import Structure
+from dalembert.vibration.balance.coordinates import Coordinates, coordinates
+from dalembert.vibration.balance.fourier import Fourier
+from dalembert.vibration.laws.contacts import Elastic, FrictionContact, Iwan, Rigid
+from dalembert.vibration.laws.springs import UserElement
+from dalembert.vibration.system.system import HarmonicForce, StaticForce, VibrationSystem
+
+ELASTIC = "elastic"
+
+
+@dataclass(frozen=True)
+class FrictionBlock:
+    """Sliders of one shape and one kind of law.
+
+    Parameters
+    ----------
+    kind : {"elastic", "displacement", "velocity"}
+    tangents : int
+    normal : bool
+    rows : array of int, shape (cells, tangents + normal)
+        Among the rows of all elements.
+    contacts : array of int, shape (cells,)
+        Which contact a cell belongs to.
+    numbers : array, shape (cells, 5)
+        As :mod:`dalembert.vibration.laws.friction_law` takes them; stiffnesses of rigid contacts are their penalties.
+    """
+
+    kind: str
+    tangents: int
+    normal: bool
+    rows: np.ndarray
+    contacts: np.ndarray
+    numbers: np.ndarray
+
+    @property
+    def memory(self) -> bool:
+        """Whether the slider remembers."""
+        return self.kind != "velocity"
+
+    @cached_property
+    def distinct(self) -> bool:
+        """Whether no two cells see the same row."""
+        return len(np.unique(self.rows)) == self.rows.size
+
+
+@dataclass(frozen=True)
+class Lowered:
+    """A vibrating system as arrays.
+
+    Parameters
+    ----------
+    structure : Structure
+    forces : tuple
+    row_names : tuple of str
+        Names of the coordinates that elements see, such as ``"foot.x"``.
+    matrix : sparse array, shape (rows, n)
+    contacts : tuple of str
+        Names of the friction contacts.
+    blocks : tuple of FrictionBlock
+    springs : tuple of (array of int, element)
+        Rows and law of each element without memory.
+    """
+
+    structure: Structure
+    forces: tuple[HarmonicForce | StaticForce, ...]
+    row_names: tuple[str, ...]
+    matrix: csc_array
+    contacts: tuple[str, ...]
+    blocks: tuple[FrictionBlock, ...]
+    springs: tuple[tuple[np.ndarray, Any], ...]
+
+    @cached_property
+    def coordinates(self) -> Coordinates:
+        """Retained and interior coordinates; the rows of rigid contacts are retained ones themselves."""
+        rigid = [block.rows.ravel() for block in self.blocks if block.kind != ELASTIC]
+        first = np.concatenate(rigid) if rigid else np.zeros(0, dtype=int)
+        result = coordinates(self.matrix, first)
+        for row in first:
+            if row not in result.rows:
+                raise ModelError(
+                    f"the rigid contact coordinate {self.row_names[row]!r} moves only together with other rigid "
+                    "contacts, so their forces cannot be told apart; leave one of them out, or give it an elastic law"
+                )
+        return result
+
+    def loads(self, series: Fourier) -> np.ndarray:
+        """Coefficients of the forces on all degrees of freedom, (n, coefficients)."""
+        result = np.zeros((self.structure.size, series.count), dtype=np.result_type(float, *_values(self.forces)))
+        for force in self.forces:
+            order = 0 if isinstance(force, StaticForce) else force.harmonic
+            if order not in series.orders:
+                raise InputError(
+                    f"the force on {force.dof!r} acts in harmonic {order}, which is not among the harmonics kept "
+                    f"({', '.join(map(str, series.orders))}); keep more of them"
+                )
+            row, place = self.structure.dofs.index(force.dof), series.cosines[series.orders.index(order)]
+            if isinstance(force, StaticForce):
+                result[row, place] += force.value
+            else:
+                result[row, place] += force.amplitude * np.cos(force.phase)
+                result[row, place + 1] -= force.amplitude * np.sin(force.phase)
+        return result
+
+    @property
+    def real(self) -> "Lowered":
+        """The same without the parts that are directions of derivatives."""
+        blocks = tuple(replace(block, numbers=np.ascontiguousarray(np.real(block.numbers))) for block in self.blocks)
+        return replace(self, blocks=blocks)
+
+
+def lower(system: VibrationSystem) -> Lowered:
+    """Arrays of a system.
+
+    Raises
+    ------
+    InputError
+        For an element or a force on a degree of freedom that is not there.
+    ModelError
+        For a rigid contact on a degree of freedom without stiffness and no penalty.
+    """
+    rows, names = _Rows(system.structure), []
+    cells: dict[tuple[str, int, bool], list[tuple[list[int], int, list]]] = {}
+    springs = []
+    for element in system.elements:
+        if isinstance(element, FrictionContact):
+            own = [rows.contact(element, direction) for direction in _directions(element)]
+            key = _kind(element.law), len(element.tangential), element.normal is not None
+            for numbers in _numbers(element, own, rows):
+                cells.setdefault(key, []).append((own, len(names), numbers))
+            names.append(element.name)
+        elif isinstance(element, UserElement):
+            where = f"element {element.name!r}"
+            springs.append(
+                (np.array([rows.between(f"{element.name}.{dof}", dof, None, where) for dof in element.dofs]), element)
+            )
+        else:
+            where = f"spring {element.name!r}"
+            springs.append((np.array([rows.between(element.name, element.first, element.second, where)]), element))
+    for force in system.forces:
+        _place(system.structure, force.dof, "a force")
+    blocks = tuple(
+        FrictionBlock(*key, np.array([own for own, _, _ in entries]), np.array([at for _, at, _ in entries]),
+                      np.array([numbers for _, _, numbers in entries]))
+        for key, entries in cells.items()
+    )  # fmt: skip
+    return Lowered(
+        system.structure, tuple(system.forces), tuple(rows.names), rows.matrix(), tuple(names), blocks, tuple(springs)
+    )
+
+
+class _Rows:
+    """Rows of relative displacements, as they are asked for."""
+
+    def __init__(self, structure: Structure) -> None:
+        self.structure = structure
+        self.names: list[str] = []
+        self.entries: list[dict[int, float]] = []
+
+    def add(self, name: str, entries: dict[int, float]) -> int:
+        self.names.append(name)
+        self.entries.append(entries)
+        return len(self.names) - 1
+
+    def contact(self, element: FrictionContact, direction: str) -> int:
+        """Row of a contact along one of its directions."""
+        sign, axis = (-1.0 if direction.startswith("-") else 1.0), direction.removeprefix("-")
+        where = f"contact {element.name!r}"
+        entries = {_place(self.structure, f"{element.first}.{axis}", where): sign}
+        if element.second is not None:
+            entries[_place(self.structure, f"{element.second}.{axis}", where)] = -sign
+        return self.add(f"{element.name}.{axis}", entries)
+
+    def between(self, name: str, first: str, second: str | None, where: str) -> int:
+        """Row of the difference of two degrees of freedom."""
+        entries = {_place(self.structure, first, where): 1.0}
+        if second is not None:
+            end = _place(self.structure, second, where)
+            if end in entries:
+                raise InputError(
+                    f"{where} is between {first!r} and itself; expected two degrees of freedom, or one and the ground"
+                )
+            entries[end] = -1.0
+        return self.add(name, entries)
+
+    def matrix(self) -> csc_array:
+        rows = [row for row, entries in enumerate(self.entries) for _ in entries]
+        columns = [column for entries in self.entries for column in entries]
+        values = [value for entries in self.entries for value in entries.values()]
+        return csc_array((values, (rows, columns)), shape=(len(self.entries), self.structure.size), dtype=float)
+
+    def penalty(self, row: int) -> object:
+        """Stiffness of the structure behind a row, with everything else held: springs of its ends in series."""
+        diagonal = self.structure.stiffness.diagonal()
+        stiffnesses = [diagonal[place] for place in self.entries[row]]
+        if not all(stiffness.real > 0 for stiffness in stiffnesses):
+            raise ModelError(
+                f"the rigid contact coordinate {self.names[row]!r} lies on a degree of freedom without stiffness; "
+                "give its law Rigid(penalty=...) in N/m"
+            )
+        return 1 / sum(1 / stiffness for stiffness in stiffnesses)
+
+
+def _place(structure: Structure, dof: str, where: str) -> int:
+    try:
+        return structure.dofs.index(dof)
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from None
+
+
+def _directions(element: FrictionContact) -> tuple[str, ...]:
+    return (*element.tangential, *([element.normal] if element.normal is not None else []))
+
+
+def _kind(law: object) -> str:
+    return law.kind if isinstance(law, Rigid) else ELASTIC
+
+
+def _numbers(element: FrictionContact, own: list[int], rows: _Rows) -> list[list]:
+    """Numbers of the cells of a contact."""
+    law = element.law
+    if isinstance(law, Elastic):
+        normal = law.normal_stiffness if law.normal_stiffness is not None else 0.0
+        return [[law.tangential_stiffness, normal, law.gap, element.friction, element.preload]]
+    if isinstance(law, Iwan):
+        normal = law.normal_stiffness if law.normal_stiffness is not None else 0.0
+        return [
+            [stiffness, share * normal, law.gap, element.friction, share * element.preload]
+            for stiffness, share in zip(law.stiffnesses, law.shares, strict=True)
+        ]
+    tangential = law.penalty if law.penalty is not None else rows.penalty(own[0])
+    normal = law.penalty if law.penalty is not None else rows.penalty(own[-1])
+    return [[tangential, normal, law.gap, element.friction, element.preload]]
+
+
+def _values(forces: Sequence[HarmonicForce | StaticForce]) -> list:
+    return [
+        value
+        for force in forces
+        for value in ((force.value,) if isinstance(force, StaticForce) else (force.amplitude, force.phase))
+    ]

@@ -1,0 +1,1 @@
+"""Periodic motions by integration in time."""

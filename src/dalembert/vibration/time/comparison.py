@@ -1,0 +1,220 @@
+"""Points of a curve by harmonic balance beside integration in time."""
+
+import hashlib
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from dalembert.arguments import takes_checked
+from dalembert.contents import Contents
+from dalembert.errors import InputError
+from dalembert.forward import Checkpoint, ensemble
+from dalembert.results import Result
+from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
+from dalembert.vibration.paths.curve import FrequencyCurve
+from dalembert.vibration.storage import fields_of, stored
+from dalembert.vibration.system.fingerprint import fingerprint
+from dalembert.vibration.system.lowering import lower
+from dalembert.vibration.system.system import VibrationSystem
+from dalembert.vibration.threads import one_thread
+from dalembert.vibration.time.newmark import Newmark
+from dalembert.vibration.time.reference import LONG_RUN, steady_state
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+SPREAD = 4
+"""Points besides the largest response that are compared if none are asked for."""
+_DIMENSIONS = {
+    "points": ("point",),
+    "frequencies": ("point",),
+    "balance": ("point", "dof"),
+    "time": ("point", "dof"),
+    "periods": ("point",),
+    "residuals": ("point",),
+    "converged": ("point",),
+}
+_UNITS = {"frequencies": "Hz", "balance": "m", "time": "m"}
+
+
+@dataclass(frozen=True, eq=False)
+class TimeComparison(Result):
+    """Sizes of periodic motions by harmonic balance and in time, as :func:`compare_in_time` returns them.
+
+    Parameters
+    ----------
+    dofs : tuple of str
+    kind : str
+        Of the sizes: ``"peak"``, ``"rms"`` or ``"harmonic 1"`` and so on.
+    points : array of int, shape (k,)
+        Of the curve.
+    frequencies : array, shape (k,)
+        Hz.
+    balance, time : array, shape (k, dofs)
+        m.
+    periods : array of int, shape (k,)
+        That were gone through in time.
+    residuals : array, shape (k,)
+        Change of the motion over the last of these, as part of its size.
+    converged : array of bool, shape (k,)
+        Whether that is within the tolerance.
+    provenance : mapping
+        Settings of the integration.
+    """
+
+    FORMAT: ClassVar[str] = "dalembert comparison in time 1"
+
+    dofs: tuple[str, ...]
+    kind: str
+    points: np.ndarray
+    frequencies: np.ndarray
+    balance: np.ndarray
+    time: np.ndarray
+    periods: np.ndarray
+    residuals: np.ndarray
+    converged: np.ndarray
+    provenance: Mapping[str, Any]
+
+    def __len__(self) -> int:
+        return len(self.frequencies)
+
+    @property
+    def differences(self) -> np.ndarray:
+        """Of harmonic balance from time, as part of the largest size of each degree of freedom in time, (k, dofs)."""
+        return (self.balance - self.time) / self.time.max(axis=0, initial=np.finfo(float).tiny)
+
+    def summary(self) -> str:
+        """A few lines: the largest differences, and the points in time that are not periodic yet."""
+        largest = np.abs(self.differences).max(axis=0)
+        worst = int(largest.argmax())
+        first, last, steps = self.periods.min(), self.periods.max(), self.provenance["method"]["steps_per_period"]
+        lines = [
+            f"{len(self)} points in time with {steps} steps of a period, after {first} to {last} periods: harmonic "
+            f"balance differs by up to {largest[worst]:.1e} of the largest motion ({self.dofs[worst]}, {self.kind})"
+        ]
+        late = ", ".join(f"{value:.6g} Hz" for value in self.frequencies[~self.converged])
+        lines += [f"not periodic yet in time, so not to be compared: {late}"] * bool(late)
+        return "\n".join(lines)
+
+    def contents(self) -> Contents:
+        return stored(self, _DIMENSIONS, _UNITS, ("dofs", "kind"))
+
+    @classmethod
+    def from_xarray(cls, dataset: "Dataset") -> "TimeComparison":
+        """The comparison that :meth:`to_xarray` turned into a dataset."""
+        return cls(**fields_of(dataset, _DIMENSIONS, ("converged",)))
+
+
+@takes_checked("points", "frequencies", "way", "kind")
+def compare_in_time(
+    system: VibrationSystem,
+    curve: FrequencyCurve,
+    *,
+    points: Sequence[int] | None = None,
+    frequencies: Sequence[float] | None = None,
+    method: Newmark | None = None,
+    way: str = LONG_RUN,
+    kind: str = "peak",
+    checkpoint: Checkpoint | None = None,
+) -> TimeComparison:
+    """Some points of a curve beside integration in time, which starts from them; over all cores.
+
+    A point that is no periodic motion in time is left by it, for another one or none.
+
+    Parameters
+    ----------
+    system : VibrationSystem
+        That of the curve.
+    curve : FrequencyCurve
+    points : sequence of int, optional
+        Of the curve.
+    frequencies : sequence of float, optional
+        Hz; the nearest points of the curve are taken. If neither is given, the largest response of the first observed
+        degree of freedom, and some points spread over the curve.
+    method : Newmark, optional
+    way : {"long run", "shooting"}
+        As in :func:`steady_state`.
+    kind : str
+        Of the sizes: ``"peak"``, ``"rms"`` or ``"harmonic 1"`` and so on.
+    checkpoint : Checkpoint, optional
+        Where the sizes of each motion are kept when it is found; begun again with the same file only the missing ones
+        are integrated.
+
+    Raises
+    ------
+    InputError
+        For points that the curve does not have or that were not found, and for both points and frequencies.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from dalembert.structure import lumped
+    >>> from dalembert.vibration import HarmonicForce, VibrationSystem, frequency_response
+    >>> system = VibrationSystem(lumped({"m": 1.0}, [("m", None, 1.0, 0.1)]))
+    >>> force = system.add(HarmonicForce("m", 1.0))
+    >>> curve = frequency_response(system, np.array([0.1, 0.15, 0.2]))
+    >>> comparison = compare_in_time(system, curve, frequencies=[0.15])
+    >>> comparison.dofs, comparison.balance.round(3).tolist(), comparison.time.round(3).tolist()
+    (('m.x',), [[6.841]], [[6.842]])
+    """
+    method, chosen = method or Newmark(), _chosen(curve, points, frequencies, kind)
+
+    def run(point: int) -> tuple[np.ndarray, np.ndarray]:
+        motion = steady_state(
+            system, float(curve.frequencies[point]), method, way=way, start=(curve, point), observe=curve.dofs
+        )
+        sizes = np.array([motion.amplitude(dof, kind) for dof in curve.dofs])
+        return sizes, np.array([motion.periods, motion.residual, motion.converged], dtype=float)
+
+    balance = HarmonicBalance(**curve.provenance["method"])
+    asked = (
+        b"" if checkpoint is None else fingerprint(lower(system).real, balance, method, way, kind, curve.dofs).encode()
+    )
+
+    def once(point: int) -> Sequence[np.ndarray]:
+        if checkpoint is None:
+            return run(point)
+        start = (own[point].tobytes() for own in (curve.unknowns, curve.frequencies, curve.samples))
+        return checkpoint.once(hashlib.sha256(b"in time" + asked + b"".join(start)).digest(), lambda: run(point))
+
+    with one_thread():
+        sizes, how = zip(*ensemble(once, chosen.tolist()), strict=True)
+    periods, residuals, converged = np.array(how).T
+    return TimeComparison(
+        dofs=curve.dofs,
+        kind=kind,
+        points=chosen,
+        frequencies=curve.frequencies[chosen],
+        balance=np.stack([curve.amplitude(dof, kind)[chosen] for dof in curve.dofs], axis=1),
+        time=np.array(sizes),
+        periods=periods.astype(int),
+        residuals=residuals,
+        converged=converged.astype(bool),
+        provenance={"method": asdict(method), "way": way},
+    )
+
+
+def _chosen(
+    curve: FrequencyCurve, points: Sequence[int] | None, frequencies: Sequence[float] | None, kind: str
+) -> np.ndarray:
+    """Numbers of the points to compare."""
+    found = np.flatnonzero(curve.converged)
+    if not len(found):
+        raise InputError("compare_in_time: no point of the curve was found; see its residuals")
+    if points is not None and frequencies is not None:
+        raise InputError("compare_in_time: both points and frequencies were given; expected one of them")
+    if frequencies is not None:
+        asked = np.asarray(frequencies, dtype=float).reshape(-1, 1)
+        return found[np.abs(curve.frequencies[found] - asked).argmin(axis=1)]
+    if points is None:
+        largest = found[curve.amplitude(curve.dofs[0], kind)[found].argmax()]
+        return np.unique(np.append(largest, found[np.linspace(0, len(found) - 1, SPREAD).round().astype(int)]))
+    for point in points:
+        if point not in found:
+            raise InputError(
+                f"compare_in_time: there is no point {point} that was found; expected numbers among the "
+                f"{len(found)} found ones, {found[0]} to {found[-1]}"
+            )
+    return np.asarray(points, dtype=int)

@@ -1,0 +1,252 @@
+r"""From a vibrating system to arrays for integration in time: modes of its structure, cells and springs in it.
+
+The modes are those of the pencil :math:`(M, M + K/\omega^2)`, which also has them where some of the mass, or of the
+stiffness, is missing.
+"""
+
+import ctypes
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from scipy.linalg import LinAlgError, eigh
+from scipy.sparse import issparse
+
+from dalembert.errors import ModelError
+from dalembert.vibration.balance.condensation import COUPLED, DENSE
+from dalembert.vibration.balance.fourier import Fourier
+from dalembert.vibration.laws.friction_law import NORMAL, TANGENTIAL
+from dalembert.vibration.laws.springs import BilinearStop, CubicSpring, Gap, UserElement
+from dalembert.vibration.system.hysteretic import require_viscous
+from dalembert.vibration.system.lowering import ELASTIC, Lowered
+from dalembert.vibration.system.system import StaticForce
+from dalembert.vibration.time.elements import CUBIC, GAP, STOP, Elements
+from dalembert.vibration.time.steps import Modes, Scheme
+
+MASSLESS = 1e-12
+"""Mass of a mode, as part of its mass and stiffness, below which it has no inertia of its own."""
+_KINDS: dict[type, int] = {CubicSpring: CUBIC, Gap: GAP, BilinearStop: STOP}
+_C_FUNCTION = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p)
+
+
+@dataclass(frozen=True)
+class Spectral:
+    """A structure in its modes.
+
+    Parameters
+    ----------
+    shapes : array, shape (n, modes)
+    mass, stiffness, damping : array, shape (modes,)
+        Diagonals.
+    coupled : array, shape (modes, modes) or (0, 0)
+        The damping where it couples modes.
+    """
+
+    shapes: np.ndarray
+    mass: np.ndarray
+    stiffness: np.ndarray
+    damping: np.ndarray
+    coupled: np.ndarray
+
+    def accelerations(self, force: np.ndarray, place: np.ndarray, velocity: np.ndarray) -> np.ndarray:
+        """Of the modes (modes,) under forces on them; none of those without mass."""
+        damping = self.coupled @ velocity if len(self.coupled) else self.damping * velocity
+        heavy = self.mass > MASSLESS
+        return np.where(heavy, force - damping - self.stiffness * place, 0.0) / np.where(heavy, self.mass, 1.0)
+
+
+def spectral(structure: Any, omega: float) -> Spectral:
+    """Modes of a structure, normalised to 1 in mass and stiffness/ω².
+
+    Raises
+    ------
+    InputError
+        For hysteretic damping.
+    ModelError
+        For a structure too large, or with degrees of freedom that have neither mass nor stiffness.
+    """
+    if structure.size > DENSE:
+        raise ModelError(
+            f"the structure has {structure.size} degrees of freedom, too many to be integrated in time (at most "
+            f"{DENSE}); reduce it with craig_bampton"
+        )
+    require_viscous(structure, "motions in time")
+    given = (structure.mass, structure.stiffness, structure.damping)
+    mass, stiffness, damping = (
+        np.real(matrix.toarray() if issparse(matrix) else matrix)
+        for matrix in (*given[:2], given[0] * 0.0 if given[2] is None else given[2])
+    )
+    try:
+        shapes = eigh(mass, mass + stiffness / omega**2)[1]
+    except LinAlgError:
+        raise ModelError(
+            "the structure has degrees of freedom with neither mass nor stiffness, or with negative ones, and cannot "
+            "be integrated in time; give them some mass or a spring"
+        ) from None
+    modal = shapes.T @ damping @ shapes
+    own = np.diag(modal).copy()
+    apart = np.abs(modal - np.diag(own)).max(initial=0.0) <= COUPLED * max(
+        np.abs(own).max(initial=0.0), np.finfo(float).tiny
+    )
+    inertia, hold = (np.einsum("ij,ij->j", shapes, matrix @ shapes) for matrix in (mass, stiffness))
+    return Spectral(shapes, inertia, hold, own, np.zeros((0, 0)) if apart else modal)
+
+
+@dataclass(frozen=True)
+class Users:
+    """Address of a C function that adds laws of the user's, 0 if there are none, and what keeps it alive."""
+
+    address: int
+    alive: Any
+
+
+@dataclass(frozen=True)
+class InTime:
+    """A lowered system in its modes, at one frequency.
+
+    Parameters
+    ----------
+    lowered : Lowered
+        Real.
+    omega : float
+    steps : int
+        Of a period.
+    stand_in : float
+        Stiffness of the springs in place of rigid contacts, in multiples of the penalties.
+    """
+
+    lowered: Lowered
+    omega: float
+    steps: int
+    stand_in: float
+
+    @cached_property
+    def spectral(self) -> Spectral:
+        """The structure's modes."""
+        return spectral(self.lowered.structure, self.omega)
+
+    @cached_property
+    def places(self) -> np.ndarray:
+        """Row of the lowered system that each column of a cell, and each row of a spring, sees: (rows,) of these."""
+        cells = [block.rows.ravel() for block in self.lowered.blocks]
+        return np.concatenate([np.zeros(0, dtype=int), *cells, *(own for own, _ in self.lowered.springs)])
+
+    @cached_property
+    def seen(self) -> np.ndarray:
+        """What elements see of the modes, (rows, modes)."""
+        return np.ascontiguousarray((self.lowered.matrix @ self.spectral.shapes)[self.places])
+
+    @cached_property
+    def forces(self) -> np.ndarray:
+        """On the modes at the steps' ends, (steps, modes); those of the last end are those of the period's start."""
+        highest = max((0 if isinstance(one, StaticForce) else one.harmonic for one in self.lowered.forces), default=0)
+        series = Fourier(tuple(range(max(highest, 1) + 1)), self.steps)
+        samples = series.synthesis @ (np.real(self.lowered.loads(series)).T @ self.spectral.shapes)
+        return np.ascontiguousarray(np.roll(samples, -1, axis=0))
+
+    def arrays(self, scheme: Scheme) -> tuple[Modes, Elements]:
+        """Arrays of the structure for a method, and of the elements with matched stiffnesses."""
+        own, seen = self.spectral, self.seen
+        ratio = (1 - scheme.alpha_f) / (1 - scheme.alpha_m)
+        by_place, by_velocity = scheme.beta * scheme.step**2 * ratio, scheme.gamma * scheme.step * ratio
+        inverse = 1 / (own.mass + by_velocity * own.damping + by_place * own.stiffness)
+        solver = own.coupled
+        if len(solver):
+            solver = np.linalg.inv(np.diag(own.mass + by_place * own.stiffness) + by_velocity * own.coupled)
+        pushed = solver @ seen.T if len(solver) else inverse[:, None] * seen.T
+        compliance = by_place * (seen @ pushed)
+        elements, shifts = _matched(self.elements, np.diag(compliance))
+        modes = Modes(
+            own.mass, own.damping, own.stiffness, inverse, own.coupled, solver, seen, np.ascontiguousarray(pushed.T),
+            np.ascontiguousarray(compliance - np.diag(shifts)), self.forces,
+        )  # fmt: skip
+        return modes, elements
+
+    @cached_property
+    def elements(self) -> Elements:
+        """Arrays of the elements."""
+        blocks = self.lowered.blocks
+        rows, numbers, at = [np.zeros((0, 3), dtype=int)], [np.zeros((0, 5))], 0
+        for block in blocks:
+            own = at + np.arange(block.rows.size).reshape(block.rows.shape)
+            at += block.rows.size
+            rows.append(np.pad(own, ((0, 0), (0, 3 - block.rows.shape[1]))))
+            numbers.append(block.numbers.astype(float))
+            if block.kind != ELASTIC:
+                numbers[-1][:, [TANGENTIAL, NORMAL]] *= self.stand_in
+        plain = [(own[0], element) for own, element in self._springs if not isinstance(element, UserElement)]
+        return Elements(
+            rows=np.concatenate(rows),
+            tangents=np.array([block.tangents for block in blocks for _ in block.rows], dtype=np.int64),
+            normal=np.array([block.normal for block in blocks for _ in block.rows], dtype=np.int64),
+            numbers=np.concatenate(numbers),
+            contacts=np.concatenate([np.zeros(0, dtype=int), *(block.contacts for block in blocks)]),
+            kinds=np.array([_KINDS[type(element)] for _, element in plain], dtype=np.int64),
+            places=np.array([place for place, _ in plain], dtype=np.int64),
+            values=np.array([[np.real(e.stiffness), np.real(getattr(e, "gap", 0.0))] for _, e in plain]).reshape(-1, 2),
+        )
+
+    def users(self, failures: list[Exception]) -> "Users":
+        """The laws of the user's, callable from compiled code; what they raise is kept, and the run ends."""
+        laws = [(own, element.law) for own, element in self._springs if isinstance(element, UserElement)]
+        if not laws:
+            return Users(0, None)
+        call = _C_FUNCTION(_trampoline(laws, len(self.places), failures))
+        return Users(ctypes.cast(call, ctypes.c_void_p).value or 0, call)
+
+    @property
+    def _springs(self) -> list[tuple[np.ndarray, Any]]:
+        """Rows of their own of the elements without memory, after those of the cells."""
+        sizes = [len(own) for own, _ in self.lowered.springs]
+        first = len(self.places) - sum(sizes) + np.cumsum([0, *sizes])
+        return [
+            (np.arange(begin, begin + size), element)
+            for begin, size, (_, element) in zip(first, sizes, self.lowered.springs, strict=False)
+        ]
+
+
+def _matched(elements: Elements, compliance: np.ndarray) -> tuple[Elements, np.ndarray]:
+    r"""Elements whose cells have the stiffness of what is behind them, and what that shifts their displacements by.
+
+    A cell of stiffness k at u says of its force what one of stiffness :math:`\rho` says at
+    :math:`u + (1/\rho - 1/k) \lambda`. With :math:`1/\rho = y + 1/k` and y the compliance of a step behind it, a
+    single contact is solved at once, whatever k is.
+
+    Returns
+    -------
+    elements : Elements
+    shifts : array, shape (rows,)
+        :math:`1/\rho - 1/k`; 0 where there is no cell.
+    """
+    numbers, shifts = elements.numbers.copy(), np.zeros(len(compliance))
+    for own, rows, tangents, normal in zip(numbers, elements.rows, elements.tangents, elements.normal, strict=True):
+        behind = compliance[rows[:tangents]].max()
+        shifts[rows[:tangents]] = behind
+        own[TANGENTIAL] = 1 / (behind + 1 / own[TANGENTIAL])
+        if normal:
+            shifts[rows[tangents]] = compliance[rows[tangents]]
+            own[NORMAL] = 1 / (compliance[rows[tangents]] + 1 / own[NORMAL])
+    return elements._replace(numbers=numbers), shifts
+
+
+def _trampoline(
+    laws: Sequence[tuple[np.ndarray, Callable]], rows: int, failures: list[Exception]
+) -> Callable[[int, int, int], None]:
+    def call(place: int, force: int, slopes: int) -> None:
+        u, into, matrix = _view(place, rows), _view(force, rows), _view(slopes, rows * rows).reshape(rows, rows)
+        try:
+            for own, law in laws:
+                values, changes = law(u[own][:, None])
+                np.add.at(into, own, values[:, 0])
+                np.add.at(matrix, (own[:, None], own[None, :]), changes[:, :, 0])
+        except Exception as error:  # must not cross the compiled code
+            failures.append(error)
+            into[:] = np.nan
+
+    return call
+
+
+def _view(address: int, count: int) -> np.ndarray:
+    return np.ctypeslib.as_array((ctypes.c_double * count).from_address(address))

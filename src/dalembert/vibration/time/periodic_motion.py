@@ -1,0 +1,147 @@
+"""A periodic motion in time."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from dalembert.contents import Contents
+from dalembert.errors import InputError, unknown
+from dalembert.results import Result, facts_of, plain_facts
+from dalembert.units import unit_of
+from dalembert.vibration.paths.amplitudes import PHASES, Amplitude, observed_column
+from dalembert.vibration.storage import fields_of, stored
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+_DIMENSIONS = {
+    "times": ("time",),
+    "displacements": ("time", "dof"),
+    "relative": ("time", "coordinate"),
+    "forces": ("time", "coordinate"),
+    "states": ("time", "contact"),
+}
+_UNITS = {"times": "s", "displacements": "m", "relative": "m", "forces": "N"}
+_NAMES = ("dofs", "coordinates", "contacts")
+_FACTS = ("frequency", "periods", "residual", "converged")
+
+
+@dataclass(frozen=True, eq=False)
+class PeriodicMotion(Result):
+    """One period of a motion in time, as :func:`steady_state` returns it.
+
+    Parameters
+    ----------
+    dofs, coordinates, contacts : tuple of str
+        Names of the observed degrees of freedom, of the coordinates that elements see, and of the friction contacts.
+    frequency : float
+        Hz.
+    times : array, shape (times,)
+        s, from 0 to a step before the end of the period.
+    displacements : array, shape (times, dofs)
+        m.
+    relative, forces : array, shape (times, coordinates)
+        m and N, of the elements; normal forces are those beyond the preload.
+    states : array of uint8, shape (times, contacts)
+        0 separated, 1 stuck, 2 slipping; of several cells the one that gives way most.
+    periods : int
+        How many were gone through.
+    residual : float
+        Change of the motion over the last period, as part of its size.
+    converged : bool
+        Whether that is within the tolerance.
+    provenance : mapping
+        Versions, method, settings.
+    """
+
+    FORMAT: ClassVar[str] = "dalembert periodic motion 1"
+
+    dofs: tuple[str, ...]
+    coordinates: tuple[str, ...]
+    contacts: tuple[str, ...]
+    frequency: float
+    times: np.ndarray
+    displacements: np.ndarray
+    relative: np.ndarray
+    forces: np.ndarray
+    states: np.ndarray
+    periods: int
+    residual: float
+    converged: bool
+    provenance: Mapping[str, Any]
+
+    def motion(self, dof: str) -> np.ndarray:
+        """Displacement of an observed degree of freedom, m, (times,); a node with only one may stand alone.
+
+        Raises
+        ------
+        InputError
+            For one that was not observed.
+        """
+        return self.displacements[:, observed_column(self.dofs, dof)]
+
+    def harmonics(self, dof: str, highest: int) -> np.ndarray:
+        """Coefficients of the harmonics 0, 1, ... up to a highest: the mean, then a cosine and a sine each."""
+        return _coefficients(self.motion(dof), highest)
+
+    def amplitude(self, dof: str, kind: str = "peak") -> float:
+        """Size of the motion, m: ``"peak"``, ``"rms"`` or ``"harmonic 1"`` and so on.
+
+        The peak is sought on the trigonometric polynomial through the samples.
+
+        Raises
+        ------
+        InputError
+            For another kind, or a degree of freedom that was not observed.
+        """
+        highest = (len(self.times) - 1) // 2
+        size, samples = Amplitude(kind, tuple(range(highest + 1))), self.motion(dof)
+        if kind == "peak":
+            return float(np.abs(np.fft.irfft(np.fft.rfft(samples, norm="forward"), PHASES, norm="forward")).max())
+        return float(size.of(_coefficients(samples, highest)))
+
+    def loop(self, coordinate: str) -> tuple[np.ndarray, np.ndarray]:
+        """Displacement (m) and force (N) of an element's coordinate over the period, closed, (times + 1,) each."""
+        if coordinate not in self.coordinates:
+            raise InputError(unknown("coordinate", coordinate, self.coordinates))
+        row = self.coordinates.index(coordinate)
+        closed = np.arange(len(self.times) + 1) % len(self.times)
+        return self.relative[closed, row], self.forces[closed, row]
+
+    def dissipated(self, coordinate: str) -> float:
+        """Energy that an element takes from the motion in the period along a coordinate, J: ∮ λ du by trapezia."""
+        u, force = self.loop(coordinate)
+        return float(np.diff(u) @ (force[1:] + force[:-1]) / 2)
+
+    def summary(self) -> str:
+        """A few lines: periods, what the last one changed, and the sizes."""
+        state = "periodic" if self.converged else "not yet periodic"
+        lines = [
+            f"{state} after {self.periods} periods of {len(self.times)} steps at {self.frequency:.6g} Hz; "
+            f"the last one changed {self.residual:.1e} of the motion"
+        ]
+        lines += [f"{dof}: largest {self.amplitude(dof):.6g} {unit_of(dof)}" for dof in self.dofs[:8]]
+        return "\n".join(lines)
+
+    def contents(self) -> Contents:
+        found = stored(self, _DIMENSIONS, _UNITS, _NAMES)
+        return replace(found, attributes={**found.attributes, **plain_facts(self, _FACTS)})
+
+    @classmethod
+    def from_xarray(cls, dataset: "Dataset") -> "PeriodicMotion":
+        """The motion that :meth:`to_xarray` turned into a dataset."""
+        return cls(**fields_of(dataset, _DIMENSIONS), **facts_of(cls, dataset, _FACTS))
+
+
+def _coefficients(samples: np.ndarray, highest: int) -> np.ndarray:
+    """Real Fourier coefficients 0..highest of equally spaced samples of a period."""
+    if 2 * highest >= len(samples):
+        raise InputError(
+            f"{len(samples)} samples of a period cannot tell {highest} harmonics apart; expected at least "
+            f"{2 * highest + 1}"
+        )
+    phasors = np.fft.rfft(samples, norm="forward")[: highest + 1]
+    pairs = np.column_stack([2 * phasors.real, -2 * phasors.imag]).ravel()
+    return np.append(phasors[0].real, pairs[2:])

@@ -1,0 +1,247 @@
+"""Periodic motions by integration in time: a reference for harmonic balance that shares its laws of contact alone."""
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, replace
+from functools import cached_property
+
+import numpy as np
+import scipy
+
+import dalembert
+from dalembert.arguments import takes_checked
+from dalembert.errors import InputError, SolveError, unknown
+from dalembert.vibration.balance.equations import equations
+from dalembert.vibration.balance.fourier import Fourier, synthesis
+from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
+from dalembert.vibration.paths.curve import FrequencyCurve
+from dalembert.vibration.paths.frequency_response import observed, response_of, restarted
+from dalembert.vibration.preparation import prepare_time
+from dalembert.vibration.system.lowering import lower
+from dalembert.vibration.system.system import VibrationSystem
+from dalembert.vibration.threads import one_thread
+from dalembert.vibration.time.elements import Elements, Reaction, react, reaction, settle
+from dalembert.vibration.time.lowering import InTime, Users
+from dalembert.vibration.time.newmark import Newmark
+from dalembert.vibration.time.periodic_motion import PeriodicMotion
+from dalembert.vibration.time.shooting import shoot
+from dalembert.vibration.time.steps import LOST, Modes, Record, Scheme, State, advance
+
+LONG_RUN, SHOOTING = "long run", "shooting"
+WARMING = 5
+"""Periods before shooting begins, after which motions without memory of the start are gone."""
+
+
+@takes_checked("way", "observe")
+def steady_state(
+    system: VibrationSystem,
+    frequency: float,
+    method: Newmark | None = None,
+    *,
+    way: str = LONG_RUN,
+    start: tuple[FrequencyCurve, int] | None = None,
+    observe: Sequence[str] | None = None,
+) -> PeriodicMotion:
+    """The periodic motion under forces of a frequency, by integration in time.
+
+    Parameters
+    ----------
+    system : VibrationSystem
+        With at most 1500 degrees of freedom. Rigid contacts are replaced by stiff elastic ones, see :class:`Newmark`.
+    frequency : float
+        Hz, positive.
+    method : Newmark, optional
+    way : {"long run", "shooting"}
+        Period after period until one changes nothing, or Newton's method on what a period changes, which needs fewer
+        where the damping is low.
+    start : (FrequencyCurve, int), optional
+        A curve of the same system and the number of one of its points: the motion starts from there. From rest, with
+        sliders where they stand, if not given.
+    observe : sequence of str, optional
+        Degrees of freedom, nodes or sets of nodes whose motion is kept; as in :func:`frequency_response` if not given.
+
+    Returns
+    -------
+    PeriodicMotion
+        Marked if it is not periodic after the periods that the method allows.
+
+    Raises
+    ------
+    InputError
+        For a frequency that is not positive, a system without a force, an unknown way, unknown degrees of freedom, and
+        a start that does not fit.
+    ModelError
+        For a structure too large, or with neither mass nor stiffness somewhere.
+    SolveError
+        Where the contacts of a step cannot be solved.
+
+    Examples
+    --------
+    >>> from dalembert.structure import lumped
+    >>> from dalembert.vibration import Elastic, FrictionContact, HarmonicForce, VibrationSystem
+    >>> system = VibrationSystem(lumped({"m": 1.0}, [("m", None, 1.0, 0.04)]))
+    >>> force = system.add(HarmonicForce("m", 1.0))
+    >>> damper = system.add(FrictionContact("damper", "m", friction=0.5, preload=2.0, law=Elastic(0.8)))
+    >>> motion = steady_state(system, 1.12 / (2 * np.pi), Newmark(steps_per_period=1024), way="shooting")
+    >>> round(motion.amplitude("m"), 3)
+    3.625
+    """
+    method = method or Newmark()
+    if not (np.isfinite(frequency) and frequency > 0):
+        raise InputError(f"steady_state: the frequency is {frequency}; expected a positive number in Hz")
+    if not system.forces:
+        raise InputError(
+            "steady_state: no force acts on the system, so that it stands still; add a HarmonicForce, or use backbone "
+            "for motions without force"
+        )
+    if way not in (LONG_RUN, SHOOTING):
+        raise InputError(unknown("way", way, (LONG_RUN, SHOOTING), "steady_state"))
+    lowered = lower(system).real
+    problem = InTime(lowered, 2 * np.pi * frequency, method.steps_per_period, method.stand_in)
+    rows = observed(lowered, observe)
+    prepare_time(lowered, None if start is None else HarmonicBalance(**start[0].provenance["method"]).events)
+    with one_thread():
+        run = _Run(problem, method, [])
+        state = run.rest() if start is None else run.on_curve(system, *start)
+        ended = run.long(state, method.periods, method.tolerance) if way == LONG_RUN else run.shot(state)
+    shapes = problem.spectral.shapes[rows]
+    record = Record(*(np.roll(own, 1, axis=0) for own in ended.record))
+    summed = np.zeros((method.steps_per_period, len(lowered.row_names)))
+    np.add.at(summed.T, problem.places, record.forces.T)
+    versions = {"version": dalembert.__version__, "numpy": np.__version__, "scipy": scipy.__version__}
+    return PeriodicMotion(
+        dofs=tuple(lowered.structure.dofs.names[row] for row in rows),
+        coordinates=lowered.row_names,
+        contacts=lowered.contacts,
+        frequency=float(frequency),
+        times=np.arange(method.steps_per_period) / (frequency * method.steps_per_period),
+        displacements=record.modes @ shapes.T,
+        relative=record.modes @ (lowered.matrix @ problem.spectral.shapes).T,
+        forces=summed,
+        states=record.states,
+        periods=ended.periods,
+        residual=ended.change,
+        converged=ended.change <= method.tolerance,
+        provenance={**versions, "method": asdict(method), "way": way},
+    )
+
+
+@dataclass(frozen=True)
+class _Ended:
+    """Where a run ended, with its last period."""
+
+    state: State
+    record: Record
+    periods: int
+    change: float
+
+
+@dataclass(frozen=True)
+class _Run:
+    """Runs of a system with a method; failures of the user's laws are kept."""
+
+    problem: InTime
+    method: Newmark
+    failures: list[Exception]
+
+    @cached_property
+    def _users(self) -> Users:
+        return self.problem.users(self.failures)
+
+    @cached_property
+    def _arrays(self) -> tuple[Modes, Elements]:
+        return self.problem.arrays(self._scheme)
+
+    @property
+    def _modes(self) -> Modes:
+        return self._arrays[0]
+
+    @cached_property
+    def _scheme(self) -> Scheme:
+        return self.method.scheme(self.problem.omega)
+
+    def rest(self) -> State:
+        """At rest, with sliders where they stand."""
+        modes = self.problem.seen.shape[1]
+        return self._balanced(np.zeros(modes), np.zeros(modes), self._sliders())
+
+    def on_curve(self, system: VibrationSystem, curve: FrequencyCurve, point: int) -> State:
+        """On a point of a curve, with sliders as its motion moves them."""
+        balance = equations(system, HarmonicBalance(**curve.provenance["method"]))
+        x = response_of(balance, restarted(balance, curve, point, "steady_state"))
+        steps = self.method.steps_per_period
+        waves = synthesis(curve.orders, 2 * np.pi * np.arange(1, steps + 1) / steps)
+        rates = Fourier(curve.orders, steps).derivative.T @ waves[-1]
+        sliders, seen = self._sliders(), np.asarray(self.problem.lowered.matrix @ x)[self.problem.places]
+        places = np.ascontiguousarray(waves @ seen.T)
+        settle(self.problem.elements, self._users.address, places, sliders, self._reaction())
+        places = np.stack([x @ waves[-1], self.problem.omega * (x @ rates)], axis=1)
+        place, velocity = np.linalg.solve(self.problem.spectral.shapes, places).T
+        return self._balanced(place, velocity, sliders)
+
+    def long(self, state: State, most: int, tolerance: float) -> _Ended:
+        """Period after period."""
+        modes, elements = self._arrays
+        steps, rows = self.method.steps_per_period, len(modes.seen)
+        record = Record(
+            np.empty((steps, len(modes.mass))), np.empty((steps, rows)), np.empty((steps, rows)),
+            np.zeros((steps, len(self.problem.lowered.contacts)), dtype=np.uint8),
+        )  # fmt: skip
+        state = State(state.modes.copy(), state.sliders.copy())
+        status, count, change = advance(
+            modes, elements, self._users.address, self._scheme, state, self.problem.omega, most, tolerance, record
+        )
+        if self.failures:
+            raise self.failures[0]
+        if status == LOST:
+            period, step = divmod(int(count), steps)
+            raise SolveError(
+                f"steady_state: the contacts could not be solved in step {step + 1} of period {period + 1} at "
+                f"{self.problem.omega / (2 * np.pi):.6g} Hz; take more than {steps} steps of a period"
+            )
+        return _Ended(state, record, int(count), float(change))
+
+    def shot(self, state: State) -> _Ended:
+        """By shooting, after some periods."""
+        warm = self.long(state, min(WARMING, self.method.periods), self.method.tolerance)
+        if warm.change <= self.method.tolerance:
+            return warm
+        scale = self._scale(warm)
+
+        def period(flat: np.ndarray) -> tuple[np.ndarray, float]:
+            ended = self.long(self._state(flat, scale), 1, self.method.tolerance)
+            return self._flat(ended.state, scale), ended.change
+
+        found = shoot(period, self._flat(warm.state, scale), self.method.tolerance, self.method.periods - warm.periods)
+        last = self.long(self._state(found.state, scale), 1, self.method.tolerance)
+        return replace(last, periods=warm.periods + found.periods + 1)
+
+    def _scale(self, warm: _Ended) -> np.ndarray:
+        """Of displacements, velocities and two kinds of accelerations, and of sliders, as :meth:`_flat` has them."""
+        size = float(np.linalg.norm(warm.state.modes[:2] / [[1.0], [self.problem.omega]])) or 1.0
+        widest = float(np.abs(warm.record.displacements).max(initial=0.0)) or 1.0
+        each = size * self.problem.omega ** np.array([0.0, 1.0, 2.0, 2.0])
+        return np.append(np.repeat(each, len(self._modes.mass)), np.full(warm.state.sliders.size, widest))
+
+    def _flat(self, state: State, scale: np.ndarray) -> np.ndarray:
+        return np.append(state.modes, state.sliders) / scale
+
+    def _state(self, flat: np.ndarray, scale: np.ndarray) -> State:
+        own, modes = flat * scale, 4 * len(self._modes.mass)
+        return State(own[:modes].reshape(4, -1), own[modes:].reshape(-1, 2))
+
+    def _sliders(self) -> np.ndarray:
+        return np.zeros((len(self.problem.elements.tangents), 2))
+
+    def _balanced(self, place: np.ndarray, velocity: np.ndarray, sliders: np.ndarray) -> State:
+        """With the accelerations that the forces at the start of a period ask for."""
+        seen, found = self.problem.seen, self._reaction()
+        react(self.problem.elements, self._users.address, seen @ place, sliders, found)
+        if self.failures:
+            raise self.failures[0]
+        push = self.problem.forces[-1] - seen.T @ found.force
+        acceleration = self.problem.spectral.accelerations(push, place, velocity)
+        return State(np.stack([place, velocity, acceleration, acceleration]), sliders)
+
+    def _reaction(self) -> Reaction:
+        elements, contacts = self.problem.elements, self.problem.lowered.contacts
+        return reaction(len(self.problem.seen), len(elements.tangents), len(contacts))

@@ -1,0 +1,289 @@
+r"""Compiled: a structure in its modes, with elements, through periods in steps (Newmark, generalized-alpha).
+
+With w the auxiliary accelerations of generalized-alpha (Arnold and Bruels 2007; Newmark's where both alphas are 0),
+
+    x_1 = x_0 + h v_0 + h² ((1/2 - beta) w_0 + beta w_1),   v_1 = v_0 + h ((1 - gamma) w_0 + gamma w_1),
+    (1 - alpha_m) w_1 + alpha_m w_0 = (1 - alpha_f) a_1 + alpha_f a_0,   M a_1 + C v_1 + K x_1 + L^T lambda_1 = f_1
+
+holds at the end of each step. With S = M + g C + b K, where v_1 and x_1 change by g and b with a_1, the displacements u
+that the elements see obey u + b L S⁻¹ L^T lambda = u_0. Each row of L is seen by one element. A cell of friction is
+given the stiffness rho that matches the compliance behind it, and d = u + (1/rho - 1/k) lambda, at which it says of
+lambda what its own stiffness k says at u. Newton's method solves d + (b L S⁻¹ L^T - 1/rho + 1/k) lambda(d) = u_0: as
+many equations as there are rows, linear between changes of the contacts' states.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from dalembert.kernels.blas import gemv
+from dalembert.kernels.kernel import inner, kernel
+from dalembert.kernels.words import Address, Bytes2, Reals, Reals2
+from dalembert.vibration.dense import apply, assign, dot, invert, size_of
+from dalembert.vibration.laws.friction_law import LOAD, NORMAL
+from dalembert.vibration.time.elements import Elements, Reaction, answer, reaction
+
+STEADY, MOVING, LOST = 0, 1, 2
+"""How a run ends: periodic, not yet, or at a step that Newton's method cannot take."""
+NEWTON = 80
+"""Iterations of a step."""
+ASTRAY = 8
+"""Iterations after which a step begins again with stuck contacts: from the slip of one side a contact may be thrown to
+that of the other and back, from where it sticks not."""
+BOLD = 30
+"""Iterations after which steps are halved."""
+ACCURACY = 1e-13
+"""Last change of the elements' displacements, as part of the largest one, and of those that a preload brings."""
+
+
+class Scheme(NamedTuple):
+    """Numbers of the method."""
+
+    step: float
+    beta: float
+    gamma: float
+    alpha_m: float
+    alpha_f: float
+
+
+class Modes(NamedTuple):
+    """A structure in modes.
+
+    ``mass``, ``damping``, ``stiffness`` and ``inverse`` (S⁻¹) are diagonals (n,); where modes are coupled by damping,
+    ``coupled`` and ``solver`` are whole matrices of C and S⁻¹ instead, else empty. ``seen`` (rows, n) is L, ``pushed``
+    (rows, n) S⁻¹ L^T transposed, ``compliance`` (rows, rows) b L S⁻¹ L^T - 1/rho + 1/k; ``force`` (steps, n) acts at
+    the steps' ends.
+    """
+
+    mass: Reals
+    damping: Reals
+    stiffness: Reals
+    inverse: Reals
+    coupled: Reals2
+    solver: Reals2
+    seen: Reals2
+    pushed: Reals2
+    compliance: Reals2
+    force: Reals2
+
+
+class State(NamedTuple):
+    """At an instant: modes (4, n) of displacements, velocities, accelerations, auxiliary ones; sliders (cells, 2)."""
+
+    modes: Reals2
+    sliders: Reals2
+
+
+class Record(NamedTuple):
+    """At the ends of the last period's steps.
+
+    Modes (steps, n), shifted displacements and forces of elements (steps, rows), states of contacts (steps, contacts).
+    """
+
+    modes: Reals2
+    displacements: Reals2
+    forces: Reals2
+    states: Bytes2
+
+
+class Room(NamedTuple):
+    """Room for a step: vectors of rows, matrices (rows, rows), vectors of modes; sliders (cells, 2).
+
+    ``gemv``: the BLAS's address.
+    """
+
+    gemv: Address
+    u: Reals
+    start: Reals
+    residual: Reals
+    change: Reals
+    matrix: Reals2
+    inverse: Reals2
+    history: Reals
+    pull: Reals
+    first_q: Reals
+    first_v: Reals
+    first_z: Reals2
+
+
+def _room(modes: Modes, state: State) -> Room:
+    rows, n = modes.seen.shape
+    return Room(
+        gemv=gemv(),
+        u=np.zeros(rows),
+        start=np.zeros(rows),
+        residual=np.zeros(rows),
+        change=np.zeros(rows),
+        matrix=np.zeros((rows, rows)),
+        inverse=np.zeros((rows, rows)),
+        history=np.zeros(n),
+        pull=np.zeros(n),
+        first_q=np.zeros(n),
+        first_v=np.zeros(n),
+        first_z=np.zeros_like(state.sliders),
+    )
+
+
+@inner
+def _product(gemv, diagonal, whole, x, y):
+    """Set y to the product of a matrix, which may be a diagonal, and x."""
+    if len(whole):
+        apply(gemv, whole, x, y)
+    else:
+        for i in range(len(y)):
+            y[i] = diagonal[i] * x[i]
+
+
+@inner
+def _balance(modes, elements, users, state, reaction, room):
+    """Solve u + compliance · force(u) = start, u shifted, from a guess; the inverse is one of before. If found."""
+    u, start, residual, change = room.u, room.start, room.residual, room.change
+    scale = max(size_of(start), size_of(u))
+    for c in range(len(elements.normal)):
+        if elements.normal[c]:
+            scale = max(scale, elements.numbers[c, LOAD] / elements.numbers[c, NORMAL])
+    before, last = np.inf, False
+    for iteration in range(NEWTON):
+        if iteration == ASTRAY:
+            before = 0.0
+            for c in range(len(elements.tangents)):
+                for i in range(elements.tangents[c]):
+                    u[elements.rows[c, i]] = state.sliders[c, i]
+        answer(elements, users, u, state.sliders, reaction)
+        if last:
+            return True
+        apply(room.gemv, modes.compliance, reaction.force, residual)
+        for i in range(len(u)):
+            residual[i] += u[i] - start[i]
+        size = size_of(residual)
+        if not np.isfinite(size):
+            return False
+        if size > 0.1 * before or room.inverse[0, 0] == 0.0:
+            _linearise(modes.compliance, reaction.slopes, room.matrix)
+            invert(room.matrix, room.inverse)
+        before = size
+        apply(room.gemv, room.inverse, residual, change)
+        part = 0.5 if iteration >= BOLD else 1.0
+        for i in range(len(u)):
+            change[i] *= part
+            u[i] -= change[i]
+        last = size_of(change) <= ACCURACY * scale
+    return False
+
+
+@inner
+def _linearise(compliance, slopes, matrix):
+    """Set the matrix to 1 + compliance · slopes."""
+    for i in range(len(matrix)):
+        for j in range(len(matrix)):
+            matrix[i, j] = 1.0 if i == j else 0.0
+        for k in range(len(matrix)):
+            for j in range(len(matrix)):
+                matrix[i, j] += compliance[i, k] * slopes[k, j]
+
+
+@inner
+def _step(modes, elements, users, scheme, state, t, reaction, room):
+    """A step; whether the contacts are solved."""
+    h, ratio = scheme.step, (1.0 - scheme.alpha_f) / (1.0 - scheme.alpha_m)
+    b, g = scheme.beta * h * h * ratio, scheme.gamma * h * ratio
+    q, v, a, w = state.modes[0], state.modes[1], state.modes[2], state.modes[3]
+    history, pull = room.history, room.pull
+    for i in range(len(q)):
+        history[i] = (scheme.alpha_f * a[i] - scheme.alpha_m * w[i]) / (1.0 - scheme.alpha_m)
+        q[i] += h * v[i] + h * h * ((0.5 - scheme.beta) * w[i] + scheme.beta * history[i])
+        v[i] += h * ((1.0 - scheme.gamma) * w[i] + scheme.gamma * history[i])
+    _product(room.gemv, modes.damping, modes.coupled, v, a)
+    for i in range(len(q)):
+        pull[i] = modes.force[t, i] - a[i] - modes.stiffness[i] * q[i]
+    _product(room.gemv, modes.inverse, modes.solver, pull, a)
+    if len(modes.seen):
+        for i in range(len(q)):
+            pull[i] = q[i] + b * a[i]
+        apply(room.gemv, modes.seen, pull, room.start)
+        apply(room.gemv, modes.compliance, reaction.force, room.u)
+        for i in range(len(room.u)):
+            room.u[i] = room.start[i] - room.u[i]
+        if not _balance(modes, elements, users, state, reaction, room):
+            return False
+        for c in range(len(state.sliders)):
+            assign(state.sliders[c], reaction.moved[c])
+        for k in range(len(modes.pushed)):
+            for i in range(len(a)):
+                a[i] -= modes.pushed[k, i] * reaction.force[k]
+    for i in range(len(q)):
+        w[i] = history[i] + ratio * a[i]
+        q[i] += b * a[i]
+        v[i] += g * a[i]
+    return True
+
+
+@inner
+def _distance(x, y):
+    """Sum of squares of differences."""
+    total = 0.0
+    for i in range(len(x)):
+        total += (x[i] - y[i]) * (x[i] - y[i])
+    return total
+
+
+@inner
+def _change(state, record, omega, room):
+    """What a period changed, as part of the motion."""
+    q, v = state.modes[0], state.modes[1]
+    size = np.sqrt(dot(q, q) + dot(v, v) / omega**2)
+    off = np.sqrt(_distance(q, room.first_q) + _distance(v, room.first_v) / omega**2)
+    change = off / size if size > 0.0 else 0.0
+    if len(state.sliders) == 0 or np.isnan(change):
+        return change
+    widest, slid = 0.0, 0.0
+    for t in range(len(record.displacements)):
+        widest = max(widest, size_of(record.displacements[t]))
+    for c in range(len(state.sliders)):
+        for i in range(2):
+            slid = max(slid, abs(state.sliders[c, i] - room.first_z[c, i]))
+    return max(change, slid / widest if widest > 0.0 else 0.0)
+
+
+@kernel
+def go_through(
+    modes: Modes, elements: Elements, users: Address, scheme: Scheme, state: State, omega: float, most: int,
+    tolerance: float, record: Record, reaction: Reaction, room: Room,
+) -> tuple[int, int, float]:  # fmt: skip
+    steps, change = len(modes.force), np.inf
+    apply(room.gemv, modes.seen, state.modes[0], room.u)
+    for period in range(most):
+        assign(room.first_q, state.modes[0])
+        assign(room.first_v, state.modes[1])
+        for c in range(len(state.sliders)):
+            assign(room.first_z[c], state.sliders[c])
+        for t in range(steps):
+            if not _step(modes, elements, users, scheme, state, t, reaction, room):
+                return LOST, period * steps + t, change
+            assign(record.modes[t], state.modes[0])
+            assign(record.displacements[t], room.u)
+            assign(record.forces[t], reaction.force)
+            assign(record.states[t], reaction.states)
+        change = _change(state, record, omega, room)
+        if not np.isfinite(change):
+            return LOST, period * steps, change
+        if change <= tolerance:
+            return STEADY, period + 1, change
+    return MOVING, most, change
+
+
+def advance(
+    modes: Modes,
+    elements: Elements,
+    users: int,
+    scheme: Scheme,
+    state: State,
+    omega: float,
+    most: int,
+    tolerance: float,
+    record: Record,
+) -> tuple[int, int, float]:
+    """Go through periods until one changes nothing, in place; how it ended, periods or step, change of the last one."""
+    answers = reaction(len(modes.seen), len(state.sliders), record.states.shape[1])
+    room = _room(modes, state)
+    return go_through(modes, elements, users, scheme, state, omega, most, tolerance, record, answers, room)

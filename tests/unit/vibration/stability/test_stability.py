@@ -1,0 +1,150 @@
+"""Stability of points of a curve, the markers of its changes, and how they are kept."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from dalembert.errors import InputError
+from dalembert.forward import Checkpoint
+from dalembert.structure import Dofs, Structure
+from dalembert.vibration import (
+    CubicSpring,
+    Elastic,
+    FrequencyCurve,
+    FrictionContact,
+    HarmonicBalance,
+    HarmonicForce,
+    StaticForce,
+    VibrationSystem,
+    floquet_multipliers,
+    frequency_response,
+)
+from dalembert.vibration.stability import stability
+from support import says
+from vibrating_systems import duffing, one_mass, two_masses
+
+TURN = 2 * np.pi
+METHOD = HarmonicBalance(5)
+
+
+@pytest.fixture(scope="module")
+def duffings_curve() -> FrequencyCurve:
+    ends = 0.8 / TURN, 1.6 / TURN
+    return frequency_response(duffing(), ends, METHOD, continuation="arc-length", stability=True)
+
+
+def test_a_curve_is_unstable_between_its_folds(duffings_curve: FrequencyCurve) -> None:
+    kinds, (first, last) = zip(*duffings_curve.markers, strict=True)
+    assert kinds == ("fold", "fold")
+    between = np.zeros(len(duffings_curve), dtype=bool)
+    between[first + 1 : last + 1] = True
+    np.testing.assert_array_equal(duffings_curve.stable == 0, between)
+    np.testing.assert_array_equal(np.flatnonzero(duffings_curve.fold), [first, last])
+    assert "points stable" in duffings_curve.summary()
+
+
+def test_stability_is_kept_with_a_curve(duffings_curve: FrequencyCurve, tmp_path: Path) -> None:
+    duffings_curve.save(tmp_path / "curve.nc")
+    again = FrequencyCurve.load(tmp_path / "curve.nc")
+    assert again.markers == duffings_curve.markers
+    assert again.stable.dtype == np.int8
+    np.testing.assert_array_equal(again.stable, duffings_curve.stable)
+
+
+@pytest.mark.parametrize(("system", "way"), [(duffing, "hill"), (two_masses, "_by_time_map")])
+def test_stability_that_is_known_is_not_found_again(system, way: str, tmp_path: Path, monkeypatch) -> None:
+    def follow(**options) -> FrequencyCurve:
+        ends = 0.8 / TURN, 1.6 / TURN
+        return frequency_response(system(), ends, METHOD, continuation="arc-length", stability=True, **options)
+
+    found, find = [], getattr(stability, way)
+
+    def counted(problem, solution):
+        found.append(solution.unknowns.tobytes() + np.float64(solution.omega).tobytes())
+        if len(found) == 12:
+            raise KeyboardInterrupt
+        return find(problem, solution)
+
+    undisturbed = follow().to_xarray()
+    monkeypatch.setattr(stability, way, counted)
+    with pytest.raises(KeyboardInterrupt), Checkpoint(tmp_path / "checkpoint") as checkpoint:
+        follow(checkpoint=checkpoint)
+    for _ in range(2):
+        with Checkpoint(tmp_path / "checkpoint") as checkpoint:
+            assert follow(checkpoint=checkpoint).to_xarray().identical(undisturbed)
+    assert len(found) == len(set(found)) + 1  # the one that the interruption hit
+
+
+def test_a_curve_written_before_stability_was_kept_is_read(duffings_curve: FrequencyCurve, tmp_path: Path) -> None:
+    before = duffings_curve.to_xarray().drop_vars("stable")
+    before.to_netcdf(tmp_path / "curve.nc", engine="h5netcdf")
+    again = FrequencyCurve.load(tmp_path / "curve.nc")
+    assert set(again.stable) == {-1}
+    assert again.markers == duffings_curve.markers
+
+
+def test_without_asking_only_folds_are_marked() -> None:
+    ends = 0.8 / TURN, 1.6 / TURN
+    curve = frequency_response(duffing(), ends, METHOD, continuation="arc-length")
+    assert [kind for kind, _ in curve.markers] == ["fold", "fold"]
+    assert set(curve.stable) == {-1}
+
+
+def test_a_slider_is_stable_and_points_that_are_not_found_are_not_judged() -> None:
+    hard = HarmonicBalance(5, samples=128, iterations=2, halvings=0)
+    curve = frequency_response(one_mass(), np.linspace(0.05, 0.3, 6), hard, stability=True)
+    np.testing.assert_array_equal(curve.stable, np.where(curve.converged, 1, -1))
+
+
+def test_with_given_frequencies_the_first_point_behind_a_change_is_marked() -> None:
+    omegas = np.linspace(1.3, 1.1, 11)
+    curve = frequency_response(pushed(), omegas / TURN, HarmonicBalance(9), stability=True)
+    (kind, point), *others = curve.markers
+    assert (kind, others) == ("period doubling", [])
+    np.testing.assert_array_equal(curve.stable, np.arange(11) < point)
+    assert omegas[point] < 1.2279 < omegas[point - 1]
+
+
+def pushed() -> VibrationSystem:
+    """The oscillator of the verification whose period doubles below 1.2279 rad/s."""
+    structure = Structure(np.eye(1), np.zeros((1, 1)), Dofs(("m.x",)), damping=np.array([[0.05]]))
+    system = VibrationSystem(structure)
+    system.add(StaticForce("m", 0.03))
+    system.add(HarmonicForce("m", 0.16))
+    system.add(CubicSpring("cubic", "m", stiffness=1.0))
+    return system
+
+
+def sharing() -> VibrationSystem:
+    structure = Structure(np.ones((2, 2)), np.diag([1.0, 2.0]), Dofs(("a.x", "b.x")), damping=0.1 * np.eye(2))
+    system = VibrationSystem(structure)
+    system.add(HarmonicForce("a", 1.0))
+    system.add(FrictionContact("foot", "a", friction=0.3, preload=1.0, law=Elastic(1.0)))
+    return system
+
+
+def test_the_map_over_a_period_needs_masses_of_their_own() -> None:
+    sentence = (
+        "stability: some degrees of freedom with contacts have a mass only together with others; give each a mass"
+    )
+    with pytest.raises(InputError, match=says(sentence)):
+        frequency_response(sharing(), np.array([0.1]), METHOD, stability=True)
+
+
+def test_multipliers_are_refused_where_they_make_no_sense(duffings_curve: FrequencyCurve) -> None:
+    sentence = "floquet_multipliers: unknown way 'times map'; did you mean 'time map'?"
+    with pytest.raises(InputError, match=says(sentence)):
+        floquet_multipliers(duffing(), duffings_curve, 0, "times map")
+    sentence = (
+        "floquet_multipliers: the start has unknowns of shape (1, 11) and harmonics (0, 1, 2, 3, 4, 5); the system has "
+        "(2, 11) and (0, 1, 2, 3, 4, 5); start from a curve of the same system"
+    )
+    with pytest.raises(InputError, match=says(sentence)):
+        floquet_multipliers(both(), duffings_curve, 0)
+
+
+def both() -> VibrationSystem:
+    system = two_masses()
+    system.add(CubicSpring("cubic", "m1", stiffness=1.0))
+    return system

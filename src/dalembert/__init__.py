@@ -64,7 +64,8 @@ _NAMES = {
     """,
     "vibration": """
         VibrationSystem HarmonicForce StaticForce FrictionContact Elastic Iwan Rigid
-        CubicSpring Gap BilinearStop UserElement HarmonicBalance FrequencyCurve FrequencyResponse frequency_response
+        CubicSpring Gap BilinearStop BoucWen FourParameterIwan LawElement UserElement UserLaw law
+        HarmonicBalance FrequencyCurve FrequencyResponse frequency_response
         Backbone ResonanceTrack backbone floquet_multipliers track_resonance
         CurveFamily frequency_responses
         Deformation deformation

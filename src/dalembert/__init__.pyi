@@ -173,10 +173,12 @@ from dalembert.uncertainty import compare as compare
 from dalembert.uncertainty import propagate as propagate
 from dalembert.vibration import Backbone as Backbone
 from dalembert.vibration import BilinearStop as BilinearStop
+from dalembert.vibration import BoucWen as BoucWen
 from dalembert.vibration import CubicSpring as CubicSpring
 from dalembert.vibration import CurveFamily as CurveFamily
 from dalembert.vibration import Deformation as Deformation
 from dalembert.vibration import Elastic as Elastic
+from dalembert.vibration import FourParameterIwan as FourParameterIwan
 from dalembert.vibration import FrequencyCurve as FrequencyCurve
 from dalembert.vibration import FrequencyResponse as FrequencyResponse
 from dalembert.vibration import FrictionContact as FrictionContact
@@ -184,6 +186,7 @@ from dalembert.vibration import Gap as Gap
 from dalembert.vibration import HarmonicBalance as HarmonicBalance
 from dalembert.vibration import HarmonicForce as HarmonicForce
 from dalembert.vibration import Iwan as Iwan
+from dalembert.vibration import LawElement as LawElement
 from dalembert.vibration import Newmark as Newmark
 from dalembert.vibration import PeriodicMotion as PeriodicMotion
 from dalembert.vibration import ResonanceTrack as ResonanceTrack
@@ -191,6 +194,7 @@ from dalembert.vibration import Rigid as Rigid
 from dalembert.vibration import StaticForce as StaticForce
 from dalembert.vibration import TimeComparison as TimeComparison
 from dalembert.vibration import UserElement as UserElement
+from dalembert.vibration import UserLaw as UserLaw
 from dalembert.vibration import VibrationSystem as VibrationSystem
 from dalembert.vibration import backbone as backbone
 from dalembert.vibration import compare_in_time as compare_in_time
@@ -198,6 +202,7 @@ from dalembert.vibration import deformation as deformation
 from dalembert.vibration import floquet_multipliers as floquet_multipliers
 from dalembert.vibration import frequency_response as frequency_response
 from dalembert.vibration import frequency_responses as frequency_responses
+from dalembert.vibration import law as law
 from dalembert.vibration import steady_state as steady_state
 from dalembert.vibration import track_resonance as track_resonance
 

@@ -206,7 +206,7 @@ CASES: dict[str, tuple[Callable[[], object], str]] = {
     "a negative gap": (lambda: BilinearStop("k", "m", stiffness=1.0, gap=-1.0), "stop 'k': the gap is -1 m; expected"),
     "a stop with itself": (
         lambda: run(FORCE, Gap("k", "m.x", "m", stiffness=1.0)),
-        "spring 'k' is between 'm.x' and itself",
+        "element 'k' is between 'm.x' and itself",
     ),
     "no degrees of freedom": (lambda: user(lambda u: u, ()), "element 'law': dofs is []; expected one or more"),
     "a number as a law": (lambda: user(3.0), "UserElement 'law': function is 3.0; expected a function"),

@@ -63,7 +63,7 @@ class Compiled:
     @cached_property
     def origin(self) -> Origin | None:
         """Module and name by which another process imports the kernel; None if there is none."""
-        return _origin(self.function.__module__, self)
+        return origin_of(self.function.__module__, self)
 
     def __reduce__(self) -> Any:
         """In another process: the kernel of the same origin, which has other addresses."""
@@ -117,7 +117,7 @@ class BlockKernel(Compiled):
         if self._owner is None:
             return super().origin
         kind, role, dtype = self._owner
-        return _origin(kind.source.__module__, kind, role, dtype.__name__)
+        return origin_of(kind.source.__module__, kind, role, dtype.__name__)
 
     @property
     def family(self) -> str:
@@ -234,7 +234,7 @@ def kernel(function: Callable) -> Any:
     return Kernel(function)
 
 
-def _origin(module: str | None, owner: Any, *role: str) -> Origin | None:
+def origin_of(module: str | None, owner: Any, *role: str) -> Origin | None:
     """Module and name there of an object, unless the module is a script or does not hold the object."""
     space = vars(sys.modules[module]) if module in sys.modules else {}
     names = [name for name, value in space.items() if value is owner]

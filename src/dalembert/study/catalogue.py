@@ -57,10 +57,16 @@ def _of_others(base: str) -> Iterator[type]:
 
 def _derived(base: type) -> Iterator[type]:
     """Public dataclasses of other packages that derive from a class."""
+    for kind in _all_derived(base):
+        if kind.__module__.partition(".")[0] != __name__.partition(".")[0]:
+            yield kind
+
+
+def _all_derived(base: type) -> Iterator[type]:
+    """Public dataclasses that derive from a class."""
     for kind in base.__subclasses__():
-        yield from _derived(kind)
-        foreign = kind.__module__.partition(".")[0] != __name__.partition(".")[0] and not kind.__name__.startswith("_")
-        if foreign and dataclasses.is_dataclass(kind) and not inspect.isabstract(kind):
+        yield from _all_derived(kind)
+        if dataclasses.is_dataclass(kind) and not inspect.isabstract(kind) and not kind.__name__.startswith("_"):
             yield kind
 
 
@@ -94,11 +100,12 @@ def _load_entries() -> None:
 def structure_parts() -> dict[str, tuple[type, ...]]:
     """What a vibrating structure is made of beside its matrices, by the names of the tables, the usual kind first."""
     from dalembert import vibration
-    from dalembert.vibration.system.system import Element
 
+    _load_entries()
+    laws = sorted(_distinct(_all_derived(vibration.LawElement)), key=lambda kind: kind.__name__)
     return {
         "mass": (LumpedMass,),
-        "spring": (LinearSpring, *(kind for kind in get_args(Element) if kind is not vibration.FrictionContact)),
+        "spring": (LinearSpring, *laws, vibration.UserElement),
         "force": (vibration.HarmonicForce, vibration.StaticForce),
         "contact": (vibration.FrictionContact,),
     }

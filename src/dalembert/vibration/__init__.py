@@ -1,8 +1,15 @@
 """Structures with dry friction and other nonlinear elements, in frequency: harmonic balance and continuation."""
 
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
+from dalembert.vibration.laws.bouc_wen import BoucWen
 from dalembert.vibration.laws.contacts import Elastic, FrictionContact, Iwan, Rigid
-from dalembert.vibration.laws.springs import BilinearStop, CubicSpring, Gap, UserElement
+from dalembert.vibration.laws.cubic_spring import CubicSpring
+from dalembert.vibration.laws.element import LawElement
+from dalembert.vibration.laws.four_parameter_iwan import FourParameterIwan
+from dalembert.vibration.laws.law import law
+from dalembert.vibration.laws.stops import BilinearStop, Gap
+from dalembert.vibration.laws.user_element import UserElement
+from dalembert.vibration.laws.user_law import UserLaw
 from dalembert.vibration.modes.backbone import Backbone
 from dalembert.vibration.modes.nonlinear_modes import backbone
 from dalembert.vibration.paths.curve import FrequencyCurve, Peak
@@ -23,12 +30,14 @@ from dalembert.vibration.time.reference import steady_state
 __all__ = [
     "Backbone",
     "BilinearStop",
+    "BoucWen",
     "CubicSpring",
     "CurveFamily",
     "Deformation",
     "Elastic",
     "Envelope",
     "FollowedPoint",
+    "FourParameterIwan",
     "FrequencyCurve",
     "FrequencyResponse",
     "FrictionContact",
@@ -36,6 +45,7 @@ __all__ = [
     "HarmonicBalance",
     "HarmonicForce",
     "Iwan",
+    "LawElement",
     "Newmark",
     "Peak",
     "PeriodicMotion",
@@ -44,6 +54,7 @@ __all__ = [
     "StaticForce",
     "TimeComparison",
     "UserElement",
+    "UserLaw",
     "VibrationSystem",
     "backbone",
     "compare_in_time",
@@ -51,6 +62,7 @@ __all__ = [
     "floquet_multipliers",
     "frequency_response",
     "frequency_responses",
+    "law",
     "steady_state",
     "track_resonance",
 ]

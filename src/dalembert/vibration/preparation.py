@@ -10,8 +10,8 @@ from dalembert.vibration.laws.contact_sums import Shape, has_events
 from dalembert.vibration.laws.event_sums import sums_and_slopes, sums_complex, sums_real
 from dalembert.vibration.laws.friction_period import forces_complex, forces_real
 from dalembert.vibration.laws.friction_tangent import forces_and_slopes
+from dalembert.vibration.laws.law_sums import law_forces, law_samples, law_slopes
 from dalembert.vibration.laws.linearised_law import linearise
-from dalembert.vibration.laws.springs import BilinearStop, Gap
 from dalembert.vibration.system.lowering import ELASTIC, FrictionBlock, Lowered
 from dalembert.vibration.time.elements import react, settle
 from dalembert.vibration.time.steps import go_through
@@ -29,6 +29,8 @@ _IN_PLANE = (in_plane.sums_and_slopes, in_plane.sums_real, in_plane.sums_complex
 def prepare_balance(lowered: Lowered, events: bool, *, residuals: bool, stability: bool, derivatives: bool) -> None:
     """Prepare the kernels of harmonic balance, for the same arguments as ``equations`` takes."""
     kernels = _kernels(lowered, events, residuals, derivatives)
+    if stability and any(block.remembers for block in lowered.laws):
+        kernels += [law_samples]
     if stability and lowered.blocks:  # the map of stability goes from sample to sample
         kernels += [kernel for kernel in (forces_and_slopes,) if kernel not in kernels]
         kernels += [linearise] if any(block.kind == ELASTIC for block in lowered.blocks) else []
@@ -38,18 +40,21 @@ def prepare_balance(lowered: Lowered, events: bool, *, residuals: bool, stabilit
 
 def _kernels(lowered: Lowered, events: bool, residuals: bool, derivatives: bool) -> list[Compiled]:
     """Kernels of the sums of contacts and stops."""
-    laws = {_law(block, events) for block in lowered.blocks}
-    if events and any(isinstance(element, Gap | BilinearStop) for _, element in lowered.springs):
-        laws.add(_CORRECTED)
-    return [
+    sums = {_sums(block, events) for block in lowered.blocks}
+    corrected = [events and block.kind.switches for block in lowered.laws]
+    sums |= {_CORRECTED} if any(corrected) else set()
+    kernels: list[Compiled] = [
         kernel
-        for law in (_PLAIN, _CORRECTED, _IN_PLANE)
-        for kernel, needed in zip(law, (True, residuals, derivatives), strict=True)
-        if law in laws and needed
+        for own in (_PLAIN, _CORRECTED, _IN_PLANE)
+        for kernel, needed in zip(own, (True, residuals, derivatives), strict=True)
+        if own in sums and needed
     ]
+    if not all(corrected):
+        kernels += [law_forces, law_slopes]
+    return kernels + [kernel for block in lowered.laws for kernel in block.law.all_kernels()]
 
 
-def _law(block: FrictionBlock, events: bool) -> tuple[Compiled, ...]:
+def _sums(block: FrictionBlock, events: bool) -> tuple[Compiled, ...]:
     """Kernels of the sums that a block takes."""
     if not (events and has_events(block.numbers, Shape(block.tangents, block.normal, block.memory))):
         return _PLAIN

@@ -23,7 +23,7 @@ from dalembert.vibration.balance.fourier import Fourier, real_blocks
 from dalembert.vibration.balance.tangents import BlockTangent, DenseTangent, Tangent
 from dalembert.vibration.laws.contact_sums import ContactSums, Shape, contact_sums
 from dalembert.vibration.laws.friction_law import GAP, NORMAL, STUCK, TANGENTIAL
-from dalembert.vibration.laws.springs import BilinearStop, Gap, UserElement
+from dalembert.vibration.laws.law_sums import Sums
 from dalembert.vibration.system.lowering import ELASTIC, FrictionBlock, Lowered
 
 LARGE = 500
@@ -98,7 +98,12 @@ class Balance:
     def linearised(self, point: Point, unknowns: np.ndarray) -> tuple[Evaluation, Tangent]:
         """Residual at a point, with its exact Jacobian and its derivative by ω."""
         tangent = self.tangent(point, unknowns)
-        return self.residual(self.linear(point.stiffness, point.force, unknowns), unknowns, tangent), tangent
+        return self.at(point, unknowns, tangent), tangent
+
+    def at(self, point: Point, unknowns: np.ndarray, tangent: Tangent | None = None) -> Evaluation:
+        """Residual at a point; see :meth:`residual`."""
+        linear = self.linear(point.stiffness, point.force, unknowns)
+        return self.residual(linear, unknowns, point.omega, tangent, point.rate)
 
     def tangent(self, point: Point, unknowns: np.ndarray) -> Tangent:
         """The tangent of the structure alone, to which :meth:`residual` adds the elements."""
@@ -132,15 +137,24 @@ class Balance:
             result[places, 0] = block.numbers[:, GAP] - varying.max(axis=1)
         return result
 
-    def residual(self, linear: np.ndarray, unknowns: np.ndarray, tangent: Tangent | None = None) -> Evaluation:
+    def residual(
+        self,
+        linear: np.ndarray,
+        unknowns: np.ndarray,
+        omega: float,
+        tangent: Tangent | None = None,
+        rate: float = 1.0,
+    ) -> Evaluation:
         """Residual from its linear part; the elements' part of the tangent is added to ``tangent``.
 
-        Without a tangent, in complex numbers where the linear part or the elements' numbers are complex.
+        Without a tangent, in complex numbers where the linear part or the elements' numbers are complex. ``rate`` is
+        the derivative of ω by the parameter of the tangent's slope.
         """
         kind = np.result_type(linear, unknowns, self._kind)
         acting = np.zeros((len(self.lowered.row_names), self.series.count), dtype=kind)
         states = [np.zeros((0, 0), dtype=np.uint8)] * len(self.lowered.blocks)
-        self._add_springs(acting, unknowns, tangent)
+        self._add_functions(acting, unknowns, tangent)
+        self._add_laws(acting, unknowns, omega, tangent, rate)
         for rigid in (False, True):  # rigid contacts last: their prediction needs the residual without them
             blocks = [number for number, block in enumerate(self.lowered.blocks) if (block.kind != ELASTIC) == rigid]
             total = linear + self._combination.T @ acting if blocks and rigid else linear
@@ -149,53 +163,43 @@ class Balance:
                 states[number] = self._add_friction(number, acting, unknowns, total, tangent, before)
         return Evaluation(linear + self._combination.T @ acting, acting, tuple(states))
 
-    def _add_springs(self, acting: np.ndarray, unknowns: np.ndarray, tangent: Tangent | None) -> None:
-        """Elements without memory: their forces, and their local Jacobians in the global one."""
+    def _add_functions(self, acting: np.ndarray, unknowns: np.ndarray, tangent: Tangent | None) -> None:
+        """Elements whose law is a function of arrays: their forces, and their local Jacobians in the global one."""
         series = self.series
-        for rows, element in self.lowered.springs:
-            if self.events and isinstance(element, Gap | BilinearStop):
-                self._add_stop(rows, element, acting, unknowns, tangent)
-                continue
-            samples = (self._combination[rows] @ unknowns) @ series.synthesis.T
-            several = isinstance(element, UserElement)
-            force, slopes = element.law(samples if several else samples[0])
-            acting[rows] += np.atleast_2d(force) @ series.analysis.T
-            if tangent is None:
-                continue
-            slopes = slopes if several else slopes[None, None]
-            self._spread_spring(rows, series.analysis @ (slopes[:, :, :, None] * series.synthesis), tangent)
+        for rows, element in self.lowered.functions:
+            force, slopes = element.law((self._combination[rows] @ unknowns) @ series.synthesis.T)
+            acting[rows] += force @ series.analysis.T
+            if tangent is not None:
+                blocks = series.analysis @ (slopes[:, :, :, None] * series.synthesis)
+                local = np.swapaxes(blocks, 1, 2).reshape(1, len(rows) * series.count, -1)
+                self._spread(rows[None], local, np.zeros((1, len(rows))), tangent)
 
-    def _add_stop(
-        self,
-        rows: np.ndarray,
-        element: Gap | BilinearStop,
-        acting: np.ndarray,
-        unknowns: np.ndarray,
-        tangent: Tangent | None,
+    def _add_laws(
+        self, acting: np.ndarray, unknowns: np.ndarray, omega: float, tangent: Tangent | None, rate: float
     ) -> None:
-        """A stop: on both sides it is one on one side, and another one for the opposite displacement."""
-        sides = np.array([1.0]) if isinstance(element, Gap) else np.array([1.0, -1.0])
-        sums = contact_sums(
-            np.array([[0.0, element.stiffness, element.gap, 0.0, 0.0]] * len(sides)),
-            Shape(tangents=0, normal=True, memory=True), self.series, self.events,
-        )  # fmt: skip
-        displacements = sides[:, None, None] * (self._combination[rows] @ unknowns)
-        if tangent is None:
-            force, _ = sums.forces(displacements)
-        else:
-            force, _, local = sums.with_slopes(displacements)
-            self._spread_spring(rows, np.sum(local, axis=0)[None, None], tangent)
-        acting[rows] += sides @ force[:, 0]
+        """Elements that follow a law: their forces, and their local Jacobians in the global one."""
+        for block, sums in zip(self.lowered.laws, self._law_sums, strict=True):
+            displacements = (self._combination @ unknowns)[block.rows]
+            if tangent is None:
+                force = sums.forces(displacements, omega)
+            else:
+                force, local, by_omega = sums.with_slopes(displacements, omega)
+                self._spread(block.rows, local, np.zeros(block.rows.shape), tangent)
+                shapes = self._combination[block.rows.ravel()]
+                tangent.slope[:] += rate * shapes.T @ by_omega.reshape(len(shapes), -1)
+            np.add.at(acting, block.rows, force)
 
-    def _spread_spring(self, rows: np.ndarray, blocks: np.ndarray, tangent: Tangent) -> None:
-        """Add the local Jacobian of an element, blocks (rows, rows, coefficients, coefficients), to the global one."""
+    def _spread(self, rows: np.ndarray, local: np.ndarray, penalties: np.ndarray, tangent: Tangent) -> None:
+        """J += L^T G L, with local Jacobians G (cells, columns · coefficients, columns · coefficients)."""
         if isinstance(tangent, BlockTangent):
-            local = np.swapaxes(blocks, 1, 2).reshape(1, len(rows) * self.series.count, -1)
-            tangent.add(self._retained[rows][None], local, np.zeros((1, len(rows))))
+            tangent.add(self._retained[rows], local, penalties)
             return
-        for i, row in enumerate(rows):
-            for j, column in enumerate(rows):
-                self._scatter(tangent.jacobian, row, column, blocks[i, j])
+        cells, columns = rows.shape
+        split = local.reshape(cells, columns, self.series.count, columns, self.series.count)
+        for cell in range(cells):
+            for i, row in enumerate(rows[cell]):
+                for j, column in enumerate(rows[cell]):
+                    self._scatter(tangent.jacobian, row, column, split[cell, i, :, j, :])
 
     def _scatter(self, jacobian: np.ndarray, row: int, column: int, block: np.ndarray) -> None:
         """Add the derivative of the force of one row by the displacement of another."""
@@ -219,12 +223,10 @@ class Balance:
             result, states = self._sums[number].forces(displacements)
         else:
             result, states, local = self._sums[number].with_slopes(displacements)
-            if isinstance(tangent, BlockTangent):
-                tangent.add(self._retained[block.rows], local, _penalties(block))
-            elif before is None:
-                self._spread_elastic(block, local, tangent.jacobian)
-            else:
+            if isinstance(tangent, DenseTangent) and before is not None:
                 self._spread_rigid(block, local, tangent, before)
+            else:
+                self._spread(block.rows, local, _penalties(block), tangent)
         for cell in self._undetermined(block, states):
             places = self._retained[block.rows[cell, : block.tangents]]
             penalty = block.numbers[cell, TANGENTIAL]
@@ -258,20 +260,16 @@ class Balance:
             for block in self.lowered.blocks
         ]
 
+    @cached_property
+    def _law_sums(self) -> list[Sums]:
+        """The sums of each block of elements that follow a law."""
+        return [block.sums(self.series, self.events) for block in self.lowered.laws]
+
     def _undetermined(self, block: FrictionBlock, states: np.ndarray) -> np.ndarray:
         """Cells of the velocity kind that stick all period: nothing else determines their mean position."""
         if block.memory or not self.series.mean:
             return np.zeros(0, dtype=int)
         return np.flatnonzero(np.all(states == STUCK, axis=1))
-
-    def _spread_elastic(self, block: FrictionBlock, local: np.ndarray, jacobian: np.ndarray) -> None:
-        """J += L^T G L."""
-        cells, columns = block.rows.shape
-        split = local.reshape(cells, columns, self.series.count, columns, self.series.count)
-        for cell in range(cells):
-            for i, row in enumerate(block.rows[cell]):
-                for j, column in enumerate(block.rows[cell]):
-                    self._scatter(jacobian, row, column, split[cell, i, :, j, :])
 
     def _spread_rigid(
         self, block: FrictionBlock, local: np.ndarray, tangent: DenseTangent, before: DenseTangent
@@ -311,12 +309,8 @@ class Balance:
     @cached_property
     def _kind(self) -> np.dtype:
         """Real or complex: of the elements' numbers."""
-        springs = [
-            value
-            for _, element in self.lowered.springs
-            for value in (getattr(element, "stiffness", 0.0), getattr(element, "gap", 0.0))
-        ]
-        return np.result_type(float, *(block.numbers for block in self.lowered.blocks), *springs)
+        blocks = (*self.lowered.blocks, *self.lowered.laws)
+        return np.result_type(float, *(block.numbers for block in blocks))
 
 
 def _penalties(block: FrictionBlock) -> np.ndarray:

@@ -42,7 +42,7 @@ class Loading:
         varying = np.where(self.point.frequencies[:, None] > 0, self.point.force, 0.0)
         return replace(
             self.point, slope=np.zeros_like(self.point.slope),
-            force=self.point.force + (load - 1.0) * varying, force_slope=varying,
+            force=self.point.force + (load - 1.0) * varying, force_slope=varying, rate=0.0,
         )  # fmt: skip
 
     def solve(self, unknowns: np.ndarray, load: float, samples: int, plane: Plane | None = None) -> Solution:

@@ -50,6 +50,8 @@ class Point:
 
     Parameters
     ----------
+    omega : float
+        rad/s.
     frequencies : array, shape (orders,)
         h ω, rad/s.
     stiffness, slope : array, shape (orders, q, q), complex
@@ -63,8 +65,11 @@ class Point:
         Factors that serve all iterations here.
     shared : dict
         What all frequencies have in common.
+    rate : float
+        Derivative of ω by what ``slope`` and ``force_slope`` are derivatives by: 1, unless that is not ω.
     """
 
+    omega: float
     frequencies: np.ndarray
     stiffness: np.ndarray
     slope: np.ndarray
@@ -74,6 +79,7 @@ class Point:
     free: np.ndarray
     kept: dict[str, Any] = field(default_factory=dict, repr=False)
     shared: dict[str, np.ndarray] = field(default_factory=dict, repr=False)
+    rate: float = 1.0
 
     @cached_property
     def load(self) -> float:
@@ -152,8 +158,8 @@ class Condensation:
         if not self.inner_loads.shape[1]:
             nothing = self.inner_loads
             return Point(
-                s, outer, outer_slope, self.outer_loads, 0 * self.outer_loads, np.swapaxes(across, 1, 2), nothing,
-                shared=self._shared,
+                omega, s, outer, outer_slope, self.outer_loads, 0 * self.outer_loads, np.swapaxes(across, 1, 2),
+                nothing, shared=self._shared,
             )  # fmt: skip
         inner = inner[0] if inner else self._inner(s)
         right = np.concatenate([np.swapaxes(across, 1, 2), self.inner_loads[:, :, None]], axis=2)
@@ -163,6 +169,7 @@ class Condensation:
         moved = _times(inner_slope[0], solved) if inner_slope else self._inner_slope(s, solved)
         crossed = across_slope @ solved
         return Point(
+            omega=omega,
             frequencies=s,
             stiffness=outer - across @ follow,
             slope=outer_slope - crossed[:, :, :-1] - np.swapaxes(crossed[:, :, :-1], 1, 2) + turned @ moved[:, :, :-1],

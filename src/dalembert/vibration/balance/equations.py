@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -13,10 +13,14 @@ from dalembert.vibration.balance.condensation import Condensation, Point, norm
 from dalembert.vibration.balance.fourier import Fourier
 from dalembert.vibration.balance.harmonic_balance import AUTOMATIC, MOST_SAMPLES, HarmonicBalance
 from dalembert.vibration.balance.newton import Plane, Solution, correct
-from dalembert.vibration.laws.springs import BilinearStop, CubicSpring
+from dalembert.vibration.laws.element import LawBlock
+from dalembert.vibration.laws.law_sums import LawSums
 from dalembert.vibration.preparation import prepare_balance
 from dalembert.vibration.system.lowering import ELASTIC, Lowered, lower
 from dalembert.vibration.system.system import StaticForce, VibrationSystem
+
+SIZES = 10.0 ** np.arange(-9, 7, 3)
+"""Sizes of the motions, m, at which laws are compared with their opposites."""
 
 
 @dataclass(frozen=True)
@@ -44,7 +48,7 @@ class Equations:
     @property
     def nonlinear(self) -> bool:
         """Whether there are contacts or springs."""
-        return bool(self.lowered.blocks or self.lowered.springs)
+        return bool(self.lowered.blocks or self.lowered.laws or self.lowered.functions)
 
     def balance(self, samples: int) -> Balance:
         """The elements with this many samples of a period."""
@@ -119,8 +123,7 @@ class Equations:
 
     def _sampling_error(self, solution: Solution) -> float:
         finer = self.balance(2 * solution.samples)
-        linear = finer.linear(solution.point.stiffness, solution.point.force, solution.unknowns)
-        evaluation = finer.residual(linear, solution.unknowns)
+        evaluation = finer.at(solution.point, solution.unknowns)
         return norm(evaluation.residual) / (solution.point.load + norm(evaluation.forces) or 1.0)
 
 
@@ -160,9 +163,13 @@ def _require_symmetry(lowered: Lowered) -> None:
     lopsided = [f"the static force on {force.dof!r}" for force in lowered.forces if isinstance(force, StaticForce)]
     lopsided += [f"the normal direction of {lowered.contacts[b.contacts[0]]!r}" for b in lowered.blocks if b.normal]
     lopsided += [
-        f"the element {element.name!r}"
-        for _, element in lowered.springs
-        if not isinstance(element, CubicSpring | BilinearStop) and not _odd(element, len(_))
+        f"the element {name!r}"
+        for block in lowered.laws
+        for element, name in enumerate(block.names)
+        if not _odd(partial(_force, block, element), block.rows.shape[1])
+    ]
+    lopsided += [
+        f"the element {element.name!r}" for rows, element in lowered.functions if not _odd(element.function, len(rows))
     ]
     if lopsided:
         raise InputError(
@@ -170,10 +177,20 @@ def _require_symmetry(lowered: Lowered) -> None:
         )
 
 
-def _odd(element: object, count: int) -> bool:
-    """Whether a law of the user's is odd at some displacements."""
-    if not hasattr(element, "function"):
-        return False
-    u = np.random.default_rng(0).normal(size=(count, 16))
-    there, back = element.function(u), element.function(-u)  # type: ignore[attr-defined]
-    return bool(np.allclose(there, -back, rtol=1e-9, atol=1e-12 * np.abs(there).max(initial=0.0)))
+def _force(block: LawBlock, element: int, u: np.ndarray) -> np.ndarray:
+    """Forces of an element of a block over motions (columns, samples), from rest."""
+    series = Fourier((0, 1), u.shape[1])
+    own = replace(block, numbers=block.numbers[[element]])
+    return LawSums(own.names[0], own.law, own.numbers, own.states, own.kind.rated, series).over(u[None])[0]
+
+
+@np.errstate(all="ignore")
+def _odd(force: Callable[[np.ndarray], np.ndarray], count: int) -> bool:
+    """Whether opposite displacements have opposite forces, at displacements of many sizes."""
+    for size in SIZES:
+        u = size * np.random.default_rng(0).normal(size=(count, 16))
+        there, back = force(u), force(-u)
+        scale = np.abs(there).max(initial=0.0)
+        if np.isfinite(scale) and not np.allclose(there, -back, rtol=1e-9, atol=1e-12 * scale):
+            return False
+    return True

@@ -122,7 +122,7 @@ def correct(
 
     def place(unknowns: np.ndarray, omega: float, point: Point | None, step: bool = True) -> _Place:
         point = condensation.at(omega) if point is None else point
-        evaluation, tangent = evaluated(balance, point, unknowns) if step else (_forces(balance, point, unknowns), None)
+        evaluation, tangent = evaluated(balance, point, unknowns) if step else (balance.at(point, unknowns), None)
         scale = point.load + norm(evaluation.forces) or 1.0
         floor = ROUNDING * point.stiffest * norm(unknowns)
         distance = 0.0 if plane is None else plane.distance(unknowns, omega)
@@ -161,11 +161,7 @@ def correct(
 def evaluated(balance: Balance, point: Point, unknowns: np.ndarray) -> tuple[Evaluation, Tangent]:
     """Residual and forces at unknowns, with the tangent."""
     tangent = balance.tangent(point, unknowns)
-    return _forces(balance, point, unknowns, tangent), tangent
-
-
-def _forces(balance: Balance, point: Point, unknowns: np.ndarray, tangent: Tangent | None = None) -> Evaluation:
-    return balance.residual(balance.linear(point.stiffness, point.force, unknowns), unknowns, tangent)
+    return balance.at(point, unknowns, tangent), tangent
 
 
 def _stalls(errors: list[float]) -> bool:

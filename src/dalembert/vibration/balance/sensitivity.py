@@ -42,10 +42,14 @@ def sensitivities(problem: Equations, solution: Solution, tilted: Sequence[Lower
         push = series.phasors(_step(own.loads(series))) - _unbalanced(own, point.frequencies, motion)
         outer, inner = push @ condensation.retained, np.asarray((condensation.back.T @ push.T).T)
         condensed = outer - (np.swapaxes(point.follow, 1, 2) @ inner[:, :, None])[:, :, 0]
-        elements = replace(problem.lowered, blocks=own.blocks, springs=own.springs)
+        elements = replace(problem.lowered, blocks=own.blocks, laws=own.laws, functions=own.functions)
         stepped = linear - 1j * STEP * series.coefficients(condensed)
         residuals.append(
-            _step(Balance(elements, series, problem.method.events).residual(stepped, solution.unknowns).residual)
+            _step(
+                Balance(elements, series, problem.method.events)
+                .residual(stepped, solution.unknowns, point.omega)
+                .residual
+            )
         )
         given.append(inner)
     moved = -np.moveaxis(solution.tangent.solve(np.stack(residuals, axis=2)), 2, 0)

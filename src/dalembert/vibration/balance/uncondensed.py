@@ -25,11 +25,15 @@ REMEMBERING = "displacement"
 
 
 class Local(NamedTuple):
-    """The elements at a place: what they do, and W and B, (q · coefficients, q · coefficients); W None for the unit."""
+    """The elements at a place: what they do, and W and B, (q · coefficients, q · coefficients); W None for the unit.
+
+    ``slope`` (q, coefficients): the derivative of their forces by ω.
+    """
 
     evaluation: Evaluation
     weight: np.ndarray | None
     stiffness: np.ndarray
+    slope: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -91,17 +95,20 @@ class Uncondensed:
             for outer, across, inner in zip(own.outer[:3], own.across[:3], own.inner[:3], strict=True)
         )  # type: ignore[return-value]
 
-    def elements(self, linear: np.ndarray, unknowns: np.ndarray) -> Local:
+    def elements(self, linear: np.ndarray, unknowns: np.ndarray, omega: float) -> Local:
         """The elements where the linear part and the retained coordinates, (q, coefficients), are these."""
         rigid = [block.numbers[:, :2].max() for block in self.lowered.blocks if block.kind != ELASTIC]
-        evaluation, stiffness = self._tangent(0.0, linear, unknowns)
+        evaluation, tangent = self._tangent(0.0, linear, unknowns, omega)
         if not rigid:
-            return Local(evaluation, None, stiffness)
+            return Local(evaluation, None, tangent.matrix, tangent.slope)
         scale = float(max(rigid))
-        return Local(evaluation, (self._tangent(scale, linear, unknowns)[1] - stiffness) / scale, stiffness)
+        other = self._tangent(scale, linear, unknowns, omega)[1]
+        return Local(evaluation, (other.matrix - tangent.matrix) / scale, tangent.matrix, tangent.slope)
 
-    def _tangent(self, scale: float, linear: np.ndarray, unknowns: np.ndarray) -> tuple[Evaluation, np.ndarray]:
+    def _tangent(
+        self, scale: float, linear: np.ndarray, unknowns: np.ndarray, omega: float
+    ) -> tuple[Evaluation, DenseTangent]:
         """Residual, and its Jacobian where that of the linear part is a multiple of the unit matrix."""
         jacobian = scale * np.eye(unknowns.size).reshape(*unknowns.shape, *unknowns.shape)
         tangent = DenseTangent(jacobian, np.zeros_like(unknowns))
-        return self.balance.residual(linear, unknowns, tangent), tangent.matrix
+        return self.balance.residual(linear, unknowns, omega, tangent), tangent

@@ -10,7 +10,6 @@ from dalembert.findings import Finding
 from dalembert.vibration.balance.condensation import FLOATING, MOVING, NAMED, NEARLY
 from dalembert.vibration.balance.equations import Equations
 from dalembert.vibration.balance.newton import VERIFIED, Solution
-from dalembert.vibration.laws.springs import UserElement
 
 LEFT = 0.1
 """Part of the residual, along a motion that no stiffness holds, from which this motion is the cause."""
@@ -72,8 +71,8 @@ def _not_finite(problem: Equations, solution: Solution) -> str:
         step = np.zeros_like(solution.unknowns)
     for part in (0.0, 1.0):
         motion = balance.displacements(solution.unknowns - part * step) @ balance.series.synthesis.T
-        for rows, element in balance.lowered.springs:
-            if isinstance(element, UserElement) and not np.all(np.isfinite(element.law(motion[rows])[0])):
+        for rows, element in balance.lowered.functions:
+            if not np.all(np.isfinite(element.law(motion[rows])[0])):
                 return element.name
     return ""
 

@@ -126,7 +126,7 @@ class ModeEquations:
         (stiffness, mass, damping), series = first.matrices, first.series
         rest = self._at_rest(first)
         size, cosine = first.retained, series.mean
-        local = first.elements(self._linear_part(first, rest, 0.0, 0.0)[:size], rest[:size])
+        local = first.elements(self._linear_part(first, rest, 0.0, 0.0)[:size], rest[:size], 0.0)
         stiff = _weighted(first, local, stiffness, cosine)
         stiff[:size, :size] += _block(local.stiffness, first, cosine)
         pairs = eig(stiff, _weighted(first, local, mass, cosine))
@@ -181,7 +181,7 @@ class ModeEquations:
             return rest
         for _ in range(method.iterations):
             linear = self._linear_part(system, rest, 0.0, 0.0)
-            local = system.elements(linear[:size], rest[:size])
+            local = system.elements(linear[:size], rest[:size], 0.0)
             residual = np.vstack([local.evaluation.residual, linear[size:]])[:, 0]
             matrix = _weighted(system, local, system.matrices[0], 0)
             matrix[:size, :size] += _block(local.stiffness, system, 0)
@@ -204,7 +204,7 @@ class ModeEquations:
     def _at(self, system: Uncondensed, motion: Motion, plane: Plane) -> _Trial:
         count, harmonics, size = system.retained, motion.harmonics, motion.size
         linear = self._linear_part(system, harmonics, motion.omega, motion.growth)
-        local = system.elements(linear[:count], harmonics[:count])
+        local = system.elements(linear[:count], harmonics[:count], motion.omega)
         residual = np.vstack([local.evaluation.residual, linear[count:]])
         scale = self._scale(system, motion, local)
         first = system.series.mean
@@ -258,6 +258,7 @@ class ModeEquations:
         if at.local.weight is not None:
             matrix[rows, : count + 2] = at.local.weight @ matrix[rows, : count + 2]
         matrix[rows, rows] += at.local.stiffness
+        matrix[rows, -3] += motion.omega * at.local.slope.ravel()
         matrix[:count] /= self._scale(system, motion, at.local)
         first = system.series.mean
         matrix[count : count + 2, :count] = np.kron(self.basis[self.row], np.eye(len(turn))[first : first + 2])

@@ -18,7 +18,6 @@ from dalembert.vibration.balance.equations import Equations, equations
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.balance.newton import Solution
 from dalembert.vibration.balance.sensitivity import STEP, sensitivities
-from dalembert.vibration.laws.springs import UserElement
 from dalembert.vibration.paths.amplitudes import Amplitude
 from dalembert.vibration.paths.continuation import at_frequencies
 from dalembert.vibration.paths.curve import FrequencyCurve
@@ -246,11 +245,7 @@ class FrequencyResponse:
         if not self._compared.functions:
             motion = problem.balance(solution.samples).displacements(solution.unknowns)
             samples = motion @ problem.balance(solution.samples).series.synthesis.T
-            own = {
-                element.name: samples[rows]
-                for rows, element in problem.lowered.springs
-                if isinstance(element, UserElement)
-            }
+            own = {element.name: samples[rows] for rows, element in problem.lowered.functions}
             check_laws(self.builder, self.parameters, vector, own)
             self._compared.functions = True
 

@@ -60,7 +60,7 @@ def _pencil(system: Uncondensed, linear: np.ndarray, unknowns: np.ndarray, omega
         np.kron(mass, 2 * omega**2 * turn) + np.kron(damping, omega * unit),
         np.kron(mass, omega**2 * unit),
     ]
-    local, rows = system.elements(linear, unknowns), slice(0, unknowns.size)
+    local, rows = system.elements(linear, unknowns, omega), slice(0, unknowns.size)
     if local.weight is not None:
         for matrix in pencil:
             matrix[rows] = local.weight @ matrix[rows]

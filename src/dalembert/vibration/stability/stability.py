@@ -8,7 +8,6 @@ from dalembert.vibration.balance.equations import Equations
 from dalembert.vibration.balance.fourier import Fourier, in_orders
 from dalembert.vibration.balance.newton import Solution
 from dalembert.vibration.balance.uncondensed import Uncondensed
-from dalembert.vibration.laws.springs import BilinearStop, Gap
 from dalembert.vibration.stability.hill import hill
 from dalembert.vibration.stability.time_map import monodromy
 
@@ -58,8 +57,8 @@ class Exponents:
 
 
 def remembers(problem: Equations) -> bool:
-    """Whether contacts with friction make the motion depend on its past, which Hill's method does not see."""
-    return bool(problem.lowered.blocks)
+    """Whether the motion depends on its past, or forces on velocities, which Hill's method does not see."""
+    return bool(problem.lowered.blocks) or any(block.remembers for block in problem.lowered.laws)
 
 
 def exponents(problem: Equations, solution: Solution, way: str = AUTOMATIC) -> Exponents:
@@ -116,7 +115,7 @@ def _finer(finer: Equations, problem: Equations, solution: Solution) -> np.ndarr
 
 def _touches(problem: Equations, solution: Solution) -> bool:
     """Whether a stop acts at some time."""
-    stops = [rows for rows, element in problem.lowered.springs if isinstance(element, Gap | BilinearStop)]
+    stops = [block.rows.ravel() for block in problem.lowered.laws if block.kind.switches]
     return bool(stops) and bool(np.any(solution.evaluation.forces[np.concatenate(stops)]))
 
 

@@ -20,8 +20,8 @@ from scipy.linalg import cholesky
 from dalembert.errors import InputError
 from dalembert.vibration.balance.uncondensed import Uncondensed
 from dalembert.vibration.laws.friction_law import FRICTION, SEPARATED, STUCK, TANGENTIAL
+from dalembert.vibration.laws.law_sums import LawSums
 from dalembert.vibration.laws.linearised_law import linearised
-from dalembert.vibration.laws.springs import UserElement
 from dalembert.vibration.system.lowering import ELASTIC
 
 MEMORY = 4_000_000
@@ -29,20 +29,25 @@ MEMORY = 4_000_000
 
 
 class Laws(NamedTuple):
-    """Linearised laws on the q retained coordinates and the z places of sliders that slip, at each sample.
+    """Linearised laws on the q retained coordinates and z internal numbers, at each sample.
+
+    Internal are the places of sliders that slip, and, of other laws with a memory, their states and their forces at the
+    end of the step before.
 
     Parameters
     ----------
     reaction : array, shape (samples, q, q)
         Forces at the end of a step by displacements there.
     memory : array, shape (samples, q, z)
-        The same by sliders at its begin.
+        The same by internal numbers at its begin.
     following : array, shape (samples, z, q)
-        Sliders at the end by displacements there.
+        Internal numbers at the end by displacements there.
     keeping : array, shape (samples, z, z)
-        The same by sliders at the begin.
+        The same by internal numbers at the begin.
     stiffness, release : array, shape (samples, q, q) and (samples, q, z)
-        The same forces by displacements and sliders at the end, from which the next step begins.
+        The same forces by displacements and internal numbers at the end, from which the next step begins.
+    damping, ended, turning : array, shape (samples, q, q), the same, (samples, z, q)
+        Forces at the end of a step, forces from which the next one begins, and internal numbers, by velocities there.
     """
 
     reaction: np.ndarray
@@ -51,6 +56,9 @@ class Laws(NamedTuple):
     keeping: np.ndarray
     stiffness: np.ndarray
     release: np.ndarray
+    damping: np.ndarray
+    ended: np.ndarray
+    turning: np.ndarray
 
 
 class Held(NamedTuple):
@@ -78,7 +86,7 @@ def monodromy(system: Uncondensed, linear: np.ndarray, unknowns: np.ndarray, ome
     """
     mass = system.matrices[1]
     light = _massless(mass)
-    laws, held = _laws(system, unknowns), _held(system, linear, unknowns)
+    laws, held = _laws(system, unknowns, omega), _held(system, linear, unknowns, omega)
     n, samples = len(mass), system.series.samples
     states = 2 * n + laws.memory.shape[2]
     starts = _changes(laws, held)
@@ -101,7 +109,9 @@ def _changes(laws: Laws, held: Held) -> np.ndarray:
     begun = np.zeros(samples, dtype=bool)
     begun[0] = True
     ended = (np.roll(laws.stiffness, 1, axis=0), np.roll(laws.release, 1, axis=0))  # where the step before ended
-    for values in (laws.reaction, laws.memory, laws.following, laws.keeping, *ended, held.active, held.push):
+    ended += (np.roll(laws.ended, 1, axis=0),)
+    own = laws.reaction, laws.memory, laws.following, laws.keeping, laws.damping, laws.turning
+    for values in (*own, *ended, held.active, held.push):
         begun |= np.any((values != np.roll(values, 1, axis=0)).reshape(samples, -1), axis=1)
     return np.flatnonzero(begun)
 
@@ -115,13 +125,16 @@ def _steps(system: Uncondensed, laws: Laws, held: Held, light: np.ndarray, h: fl
     heavy = ~light
     matrix, right = np.zeros((len(steps), n + r, n + r)), np.zeros((len(steps), n + r, 2 * n + z))
     matrix[:, :n, :n] = carried + stiffness
-    matrix[:, :q, :q] += laws.reaction[steps]
+    speeds = np.where(heavy[:q], 2 / h, 1 / h)  # by which velocities change with displacements
+    matrix[:, :q, :q] += laws.reaction[steps] + laws.damping[steps] * speeds
     matrix[:, n:, :q] = np.where(held.active[steps, :, None], held.rows, 0.0)
     matrix[:, :q, n:] = np.swapaxes(held.push[steps], 1, 2)
     matrix[:, np.arange(n, n + r), np.arange(n, n + r)] = ~held.active[steps]
     right[:, :n, :n] = carried - stiffness * heavy[:, None]
     right[:, :q, :q] -= laws.stiffness[steps - 1] * heavy[:q, None]
+    right[:, :q, :q] += laws.damping[steps] * speeds
     right[:, :n, n : 2 * n] = 4 / h * mass
+    right[:, :q, n : n + q] += laws.damping[steps] - laws.ended[steps - 1] * heavy[:q, None]
     right[:, :q, 2 * n :] = -laws.memory[steps] - laws.release[steps - 1] * heavy[:q, None]
     right[:, n:, :q] = matrix[:, n:, :q]
     places = np.linalg.solve(matrix, right)[:, :n]
@@ -131,7 +144,10 @@ def _steps(system: Uncondensed, laws: Laws, held: Held, light: np.ndarray, h: fl
     result[:, np.arange(n, 2 * n), np.arange(n)] -= 2 / h
     result[:, np.arange(n, 2 * n), np.arange(n, 2 * n)] -= 1.0
     result[:, n : 2 * n] *= heavy[:, None]
-    result[:, 2 * n :] = laws.following[steps] @ places[:, :q]
+    rates = speeds[:, None] * places[:, :q]
+    rates[:, np.arange(q), np.arange(q)] -= speeds
+    rates[:, np.arange(q), np.arange(n, n + q)] -= heavy[:q]
+    result[:, 2 * n :] = laws.following[steps] @ places[:, :q] + laws.turning[steps] @ rates
     result[:, 2 * n :, 2 * n :] += laws.keeping[steps]
     return result
 
@@ -160,12 +176,12 @@ def _stopped(mass: np.ndarray, velocity: np.ndarray, rows: np.ndarray, light: np
     return result
 
 
-def _held(system: Uncondensed, linear: np.ndarray, unknowns: np.ndarray) -> Held:
+def _held(system: Uncondensed, linear: np.ndarray, unknowns: np.ndarray, omega: float) -> Held:
     """What rigid contacts hold."""
     combination, series = system.lowered.coordinates.combination, system.series
     speed = (combination @ unknowns @ series.derivative.T) @ series.synthesis.T
     rows, active, push = [], [], []
-    states = system.elements(linear, unknowns).evaluation.states
+    states = system.elements(linear, unknowns, omega).evaluation.states
     for block, own in zip(system.lowered.blocks, states, strict=True):
         for cell, numbers, state in zip(block.rows, block.numbers, own, strict=True):
             if block.kind == ELASTIC:
@@ -186,18 +202,40 @@ def _held(system: Uncondensed, linear: np.ndarray, unknowns: np.ndarray) -> Held
     return Held(np.array(rows), np.stack(active, axis=1), np.stack(push, axis=1))
 
 
-def _laws(system: Uncondensed, unknowns: np.ndarray) -> Laws:
+class _Memory(NamedTuple):
+    """Internal numbers of one element: the parts of :class:`Laws` that it adds, each (samples, ...)."""
+
+    memory: np.ndarray
+    following: np.ndarray
+    keeping: np.ndarray
+    release: np.ndarray
+    turning: np.ndarray
+
+
+def _laws(system: Uncondensed, unknowns: np.ndarray, omega: float) -> Laws:
     """Of all elements but rigid contacts."""
     combination, series = system.lowered.coordinates.combination, system.series
     motion = (combination @ unknowns) @ series.synthesis.T
     q, samples = unknowns.shape[0], series.samples
-    springs, parts = np.zeros((samples, q, q)), []
-    for rows, element in system.lowered.springs:
-        several = isinstance(element, UserElement)
-        slopes = element.law(motion[rows] if several else motion[rows[0]])[1]
-        slopes = slopes if several else slopes[None, None]
-        springs += np.einsum("ip,ijt,jr->tpr", combination[rows], slopes, combination[rows], optimize=True)
-    reaction, stiffness = springs, springs.copy()
+    reaction, damping, parts = np.zeros((samples, q, q)), np.zeros((samples, q, q)), []
+    for rows, element in system.lowered.functions:
+        slopes = np.moveaxis(element.law(motion[rows])[1], 2, 0)
+        reaction += combination[rows].T @ slopes @ combination[rows]
+    stiffness, ended = reaction.copy(), damping.copy()
+    for block in system.lowered.laws:
+        sums = LawSums(block.names[0], block.law, block.numbers, block.states, block.kind.rated, series)
+        displacements = (combination @ unknowns)[block.rows]
+        for number, rows in enumerate(block.rows):
+            seen, columns = combination[rows], len(rows)
+            own = sums.at_samples(number, displacements, omega)
+            by_place, by_speed = (seen.T @ own[:, :columns, first : first + columns] @ seen for first in (0, columns))
+            reaction += by_place
+            damping += by_speed
+            if block.states:
+                parts.append(_remembered(seen, own))
+            else:
+                stiffness += by_place
+                ended += by_speed
     for block in system.lowered.blocks:
         columns, tangents = block.rows.shape[1], block.tangents
         for rows, numbers in zip(block.rows, block.numbers, strict=True):
@@ -206,19 +244,49 @@ def _laws(system: Uncondensed, unknowns: np.ndarray) -> Laws:
             own = linearised(np.ascontiguousarray(motion[rows]), numbers, tangents, block.normal)
             seen = combination[rows]
             reaction += seen.T @ own[:, :columns, :columns] @ seen
-            ended = own[:, :columns, :columns].copy()  # the spring's force, whatever the slider did: k (u - z)
-            ended[:, :tangents] = np.eye(tangents, columns) * numbers[TANGENTIAL]
-            stiffness += seen.T @ ended @ seen
+            spring = own[:, :columns, :columns].copy()  # its force, whatever the slider did: k (u - z)
+            spring[:, :tangents] = np.eye(tangents, columns) * numbers[TANGENTIAL]
+            stiffness += seen.T @ spring @ seen
             if not np.allclose(own[:, columns:, columns:], np.eye(tangents)):  # else where it rests is given
-                parts.append((seen, own, columns, numbers[TANGENTIAL]))
-    ends = np.cumsum([0, *(own.shape[1] - columns for _, own, columns, _ in parts)])
-    memory, release = np.zeros((samples, q, ends[-1])), np.zeros((samples, q, ends[-1]))
-    following, keeping = np.zeros((samples, ends[-1], q)), np.zeros((samples, ends[-1], ends[-1]))
-    for (seen, own, columns, spring), (begin, end) in zip(parts, pairwise(ends), strict=True):
-        memory[:, :, begin:end] = seen.T @ own[:, :columns, columns:]
-        release[:, :, begin:end] = -spring * seen[: end - begin].T
-        following[:, begin:end], keeping[:, begin:end, begin:end] = (
-            own[:, columns:, :columns] @ seen,
-            own[:, columns:, columns:],
-        )
-    return Laws(reaction, memory, following, keeping, stiffness, release)
+                parts.append(_slid(seen, own, numbers[TANGENTIAL]))
+    ends = np.cumsum([0, *(part.keeping.shape[1] for part in parts)])
+    memory, release = np.zeros((2, samples, q, ends[-1]))
+    following, turning = np.zeros((2, samples, ends[-1], q))
+    keeping = np.zeros((samples, ends[-1], ends[-1]))
+    for part, (begin, end) in zip(parts, pairwise(ends), strict=True):
+        memory[:, :, begin:end], release[:, :, begin:end] = part.memory, part.release
+        following[:, begin:end], turning[:, begin:end] = part.following, part.turning
+        keeping[:, begin:end, begin:end] = part.keeping
+    return Laws(reaction, memory, following, keeping, stiffness, release, damping, ended, turning)
+
+
+def _slid(seen: np.ndarray, own: np.ndarray, spring: float) -> _Memory:
+    """The place of a slider, which with the displacement says the force of its spring."""
+    columns = len(seen)
+    following = own[:, columns:, :columns] @ seen
+    return _Memory(
+        seen.T @ own[:, :columns, columns:], following, own[:, columns:, columns:],
+        np.broadcast_to(-spring * seen[: following.shape[1]].T, (len(own), seen.shape[1], following.shape[1])),
+        np.zeros_like(following),
+    )  # fmt: skip
+
+
+def _remembered(seen: np.ndarray, own: np.ndarray) -> _Memory:
+    """States of a law and its forces, from which the next step begins; no states that nothing changes."""
+    columns = len(seen)
+    unmoved = np.eye(own.shape[1] - columns, own.shape[2], k=2 * columns)
+    moving = columns + np.flatnonzero(np.any(own[:, columns:] != unmoved, axis=(0, 2)))
+    kept = np.concatenate([np.arange(columns), moving])
+    own = own[:, kept][:, :, np.concatenate([np.arange(2 * columns), columns + moving])]
+    states = len(moving)
+    keeping = np.zeros((len(own), states + columns, states + columns))
+    after = np.roll(own, -columns, axis=1)  # states, then forces
+    keeping[:, :, :states] = after[:, :, 2 * columns :]
+    unit = np.concatenate([np.zeros((states, columns)), np.eye(columns)])
+    memory = np.zeros((len(own), seen.shape[1], states + columns))
+    memory[:, :, :states] = seen.T @ own[:, :columns, 2 * columns :]
+    return _Memory(
+        memory,
+        after[:, :, :columns] @ seen, keeping, np.broadcast_to((unit @ seen).T, (len(own), seen.shape[1], len(unit))),
+        after[:, :, columns : 2 * columns] @ seen,
+    )  # fmt: skip

@@ -15,13 +15,14 @@ from dalembert.forward.complex_steps import check_steps
 from dalembert.parameters import Parameters
 from dalembert.structure.craig_bampton import HeldBases
 from dalembert.structure.structure import MATRICES, Structure
-from dalembert.vibration.laws.springs import UserElement
+from dalembert.vibration.laws.element import LawBlock
+from dalembert.vibration.laws.user_element import UserElement
 from dalembert.vibration.system.lowering import Lowered, lower
 from dalembert.vibration.system.system import VibrationSystem
 
 NUMBERS = ("tangential stiffness", "normal stiffness", "gap", "friction", "preload")
 """Columns of the numbers of contacts."""
-_FIELDS = ("amplitude", "phase", "value", "stiffness", "gap")  # numbers of forces and springs
+_FIELDS = ("amplitude", "phase", "value")  # numbers of forces
 Part = tuple[np.ndarray, Callable[[int], str]]
 """Numbers (count,), and what each of them is."""
 
@@ -113,13 +114,16 @@ def _parts(lowered: Lowered) -> Iterator[Part]:
             block.numbers.ravel(),
             lambda entry, names=names: f"{NUMBERS[entry % len(NUMBERS)]!r} of {names[entry // len(NUMBERS)]!r}",
         )
-    for _, element in lowered.springs:
-        if not isinstance(element, UserElement):
-            yield _fields(element, repr(element.name))
+    for block in lowered.laws:
+        yield block.numbers.ravel(), lambda entry, own=block: _number(own, *divmod(entry, len(own.given)))
+
+
+def _number(block: LawBlock, element: int, number: int) -> str:
+    return f"{block.given[number]!r} of {block.names[element]!r}"
 
 
 def _fields(component: Any, owner: str) -> Part:
-    """Numbers of a force or a spring."""
+    """Numbers of a force."""
     names = [name for name in _FIELDS if hasattr(component, name)]
     return np.array([getattr(component, name) for name in names]), lambda entry: f"{names[entry]!r} of {owner}"
 

@@ -5,7 +5,6 @@ import hashlib
 import numpy as np
 
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
-from dalembert.vibration.laws.springs import UserElement
 from dalembert.vibration.system.lowering import Lowered
 
 
@@ -22,8 +21,9 @@ def fingerprint(lowered: Lowered, method: HarmonicBalance, *more: object) -> str
         digest.update(np.asarray(matrix @ np.linspace(0.5, 1.5, own.size)).tobytes())
     for block in lowered.blocks:
         digest.update(repr((block.kind, block.tangents, block.normal)).encode() + block.numbers.tobytes())
-    for rows, element in lowered.springs:
-        several = isinstance(element, UserElement)
+    for block in lowered.laws:
+        digest.update(repr((block.law.digest, block.states, block.names)).encode() + block.numbers.tobytes())
+    for rows, element in lowered.functions:
         probe = np.linspace(-1.0, 1.0, 7 * len(rows)).reshape(len(rows), 7)
-        digest.update(np.asarray(element.law(probe if several else probe[0])[0]).tobytes())
+        digest.update(np.asarray(element.law(probe)[0]).tobytes())
     return digest.hexdigest()

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.sparse import csc_array
@@ -12,8 +12,10 @@ from dalembert.errors import InputError, ModelError
 from dalembert.structure import Structure
 from dalembert.vibration.balance.coordinates import Coordinates, coordinates
 from dalembert.vibration.balance.fourier import Fourier
-from dalembert.vibration.laws.contacts import Elastic, FrictionContact, Iwan, Rigid
-from dalembert.vibration.laws.springs import UserElement
+from dalembert.vibration.laws.contacts import Elastic, FrictionContact, Iwan, Number, Rigid
+from dalembert.vibration.laws.element import LawBlock, LawElement
+from dalembert.vibration.laws.law import Law
+from dalembert.vibration.laws.user_element import UserElement
 from dalembert.vibration.system.system import HarmonicForce, StaticForce, VibrationSystem
 
 ELASTIC = "elastic"
@@ -68,8 +70,9 @@ class Lowered:
     contacts : tuple of str
         Names of the friction contacts.
     blocks : tuple of FrictionBlock
-    springs : tuple of (array of int, element)
-        Rows and law of each element without memory.
+    laws : tuple of LawBlock
+    functions : tuple of (array of int, UserElement)
+        Rows of each element whose law is a function of arrays.
     """
 
     structure: Structure
@@ -78,7 +81,8 @@ class Lowered:
     matrix: csc_array
     contacts: tuple[str, ...]
     blocks: tuple[FrictionBlock, ...]
-    springs: tuple[tuple[np.ndarray, Any], ...]
+    laws: tuple[LawBlock, ...]
+    functions: tuple[tuple[np.ndarray, UserElement], ...]
 
     @cached_property
     def coordinates(self) -> Coordinates:
@@ -115,8 +119,7 @@ class Lowered:
     @property
     def real(self) -> "Lowered":
         """The same without the parts that are directions of derivatives."""
-        blocks = tuple(replace(block, numbers=np.ascontiguousarray(np.real(block.numbers))) for block in self.blocks)
-        return replace(self, blocks=blocks)
+        return replace(self, blocks=tuple(map(_real, self.blocks)), laws=tuple(map(_real, self.laws)))
 
 
 def lower(system: VibrationSystem) -> Lowered:
@@ -131,7 +134,7 @@ def lower(system: VibrationSystem) -> Lowered:
     """
     rows, names = _Rows(system.structure), []
     cells: dict[tuple[str, int, bool], list[tuple[list[int], int, list]]] = {}
-    springs = []
+    functions, laws = [], _Laws(rows)
     for element in system.elements:
         if isinstance(element, FrictionContact):
             own = [rows.contact(element, direction) for direction in _directions(element)]
@@ -141,12 +144,11 @@ def lower(system: VibrationSystem) -> Lowered:
             names.append(element.name)
         elif isinstance(element, UserElement):
             where = f"element {element.name!r}"
-            springs.append(
+            functions.append(
                 (np.array([rows.between(f"{element.name}.{dof}", dof, None, where) for dof in element.dofs]), element)
             )
         else:
-            where = f"spring {element.name!r}"
-            springs.append((np.array([rows.between(element.name, element.first, element.second, where)]), element))
+            laws.add(element)
     for force in system.forces:
         _place(system.structure, force.dof, "a force")
     blocks = tuple(
@@ -155,8 +157,9 @@ def lower(system: VibrationSystem) -> Lowered:
         for key, entries in cells.items()
     )  # fmt: skip
     return Lowered(
-        system.structure, tuple(system.forces), tuple(rows.names), rows.matrix(), tuple(names), blocks, tuple(springs)
-    )
+        system.structure, tuple(system.forces), tuple(rows.names), rows.matrix(), tuple(names), blocks, laws.blocks,
+        tuple(functions),
+    )  # fmt: skip
 
 
 class _Rows:
@@ -209,6 +212,46 @@ class _Rows:
                 "give its law Rigid(penalty=...) in N/m"
             )
         return 1 / sum(1 / stiffness for stiffness in stiffnesses)
+
+
+class _Entry(NamedTuple):
+    name: str
+    rows: list[int]
+    numbers: list[Number]
+
+
+class _Laws:
+    """Elements with a law, by what they have in common."""
+
+    def __init__(self, rows: _Rows) -> None:
+        self._rows = rows
+        self._blocks: dict[tuple[type[LawElement], Law, int, int, tuple[str, ...]], list[_Entry]] = {}
+
+    def add(self, element: LawElement) -> None:
+        """Add the rows and the numbers of an element."""
+        own, where = [], f"element {element.name!r}"
+        for first, second in element.ends:
+            name = element.name if len(element.ends) == 1 else f"{element.name}.{first}"
+            own.append(self._rows.between(name, first, second, where))
+        numbers = element.numbers
+        key = type(element), element.law, element.states, len(own), tuple(numbers)
+        self._blocks.setdefault(key, []).append(_Entry(element.name, own, list(numbers.values())))
+
+    @property
+    def blocks(self) -> tuple[LawBlock, ...]:
+        return tuple(
+            LawBlock(
+                kind, law, states, tuple(entry.name for entry in entries), names,
+                np.array([entry.rows for entry in entries]),
+                np.array([entry.numbers for entry in entries]).reshape(len(entries), len(names)),
+            )
+            for (kind, law, states, _, names), entries in self._blocks.items()
+        )  # fmt: skip
+
+
+def _real(block: Any) -> Any:
+    """A block with the real parts of its numbers."""
+    return replace(block, numbers=np.ascontiguousarray(np.real(block.numbers), dtype=float))
 
 
 def _place(structure: Structure, dof: str, where: str) -> int:

@@ -7,7 +7,8 @@ from dalembert.arguments import Checked
 from dalembert.errors import InputError, ModelError, shown
 from dalembert.structure import Structure
 from dalembert.vibration.laws.contacts import FrictionContact, Number
-from dalembert.vibration.laws.springs import BilinearStop, CubicSpring, Gap, UserElement
+from dalembert.vibration.laws.element import LawElement
+from dalembert.vibration.laws.user_element import UserElement
 
 
 @dataclass(frozen=True)
@@ -53,7 +54,7 @@ class StaticForce(Checked):
     value: Number = field(metadata={"unit": "N"})
 
 
-Element = FrictionContact | CubicSpring | Gap | BilinearStop | UserElement
+Element = FrictionContact | LawElement | UserElement
 Part = TypeVar("Part", bound=HarmonicForce | StaticForce | Element)
 
 

@@ -1,4 +1,4 @@
-"""Compiled: forces of elements at an instant and their slopes: cells of friction, springs, laws of the user's."""
+"""Compiled: forces of elements at an instant and their slopes: cells of friction, laws, functions of arrays."""
 
 from typing import NamedTuple
 
@@ -6,18 +6,41 @@ import numpy as np
 
 from dalembert.kernels.kernel import inner, kernel
 from dalembert.kernels.views import call_with, stack
-from dalembert.kernels.words import Address, Bytes, Integers, Integers2, Reals, Reals2
+from dalembert.kernels.words import Address, Bytes, Complexes, Integers, Integers2, Reals, Reals2
 from dalembert.vibration.laws.friction_law import FRICTION, NORMAL, SEPARATED, SLIPPING, STUCK, TANGENTIAL, update
+from dalembert.vibration.laws.law import call_law
+from dalembert.vibration.laws.law_sums import STEP
 
-CUBIC, GAP, STOP = 0, 1, 2
-"""Springs without memory."""
+COLUMNS, NUMBERS, STATES, NUMBER, STATE = range(5)
+"""Columns of the layout of elements with a law: how many of each, and where numbers and states begin."""
+
+
+PERIODS = 3
+"""Periods in which a motion's past is settled; sliders in one dimension need two."""
+
+
+class Ruled(NamedTuple):
+    """Elements that follow a law.
+
+    ``laws`` (elements,): addresses. ``layout`` (elements, 5): see above. ``rows`` (elements, columns), ``numbers``: of
+    all elements, one after the other. ``u``, ``v``, ``z`` and ``force`` are room for one of them.
+    """
+
+    laws: Integers
+    layout: Integers2
+    rows: Integers2
+    numbers: Complexes
+    u: Complexes
+    v: Complexes
+    z: Complexes
+    force: Complexes
 
 
 class Elements(NamedTuple):
     """Elements of a system.
 
     Cells of friction: ``rows`` (cells, 3), ``tangents``, ``normal`` (0 or 1), ``numbers`` (cells, 5) as the friction
-    law takes them, ``contacts`` (cells,). Springs: ``kinds``, ``places``, ``values`` (springs, 2) of stiffness and gap.
+    law takes them, ``contacts`` (cells,). ``ruled``: elements that follow a law.
     """
 
     rows: Integers2
@@ -25,9 +48,20 @@ class Elements(NamedTuple):
     normal: Integers
     numbers: Reals2
     contacts: Integers
-    kinds: Integers
-    places: Integers
-    values: Reals2
+    ruled: Ruled
+
+
+class Instant(NamedTuple):
+    """What elements see: ``u`` (rows,) displacements, and velocities ``rate + factor · u``; and what they remember.
+
+    ``sliders`` (cells, 2); ``states`` of all elements that follow a law, one after the other.
+    """
+
+    u: Reals
+    rate: Reals
+    factor: float
+    sliders: Reals2
+    states: Reals
 
 
 class Reaction(NamedTuple):
@@ -39,30 +73,24 @@ class Reaction(NamedTuple):
     slopes : array, shape (rows, rows)
     moved : array, shape (cells, 2)
         Where sliders go.
+    next : array
+        States of laws after.
     states : array of uint8, shape (contacts,)
     """
 
     force: Reals
     slopes: Reals2
     moved: Reals2
+    next: Reals
     states: Bytes
 
 
-def reaction(rows: int, cells: int, contacts: int) -> Reaction:
+def reaction(rows: int, elements: Elements, contacts: int) -> Reaction:
     """Room for a reaction."""
-    return Reaction(np.zeros(rows), np.zeros((rows, rows)), np.zeros((cells, 2)), np.zeros(contacts, dtype=np.uint8))
-
-
-@inner
-def _spring(kind, stiffness, gap, u):
-    """Force of a spring without memory and its slope."""
-    if kind == CUBIC:
-        return stiffness * u**3, 3.0 * stiffness * u**2
-    side = -1.0 if kind == STOP and u <= 0.0 else 1.0
-    over = u - side * gap
-    if side * over <= 0.0:
-        return 0.0, 0.0
-    return stiffness * over, stiffness
+    return Reaction(
+        np.zeros(rows), np.zeros((rows, rows)), np.zeros((len(elements.tangents), 2)),
+        np.zeros(int(elements.ruled.layout[:, STATES].sum())), np.zeros(contacts, dtype=np.uint8),
+    )  # fmt: skip
 
 
 @inner
@@ -101,34 +129,60 @@ def _cell(elements, c, u, sliders, moved, force, slopes, states):
 
 
 @inner
-def answer(elements, users, u, sliders, reaction):
+def _follow(ruled, e, instant, reaction):
+    """Add the forces of an element that follows a law, and their slopes; its state after."""
+    own, rows = ruled.layout[e], ruled.rows[e]
+    columns, states, begin = own[COLUMNS], own[STATES], own[STATE]
+    u, v, z, force = ruled.u[:columns], ruled.v[:columns], ruled.z[:states], ruled.force[:columns]
+    numbers = ruled.numbers[own[NUMBER] : own[NUMBER] + own[NUMBERS]]
+    for direction in range(columns):
+        for i in range(columns):
+            u[i] = instant.u[rows[i]]
+            v[i] = instant.rate[rows[i]] + instant.factor * instant.u[rows[i]]
+        for i in range(states):
+            z[i] = instant.states[begin + i]
+        u[direction] += 1j * STEP
+        v[direction] += 1j * STEP * instant.factor
+        call_law(ruled.laws[e], u, v, z, numbers, force)
+        for i in range(columns):
+            reaction.slopes[rows[i], rows[direction]] += force[i].imag / STEP
+    for i in range(columns):
+        reaction.force[rows[i]] += force[i].real
+    for i in range(states):
+        reaction.next[begin + i] = z[i].real
+
+
+@inner
+def answer(elements, users, instant, reaction):
     """As :func:`react`."""
     force, slopes, states = reaction.force, reaction.slopes, reaction.states
     force[:] = 0.0
     slopes[:] = 0.0
     states[:] = 0
     for c in range(len(elements.tangents)):
-        _cell(elements, c, u, sliders, reaction.moved, force, slopes, states)
-    for s in range(len(elements.kinds)):
-        row = elements.places[s]
-        value, slope = _spring(elements.kinds[s], elements.values[s, 0], elements.values[s, 1], u[row])
-        force[row] += value
-        slopes[row, row] += slope
+        _cell(elements, c, instant.u, instant.sliders, reaction.moved, force, slopes, states)
+    for e in range(len(elements.ruled.laws)):
+        _follow(elements.ruled, e, instant, reaction)
     if users != 0:
-        call_with(users, u, force, slopes)
+        call_with(users, instant.u, force, slopes)
 
 
 @kernel
-def react(elements: Elements, users: Address, u: Reals, sliders: Reals2, reaction: Reaction) -> None:
-    """The reaction of all elements to displacements; ``users`` adds that of laws of the user's, if there are any."""
-    answer(elements, users, u, sliders, reaction)
+def react(elements: Elements, users: Address, instant: Instant, reaction: Reaction) -> None:
+    """The reaction of all elements at an instant; ``users`` adds that of functions of arrays, if there are any."""
+    answer(elements, users, instant, reaction)
 
 
 @kernel
-def settle(elements: Elements, users: Address, displacements: Reals2, sliders: Reals2, reaction: Reaction) -> None:
-    """Move sliders (cells, 2) to where they end in a period of displacements (steps, rows) gone through repeatedly."""
-    for _ in range(3):
+def settle(
+    elements: Elements, users: Address, displacements: Reals2, velocities: Reals2, sliders: Reals2, states: Reals,
+    reaction: Reaction,
+) -> None:  # fmt: skip
+    """Move sliders (cells, 2) and states to where they end in a period (steps, rows) gone through repeatedly."""
+    for _ in range(PERIODS):
         for t in range(len(displacements)):
-            answer(elements, users, displacements[t], sliders, reaction)
+            answer(elements, users, Instant(displacements[t], velocities[t], 0.0, sliders, states), reaction)
             for c in range(len(sliders)):
                 sliders[c, 0], sliders[c, 1] = reaction.moved[c, 0], reaction.moved[c, 1]
+            for i in range(len(states)):
+                states[i] = reaction.next[i]

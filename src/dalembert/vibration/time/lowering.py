@@ -18,16 +18,15 @@ from dalembert.errors import ModelError
 from dalembert.vibration.balance.condensation import COUPLED, DENSE
 from dalembert.vibration.balance.fourier import Fourier
 from dalembert.vibration.laws.friction_law import NORMAL, TANGENTIAL
-from dalembert.vibration.laws.springs import BilinearStop, CubicSpring, Gap, UserElement
+from dalembert.vibration.laws.user_element import UserElement
 from dalembert.vibration.system.hysteretic import require_viscous
 from dalembert.vibration.system.lowering import ELASTIC, Lowered
 from dalembert.vibration.system.system import StaticForce
-from dalembert.vibration.time.elements import CUBIC, GAP, STOP, Elements
+from dalembert.vibration.time.elements import Elements, Ruled
 from dalembert.vibration.time.steps import Modes, Scheme
 
 MASSLESS = 1e-12
 """Mass of a mode, as part of its mass and stiffness, below which it has no inertia of its own."""
-_KINDS: dict[type, int] = {CubicSpring: CUBIC, Gap: GAP, BilinearStop: STOP}
 _C_FUNCTION = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p)
 
 
@@ -129,9 +128,9 @@ class InTime:
 
     @cached_property
     def places(self) -> np.ndarray:
-        """Row of the lowered system that each column of a cell, and each row of a spring, sees: (rows,) of these."""
-        cells = [block.rows.ravel() for block in self.lowered.blocks]
-        return np.concatenate([np.zeros(0, dtype=int), *cells, *(own for own, _ in self.lowered.springs)])
+        """Row of the lowered system that each column of a cell, and each row of an element, sees: (rows,) of these."""
+        cells = [block.rows.ravel() for block in (*self.lowered.blocks, *self.lowered.laws)]
+        return np.concatenate([np.zeros(0, dtype=int), *cells, *(own for own, _ in self.lowered.functions)])
 
     @cached_property
     def seen(self) -> np.ndarray:
@@ -176,34 +175,51 @@ class InTime:
             numbers.append(block.numbers.astype(float))
             if block.kind != ELASTIC:
                 numbers[-1][:, [TANGENTIAL, NORMAL]] *= self.stand_in
-        plain = [(own[0], element) for own, element in self._springs if not isinstance(element, UserElement)]
         return Elements(
             rows=np.concatenate(rows),
             tangents=np.array([block.tangents for block in blocks for _ in block.rows], dtype=np.int64),
             normal=np.array([block.normal for block in blocks for _ in block.rows], dtype=np.int64),
             numbers=np.concatenate(numbers),
             contacts=np.concatenate([np.zeros(0, dtype=int), *(block.contacts for block in blocks)]),
-            kinds=np.array([_KINDS[type(element)] for _, element in plain], dtype=np.int64),
-            places=np.array([place for place, _ in plain], dtype=np.int64),
-            values=np.array([[np.real(e.stiffness), np.real(getattr(e, "gap", 0.0))] for _, e in plain]).reshape(-1, 2),
+            ruled=self._ruled(at),
         )
+
+    def _ruled(self, at: int) -> Ruled:
+        """Elements that follow a law; their rows are those from ``at`` on."""
+        laws, layout, rows, numbers, number, state = [], [], [], [np.zeros(0)], 0, 0
+        for block in self.lowered.laws:
+            columns = block.rows.shape[1]
+            for own in block.numbers:
+                laws.append(block.law.address)
+                layout.append([columns, len(own), block.states, number, state])
+                rows.append(at + np.arange(columns))
+                numbers.append(own)
+                at, number, state = at + columns, number + len(own), state + block.states
+        widest = max((len(own) for own in rows), default=0)
+        most = max((block.states for block in self.lowered.laws), default=0)
+        u, v, force = np.zeros((3, widest), complex)
+        return Ruled(
+            np.array(laws, dtype=np.int64), np.array(layout, dtype=np.int64).reshape(-1, 5),
+            np.array([np.pad(own, (0, widest - len(own))) for own in rows], dtype=np.int64).reshape(len(rows), widest),
+            np.concatenate(numbers).astype(complex), u, v, np.zeros(most, complex), force,
+        )  # fmt: skip
 
     def users(self, failures: list[Exception]) -> "Users":
         """The laws of the user's, callable from compiled code; what they raise is kept, and the run ends."""
-        laws = [(own, element.law) for own, element in self._springs if isinstance(element, UserElement)]
+        laws = [(own, element.law) for own, element in self._functions]
         if not laws:
             return Users(0, None)
         call = _C_FUNCTION(_trampoline(laws, len(self.places), failures))
         return Users(ctypes.cast(call, ctypes.c_void_p).value or 0, call)
 
     @property
-    def _springs(self) -> list[tuple[np.ndarray, Any]]:
-        """Rows of their own of the elements without memory, after those of the cells."""
-        sizes = [len(own) for own, _ in self.lowered.springs]
+    def _functions(self) -> list[tuple[np.ndarray, UserElement]]:
+        """Rows of their own of the elements whose law is a function of arrays: the last ones."""
+        sizes = [len(own) for own, _ in self.lowered.functions]
         first = len(self.places) - sum(sizes) + np.cumsum([0, *sizes])
         return [
             (np.arange(begin, begin + size), element)
-            for begin, size, (_, element) in zip(first, sizes, self.lowered.springs, strict=False)
+            for begin, size, (_, element) in zip(first, sizes, self.lowered.functions, strict=False)
         ]
 
 

@@ -19,7 +19,7 @@ from dalembert.vibration.preparation import prepare_time
 from dalembert.vibration.system.lowering import lower
 from dalembert.vibration.system.system import VibrationSystem
 from dalembert.vibration.threads import one_thread
-from dalembert.vibration.time.elements import Elements, Reaction, react, reaction, settle
+from dalembert.vibration.time.elements import Elements, Instant, Reaction, react, reaction, settle
 from dalembert.vibration.time.lowering import InTime, Users
 from dalembert.vibration.time.newmark import Newmark
 from dalembert.vibration.time.periodic_motion import PeriodicMotion
@@ -162,7 +162,7 @@ class _Run:
     def rest(self) -> State:
         """At rest, with sliders where they stand."""
         modes = self.problem.seen.shape[1]
-        return self._balanced(np.zeros(modes), np.zeros(modes), self._sliders())
+        return self._balanced(np.zeros(modes), np.zeros(modes), *self._memory())
 
     def on_curve(self, system: VibrationSystem, curve: FrequencyCurve, point: int) -> State:
         """On a point of a curve, with sliders as its motion moves them."""
@@ -171,12 +171,13 @@ class _Run:
         steps = self.method.steps_per_period
         waves = synthesis(curve.orders, 2 * np.pi * np.arange(1, steps + 1) / steps)
         rates = Fourier(curve.orders, steps).derivative.T @ waves[-1]
-        sliders, seen = self._sliders(), np.asarray(self.problem.lowered.matrix @ x)[self.problem.places]
+        (sliders, states), seen = self._memory(), np.asarray(self.problem.lowered.matrix @ x)[self.problem.places]
         places = np.ascontiguousarray(waves @ seen.T)
-        settle(self.problem.elements, self._users.address, places, sliders, self._reaction())
+        speeds = np.ascontiguousarray(self.problem.omega * waves @ Fourier(curve.orders, steps).derivative @ seen.T)
+        settle(self.problem.elements, self._users.address, places, speeds, sliders, states, self._reaction())
         places = np.stack([x @ waves[-1], self.problem.omega * (x @ rates)], axis=1)
         place, velocity = np.linalg.solve(self.problem.spectral.shapes, places).T
-        return self._balanced(place, velocity, sliders)
+        return self._balanced(place, velocity, sliders, states)
 
     def long(self, state: State, most: int, tolerance: float) -> _Ended:
         """Period after period."""
@@ -186,7 +187,7 @@ class _Run:
             np.empty((steps, len(modes.mass))), np.empty((steps, rows)), np.empty((steps, rows)),
             np.zeros((steps, len(self.problem.lowered.contacts)), dtype=np.uint8),
         )  # fmt: skip
-        state = State(state.modes.copy(), state.sliders.copy())
+        state = State(*(own.copy() for own in state))
         status, count, change = advance(
             modes, elements, self._users.address, self._scheme, state, self.problem.omega, most, tolerance, record
         )
@@ -220,28 +221,32 @@ class _Run:
         size = float(np.linalg.norm(warm.state.modes[:2] / [[1.0], [self.problem.omega]])) or 1.0
         widest = float(np.abs(warm.record.displacements).max(initial=0.0)) or 1.0
         each = size * self.problem.omega ** np.array([0.0, 1.0, 2.0, 2.0])
-        return np.append(np.repeat(each, len(self._modes.mass)), np.full(warm.state.sliders.size, widest))
+        modes, states = np.repeat(each, len(self._modes.mass)), np.abs(warm.state.states)
+        return np.concatenate([modes, np.full(warm.state.sliders.size, widest), np.where(states > 0, states, 1.0)])
 
     def _flat(self, state: State, scale: np.ndarray) -> np.ndarray:
-        return np.append(state.modes, state.sliders) / scale
+        return np.concatenate([own.ravel() for own in state]) / scale
 
     def _state(self, flat: np.ndarray, scale: np.ndarray) -> State:
-        own, modes = flat * scale, 4 * len(self._modes.mass)
-        return State(own[:modes].reshape(4, -1), own[modes:].reshape(-1, 2))
+        modes, cells = 4 * len(self._modes.mass), 2 * len(self.problem.elements.tangents)
+        own, sliders, states = np.split(flat * scale, [modes, modes + cells])
+        return State(own.reshape(4, -1), sliders.reshape(-1, 2), states)
 
-    def _sliders(self) -> np.ndarray:
-        return np.zeros((len(self.problem.elements.tangents), 2))
+    def _memory(self) -> tuple[np.ndarray, np.ndarray]:
+        """Sliders and states at rest."""
+        found = self._reaction()
+        return np.zeros_like(found.moved), np.zeros_like(found.next)
 
-    def _balanced(self, place: np.ndarray, velocity: np.ndarray, sliders: np.ndarray) -> State:
+    def _balanced(self, place: np.ndarray, velocity: np.ndarray, sliders: np.ndarray, states: np.ndarray) -> State:
         """With the accelerations that the forces at the start of a period ask for."""
         seen, found = self.problem.seen, self._reaction()
-        react(self.problem.elements, self._users.address, seen @ place, sliders, found)
+        instant = Instant(seen @ place, seen @ velocity, 0.0, sliders, states)
+        react(self.problem.elements, self._users.address, instant, found)
         if self.failures:
             raise self.failures[0]
         push = self.problem.forces[-1] - seen.T @ found.force
         acceleration = self.problem.spectral.accelerations(push, place, velocity)
-        return State(np.stack([place, velocity, acceleration, acceleration]), sliders)
+        return State(np.stack([place, velocity, acceleration, acceleration]), sliders, states)
 
     def _reaction(self) -> Reaction:
-        elements, contacts = self.problem.elements, self.problem.lowered.contacts
-        return reaction(len(self.problem.seen), len(elements.tangents), len(contacts))
+        return reaction(len(self.problem.seen), self.problem.elements, len(self.problem.lowered.contacts))

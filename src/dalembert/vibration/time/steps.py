@@ -21,7 +21,7 @@ from dalembert.kernels.kernel import inner, kernel
 from dalembert.kernels.words import Address, Bytes2, Reals, Reals2
 from dalembert.vibration.dense import apply, assign, dot, invert, size_of
 from dalembert.vibration.laws.friction_law import LOAD, NORMAL
-from dalembert.vibration.time.elements import Elements, Reaction, answer, reaction
+from dalembert.vibration.time.elements import Elements, Instant, Reaction, answer, reaction
 
 STEADY, MOVING, LOST = 0, 1, 2
 """How a run ends: periodic, not yet, or at a step that Newton's method cannot take."""
@@ -68,10 +68,14 @@ class Modes(NamedTuple):
 
 
 class State(NamedTuple):
-    """At an instant: modes (4, n) of displacements, velocities, accelerations, auxiliary ones; sliders (cells, 2)."""
+    """At an instant: modes (4, n) of displacements, velocities, accelerations, auxiliary ones; what elements remember.
+
+    ``sliders`` (cells, 2); ``states`` of all elements that follow a law, one after the other.
+    """
 
     modes: Reals2
     sliders: Reals2
+    states: Reals
 
 
 class Record(NamedTuple):
@@ -87,13 +91,14 @@ class Record(NamedTuple):
 
 
 class Room(NamedTuple):
-    """Room for a step: vectors of rows, matrices (rows, rows), vectors of modes; sliders (cells, 2).
+    """Room for a step: vectors of rows, matrices (rows, rows), vectors of modes; sliders (cells, 2), states.
 
-    ``gemv``: the BLAS's address.
+    ``gemv``: the BLAS's address. ``largest``: of the states over a period.
     """
 
     gemv: Address
     u: Reals
+    rate: Reals
     start: Reals
     residual: Reals
     change: Reals
@@ -104,6 +109,8 @@ class Room(NamedTuple):
     first_q: Reals
     first_v: Reals
     first_z: Reals2
+    first_states: Reals
+    largest: Reals
 
 
 def _room(modes: Modes, state: State) -> Room:
@@ -111,6 +118,7 @@ def _room(modes: Modes, state: State) -> Room:
     return Room(
         gemv=gemv(),
         u=np.zeros(rows),
+        rate=np.zeros(rows),
         start=np.zeros(rows),
         residual=np.zeros(rows),
         change=np.zeros(rows),
@@ -121,6 +129,8 @@ def _room(modes: Modes, state: State) -> Room:
         first_q=np.zeros(n),
         first_v=np.zeros(n),
         first_z=np.zeros_like(state.sliders),
+        first_states=np.zeros_like(state.states),
+        largest=np.zeros_like(state.states),
     )
 
 
@@ -135,7 +145,7 @@ def _product(gemv, diagonal, whole, x, y):
 
 
 @inner
-def _balance(modes, elements, users, state, reaction, room):
+def _balance(modes, elements, users, instant, reaction, room):
     """Solve u + compliance · force(u) = start, u shifted, from a guess; the inverse is one of before. If found."""
     u, start, residual, change = room.u, room.start, room.residual, room.change
     scale = max(size_of(start), size_of(u))
@@ -148,8 +158,8 @@ def _balance(modes, elements, users, state, reaction, room):
             before = 0.0
             for c in range(len(elements.tangents)):
                 for i in range(elements.tangents[c]):
-                    u[elements.rows[c, i]] = state.sliders[c, i]
-        answer(elements, users, u, state.sliders, reaction)
+                    u[elements.rows[c, i]] = instant.sliders[c, i]
+        answer(elements, users, instant, reaction)
         if last:
             return True
         apply(room.gemv, modes.compliance, reaction.force, residual)
@@ -204,10 +214,17 @@ def _step(modes, elements, users, scheme, state, t, reaction, room):
         apply(room.gemv, modes.compliance, reaction.force, room.u)
         for i in range(len(room.u)):
             room.u[i] = room.start[i] - room.u[i]
-        if not _balance(modes, elements, users, state, reaction, room):
+        if len(elements.ruled.laws):  # velocities follow displacements: v + g (u - x)/b
+            apply(room.gemv, modes.seen, v, room.rate)
+            apply(room.gemv, modes.seen, q, room.residual)
+            for i in range(len(room.rate)):
+                room.rate[i] -= g / b * room.residual[i]
+        instant = Instant(room.u, room.rate, g / b, state.sliders, state.states)
+        if not _balance(modes, elements, users, instant, reaction, room):
             return False
         for c in range(len(state.sliders)):
             assign(state.sliders[c], reaction.moved[c])
+        assign(state.states, reaction.next)
         for k in range(len(modes.pushed)):
             for i in range(len(a)):
                 a[i] -= modes.pushed[k, i] * reaction.force[k]
@@ -234,6 +251,9 @@ def _change(state, record, omega, room):
     size = np.sqrt(dot(q, q) + dot(v, v) / omega**2)
     off = np.sqrt(_distance(q, room.first_q) + _distance(v, room.first_v) / omega**2)
     change = off / size if size > 0.0 else 0.0
+    for i in range(len(state.states)):
+        if room.largest[i] > 0.0:
+            change = max(change, abs(state.states[i] - room.first_states[i]) / room.largest[i])
     if len(state.sliders) == 0 or np.isnan(change):
         return change
     widest, slid = 0.0, 0.0
@@ -255,11 +275,15 @@ def go_through(
     for period in range(most):
         assign(room.first_q, state.modes[0])
         assign(room.first_v, state.modes[1])
+        assign(room.first_states, state.states)
+        room.largest[:] = 0.0
         for c in range(len(state.sliders)):
             assign(room.first_z[c], state.sliders[c])
         for t in range(steps):
             if not _step(modes, elements, users, scheme, state, t, reaction, room):
                 return LOST, period * steps + t, change
+            for i in range(len(state.states)):
+                room.largest[i] = max(room.largest[i], abs(state.states[i]))
             assign(record.modes[t], state.modes[0])
             assign(record.displacements[t], room.u)
             assign(record.forces[t], reaction.force)
@@ -284,6 +308,6 @@ def advance(
     record: Record,
 ) -> tuple[int, int, float]:
     """Go through periods until one changes nothing, in place; how it ended, periods or step, change of the last one."""
-    answers = reaction(len(modes.seen), len(state.sliders), record.states.shape[1])
+    answers = reaction(len(modes.seen), elements, record.states.shape[1])
     room = _room(modes, state)
     return go_through(modes, elements, users, scheme, state, omega, most, tolerance, record, answers, room)

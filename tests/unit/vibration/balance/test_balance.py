@@ -97,11 +97,11 @@ def test_the_jacobian_is_that_of_the_complex_step(name: str, size: float) -> Non
     for place in np.ndindex(*balance.shape):
         moved = unknowns.astype(complex)
         moved[place] += 1e-30j
-        exact = balance.residual(np.tensordot(blocks, moved, 2) - load, moved).residual.imag / 1e-30
+        exact = balance.residual(np.tensordot(blocks, moved, 2) - load, moved, point.omega).residual.imag / 1e-30
         np.testing.assert_allclose(tangent.jacobian[:, :, *place], exact, atol=1e-12 * scale)
     slope = balance.linear(point.slope, point.force_slope, unknowns)
     linear = balance.linear(point.stiffness, point.force, unknowns)
-    stepped = balance.residual(linear + 1e-30j * slope, unknowns)
+    stepped = balance.residual(linear + 1e-30j * slope, unknowns, point.omega)
     np.testing.assert_allclose(tangent.slope, stepped.residual.imag / 1e-30, atol=1e-12 * np.abs(tangent.slope).max())
     np.testing.assert_allclose(evaluation.residual, stepped.residual.real, atol=1e-12 * scale)
 

@@ -86,7 +86,6 @@ def largest_error(
     errors = []
     for unknowns, omega, samples in zip(curve.unknowns, TURN * curve.frequencies, curve.samples, strict=True):
         point, balance = own.condensation.at(omega), own.balance(int(samples))
-        linear = balance.linear(point.stiffness, point.force, unknowns)
-        first, second = balance.residual(linear, unknowns), reference.residual(linear, unknowns)
+        first, second = balance.at(point, unknowns), reference.at(point, unknowns)
         errors.append(norm(first.residual - second.residual) / (point.load + norm(second.forces)))
     return max(errors)

@@ -1,7 +1,7 @@
-"""Springs without memory: cubic, unilateral, bilinear, and laws of the user's."""
+"""Laws of the user's without memory, of several degrees of freedom, as functions of arrays."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property, partial
 
 import numpy as np
@@ -10,99 +10,6 @@ from dalembert.arguments import Checked
 from dalembert.errors import InputError, shown
 from dalembert.forward.builders import call_error
 from dalembert.forward.complex_steps import DROPPING, attempted, lost_step
-from dalembert.vibration.laws.contacts import Number, require_not_negative, require_positive
-
-
-@dataclass(frozen=True)
-class CubicSpring(Checked):
-    """Force k u³ between two degrees of freedom, or one and the ground.
-
-    Parameters
-    ----------
-    name : str
-    first : str
-        Degree of freedom, such as ``"A.x"``.
-    second : str, optional
-        The ground if not given; u is the first displacement less the second.
-    stiffness : float
-        N/m³.
-    """
-
-    name: str
-    first: str
-    second: str | None = None
-    stiffness: Number = field(kw_only=True, metadata={"unit": "N/m^3"})
-
-    def law(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Force and its derivative at displacements."""
-        return self.stiffness * u**3, 3 * self.stiffness * u**2
-
-
-@dataclass(frozen=True)
-class Gap(Checked):
-    """A stop on one side: force k (u - gap) where u exceeds the gap, else none.
-
-    Parameters
-    ----------
-    name : str
-    first : str
-        Degree of freedom.
-    second : str, optional
-        The ground if not given.
-    stiffness : float
-        N/m.
-    gap : float
-        m.
-    """
-
-    name: str
-    first: str
-    second: str | None = None
-    stiffness: Number = field(kw_only=True, metadata={"unit": "N/m"})
-    gap: Number = field(default=0.0, kw_only=True, metadata={"unit": "m"})
-
-    def __post_init__(self) -> None:
-        require_positive(f"gap {self.name!r}: the stiffness", "N/m", self.stiffness)
-
-    def law(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Force and its derivative at displacements."""
-        closed = np.real(u - self.gap) > 0
-        return np.where(closed, self.stiffness * (u - self.gap), 0.0), np.where(closed, self.stiffness, 0.0)
-
-
-@dataclass(frozen=True)
-class BilinearStop(Checked):
-    """A stop on both sides: force k (u ∓ gap) where u exceeds the gap upwards or downwards, else none.
-
-    Parameters
-    ----------
-    name : str
-    first : str
-        Degree of freedom.
-    second : str, optional
-        The ground if not given.
-    stiffness : float
-        N/m.
-    gap : float
-        Half the free way, m.
-    """
-
-    name: str
-    first: str
-    second: str | None = None
-    stiffness: Number = field(kw_only=True, metadata={"unit": "N/m"})
-    gap: Number = field(default=0.0, kw_only=True, metadata={"unit": "m"})
-
-    def __post_init__(self) -> None:
-        require_positive(f"stop {self.name!r}: the stiffness", "N/m", self.stiffness)
-        require_not_negative(f"stop {self.name!r}: the gap", "m", self.gap)
-
-    def law(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Force and its derivative at displacements."""
-        side = np.where(np.real(u) > 0, 1.0, -1.0)
-        over = u - side * self.gap
-        closed = side * np.real(over) > 0
-        return np.where(closed, self.stiffness * over, 0.0), np.where(closed, self.stiffness, 0.0)
 
 
 @dataclass(frozen=True)
@@ -204,6 +111,3 @@ class UserElement(Checked):
                 f"as {DROPPING} do. Use absolute, norm, hypot and atan2 of dalembert"
             )
         self._compared.append(True)
-
-
-Spring = CubicSpring | Gap | BilinearStop

@@ -1,0 +1,87 @@
+"""A law of the user's as a compiled Python function, with velocity and internal state."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+
+from dalembert.errors import InputError, shown
+from dalembert.vibration.laws.contacts import Number
+from dalembert.vibration.laws.element import LawElement
+from dalembert.vibration.laws.law import Law
+
+
+@dataclass(frozen=True)
+class UserLaw(LawElement):
+    """A law of the user's between two degrees of freedom, or one and the ground.
+
+    Parameters
+    ----------
+    name : str
+    first : str
+        Degree of freedom, such as ``"A.x"``.
+    second : str, optional
+        The ground if not given; u is the first displacement less the second.
+    function : callable
+        ``function(u, v, z, numbers, force)``: it writes ``force[0]``, N, from the displacement ``u[0]``, m, the
+        velocity ``v[0]``, m/s, the internal state ``z`` and ``numbers``, and moves ``z``. Numba compiles it. Compare
+        real parts (``u[0].real``): imaginary parts are directions of differentiation. It is called once a sample, in
+        the order of time; a law that depends on the change of u keeps u in its state.
+    values : sequence of float
+        Numbers of the law; they may depend on parameters.
+    internal : int
+        Internal numbers, which are 0 at rest.
+
+    Raises
+    ------
+    InputError
+        For a function that does not take five arguments, and, when it is first used, for one that drops the imaginary
+        part of its arguments.
+
+    Examples
+    --------
+    >>> def quadratic(u, v, z, numbers, force):
+    ...     force[0] = numbers[0] * v[0] * (v[0] if v[0].real > 0 else -v[0])
+    >>> UserLaw("damper", "A.x", function=quadratic, values=[0.3]).numbers
+    {'values[0]': 0.3}
+    """
+
+    name: str
+    first: str
+    second: str | None = None
+    function: Callable[..., None] = None  # type: ignore[assignment] - required, and checked
+    values: Sequence[Number] = ()
+    internal: int = 0
+
+    rated = True
+
+    def __post_init__(self) -> None:
+        where = f"UserLaw {self.name!r}"
+        if self.internal < 0:
+            raise InputError(f"{where}: internal is {self.internal}; expected 0 or more")
+        values = np.asarray(self.values)
+        if values.ndim != 1 or not np.all(np.isfinite(values)):
+            raise InputError(f"{where}: values is {shown(self.values)}; expected finite numbers")
+        object.__setattr__(self, "values", tuple(self.values))
+        _law_of(self.function)
+
+    @property
+    def law(self) -> Law:  # type: ignore[override] - of the element, not of its class
+        """The compiled function."""
+        return _law_of(self.function)
+
+    @property
+    def states(self) -> int:
+        """Internal numbers."""
+        return self.internal
+
+    @property
+    def numbers(self) -> dict[str, Number]:
+        """Numbers of the law by their places."""
+        return {f"values[{place}]": value for place, value in enumerate(self.values)}
+
+
+@cache
+def _law_of(function: Callable[..., None]) -> Law:
+    return function if isinstance(function, Law) else Law(function)

@@ -106,24 +106,53 @@ def law_forces(
         _periods(law, Motion(place[e], velocity[e], -1, none, none), numbers[e], room, result[e])
 
 
+@inner
+def _along(law, motion, numbers, room, trial, slope):
+    """Derivative of the forces (columns, samples) in the motion's direction."""
+    _periods(law, motion, numbers, room, trial)
+    for i in range(slope.shape[0]):
+        for t in range(slope.shape[1]):
+            slope[i, t] = trial[i, t].imag / STEP
+
+
+@inner
+def _spread(slope, waves, slopes):
+    """Add a derivative at samples (columns, samples), times waves, to those by coefficients."""
+    for k in range(len(waves)):
+        for i in range(slope.shape[0]):
+            for t in range(slope.shape[1]):
+                slopes[k, i, t] += slope[i, t] * waves[k, t]
+
+
 @kernel
 def law_slopes(
     law: Address, numbers: Complexes2, place: Complexes3, velocity: Complexes3, waves: Reals2, rates: Reals2,
-    trial: Complexes2, room: Room, slopes: Reals4,
+    units: Reals2, slope: Reals2, room: Room, result: Complexes3, slopes: Reals4,
 ) -> None:  # fmt: skip
-    """Derivatives of the forces by the displacements' coefficients, (elements, unknowns, columns, samples).
+    """Forces (elements, columns, samples), their derivatives by coefficients (elements, unknowns, columns, samples).
 
     ``waves`` and ``rates`` (coefficients, samples): what a unit of each coefficient adds to displacements and
-    velocities. ``trial`` (columns, samples) is room.
+    velocities, no rates if forces do not depend on velocities. ``units`` (2, samples): ones and zeros. ``slope``
+    (columns, samples) is room.
     """
+    count = len(waves)
     for e in range(len(place)):
         for column in range(len(room.u)):
-            for k in range(len(waves)):
-                _periods(law, Motion(place[e], velocity[e], column, waves[k], rates[k]), numbers[e], room, trial)
-                slope = slopes[e, column * len(waves) + k]
-                for i in range(slope.shape[0]):
-                    for t in range(slope.shape[1]):
-                        slope[i, t] = trial[i, t].imag / STEP
+            own = slopes[e, column * count : (column + 1) * count]
+            if len(room.state) == 0:  # a sample's force depends on its own displacement and velocity alone
+                own[:] = 0.0
+                if len(rates):
+                    motion = Motion(place[e], velocity[e], column, units[1], units[0])
+                    _along(law, motion, numbers[e], room, result[e], slope)
+                    _spread(slope, rates, own)
+                motion = Motion(place[e], velocity[e], column, units[0], units[1])
+                _along(law, motion, numbers[e], room, result[e], slope)
+                _spread(slope, waves, own)
+                continue
+            for k in range(count):
+                rate = rates[k] if len(rates) else units[1]
+                motion = Motion(place[e], velocity[e], column, waves[k], rate)
+                _along(law, motion, numbers[e], room, result[e], own[k])
 
 
 @kernel
@@ -206,18 +235,21 @@ class LawSums:
         unknowns = columns * count
         moved, rate = self._moved(displacements, omega)
         slopes = np.empty((elements, unknowns, columns, series.samples))
-        turn = omega * series.waves[1] if self.rated else np.zeros_like(series.synthesis)
+        turn = omega * series.waves[1].T if self.rated else np.zeros((0, series.samples))
+        units = np.stack([np.ones(series.samples), np.zeros(series.samples)])
+        force = np.empty_like(moved)
         law_slopes(
             self.law.address, self._complex, moved, rate, np.ascontiguousarray(series.synthesis.T),
-            np.ascontiguousarray(turn.T), np.empty((columns, series.samples), complex), Room.of(columns, self.states),
-            slopes,
+            np.ascontiguousarray(turn), units, np.empty((columns, series.samples)), Room.of(columns, self.states),
+            force, slopes,
         )  # fmt: skip
-        local = np.moveaxis(slopes @ series.analysis.T, 1, 3).reshape(elements, unknowns, unknowns)
+        local = (slopes.reshape(-1, series.samples) @ series.analysis.T).reshape(elements, unknowns, columns, count)
         by_omega = np.zeros(displacements.shape)
         if self.rated and omega:  # a velocity ω u' grows with ω at unchanged displacements
             faster = self._sampled(moved, rate * (1 + 1j * STEP / omega))
             by_omega = np.imag(faster) / STEP @ series.analysis.T
-        return np.real(self._sampled(moved, rate)) @ series.analysis.T, local, by_omega
+        jacobians = np.moveaxis(local, 1, 3).reshape(elements, unknowns, unknowns)
+        return np.real(force) @ series.analysis.T, jacobians, by_omega
 
     def over(self, place: np.ndarray) -> np.ndarray:
         """Forces over a period of displacements without velocities, (elements, columns, samples), real."""

@@ -32,11 +32,13 @@ from numba.core.untyped_passes import (
 )
 from numba.np import arrayobj as _arrayobj
 
+from dalembert.kernels.powers import IntegerPowers
+
 arrayobj: Any = _arrayobj
 _PASSES = (
-    TranslateByteCode, FixupArgs, IRProcessing, RewriteSemanticConstants, DeadBranchPrune, GenericRewrites,
-    ReconstructSSA, NopythonTypeInference, PreLowerStripPhis, InlineOverloads, IRLegalization, AnnotateTypes,
-    NativeLowering, NoPythonBackend,
+    TranslateByteCode, FixupArgs, IRProcessing, IntegerPowers, RewriteSemanticConstants, DeadBranchPrune,
+    GenericRewrites, ReconstructSSA, NopythonTypeInference, PreLowerStripPhis, InlineOverloads, IRLegalization,
+    AnnotateTypes, NativeLowering, NoPythonBackend,
 )  # fmt: skip
 
 

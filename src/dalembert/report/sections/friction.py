@@ -13,7 +13,7 @@ from dalembert.report.look import plain
 from dalembert.report.needs_frequency import FrequencyCurveLike
 from dalembert.report.plot import Plot
 from dalembert.report.sections.findings import Findings
-from dalembert.report.table import Table, cell
+from dalembert.report.table import Cell, Table, cell
 
 FEW_SPRINGS = 6
 
@@ -75,22 +75,23 @@ class Friction(Findings):
 
     @property
     def tables(self) -> tuple[Table, ...]:
+        return (*self._of_contacts, *self._of_springs)
+
+    @property
+    def _of_contacts(self) -> tuple[Table, ...]:
         curve, point = self.look.curve, self.look.point
         if not curve.contacts:
             return ()
         parts, energies = shares(curve.states[point]), dissipation_of(curve)
-        rows = []
-        for place, (contact, names) in enumerate(of_contacts(curve).items()):
-            u, force = curve.loop(names[0], point)
-            rows.append(
-                (
-                    cell(contact),
-                    *(cell(float(100 * parts[state][place]), digits=3) for state in ("stuck", "slipping", "separated")),
-                    cell(float(energies[contact][point]), digits=4),
-                    cell(float(np.abs(u).max()), digits=4),
-                    cell(float(np.abs(force).max()), digits=4),
-                )
+        rows = [
+            (
+                cell(contact),
+                *(cell(float(100 * parts[state][place]), digits=3) for state in ("stuck", "slipping", "separated")),
+                cell(float(energies[contact][point]), digits=4),
+                *self._largest(names[0]),
             )
+            for place, (contact, names) in enumerate(of_contacts(curve).items())
+        ]
         columns = (
             "contact",
             "stuck (% of the period)",
@@ -102,6 +103,23 @@ class Friction(Findings):
         )
         caption = f"Contacts at {shown(float(curve.frequencies[point]))} Hz, along their first tangential direction"
         return (Table("contacts", caption, columns, rows),)
+
+    @property
+    def _of_springs(self) -> tuple[Table, ...]:
+        curve, point, names = self.look.curve, self.look.point, of_springs(self.look.curve)
+        if not names:
+            return ()
+        rows = [
+            (cell(name), cell(float(curve.dissipated(name)[point]), digits=4), *self._largest(name)) for name in names
+        ]
+        columns = ("element", "energy of a period (J)", "largest displacement (m)", "largest force (N)")
+        caption = f"Springs and other laws at {shown(float(curve.frequencies[point]))} Hz"
+        return (Table("springs", caption, columns, rows),)
+
+    def _largest(self, coordinate: str) -> tuple[Cell, Cell]:
+        """Largest displacement and force along a coordinate."""
+        u, force = self.look.curve.loop(coordinate, self.look.point)
+        return cell(float(np.abs(u).max()), digits=4), cell(float(np.abs(force).max()), digits=4)
 
 
 def _percent(part: float) -> str:

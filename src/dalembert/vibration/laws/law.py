@@ -55,7 +55,12 @@ class Law:
     @property
     def packaged(self) -> bool:
         """Whether the law belongs to the package."""
-        return self.function.__module__.startswith("dalembert.")
+        return self._module.startswith("dalembert.")
+
+    @property
+    def _module(self) -> str:
+        """The function's module; that of a script for code that has none."""
+        return self.function.__module__ or "__main__"
 
     @cached_property
     def _kernel(self) -> "_LawKernel":
@@ -91,7 +96,7 @@ class _LawKernel(Kernel):
         given = cast(FunctionType, law.function)
         name = given.__name__ if law.packaged else f"{given.__name__}_{digest(given)}"  # others may share their names
         own = FunctionType(given.__code__, given.__globals__, name, given.__defaults__, given.__closure__)
-        own.__module__, own.__doc__ = given.__module__, given.__doc__
+        own.__module__, own.__doc__ = law._module, given.__doc__
         own.__annotations__ = {**dict.fromkeys(inspect.signature(given).parameters, Complexes), "return": None}
         self._law = law
         super().__init__(own)
@@ -99,7 +104,7 @@ class _LawKernel(Kernel):
     @cached_property
     def origin(self) -> Origin | None:
         """Module and name of the law, by which another process imports it."""
-        return origin_of(self._law.function.__module__, self._law, "law", "complex")
+        return origin_of(self._law._module, self._law, "law", "complex")
 
 
 def law(function: Callable) -> Law:

@@ -71,8 +71,10 @@ class Equations:
         solution = correct(self.balance(samples), self.condensation, self.method, unknowns, omega, plane, point)
         while solution.error <= self.method.sampling and not solution.converged and self._doubles(solution):
             finer = self.balance(2 * solution.samples)
-            near = solution.unknowns, solution.omega
+            near, before = (solution.unknowns, solution.omega), solution.error
             solution = correct(finer, self.condensation, self.method, *near, plane, solution.point)
+            if not solution.converged and solution.error > before / 2:  # what is left is not of the samples
+                break
         while solution.converged:
             solution = replace(solution, sampling_error=self._sampling_error(solution))
             if solution.sampling_error <= self.method.sampling or not self._doubles(solution):
@@ -122,8 +124,12 @@ class Equations:
         return self.method.samples == AUTOMATIC and solution.samples < MOST_SAMPLES
 
     def _sampling_error(self, solution: Solution) -> float:
-        finer = self.balance(2 * solution.samples)
-        evaluation = finer.at(solution.point, solution.unknowns)
+        return self._relative(self.balance(2 * solution.samples), solution)
+
+    @staticmethod
+    def _relative(balance: Balance, solution: Solution) -> float:
+        """Residual of a balance at a solution of another one, as part of the forces."""
+        evaluation = balance.at(solution.point, solution.unknowns)
         return norm(evaluation.residual) / (solution.point.load + norm(evaluation.forces) or 1.0)
 
 

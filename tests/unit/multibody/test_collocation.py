@@ -6,13 +6,14 @@ import pytest
 import dalembert as da
 from dalembert.errors import InputError, ModelError, SolveError
 from dalembert.multibody.assemble import assembled
+from dalembert.multibody.integrators.batch import cut
 from dalembert.multibody.integrators.collocation_descent import descend, descent
 from dalembert.multibody.integrators.collocation_rule import make_rule
 from dalembert.multibody.integrators.collocation_search import Search
 from dalembert.multibody.integrators.collocation_step import begin, finish, prepare, step_of
 from dalembert.multibody.integrators.collocation_swarm import squares
 from dalembert.multibody.integrators.problem import DONE
-from dalembert.multibody.integrators.run import cut, make_problem
+from dalembert.multibody.integrators.run import make_problem
 from dalembert.multibody.kernels.model import addresses
 from dalembert.multibody.kernels.motion import resting
 from dalembert.study.schema import study_file

@@ -2,14 +2,13 @@
 
 __all__ = ["Automatic"]
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 from dalembert.multibody.assemble import redundancy
+from dalembert.multibody.integrators.batch import Batch
 from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha
 from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.ode_solver import OdeSolver
-from dalembert.multibody.integrators.problem import Problem
 from dalembert.multibody.integrators.radau_iia import RadauIIA
 from dalembert.multibody.integrators.run import Run
 from dalembert.multibody.integrators.stabilisation import Partitioning
@@ -73,19 +72,11 @@ class Automatic(Integrator):
     def _redundant(self) -> OdeSolver:
         return OdeSolver("DOP853", self.tolerance, self.tolerance, Partitioning())
 
-    def integrate(
-        self,
-        samples: Sequence[Lowered],
-        tilted: Sequence[Lowered],
-        problem: Problem,
-        end: float,
-        *,
-        logged: bool = True,
-    ) -> list[Run]:
+    def run(self, batch: Batch) -> list[Run]:
         """Runs by the integrator that suits the first sample; samples that it cannot finish run by another one."""
-        runs = self.suiting(samples[0], end).integrate(samples, tilted, problem, end, logged=logged)
+        runs = self.suiting(batch.samples[0], batch.end).run(batch)
         for number, run in enumerate(runs):
-            if other := self.instead(run.reason, end):
-                (second,) = other.integrate([samples[number]], tilted, problem, end, logged=logged)
+            if other := self.instead(run.reason, batch.end):
+                (second,) = other.run(batch.only(number))
                 runs[number] = run if second.reason else second
         return runs

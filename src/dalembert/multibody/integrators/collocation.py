@@ -2,13 +2,13 @@
 
 __all__ = ["Collocation", "GaussNewton"]
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from dalembert.errors import InputError
 from dalembert.kernels.kernel import Compiled
+from dalembert.multibody.integrators.batch import Batch, Sample
 from dalembert.multibody.integrators.collocation_descent import Descent, descent, march, respond
 from dalembert.multibody.integrators.collocation_gap import measure
 from dalembert.multibody.integrators.collocation_rule import make_rule
@@ -19,11 +19,9 @@ from dalembert.multibody.integrators.consistent import accelerate_along
 from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.partitioning import settle_along
 from dalembert.multibody.integrators.problem import DONE, SINGULAR, Log, Problem
-from dalembert.multibody.integrators.run import Run, cut, explain, starts
+from dalembert.multibody.integrators.run import Run, explain
 from dalembert.multibody.kernels.linear import DENSE_KERNELS
-from dalembert.multibody.kernels.model import addresses
-from dalembert.multibody.kernels.motion import Histories, Motion, Motions, resting
-from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.kernels.motion import Histories, Motions, resting
 from dalembert.multibody.structure import Structure
 from dalembert.optimize import Firefly, LeastSquares, Minimiser, ResponseSensitivity, Squares, Swarm
 from dalembert.settings import expect, expect_at_least
@@ -118,15 +116,7 @@ class Collocation(Integrator):
         linear = [*structure.linear_kernels, *DENSE_KERNELS]
         return [*own, settle_along, *rates, *linear, *[respond, accelerate_along] * derivatives]
 
-    def integrate(
-        self,
-        samples: Sequence[Lowered],
-        tilted: Sequence[Lowered],
-        problem: Problem,
-        end: float,
-        *,
-        logged: bool = True,
-    ) -> list[Run]:
+    def run(self, batch: Batch) -> list[Run]:
         """Runs of samples, one after the other; see `Integrator`.
 
         Raises
@@ -134,22 +124,14 @@ class Collocation(Integrator):
         InputError
             For derivatives with a minimiser that only comes near the minimum.
         """
-        if tilted and not isinstance(self.minimiser, GaussNewton | Squares):
+        if batch.perturbed and not isinstance(self.minimiser, GaussNewton | Squares):
             raise InputError(
                 f"Collocation: a step by {type(self.minimiser).__name__} has no exact derivatives, because the search "
                 "ends near the minimum, not at it; take GaussNewton() or LeastSquares()"
             )
-        slots, layout = samples[0].structure.dense
-        problem = cut(samples, problem._replace(exact_slots=slots, exact_layout=layout), end)
-        states, dstates = starts(samples, tilted)
-        runs = []
-        for number, lowered in enumerate(samples):
-            edges = problem.edges[number, : problem.stretches[number] + 1]
-            start = Motion(*(array[number] for array in states))
-            runs.append(
-                self._run(lowered, tilted, problem, self.schedule(edges, problem.times), start, dstates, logged)
-            )
-        return runs
+        slots, layout = batch.samples[0].structure.dense
+        problem = batch.problem._replace(exact_slots=slots, exact_layout=layout)
+        return [self._run(batch, problem, sample) for sample in batch]
 
     def schedule(self, edges: np.ndarray, times: np.ndarray) -> Schedule:
         """Steps between the edges of the smooth stretches of a motion."""
@@ -162,29 +144,18 @@ class Collocation(Integrator):
         within = (edges[stretch] + edges[stretch + 1]) / 2
         return Schedule(begins, ends, within, opens.astype(np.int64), np.append(0, reached))
 
-    def _run(
-        self,
-        lowered: Lowered,
-        tilted: Sequence[Lowered],
-        problem: Problem,
-        schedule: Schedule,
-        start: Motion,
-        dstart: Motion,
-        logged: bool,
-    ) -> Run:
+    def _run(self, batch: Batch, problem: Problem, sample: Sample) -> Run:
+        lowered, schedule = sample.lowered, self.schedule(sample.edges, problem.times)
         rule = make_rule(self.degree, self.gauss_points)
-        model, dual, width = lowered.real.need("rates"), lowered.dual.need("rates"), len(start.x)
+        model, dual = lowered.real.need("rates"), lowered.dual.need("rates")
         calls = model.call(), dual.call()
         linear = not any(kind.takes_reactions for kind in lowered.data)
-        walk = prepare(problem, rule, *calls, len(tilted), linear)
-        for own, given in zip((*walk.old, *walk.dold), (*start, *dstart), strict=True):
+        walk = prepare(problem, rule, *calls, len(batch.perturbed), linear)
+        for own, given in zip((*walk.old, *walk.dold), (*sample.start, *batch.dstates), strict=True):
             own[:] = given
-        along = addresses(entry.dual.need("rates") for entry in tilted)
+        along = batch.directions
         directions = np.append(np.full(len(walk.c), dual.address), along)
-        shape = len(problem.times), width
-        out, dout = resting(*shape), resting(len(tilted), *shape)
-        room = len(schedule.begins) if logged else 0
-        log = Log(np.zeros(4, dtype=np.int64), np.zeros(room, dtype=np.int64), np.zeros(room))
+        out, dout, log = resting(*batch.shape), batch.derivatives(), batch.log(len(schedule.begins))
         work = descent(problem, walk)
         if isinstance(self.minimiser, GaussNewton):
             status, time, worst = march(
@@ -199,8 +170,7 @@ class Collocation(Integrator):
         reason = None
         if status != DONE:
             reason = explain(lowered, int(status), float(time), int(worst), f"the step is {self.step:g} s")
-        taken = min(int(log.counts[0]), room)
-        return Run(reason, problem.times, out, dout, log.counts, log.iterations[:taken], log.ends[:taken])
+        return batch.result(reason, out, dout, log)
 
 
 def _search(

@@ -2,7 +2,6 @@
 
 __all__ = ["GeneralizedAlpha"]
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
@@ -11,12 +10,13 @@ import numpy as np
 from dalembert.errors import InputError, unknown
 from dalembert.kernels.kernel import Compiled, inlined, inner, kernel
 from dalembert.kernels.words import Address, Integers, Integers2, Reals2
+from dalembert.multibody.integrators.batch import Batch, restarts
 from dalembert.multibody.integrators.consistent import Consistency, accelerate, accelerate_along, consistency
 from dalembert.multibody.integrators.derivatives import Differentiation, differentiate, differentiation
 from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.newton import Newton, converge, learn, newton
 from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR, TOO_MANY_STEPS, Log, Problem
-from dalembert.multibody.integrators.run import Run, cut, explain, restarts, starts
+from dalembert.multibody.integrators.run import Run, explain
 from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.model import Call, addresses
 from dalembert.multibody.kernels.motion import (
@@ -110,38 +110,25 @@ class GeneralizedAlpha(Integrator):
         along = [differentiate, accelerate_along] * derivatives
         return [integrate, *structure.linear_kernels, *structure.reduced_kernels, *along]
 
-    def integrate(
-        self,
-        samples: Sequence[Lowered],
-        tilted: Sequence[Lowered],
-        problem: Problem,
-        end: float,
-        *,
-        logged: bool = True,
-    ) -> list[Run]:
-        """Runs of samples in one compiled loop that leaves the interpreter's lock free; see `Integrator`."""
+    def run(self, batch: Batch) -> list[Run]:
+        """Runs of samples in one compiled loop that leaves the interpreter's lock free."""
         # at spectral radius 1 velocities leave the constraints and nothing damps what grows from there
-        problem = cut(samples, problem, end)._replace(projected=self.spectral_radius == 1.0)
-        states, dstates = starts(samples, tilted)
-        shape = len(problem.times), states.x.shape[1]
-        out, dout = resting(len(samples), *shape), resting(len(tilted), *shape)
-        room = self._most_logged(samples[0], end) if logged else 0
-        log = Log(np.zeros(4, dtype=np.int64), np.zeros(room, dtype=np.int64), np.zeros(room))
+        problem = batch.problem._replace(projected=self.spectral_radius == 1.0)
+        samples, perturbed = batch.samples, batch.perturbed
+        out, dout = resting(len(samples), *batch.shape), batch.derivatives()
+        log = batch.log(self._most_logged(samples[0], batch.end))
         ends = np.zeros((len(samples), 3))
         models = [entry.real.need("rates").reduced() for entry in samples], [entry.dual.reduced() for entry in samples]
-        directions = addresses(entry.dual.need("rates").reduced() for entry in tilted)
+        directions = addresses(entry.dual.need("rates").reduced() for entry in perturbed)
         calls = models[0][0].call(), models[1][0].call()
         integrate(
             problem, restarts(samples, problem), self._settings(), addresses(models[0]), addresses(models[1]),
-            directions, states, dstates, out, dout, log, ends, _workspace(problem, *calls, len(tilted)),
+            directions, batch.states, batch.dstates, out, dout, log, ends, _workspace(problem, *calls, len(perturbed)),
         )  # fmt: skip
-        taken = min(int(log.counts[0]), room)
         runs = []
         for number, (lowered, (status, time, moved)) in enumerate(zip(samples, ends, strict=True)):
             reason = None if status == DONE else self._explain(lowered, int(status), time, int(moved))
-            own = Motion(out.x[number], out.v[number], out.a[number], out.w[number])
-            iterations, times = log.iterations[:taken].copy(), log.ends[:taken].copy()
-            runs.append(Run(reason, problem.times, own, dout, log.counts, iterations, times))
+            runs.append(batch.result(reason, row(out, number), dout, log))
         return runs
 
     def _settings(self) -> "Settings":

@@ -11,8 +11,9 @@ import numpy as np
 
 from dalembert.arguments import Checked
 from dalembert.kernels.kernel import Compiled
+from dalembert.multibody.integrators.batch import Batch, make_batch, smooth_stretches
 from dalembert.multibody.integrators.problem import Problem
-from dalembert.multibody.integrators.run import Run, smooth_stretches
+from dalembert.multibody.integrators.run import Run
 from dalembert.multibody.lowering import Lowered
 from dalembert.multibody.structure import Structure
 
@@ -28,22 +29,25 @@ class Integrator(Checked, ABC):
     convergence: int | None = None  #: order of coordinates and velocities at fixed steps; None if not known
 
     @abstractmethod
+    def run(self, batch: Batch) -> list[Run]:
+        """Return the runs of a batch, one a sample; each sample fails for itself: its run has the reason."""
+
     def integrate(
         self,
         samples: Sequence[Lowered],
-        tilted: Sequence[Lowered],
+        perturbed: Sequence[Lowered],
         problem: Problem,
         end: float,
         *,
         logged: bool = True,
     ) -> list[Run]:
-        """Runs of samples that share a structure, from 0 to ``end`` (s), with the states at ``problem.times``.
+        """Return runs of samples that share a structure, from 0 to ``end`` (s), with the states at ``problem.times``.
 
         Parameters
         ----------
         samples : sequence of Lowered
             Each sample fails for itself: its run has the reason.
-        tilted : sequence of Lowered
+        perturbed : sequence of Lowered
             The model along each direction of differentiation (its imaginary parts are the direction times the complex
             step); only with a single sample.
         problem : Problem
@@ -51,6 +55,7 @@ class Integrator(Checked, ABC):
         logged : bool
             Keep what happened at each step.
         """
+        return self.run(make_batch(samples, perturbed, problem, end, logged))
 
     def __str__(self) -> str:
         """The settings that are not the usual ones: ``GeneralizedAlpha(step=0.001)``."""

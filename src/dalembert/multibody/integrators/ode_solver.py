@@ -2,7 +2,6 @@
 
 __all__ = ["OdeSolver"]
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
@@ -12,16 +11,15 @@ from scipy.sparse import block_diag
 
 from dalembert.errors import InputError, unknown
 from dalembert.kernels.kernel import Compiled
+from dalembert.multibody.integrators.batch import Batch
 from dalembert.multibody.integrators.completion import kernels
 from dalembert.multibody.integrators.field import Field
 from dalembert.multibody.integrators.index1 import PROJECTED
 from dalembert.multibody.integrators.integrator import Integrator
-from dalembert.multibody.integrators.problem import DONE, TOO_MANY_STEPS, Problem
-from dalembert.multibody.integrators.run import Run, cut, explain, starts
+from dalembert.multibody.integrators.problem import DONE, TOO_MANY_STEPS
+from dalembert.multibody.integrators.run import Run, explain
 from dalembert.multibody.integrators.stabilisation import Projection, Stabilisation, posed
-from dalembert.multibody.kernels.model import addresses
-from dalembert.multibody.kernels.motion import Motion, resting, row
-from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.kernels.motion import Motion, resting
 from dalembert.multibody.singular_positions import named
 from dalembert.multibody.structure import Structure
 from dalembert.settings import expect, expect_positive
@@ -99,23 +97,13 @@ class OdeSolver(Integrator):
         derivatives = derivatives or self.method in IMPLICIT
         return [*structure.linear_kernels, *kernels(self.stabilisation.way, derivatives)]
 
-    def integrate(
-        self,
-        samples: Sequence[Lowered],
-        tilted: Sequence[Lowered],
-        problem: Problem,
-        end: float,
-        *,
-        logged: bool = True,
-    ) -> list[Run]:
-        """Runs of samples, one after another; see `Integrator`."""
-        problem, terms = posed(self.stabilisation, samples, cut(samples, problem, end), None)
-        states, dstates = starts(samples, tilted)
-        directions = addresses(entry.dual.need("rates") for entry in tilted)
+    def run(self, batch: Batch) -> list[Run]:
+        """Runs of samples, one after another."""
+        problem, terms = posed(self.stabilisation, batch.samples, batch.problem, None)
+        directions, implicit = batch.directions, self.method in IMPLICIT
         runs = []
-        for number, lowered in enumerate(samples):
-            own = Field(problem, terms, lowered, directions, row(states, number), dstates, self.method in IMPLICIT)
-            edges = problem.edges[number, : problem.stretches[number] + 1]
+        for lowered, edges, start in batch:
+            own = Field(problem, terms, lowered, directions, start, batch.dstates, implicit)
             runs.append(self._run(own, edges))
         return runs
 

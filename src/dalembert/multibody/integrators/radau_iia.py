@@ -2,24 +2,23 @@
 
 __all__ = ["RadauIIA"]
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from dalembert.kernels.kernel import Compiled
+from dalembert.multibody.integrators.batch import Batch
 from dalembert.multibody.integrators.consistent import accelerate_along
 from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.matrices import pattern_of
 from dalembert.multibody.integrators.outputs import record_along
-from dalembert.multibody.integrators.problem import DONE, INEXACT, Log, Problem
+from dalembert.multibody.integrators.problem import DONE, INEXACT
 from dalembert.multibody.integrators.radau_coefficients import coefficients
 from dalembert.multibody.integrators.radau_derivatives import differentiate, settle_end_along
 from dalembert.multibody.integrators.radau_loop import integrate
 from dalembert.multibody.integrators.radau_workspace import Settings, workspace
-from dalembert.multibody.integrators.run import Run, cut, explain, starts
-from dalembert.multibody.kernels.model import addresses
-from dalembert.multibody.kernels.motion import Motion, resting
+from dalembert.multibody.integrators.run import Run, cut_down, explain
+from dalembert.multibody.kernels.motion import resting
 from dalembert.multibody.lowering import Lowered
 from dalembert.multibody.singular_positions import named
 from dalembert.multibody.structure import Structure
@@ -103,37 +102,22 @@ class RadauIIA(Integrator):
         along = [differentiate, settle_end_along, record_along, accelerate_along]
         return [integrate, *structure.linear_kernels, *along * derivatives]
 
-    def integrate(
-        self,
-        samples: Sequence[Lowered],
-        tilted: Sequence[Lowered],
-        problem: Problem,
-        end: float,
-        *,
-        logged: bool = True,
-    ) -> list[Run]:
-        """Runs of samples in one compiled loop that leaves the interpreter's lock free; see `Integrator`."""
-        problem = cut(samples, problem, end)
-        pattern, method = pattern_of(samples[0].structure), coefficients(self.stages)
-        states, dstates = starts(samples, tilted)
-        directions = addresses(entry.dual.need("rates") for entry in tilted)
-        shape = len(problem.times), states.x.shape[1]
-        dout = resting(len(tilted), *shape)
-        fixed = self.step_ends(end, samples[0].jumps)
-        room = (_ROOM if fixed is None else max(_ROOM, len(fixed))) if logged else 0
-        calls = [[model.call() for _ in range(1 + self.stages)] for model in (samples[0].real, samples[0].dual)]
-        spare = workspace(problem, method, pattern, dstates, *calls)
-        run = integrate.given(problem, method, pattern, directions, dstates, dout, *spare)
+    def run(self, batch: Batch) -> list[Run]:
+        """Runs of samples in one compiled loop that leaves the interpreter's lock free."""
+        problem, directions, dout = batch.problem, batch.directions, batch.derivatives()
+        first = batch.samples[0]
+        pattern, method = pattern_of(first.structure), coefficients(self.stages)
+        fixed = self.step_ends(batch.end, first.jumps)
+        calls = [[model.call() for _ in range(1 + self.stages)] for model in (first.real, first.dual)]
+        spare = workspace(problem, method, pattern, batch.dstates, *calls)
+        run = integrate.given(problem, method, pattern, directions, batch.dstates, dout, *spare)
         runs = []
-        for number, lowered in enumerate(samples):
-            log = Log(np.zeros(4, dtype=np.int64), np.zeros(room, dtype=np.int64), np.zeros(room))
-            edges = problem.edges[number, : problem.stretches[number] + 1]
-            own, start = resting(*shape), Motion(*(array[number] for array in states))
+        for lowered, edges, start in batch:
+            log, states = batch.log(_ROOM if fixed is None else max(_ROOM, len(fixed))), resting(*batch.shape)
             model, dual = lowered.real.need("rates").address, lowered.dual.address
-            status, time, unknown, least = run(edges, self._settings(lowered), model, dual, start, own, log)
+            status, time, unknown, least = run(edges, self._settings(lowered), model, dual, start, states, log)
             reason = None if status == DONE else self._explain(lowered, status, time, unknown, least, spare.new.x)
-            taken = min(int(log.counts[0]), room)
-            runs.append(Run(reason, problem.times, own, dout, log.counts, log.iterations[:taken], log.ends[:taken]))
+            runs.append(batch.result(reason, states, dout, log))
         return runs
 
     def _settings(self, lowered: Lowered) -> Settings:
@@ -146,12 +130,10 @@ class RadauIIA(Integrator):
         )
 
     def _explain(self, lowered: Lowered, status: int, time: float, unknown: int, least: float, x: np.ndarray) -> str:
-        cut_down = "the step was cut down for it"
-        if self.step is not None:
-            cut_down = f"the step of {self.step:g} s was cut down to 1/256 for it"
+        shortened = "the step was cut down for it" if self.step is None else cut_down(self.step)
         if status == INEXACT and not lowered.failures.errors:
             return named(lowered, x, time) or self._explain_inexact(time, least)
-        return named(lowered, x, time) or explain(lowered, status, time, unknown, cut_down, self.most_steps)
+        return named(lowered, x, time) or explain(lowered, status, time, unknown, shortened, self.most_steps)
 
     def _explain_inexact(self, time: float, least: float) -> str:
         floor = least * self.tolerance

@@ -2,7 +2,6 @@
 
 __all__ = ["RungeKutta4"]
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -11,15 +10,14 @@ import numpy as np
 from dalembert.errors import InputError
 from dalembert.kernels.kernel import Compiled, inner, kernel
 from dalembert.kernels.words import Address, Integers, Reals
+from dalembert.multibody.integrators.batch import Batch
 from dalembert.multibody.integrators.completion import Completion, complete, completion, kernels, partition
 from dalembert.multibody.integrators.index1 import PARTITIONED, PROJECTED, Terms
 from dalembert.multibody.integrators.integrator import Integrator
-from dalembert.multibody.integrators.problem import DIVERGED, DONE, SINGULAR, Problem
-from dalembert.multibody.integrators.run import Run, cut, explain, starts
+from dalembert.multibody.integrators.problem import DIVERGED, DONE, SINGULAR, Log, Problem
+from dalembert.multibody.integrators.run import Run, explain
 from dalembert.multibody.integrators.stabilisation import Projection, Stabilisation, posed
-from dalembert.multibody.kernels.model import addresses
 from dalembert.multibody.kernels.motion import Histories, Motion, Motions, copy, interpolate, resting, row
-from dalembert.multibody.lowering import Lowered
 from dalembert.multibody.structure import Structure
 
 _UNBOUNDED = 1e8  # m or rad: no mechanism, but a step that is too long
@@ -64,41 +62,30 @@ class RungeKutta4(Integrator):
         """The loop with its linear systems, and what completes states."""
         return [integrate, *structure.linear_kernels, *kernels(self.stabilisation.way, derivatives)]
 
-    def integrate(
-        self,
-        samples: Sequence[Lowered],
-        tilted: Sequence[Lowered],
-        problem: Problem,
-        end: float,
-        *,
-        logged: bool = True,
-    ) -> list[Run]:
-        """Runs of samples in one compiled loop that leaves the interpreter's lock free; see `Integrator`."""
-        problem, terms = posed(self.stabilisation, samples, cut(samples, problem, end), self.step)
-        states, dstates = starts(samples, tilted)
-        directions = addresses(entry.dual.need("rates") for entry in tilted)
-        calls = samples[0].real.call(), samples[0].dual.call()
-        works = calls[0].address, calls[1].address
-        room = _workspace(states.x.shape[1], len(tilted), completion(problem, terms, *works, len(tilted)))
-        _fill(room.stage.dstates, dstates)
-        steps = self.step_ends(end, samples[0].jumps)
-        ends = np.zeros(0) if steps is None or not logged else steps[1:]
+    def run(self, batch: Batch) -> list[Run]:
+        """Runs of samples in one compiled loop that leaves the interpreter's lock free."""
+        samples, directions = batch.samples, batch.directions
+        problem, terms = posed(self.stabilisation, samples, batch.problem, self.step)
+        works = samples[0].real.call(), samples[0].dual.call()
+        own = completion(problem, terms, works[0].address, works[1].address, len(directions))
+        room = _workspace(batch.shape[1], len(directions), own)
+        _fill(room.stage.dstates, batch.dstates)
+        steps = self.step_ends(batch.end, samples[0].jumps)
+        ends = np.zeros(0) if steps is None or not batch.logged else steps[1:]
         runs = []
-        for number, lowered in enumerate(samples):
-            _fill(room.stage.state, row(states, number))
+        for lowered, edges, start in batch:
+            _fill(room.stage.state, start)
             room.completion.tools.partition.rank[0] = 0  # independent coordinates are chosen anew
-            out = resting(1 + len(tilted), len(problem.times), states.x.shape[1])
-            edges = problem.edges[number, : problem.stretches[number] + 1]
+            out = resting(1 + len(directions), *batch.shape)
             counts = np.zeros(4, dtype=np.int64)
             models = lowered.real.need("rates").address, lowered.dual.address
             status, time = integrate(problem, edges, float(self.step), terms, *models, directions, out, counts, room)
             if status == SINGULAR and not np.max(np.abs(room.stage.state.x)) < _UNBOUNDED:
                 status = DIVERGED
             reason = None if status == DONE else explain(lowered, status, time, 0, f"the step is {self.step:g} s")
-            taken = ends[: counts[0]]
             counts[1] = 0
             parts = Motion(*(values[0] for values in out)), Motion(*(values[1:] for values in out))
-            runs.append(Run(reason, problem.times, *parts, counts, np.zeros(len(taken), dtype=np.int64), taken))
+            runs.append(batch.result(reason, *parts, Log(counts, np.zeros(len(ends), dtype=np.int64), ends)))
         return runs
 
 

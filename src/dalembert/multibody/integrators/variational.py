@@ -8,15 +8,15 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from dalembert.kernels.kernel import Compiled
+from dalembert.multibody.integrators.batch import Batch
 from dalembert.multibody.integrators.consistent import accelerate_along
 from dalembert.multibody.integrators.energy_balance import Balance, no_balance
 from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.matrices import pattern_of
 from dalembert.multibody.integrators.midpoint_loop import Settings, differentiate, integrate, workspace
 from dalembert.multibody.integrators.outputs import record_along
-from dalembert.multibody.integrators.problem import DONE, Log, Problem
-from dalembert.multibody.integrators.run import Run, cut, explain, starts
-from dalembert.multibody.kernels.model import addresses
+from dalembert.multibody.integrators.problem import DONE
+from dalembert.multibody.integrators.run import Run, cut_down, explain
 from dalembert.multibody.kernels.motion import Motion, resting
 from dalembert.multibody.lowering import Lowered
 from dalembert.multibody.structure import Structure
@@ -68,40 +68,25 @@ class Variational(Integrator):
         along = [differentiate, accelerate_along, record_along] * derivatives
         return [integrate, *structure.linear_kernels, *along]
 
-    def integrate(
-        self,
-        samples: Sequence[Lowered],
-        tilted: Sequence[Lowered],
-        problem: Problem,
-        end: float,
-        *,
-        logged: bool = True,
-    ) -> list[Run]:
-        """Runs of samples in one compiled loop that leaves the interpreter's lock free; see `Integrator`."""
-        problem = cut(samples, problem, end)
-        pattern = pattern_of(samples[0].structure)
-        states, dstates = starts(samples, tilted)
-        directions = addresses(entry.dual.need("rates") for entry in tilted)
-        shape = len(problem.times), states.x.shape[1]
-        dout = resting(len(tilted), *shape)
+    def run(self, batch: Batch) -> list[Run]:
+        """Runs of samples in one compiled loop that leaves the interpreter's lock free."""
+        pattern, directions, dout = pattern_of(batch.samples[0].structure), batch.directions, batch.derivatives()
         runs = []
-        for number, lowered in enumerate(samples):
-            ends = self.step_ends(end, lowered.jumps)
-            room = 2 * len(ends) if logged and ends is not None else 0  # steps that are cut down need more
-            log = Log(np.zeros(4, dtype=np.int64), np.zeros(room, dtype=np.int64), np.zeros(room))
-            edges = problem.edges[number, : problem.stretches[number] + 1]
-            own, start = resting(*shape), Motion(*(array[number] for array in states))
-            energy, denergies, balance = self._balance(lowered, tilted, start, dstates, 0.5 * (edges[0] + edges[1]))
+        for lowered, edges, start in batch:
+            steps = self.step_ends(batch.end, lowered.jumps)
+            log = batch.log(0 if steps is None else 2 * len(steps))  # steps that are cut down need more
+            states, middle = resting(*batch.shape), 0.5 * (edges[0] + edges[1])
+            energy, denergies, balance = self._balance(lowered, batch.perturbed, start, batch.dstates, middle)
             settings = Settings(float(self.step), float(self.newton_tolerance), lowered.dissipates, energy)
             real, dual = lowered.real.need("rates"), lowered.dual
             calls, dual_calls = [real.call(), real.call()], [dual.call(), dual.call()]
             status, time, unknown = integrate(
-                problem, pattern, edges, settings, real.address, dual.address, directions, start, dstates, own, dout,
-                log, *workspace(problem, pattern, calls, dual_calls, balance, denergies, dstates),
+                batch.problem, pattern, edges, settings, real.address, dual.address, directions, start, batch.dstates,
+                states, dout, log,
+                *workspace(batch.problem, pattern, calls, dual_calls, balance, denergies, batch.dstates),
             )  # fmt: skip
             reason = None if status == DONE else self._explain(lowered, status, time, unknown)
-            taken = min(int(log.counts[0]), room)
-            runs.append(Run(reason, problem.times, own, dout, log.counts, log.iterations[:taken], log.ends[:taken]))
+            runs.append(batch.result(reason, states, dout, log))
         return runs
 
     def _balance(
@@ -111,4 +96,4 @@ class Variational(Integrator):
         return 0.0, np.zeros(len(tilted)), no_balance(len(start.x))
 
     def _explain(self, lowered: Lowered, status: int, time: float, unknown: int) -> str:
-        return explain(lowered, status, time, unknown, f"the step of {self.step:g} s was cut down to 1/256 for it")
+        return explain(lowered, status, time, unknown, cut_down(self.step))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from dalembert.contents import Contents
 from dalembert.files import read_dataset, write_contents
-from dalembert.findings import Finding, findings_of, stored_findings
+from dalembert.findings import Finding, findings_of, stored_findings, unclassified
 from dalembert.hooks import hook
 from dalembert.parameters import Parameter
 
@@ -25,9 +25,14 @@ class Result(ABC):
     """What the method concludes about the result."""
 
     @property
-    def doubts(self) -> tuple[str, ...]:
-        """Reasons to doubt the result: the messages of its findings that are more than notes."""
-        return tuple(finding.message for finding in self.findings if finding.doubtful)
+    def conclusions(self) -> tuple[Finding, ...]:
+        """All findings: how the method ended, if it says that, and what it concludes."""
+        return self.findings
+
+    @property
+    def doubts(self) -> tuple[Finding, ...]:
+        """Reasons to doubt the result: its findings that are more than notes."""
+        return tuple(finding for finding in self.conclusions if finding.doubtful)
 
     @abstractmethod
     def contents(self) -> Contents:
@@ -66,6 +71,21 @@ class Result(ABC):
         return hook("report")(self, path, **options)
 
 
+class EndedResult(Result):
+    """A result of a method that says how it ended, as findings in ``outcome``."""
+
+    outcome: Any
+
+    @property
+    def status(self) -> str:
+        """How the method ended and what to do, in full sentences: the text of ``outcome``."""
+        return " ".join(map(str, self.outcome))
+
+    @property
+    def conclusions(self) -> tuple[Finding, ...]:
+        return (*self.outcome, *self.findings)
+
+
 def fixed_of(result: Any) -> tuple[Parameter, ...]:
     """Parameters of a result that were fixed by equal bounds."""
     held = getattr(getattr(result, "parameters", None), "fixed", ())
@@ -83,10 +103,31 @@ def fixed_lines(result: Any, width: int = 12) -> list[str]:
     return [f"{'fixed':<{width}} {', '.join(known)}"] if known else []
 
 
+def text_table(rows: Sequence[Sequence[str]]) -> list[str]:
+    """Return the lines of a table, its first row the head.
+
+    >>> print(*text_table([("name", "value"), ("mass", "2")]), sep="\\n")
+    name  value
+    ───────────
+    mass  2
+    """
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    lines = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
+    return [lines[0], "─" * (sum(widths) + 2 * (len(widths) - 1)), *lines[1:]]
+
+
 def stored_facts(result: Result, names: Sequence[str], **told: Any) -> dict[str, Any]:
     """Attributes of a dataset: the format of a result, its numbers and words by name, and, as JSON, what is told."""
     told = {**told, "findings": stored_findings(result.findings)}
-    return {"format": result.FORMAT, **plain_facts(result, names), "settings": json.dumps(told, sort_keys=True)}
+    texts = {}
+    if isinstance(result, EndedResult):
+        told["outcome"], texts["status"] = stored_findings(result.outcome), result.status
+    return {
+        "format": result.FORMAT,
+        **texts,
+        **plain_facts(result, names),
+        "settings": json.dumps(told, sort_keys=True),
+    }
 
 
 def plain_facts(result: Result, names: Sequence[str]) -> dict[str, Any]:
@@ -110,6 +151,14 @@ def told_of(dataset: "Dataset") -> dict[str, Any]:
 def saved_findings(dataset: "Dataset") -> tuple[Finding, ...]:
     """Findings of a result in a dataset; none in those of versions that had no findings."""
     return findings_of(told_of(dataset).get("findings", ()))
+
+
+def saved_outcome(dataset: "Dataset") -> tuple[Finding, ...]:
+    """How a method ended, of a result in a dataset; versions without findings stored its text only."""
+    stored = told_of(dataset).get("outcome")
+    if stored is not None:
+        return findings_of(stored)
+    return (unclassified(str(dataset.attrs["status"]), success=bool(dataset.attrs.get("success", True))),)
 
 
 def _types(kind: type[Result]) -> dict[str, Any]:

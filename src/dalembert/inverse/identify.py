@@ -21,7 +21,7 @@ from dalembert.inverse.experiments.suspect_units import unit_findings
 from dalembert.inverse.experiments.validation import HeldOut, split
 from dalembert.inverse.fit.fit import Fit
 from dalembert.inverse.fit.integration import integration_bias, integration_findings
-from dalembert.inverse.fit.status import status
+from dalembert.inverse.fit.outcome import outcome
 from dalembert.inverse.least_squares.descent import End
 from dalembert.inverse.least_squares.estimate import Estimate, estimate, estimate_of, unknown_estimate
 from dalembert.inverse.least_squares.roughness import roughness_findings
@@ -203,7 +203,7 @@ def identify(
     reached = best.fitness <= floor.fitness
     exact = reached and floor.source == "arithmetic"
     told, correlated = _told(problem, response, at, best, known=known, exact=exact)
-    rounded = reached and floor.source == "rounding of the data"
+    rounded = reached and floor.source == "rounded"
     findings = correlation_findings(correlated, told.deviations, explained=rounded)
     found = integration_bias(problem, at, best.nodes)
     biased = (
@@ -236,7 +236,7 @@ def identify(
         history=tuple(journal.history),
         starts=tuple(journal.starts),
         success=best.success and not undetermined,
-        status=status(problem, best, response, floor, correlated is not None),
+        outcome=tuple(outcome(problem, best, response, floor, correlated=correlated is not None)),
         method=method.name if isinstance(method, Minimiser) else type(method).__name__,
         simulations=journal.simulations,
         provenance=provenance(

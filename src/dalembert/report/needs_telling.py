@@ -5,6 +5,7 @@ from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
+from dalembert.findings import Finding
 from dalembert.parameters import Parameters
 from dalembert.report.needs import BandsLike, MeasurementsLike, OutcomeLike
 
@@ -52,7 +53,8 @@ class ProfilesLike(OutcomeLike, Protocol):
     def threshold(self) -> float: ...
     @property
     def simulations(self) -> int: ...
-    def sentences(self) -> Sequence[str]: ...
+    @property
+    def outcome(self) -> tuple[Finding, ...]: ...
 
 
 @runtime_checkable

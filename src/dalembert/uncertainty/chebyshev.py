@@ -104,7 +104,13 @@ class Chebyshev(Checked):
             at_lower,
             at_upper,
             error.reshape(shape),
-            f"The bounds of a polynomial of order {surrogate.order} in place of the model, {_worth(self.bounds)}.",
+            Finding(
+                "surrogate-bounds",
+                "note",
+                {"order": surrogate.order, "bounds": self.bounds},
+                f"The bounds are those of a polynomial of order {surrogate.order} in place of the model, "
+                f"{_worth(self.bounds)}.",
+            ),
             not runs.failures,
             tuple(findings),
         )

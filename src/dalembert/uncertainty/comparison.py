@@ -9,8 +9,9 @@ import numpy as np
 from dalembert.arguments import takes_checked
 from dalembert.contents import Contents
 from dalembert.errors import ClusterError, DalembertError, InputError, StorageError
+from dalembert.findings import Finding
 from dalembert.forward import Executor, ForwardModel, on_cluster, takes_executor
-from dalembert.results import Result
+from dalembert.results import EndedResult, text_table
 from dalembert.uncertainty.events import OnEvent
 from dalembert.uncertainty.found import Method
 from dalembert.uncertainty.methods import label, method_of
@@ -38,7 +39,7 @@ class Row:
 
 
 @dataclass(frozen=True, eq=False)
-class Comparison(Result):
+class Comparison(EndedResult):
     """Bounds by several methods over the same box.
 
     Parameters
@@ -74,18 +75,18 @@ class Comparison(Result):
         return not self.refused and all(result.success for result in self.results)
 
     @property
-    def status(self) -> str:
-        """What is compared, or which methods did not succeed, in a sentence."""
+    def outcome(self) -> tuple[Finding, ...]:
+        """What is compared, and which methods failed."""
         failed = [result.method for result in self.results if not result.success]
         failed += [method for method, _ in self.refused]
         if failed:
-            return f"{', '.join(failed)} did not succeed; the table of methods says why."
-        return f"Bounds of the same response over the same box, each measured by its distance from {self.reference}."
+            message = f"Not successful: {', '.join(failed)}. The table of methods has the reasons."
+            return (Finding("methods-failed", "error", {"methods": ", ".join(failed)}, message),)
+        message = f"Bounds of one response over one box. The error is the distance to {self.reference}."
+        return (Finding("methods-compared", "note", {"reference": self.reference}, message),)
 
     def summary(self) -> str:
         """The methods as a text table."""
-        from dalembert.uncertainty.summary import table
-
         head = ("method", "kind", "mean width", "largest error", "rms error", "runs", "seconds")
         rows = [
             (
@@ -101,7 +102,7 @@ class Comparison(Result):
         ]
         notes = [f"{own.method}: {own.status}" for own in self.results]
         notes += [f"{method} gave no bounds: {reason}" for method, reason in self.refused]
-        return "\n".join([*table([head, *rows]), "", *notes])
+        return "\n".join([*text_table([head, *rows]), "", *notes])
 
     def contents(self) -> Contents:
         """All results as arrays over the dimension ``method``."""

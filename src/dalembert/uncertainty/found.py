@@ -1,4 +1,4 @@
-"""What a method found: bounds, where they are taken, and how far they can be trusted."""
+"""Bounds of one method, where they are taken, and how far they can be trusted."""
 
 from dataclasses import dataclass
 from typing import ClassVar, Protocol, Self
@@ -15,7 +15,7 @@ KINDS = ("inner bound", "estimate", "enclosure of the surrogate")
 class Found:
     """Bounds (samples, channels), where they are taken (samples, channels, parameters), and their estimated error.
 
-    ``kind`` is one of ``KINDS``; ``advice`` says in a sentence what the bounds are worth and what would be better.
+    ``kind`` is one of ``KINDS``; ``worth`` is what the bounds are worth and what would be better.
     An error is None where it is unknown; a finding then has the reason.
     """
 
@@ -25,7 +25,7 @@ class Found:
     at_lower: np.ndarray | None
     at_upper: np.ndarray | None
     error: np.ndarray | None
-    advice: str
+    worth: Finding
     success: bool = True
     findings: tuple[Finding, ...] = ()
 

@@ -63,11 +63,6 @@ class Optimise(Checked):
             search.run(points[:affordable])
             gains, points = search.proposals()
         found, done = search.extremes, not len(points)
-        ended = (
-            "the runs let expect no more"
-            if done
-            else f"the search ended at most_runs = {self.most_runs} before it had found all; raise it"
-        )
         return Found(
             "inner bound",
             found.lower,
@@ -75,10 +70,20 @@ class Optimise(Checked):
             found.at_lower,
             found.at_upper,
             None,
-            f"Every bound is taken by a run of the model, and {ended}.",
+            self._worth(done),
             done and not runs.failures,
             (self._unknown(runs, search, gains),),
         )
+
+    def _worth(self, done: bool) -> Finding:
+        """Return whether the search came to its end."""
+        taken = "Every bound is the response of a run of the model"
+        if done:
+            return Finding(
+                "search-finished", "note", {}, f"{taken}. Further runs are not expected to widen the bounds."
+            )
+        message = f"{taken}, but the search stopped at most_runs = {self.most_runs} before it was finished."
+        return Finding("search-stopped", "error", {"most_runs": self.most_runs}, message, "Increase most_runs.")
 
     def _unknown(self, runs: Runs, search: Search, gains: np.ndarray) -> Finding:
         """Return why the error is unknown: expansions around the runs see no more than these do."""

@@ -1,9 +1,10 @@
 """Bounds of a response over a box of parameters."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 from dalembert.arguments import check_whole, takes_checked
 from dalembert.errors import InputError
+from dalembert.findings import Finding
 from dalembert.forward import Executor, ForwardModel, clock, findings_at, on_cluster, takes_executor
 from dalembert.forward.provenance import provenance
 from dalembert.intervals import Box, Interval
@@ -91,7 +92,7 @@ def propagate(
         at_upper=found.at_upper,
         failures=tuple(runs.failures),
         success=found.success,
-        status=_status(found, runs),
+        outcome=tuple(_outcome(found, runs)),
         seconds=clock(model) - began,
         provenance=provenance(
             model, chosen, seed=seed, intervals={name: [i.lower, i.upper] for name, i in box.items()}
@@ -126,10 +127,14 @@ def box_of(model: ForwardModel, intervals: Intervals) -> Box:
     return Box(names, given.lower[places], given.upper[places])
 
 
-def _status(found: Found, runs: Runs) -> str:
-    if not runs.failures:
-        return found.advice
-    return (
-        f"{len(runs.failures)} runs failed and were left out, the first: {runs.failures[0]}; so the bounds hold only "
-        f"where the model runs: make the box smaller, or look into the model there. {found.advice}"
-    )
+def _outcome(found: Found, runs: Runs) -> Iterator[Finding]:
+    if runs.failures:
+        count = f"{len(runs.failures)} run{'s' * (len(runs.failures) > 1)}"
+        yield Finding(
+            "failed-runs",
+            "error",
+            {"failures": len(runs.failures), "first": runs.failures[0]},
+            f"{count} failed, the first: {runs.failures[0]}. The bounds are valid only where the model can be run.",
+            "Make the box smaller, or check the model there.",
+        )
+    yield found.worth

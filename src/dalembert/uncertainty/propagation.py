@@ -11,11 +11,11 @@ from dalembert.data import Bands
 from dalembert.findings import Finding
 from dalembert.intervals import Box
 from dalembert.parameters import Parameter
-from dalembert.results import Result
+from dalembert.results import EndedResult, fixed_lines, text_table
 
 
 @dataclass(frozen=True, eq=False)
-class Propagation(Bands, Result):
+class Propagation(Bands, EndedResult):
     """Bounds of a response over a box of parameters, how they were found, and how far they can be trusted.
 
     Parameters
@@ -43,8 +43,8 @@ class Propagation(Bands, Result):
         The reason of each run that failed.
     success : bool
         Whether every run succeeded and the method came to its end.
-    status : str
-        What the bounds are worth and what to do, in full sentences.
+    outcome : tuple of Finding
+        What the bounds are worth; ``status`` is their text.
     seconds : float
         Time taken.
     provenance : mapping
@@ -67,17 +67,30 @@ class Propagation(Bands, Result):
     at_upper: np.ndarray | None
     failures: tuple[str, ...]
     success: bool
-    status: str
+    outcome: tuple[Finding, ...]
     seconds: float
     provenance: Mapping[str, Any]
     findings: tuple[Finding, ...] = ()
     fixed: tuple[Parameter, ...] = ()
 
     def summary(self) -> str:
-        """The result as a text table with its status."""
-        from dalembert.uncertainty.summary import summary
-
-        return summary(self)
+        """Return a table of channels with their widths and one of intervals, then kind, effort and findings."""
+        widths = [("channel", "unit", "largest width", "mean width", "estimated error")]
+        for column, name in enumerate(self.channels):
+            width = self.width[:, column]
+            error = "unknown" if self.error is None else f"{self.error[:, column].max():.2g}"
+            widths.append((name, self.units[column], f"{width.max():.5g}", f"{width.mean():.5g}", error))
+        box = [("parameter", "lower", "upper"), *((n, f"{i.lower:.7g}", f"{i.upper:.7g}") for n, i in self.box.items())]
+        facts = [
+            f"method   {self.method}",
+            f"kind     {self.kind}",
+            f"runs     {self.runs}" + (f", {len(self.failures)} failed" if self.failures else ""),
+            f"seconds  {self.seconds:.2f}",
+            *fixed_lines(self, width=8),
+        ]
+        return "\n".join(
+            [*text_table(widths), "", *text_table(box), "", *facts, "", self.status, *map(str, self.findings)]
+        )
 
     def contents(self) -> Contents:
         from dalembert.uncertainty.storage import contents_of

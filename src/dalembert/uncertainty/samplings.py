@@ -22,7 +22,8 @@ class Sampling(Checked, ABC):
     """Extremes over chosen points. Their error is unknown; what the later part of them still widened is a finding."""
 
     name: ClassVar[str]
-    advice: ClassVar[str]
+    message: ClassVar[str]
+    advice: ClassVar[str] = ""
 
     @abstractmethod
     def size(self, box: Box) -> int:
@@ -48,7 +49,7 @@ class Sampling(Checked, ABC):
             extremes.at_lower,
             extremes.at_upper,
             None,
-            self.advice,
+            Finding("sampled-bounds", "note", {"points": len(first) + len(rest)}, self.message, self.advice),
             not runs.failures,
             (self._unknown(runs, np.concatenate([first, rest]), extremes, halfway),),
         )
@@ -78,10 +79,11 @@ class Vertex(Sampling):
     """
 
     name: ClassVar[str] = "vertex"
-    advice: ClassVar[str] = (
-        "The extremes over the corners of the box: exact where the response is monotone in each parameter, "
-        "else too narrow; 'optimise' finds extremes inside."
+    message: ClassVar[str] = (
+        "The bounds are the extremes over the corners of the box. They are exact where the response is monotone in "
+        "each parameter, and too narrow elsewhere."
     )
+    advice: ClassVar[str] = "Use 'optimise' for extremes inside the box."
     most_runs: int = 65536
 
     def size(self, box: Box) -> int:
@@ -107,10 +109,11 @@ class Scan(Sampling):
     """
 
     name: ClassVar[str] = "scan"
-    advice: ClassVar[str] = (
-        "The extremes over the points of a grid: too narrow where the response peaks between them; "
-        "'optimise' finds the peaks."
+    message: ClassVar[str] = (
+        "The bounds are the extremes over the points of a grid. They are too narrow where the response peaks between "
+        "them."
     )
+    advice: ClassVar[str] = "Use 'optimise' to find peaks."
     points_each: int = 21
     most_runs: int = 1_000_000
 
@@ -161,10 +164,11 @@ class MonteCarlo(Drawn):
     """
 
     name: ClassVar[str] = "monte-carlo"
-    advice: ClassVar[str] = (
-        "The extremes over random points: too narrow, since corners of the box are hardly hit; "
-        "'optimise' or 'chebyshev' needs fewer runs."
+    message: ClassVar[str] = (
+        "The bounds are the extremes over random points. They are too narrow, because few points lie near the "
+        "corners of the box."
     )
+    advice: ClassVar[str] = "Use 'optimise' or 'chebyshev', which need fewer runs."
     runs: int = 1000
 
     def shares(self, dimensions: int, seed: int) -> np.ndarray:
@@ -182,10 +186,11 @@ class LatinHypercube(Drawn):
     """
 
     name: ClassVar[str] = "latin-hypercube"
-    advice: ClassVar[str] = (
-        "The extremes over a Latin hypercube: too narrow, since corners of the box are hardly hit; "
-        "'optimise' or 'chebyshev' needs fewer runs."
+    message: ClassVar[str] = (
+        "The bounds are the extremes over a Latin hypercube. They are too narrow, because few points lie near the "
+        "corners of the box."
     )
+    advice: ClassVar[str] = "Use 'optimise' or 'chebyshev', which need fewer runs."
     runs: int = 200
 
     def shares(self, dimensions: int, seed: int) -> np.ndarray:

@@ -9,7 +9,7 @@ from dalembert.contents import Contents
 from dalembert.forward.stored_coordinate import coordinate_of, stored_coordinate
 from dalembert.intervals import Box
 from dalembert.parameters import Parameter
-from dalembert.results import facts_of, saved_findings, stored_facts, told_of
+from dalembert.results import facts_of, saved_findings, saved_outcome, stored_facts, told_of
 from dalembert.uncertainty.comparison import Comparison
 from dalembert.uncertainty.propagation import Propagation
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
 
-FACTS = ("method", "kind", "runs", "success", "status", "seconds")
+FACTS = ("method", "kind", "runs", "success", "seconds")
 FORMER_KINDS = {"enclosure": "enclosure of the surrogate"}
 """Names of kinds in files of former versions."""
 
@@ -64,6 +64,7 @@ def from_xarray(dataset: "Dataset") -> Propagation:
         at_upper=a.get("at_upper"),
         failures=tuple(told["failures"]),
         provenance=told["provenance"],
+        outcome=saved_outcome(dataset),
         findings=saved_findings(dataset),
         fixed=tuple(Parameter(**item) for item in told.get("fixed", ())),
     )

@@ -51,8 +51,13 @@ class Taylor(Checked):
             box.points(-up),
             box.points(up),
             None,
-            "The response is taken as linear over the box, which is good for small boxes only; "
-            "'optimise' or 'chebyshev' sees its curvature.",
+            Finding(
+                "linear-bounds",
+                "note",
+                {},
+                "The response is linearised over the box, which is accurate for small boxes only.",
+                "Use method 'optimise' or 'chebyshev' for a curved response.",
+            ),
             not runs.failures,
             self._findings(runs, seed, response, slopes),
         )

@@ -1,6 +1,6 @@
-"""The result of a design: experiments in order of what they would tell."""
+"""The result of a design: experiments, ranked by how well they identify the parameters."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -8,21 +8,21 @@ import numpy as np
 
 from dalembert.contents import Contents
 from dalembert.errors import listed
-from dalembert.inverse.fit.summary import table
+from dalembert.findings import Finding
 from dalembert.parameters import Parameter, Parameters
-from dalembert.results import Result, facts_of, fixed_lines, stored_facts, told_of
+from dalembert.results import EndedResult, facts_of, fixed_lines, stored_facts, text_table, told_of
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
-CRITERIA = {"D": "geometric mean of the deviations", "E": "largest deviation"}
+CRITERIA = {"D": "geometric mean of the standard deviations", "E": "largest standard deviation"}
 
 
 FACTS = ("criterion", "along", "unit", "simulations")
 
 
 @dataclass(frozen=True, eq=False)
-class Designs(Result):
+class Designs(EndedResult):
     """Experiments, the best first: those that leave fewer combinations unseen, then those of the smaller score.
 
     Parameters
@@ -70,7 +70,7 @@ class Designs(Result):
 
     @property
     def success(self) -> bool:
-        """Whether one of the designs tells every parameter."""
+        """Return True if one of the designs identifies all parameters."""
         return bool(self.unseen[0] == 0)
 
     def named(self, place: int) -> str:
@@ -79,29 +79,51 @@ class Designs(Result):
         return f"{listed(self.sensors[place])} until {end}"
 
     @property
-    def status(self) -> str:
-        """The best design, how much worse the others are, and which tell too little, in full sentences."""
+    def outcome(self) -> tuple[Finding, ...]:
+        """The best design, how much worse the others are, and which are not sufficient."""
+        return tuple(self._outcome())
+
+    def _outcome(self) -> Iterator[Finding]:
         if not self.success:
-            return (
-                "No design tells every parameter: the best one leaves "
-                f"{_counted(int(self.unseen[0]), 'combination')} of them unseen; measure other channels, or fix "
-                "parameters."
+            lost = int(self.unseen[0])
+            yield Finding(
+                "insufficient-design",
+                "error",
+                {"combinations": lost},
+                f"No design identifies all parameters: the best one does not see {_counted(lost, 'combination')}.",
+                "Measure other channels, or fix parameters.",
             )
-        best = self.named(0)
-        parts = [f"Best is {best}: {CRITERIA[self.criterion]} {self.scores[0]:.3g}, in parts of the scales."]
-        told = np.flatnonzero(self.unseen == 0)
-        if len(told) > 1:
-            worse = self.scores[told[-1]] / self.scores[0]
-            parts.append(f"{self.named(int(told[-1]))} would be {worse:.3g} times worse.")
-        lost = len(self.scores) - len(told)
+            return
+        best, score = self.named(0), float(self.scores[0])
+        message = f"The best design is {best}: {CRITERIA[self.criterion]} {score:.3g} of the scales."
+        yield Finding("best-design", "note", {"design": best, "score": score}, message)
+        enough = np.flatnonzero(self.unseen == 0)
+        if len(enough) > 1:
+            last, ratio = self.named(int(enough[-1])), float(self.scores[enough[-1]] / score)
+            message = f"{last} is {ratio:.3g} times worse."
+            yield Finding("worst-design", "note", {"design": last, "ratio": ratio}, message)
+        lost = len(self.scores) - len(enough)
         if lost:
-            parts.append(f"{_counted(lost, 'design')} would leave a combination of the parameters unseen.")
+            message = f"{_counted(lost, 'design')} would leave a combination of the parameters unidentifiable."
+            yield Finding("unusable-designs", "note", {"designs": lost}, message)
         widths = (self.parameters.upper - self.parameters.lower) / np.sqrt(12)
-        weak = [repr(name) for name, ill in zip(self.parameters.names, self.deviations[0] > widths, strict=True) if ill]
+        weak = [name for name, ill in zip(self.parameters.names, self.deviations[0] > widths, strict=True) if ill]
         if weak:
-            parts.append(f"Even the best design hardly tells {listed(weak)}; measure more exactly, or longer.")
+            yield Finding(
+                "weakly-identifiable-parameter",
+                "warning",
+                {"parameter": ", ".join(weak)},
+                f"Even the best design hardly identifies {listed(list(map(repr, weak)))}.",
+                "Measure more exactly, or longer.",
+            )
         at = listed([f"{name} = {value:.6g}" for name, value in self.parameters.mapping(self.at).items()])
-        return " ".join([*parts, f"This holds near {at}; look elsewhere too if the true values may lie far from it."])
+        yield Finding(
+            "local-design",
+            "note",
+            {},
+            f"The ranking holds near {at}.",
+            "Compare designs elsewhere too if the true values may be far from these.",
+        )
 
     def summary(self) -> str:
         """The ranking as a text table, at most twenty designs, with its status."""
@@ -110,7 +132,7 @@ class Designs(Result):
             expected = (f"{value:.3g}" for value in self.deviations[k])
             rows.append((", ".join(self.sensors[k]), f"{self.horizons[k]:.6g}", f"{self.scores[k]:.4g}", *expected))
         more = [f"and {len(self.scores) - 20} more"] if len(self.scores) > 20 else []
-        return "\n".join([*table(rows), *more, "", *fixed_lines(self), self.status])
+        return "\n".join([*text_table(rows), *more, "", *fixed_lines(self), self.status])
 
     def contents(self) -> Contents:
         """Everything as arrays over design and parameter."""
@@ -131,7 +153,7 @@ class Designs(Result):
                 "singular_values": (("design", "combination"), self.singular_values),
             },
             {"parameter": ("parameter", list(self.parameters.names))},
-            stored_facts(self, (*FACTS, "status"), **told),
+            stored_facts(self, FACTS, **told),
         )
 
     @classmethod

@@ -10,8 +10,8 @@ from dalembert.data import Measurements
 from dalembert.errors import InputError
 from dalembert.forward import ForwardModel
 from dalembert.inverse.assessment.sensitivity import at_of, linearised, noise_of
-from dalembert.inverse.fit.sentences import foreseen
 from dalembert.inverse.least_squares.estimate import Identifiability, estimate
+from dalembert.inverse.least_squares.identifiable import foreseen
 from dalembert.inverse.problem.matching import check_samples, columns_of
 from dalembert.inverse.problem.prior import prior_slopes
 
@@ -40,7 +40,7 @@ def identifiability(
     -------
     Identifiability
         Singular values of W^½ ∂R/∂p · scale, the combinations that they belong to, the deviations to be expected (NaN
-        where the noise is not known), their correlation, and plain sentences.
+        where the noise is not known), their correlation, and findings.
 
     Raises
     ------
@@ -53,14 +53,15 @@ def identifiability(
 
     Examples
     --------
-    Of a decay of unknown height, gain and rate, height and gain cannot be told apart.
+    Of a decay of unknown height, gain and rate, only a combination of height and gain is identifiable.
 
     >>> from dalembert.forward import PythonModel
     >>> times = np.linspace(0, 2, 21)
     >>> box = {"rate": (0.5, 2.0), "height": (0.1, 1.0), "gain": (0.5, 2.0)}
     >>> model = PythonModel(lambda rate, height, gain: gain * height * np.exp(-rate * times), box, ["x"], times)
-    >>> identifiability(model, deviations=1e-3).sentences[0].partition(":")[0]
-    "'height' and 'gain' can only be told in combination"
+    >>> finding, *_ = identifiability(model, deviations=1e-3).findings
+    >>> finding.code, finding.values["parameters"]
+    ('unidentifiable-combination', 'height, gain')
     """
     if data is not None and deviations is not None:
         raise InputError("identifiability: data and deviations were given; expected one of them")
@@ -80,7 +81,7 @@ def identifiability(
     return Identifiability(
         told.singular_values,
         told.directions,
-        foreseen(parameters, told, known),
+        tuple(foreseen(parameters, told, noise_known=known)),
         told.deviations,
         told.correlation,
     )

@@ -13,8 +13,7 @@ from dalembert.forward.provenance import provenance
 from dalembert.inverse.assessment.prediction import Prediction
 from dalembert.inverse.assessment.sensitivity import linearised
 from dalembert.inverse.experiments.experiments import Experiment
-from dalembert.inverse.fit.confidence import check_level, noise_is_known, quantile, variance
-from dalembert.inverse.fit.fit import Fit
+from dalembert.inverse.fit.fit import Fit, check_level
 from dalembert.inverse.least_squares.estimate import UNSEEN
 
 EXCESSIVE = 0.001
@@ -86,7 +85,7 @@ def predict(model: ForwardModel | Experiment, fit: Fit, level: float = 0.95) -> 
     jacobian[:, :, wiring] = own
     names = tuple(channel.name for channel in model.channels)
     wraps = [prefix + name in fit.data.wraps for name in names]
-    deviations, width = response_deviations(fit, jacobian), quantile(fit, level)
+    deviations, width = response_deviations(fit, jacobian), fit.quantile(level)
     ends = [
         band_end(width * own, column, wraps=turns)
         for own, column, turns in zip(deviations.T, response.T, wraps, strict=True)
@@ -104,7 +103,7 @@ def predict(model: ForwardModel | Experiment, fit: Fit, level: float = 0.95) -> 
         data=data if same else None,
         level=level,
         quantile=width,
-        known=noise_is_known(fit),
+        known=fit.noise_is_known,
         simulations=1 + len(wiring),
         provenance=provenance(model, level=level, data=fit.data.fingerprint),
         findings=(*(item for item in fit.findings if item.code in INHERITED), *_ended(model, names, ends)),
@@ -171,7 +170,7 @@ def response_deviations(fit: Fit, jacobian: np.ndarray) -> np.ndarray:
     spread = slopes[..., ~unseen] / singular[~unseen]
     lost = np.any(np.abs(slopes[..., unseen]) > 1e-6 * np.linalg.norm(slopes, axis=-1, keepdims=True), axis=-1)
     if fit.correlated is None:
-        squares = variance(fit) * np.sum(spread**2, axis=-1)
+        squares = fit.residual_variance * np.sum(spread**2, axis=-1)
     else:
         noise = fit.correlated.noise[np.ix_(~unseen, ~unseen)]
         squares = np.sum((spread @ noise) * spread, axis=-1)
@@ -206,7 +205,11 @@ def _noise(fit: Fit, column: int, wanted: int) -> float:
         return float(fit.data.deviations[wanted]) * _excess(fit, column)
     if not np.any(weights > 0):
         return np.nan
-    own = variance(fit) if process is None else max(process.variance, variance(fit) if noise_is_known(fit) else 0.0)
+    own = (
+        fit.residual_variance
+        if process is None
+        else max(process.variance, fit.residual_variance if fit.noise_is_known else 0.0)
+    )
     return float(np.sqrt(own / np.mean(weights[weights > 0])))
 
 

@@ -1,6 +1,6 @@
 """The result of a prediction: a response and its bands."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -12,8 +12,7 @@ from dalembert.errors import listed
 from dalembert.findings import Finding
 from dalembert.forward import Coordinate
 from dalembert.forward.stored_coordinate import coordinate_of, stored_coordinate
-from dalembert.inverse.fit.summary import table
-from dalembert.results import Result, facts_of, saved_findings, stored_facts, told_of
+from dalembert.results import EndedResult, facts_of, saved_findings, stored_facts, text_table, told_of
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -23,7 +22,7 @@ FACTS = ("level", "quantile", "simulations")
 
 
 @dataclass(frozen=True, eq=False)
-class Prediction(Result):
+class Prediction(EndedResult):
     """Bands of a response, sample by sample, of a given probability.
 
     Parameters
@@ -91,37 +90,44 @@ class Prediction(Result):
         return bool(np.all(np.isfinite(self.deviations)))
 
     @property
-    def status(self) -> str:
-        """How wide the bands are, and what they leave out, in full sentences."""
-        part = f"{100 * self.level:g} %"
+    def outcome(self) -> tuple[Finding, ...]:
+        """How wide the bands are, and what they assume."""
+        return tuple(self._outcome())
+
+    def _outcome(self) -> Iterator[Finding]:
         if np.all(np.isnan(self.deviations)):
-            return "No bands: the fit has no deviations, since the model gave no sensitivities."
-        lost = [repr(name) for name, wide in zip(self.channels, self.deviations.T, strict=True) if np.isinf(wide).any()]
-        parts = []
+            message = "No bands: the fit has no standard deviations, since the model has no sensitivities."
+            yield Finding("no-bands", "error", {}, message)
+            return
+        lost = [name for name, wide in zip(self.channels, self.deviations.T, strict=True) if np.isinf(wide).any()]
         if lost:
-            parts.append(
-                f"The band of {listed(lost)} is infinitely wide: it depends on a combination of the parameters that "
-                "the data did not tell."
+            yield Finding(
+                "infinite-band",
+                "error",
+                {"channels": ", ".join(lost)},
+                f"The band of {listed(list(map(repr, lost)))} is infinitely wide: it depends on a combination of the "
+                "parameters that the data do not identify.",
             )
-        ratio = (
-            2
-            * self.quantile
-            * np.fmax.reduce(self.deviations, axis=0)
-            / np.maximum(np.ptp(self.response, axis=0), 1e-300)
-        )
+        widest = np.fmax.reduce(self.deviations, axis=0)
+        ratio = 2 * self.quantile * widest / np.maximum(np.ptp(self.response, axis=0), 1e-300)
         finite = np.flatnonzero(np.isfinite(ratio))
         if len(finite):
-            widest = finite[np.argmax(ratio[finite])]
-            parts.append(
-                f"The {part} band of the response is at most {100 * ratio[widest]:.2g} % as wide as the response "
-                f"varies, in {self.channels[widest]!r}."
+            worst = finite[np.argmax(ratio[finite])]
+            yield Finding(
+                "band-width",
+                "note",
+                {"level": self.level, "channel": self.channels[worst], "ratio": float(ratio[worst])},
+                f"The {100 * self.level:g} % band of the response is at most {100 * ratio[worst]:.2g} % as wide as the "
+                f"range of the response, in {self.channels[worst]!r}.",
             )
-        source = "given deviations" if self.known else "the residuals"
-        parts.append(
-            f"The noise is known from {source}; the bands hold if the model is right and nearly linear in the "
-            "parameters between their ends."
+        source = "given standard deviations" if self.known else "residuals"
+        yield Finding(
+            "band-assumptions",
+            "note",
+            {"noise_is_known": self.known},
+            f"The noise level follows from {source}. The bands assume that the model is right and nearly linear in the "
+            "parameters within their intervals.",
         )
-        return " ".join(parts)
 
     def summary(self) -> str:
         """Widths of the bands as a text table with the status."""
@@ -130,7 +136,7 @@ class Prediction(Result):
             width = np.fmax.reduce(self.upper[:, k] - self.lower[:, k])
             measured = np.fmax.reduce(self.measured_upper[:, k] - self.measured_lower[:, k])
             rows.append((name, unit, f"{width:.4g}", "not measured" if np.isnan(measured) else f"{measured:.4g}"))
-        return "\n".join([*table(rows), "", self.status, *map(str, self.findings)])
+        return "\n".join([*text_table(rows), "", self.status, *map(str, self.findings)])
 
     def contents(self) -> Contents:
         """Everything as arrays over sample and channel."""
@@ -158,7 +164,7 @@ class Prediction(Result):
                 "channel": ("channel", list(self.channels)),
                 "coordinate": stored_coordinate(self.coordinate),
             },
-            stored_facts(self, (*FACTS, "status"), **told),
+            stored_facts(self, FACTS, **told),
         )
 
     @classmethod

@@ -17,8 +17,7 @@ from dalembert.inverse.assessment.profiles import Profile, Profiles
 from dalembert.inverse.assessment.walk import Walk, walked
 from dalembert.inverse.events import OnEvent
 from dalembert.inverse.experiments.experiments import Experiment, joint, placed
-from dalembert.inverse.fit.confidence import check_level, freedom, noise_is_known, variance
-from dalembert.inverse.fit.fit import Fit
+from dalembert.inverse.fit.fit import Fit, check_level
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.prefetch import prefetched
 from dalembert.inverse.problem.problem import Linearisation, Problem, pose
@@ -114,7 +113,7 @@ def profile(
         )
     chosen = _names(fit, names)
     problem = _problem(placed(model, executor), data, fit, on_event)
-    noise, values = variance(fit), fit.values
+    noise, values = fit.residual_variance, fit.values
     if not noise > 0:
         raise InputError(
             "profile: the noise of the data is not known, and the fit leaves no residuals to estimate it from; give "
@@ -123,8 +122,8 @@ def profile(
     check_derivatives(problem.model, values)
     at = problem.linearise(values)
     best = float(np.sum(problem.residuals(values, at.response) ** 2))
-    known = noise_is_known(fit)
-    threshold = float(chdtri(1, 1 - level) if known else fdtri(1, freedom(fit), level))
+    known = fit.noise_is_known
+    threshold = float(chdtri(1, 1 - level) if known else fdtri(1, fit.degrees_of_freedom, level))
     factors, seen = np.ones(len(values)), np.isfinite(fit.deviations)
     factors[seen] = (fit.deviations[seen] / fit.plain_deviations[seen]) ** 2
     walks = [Walk(best, noise * factor, threshold, points, LeastSquares(trials=30)) for factor in factors.tolist()]

@@ -1,6 +1,6 @@
 """The result of a profile likelihood: how the misfit grows as one parameter after the other is held elsewhere."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -9,15 +9,14 @@ import numpy as np
 from dalembert.contents import Contents
 from dalembert.errors import listed
 from dalembert.findings import Finding
-from dalembert.inverse.fit.summary import table
 from dalembert.parameters import Parameter, Parameters
-from dalembert.results import Result, facts_of, fixed_lines, saved_findings, stored_facts, told_of
+from dalembert.results import EndedResult, facts_of, fixed_lines, saved_findings, stored_facts, text_table, told_of
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
-LOPSIDED = 1.5
-"""Ratio of an interval's two sides from which its standard deviation is said to mislead."""
+ASYMMETRIC = 1.5
+"""Ratio of an interval's two sides from which its standard deviation does not describe it."""
 
 BETTER = 0.01
 """Variances of the noise by which a point must explain the data better for the fit to be no minimum."""
@@ -61,7 +60,7 @@ FACTS = ("level", "threshold", "variance", "simulations")
 
 
 @dataclass(frozen=True, eq=False)
-class Profiles(Result):
+class Profiles(EndedResult):
     """Profile likelihoods of parameters, and the intervals where they stay below a threshold.
 
     Parameters
@@ -120,57 +119,69 @@ class Profiles(Result):
         """Whether every side ended at its threshold or at a bound, and no better point was met."""
         return self.better is None and not any(reason for curve in self.curves for reason in curve.broken)
 
-    def sentences(self) -> tuple[str, ...]:
-        """What the profiles tell, in plain sentences."""
-        found = []
+    @property
+    def outcome(self) -> tuple[Finding, ...]:
+        """The level, better minima, and what each profile shows."""
+        return tuple(self._outcome())
+
+    def _outcome(self) -> Iterator[Finding]:
+        names = listed([repr(curve.name) for curve in self.curves])
+        source = "given standard deviations" if self.known else "residuals"
+        message = f"{100 * self.level:g} % intervals of {names} from profile likelihoods, noise level from {source}."
+        yield Finding("profile-level", "note", {"level": self.level, "noise_is_known": self.known}, message)
         if self.better is not None:
             there = ", ".join(f"{name} = {value:.6g}" for name, value in self.better.items())
-            found.append(f"A better minimum lies near {there}; identify again from there, and profile that fit.")
+            message = f"There is a better minimum near {there}."
+            yield Finding("better-minimum", "error", self.better, message, "Identify again from there.")
         for curve in self.curves:
-            found += self._of_one(curve)
-        return tuple(found)
+            yield from self._of_one(curve)
 
-    def _of_one(self, curve: Profile) -> list[str]:
+    def _of_one(self, curve: Profile) -> Iterator[Finding]:
         k = self.parameters.names.index(curve.name)
-        item, value, found = self.parameters.items[k], self.values[k], []
+        item, value = self.parameters.items[k], self.values[k]
         for side, reason in zip(("lower", "upper"), curve.broken, strict=True):
             if reason:
-                found.append(f"The {side} side of {curve.name!r} ends early: {reason}.")
+                values = {"parameter": curve.name, "side": side, "reason": reason}
+                message = f"The {side} side of the profile of {curve.name!r} is incomplete: {reason}."
+                yield Finding("incomplete-profile", "error", values, message)
         if all(curve.open):
-            found.append(
-                f"{curve.name!r} is not told by the data: wherever it is between its bounds, they are explained within "
-                "their noise; fix it, or measure what tells it."
+            yield Finding(
+                "unidentifiable-parameter",
+                "warning",
+                {"parameter": curve.name},
+                f"{curve.name!r} is not identifiable: all values between its bounds explain the data within their "
+                "noise.",
+                "Fix it, or measure a quantity that depends on it.",
             )
         elif any(curve.open):
             side = "lower" if curve.open[0] else "upper"
-            found.append(
-                f"{curve.name!r} has no {side} limit from the data: up to its bound {getattr(item, side):.6g} they are "
-                "explained within their noise."
+            bound = float(getattr(item, side))
+            yield Finding(
+                "open-interval",
+                "warning",
+                {"parameter": curve.name, "side": side, "bound": bound},
+                f"The data give no {side} limit of {curve.name!r}: up to its bound {bound:.6g} they are explained "
+                "within their noise.",
             )
         elif not any(curve.broken):
             below, above = value - curve.lower, curve.upper - value
-            if max(below, above) > LOPSIDED * min(below, above):
-                found.append(
-                    f"The interval of {curve.name!r} is lopsided, {below:.3g} below and {above:.3g} above its value: "
-                    f"the standard deviation {self.deviations[k]:.3g} misleads."
+            if max(below, above) > ASYMMETRIC * min(below, above):
+                yield Finding(
+                    "asymmetric-interval",
+                    "note",
+                    {"parameter": curve.name, "below": float(below), "above": float(above)},
+                    f"The interval of {curve.name!r} is asymmetric, {below:.3g} below and {above:.3g} above its value: "
+                    f"the standard deviation {self.deviations[k]:.3g} does not describe it.",
                 )
         if curve.elsewhere:
             parts = listed([f"{lower:.6g} to {upper:.6g}" for lower, upper in curve.elsewhere])
-            found.append(
-                f"Beside its interval the data do not contradict {curve.name!r} from {parts} either; measure what "
-                "tells these minima apart, or narrow the bounds."
+            yield Finding(
+                "further-intervals",
+                "warning",
+                {"parameter": curve.name, "intervals": len(curve.elsewhere)},
+                f"The data also allow values of {curve.name!r} from {parts}.",
+                "Measure a quantity that separates these minima, or narrow the bounds.",
             )
-        return found
-
-    @property
-    def status(self) -> str:
-        """How the profiles went, in full sentences."""
-        names = listed([repr(curve.name) for curve in self.curves])
-        source = "given deviations" if self.known else "the residuals"
-        opening = (
-            f"{100 * self.level:g} % intervals of {names} from profile likelihoods, with noise known from {source}."
-        )
-        return " ".join([opening, *self.sentences()])
 
     def summary(self) -> str:
         """The intervals as a text table with the status."""
@@ -183,7 +194,7 @@ class Profiles(Result):
             )
             item = self.parameters.items[k]
             rows.append((curve.name, f"{self.values[k]:.7g}", lower, upper, item.unit, f"{self.deviations[k]:.2g}"))
-        return "\n".join([*table(rows), "", *fixed_lines(self), self.status, *map(str, self.findings)])
+        return "\n".join([*text_table(rows), "", *fixed_lines(self), self.status, *map(str, self.findings)])
 
     def contents(self) -> Contents:
         """Everything as arrays over parameter, profile and point."""
@@ -210,7 +221,7 @@ class Profiles(Result):
                 "parameter": ("parameter", list(self.parameters.names)),
                 "profile": ("profile", [curve.name for curve in self.curves]),
             },
-            stored_facts(self, (*FACTS, "status"), **told),
+            stored_facts(self, FACTS, **told),
         )
 
     @classmethod

@@ -1,6 +1,6 @@
 """The result of an identification from bands."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -11,14 +11,17 @@ from dalembert.data import Bands
 from dalembert.findings import Finding
 from dalembert.intervals import Box
 from dalembert.inverse.events import StartEnd, Step
-from dalembert.inverse.fit.doubts import doubts
 from dalembert.inverse.least_squares.estimate import Estimate, Identifiability
-from dalembert.parameters import Parameters
-from dalembert.results import Result
+from dalembert.inverse.least_squares.identifiable import unidentifiable
+from dalembert.parameters import Parameter, Parameters
+from dalembert.results import EndedResult, fixed_lines, text_table
+
+ZERO = 1e-6
+"""Lengths below this part of the bounds' width are zero."""
 
 
 @dataclass(frozen=True, eq=False)
-class BandFit(Result):
+class BandFit(EndedResult):
     """Intervals of parameters whose response fills given bands, how well they are known, and how they were found.
 
     The unknowns are the middles of all parameters, then the radii of those that are intervals.
@@ -59,8 +62,8 @@ class BandFit(Result):
         Best fitness along each start; its values are the unknowns.
     starts : tuple of StartEnd
     success : bool
-    status : str
-        How it went and what to do, in full sentences.
+    outcome : tuple of Finding
+        How the search ended; ``status`` is their text.
     method : str
     simulations : int
     seconds : float
@@ -94,7 +97,7 @@ class BandFit(Result):
     history: tuple[Step, ...]
     starts: tuple[StartEnd, ...]
     success: bool
-    status: str
+    outcome: tuple[Finding, ...]
     method: str
     simulations: int
     seconds: float
@@ -118,28 +121,49 @@ class BandFit(Result):
         return {f"{name} {side}": float(sides[side][k]) for k, name in enumerate(self.box) for side in sides}
 
     @property
-    def told(self) -> Estimate:
-        """What the bands tell about the unknowns."""
+    def estimate(self) -> Estimate:
+        """Standard deviations and correlation of the unknowns."""
         is_interval = [name in self.intervals for name in self.parameters.names]
         deviations = np.concatenate([self.middle_deviations, self.radius_deviations[is_interval]])
         return Estimate(deviations, self.correlation, self.singular_values, self.directions)
 
     def identifiability(self) -> Identifiability:
-        """What the bands can tell: singular values, combinations, and sentences on what they cannot."""
-        from dalembert.inverse.bands.telling import sentences
-
-        return Identifiability(self.singular_values, self.directions, sentences(self))
+        """What the bands can identify: singular values, combinations, and findings on what they cannot."""
+        return Identifiability(self.singular_values, self.directions, tuple(_identifiability(self)))
 
     @property
-    def doubts(self) -> tuple[str, ...]:
-        """Why the intervals are to be doubted although the search ended well, each reason in a few words."""
-        return (*doubts(self.status, self.identifiability()), *super().doubts)
+    def conclusions(self) -> tuple[Finding, ...]:
+        """How the search ended, what the bands cannot identify, and what else the method concludes."""
+        return (*self.outcome, *self.identifiability().findings, *self.findings)
 
     def summary(self) -> str:
-        """The result as a text table with its status."""
-        from dalembert.inverse.bands.summary import summary
-
-        return summary(self)
+        """Return a table of intervals with middles, radii, deviations and bounds, then effort and findings."""
+        rows: list[tuple[str, ...]] = [("parameter", "interval", "middle", "±", "radius", "±", "unit", "bounds")]
+        for k, item in enumerate(self.parameters):
+            known = item.name in self.intervals
+            rows.append(
+                (
+                    item.name,
+                    f"[{self.box.lower[k]:.7g}, {self.box.upper[k]:.7g}]",
+                    f"{self.middle[k]:.7g}",
+                    f"{self.middle_deviations[k]:.2g}",
+                    f"{self.radius[k]:.5g}" if known else "0 (given)",
+                    f"{self.radius_deviations[k]:.2g}" if known else "",
+                    item.unit,
+                    f"{item.lower:.6g} to {item.upper:.6g}",
+                )
+            )
+        checked = "not checked" if self.checked_fitness is None else f"{self.checked_fitness:.6g} by true runs"
+        facts = [
+            f"method       {self.method}",
+            f"fitness      {self.fitness:.6g} (weighted sum of squares of {2 * self.lower.size} bounds), {checked}",
+            f"simulations  {self.simulations}",
+            f"seconds      {self.seconds:.2g}",
+            f"starts       {len(self.starts)}",
+            *fixed_lines(self),
+        ]
+        findings = map(str, (*self.identifiability().findings, *self.findings))
+        return "\n".join([*text_table(rows), "", *facts, "", self.status, *findings])
 
     def contents(self) -> Contents:
         from dalembert.inverse.bands.storage import contents_of
@@ -152,3 +176,40 @@ class BandFit(Result):
         from dalembert.inverse.bands.storage import from_xarray
 
         return from_xarray(dataset)
+
+
+def _identifiability(fit: BandFit) -> Iterator[Finding]:
+    """Yield findings on ends at a bound, radii that may be zero, and unknowns that the bands do not identify."""
+    for k, item in enumerate(fit.parameters):
+        yield from _of_one(fit, k, item)
+    width, scale = fit.parameters.upper - fit.parameters.lower, fit.parameters.scale
+    is_interval = np.array([name in fit.intervals for name in fit.parameters.names], dtype=bool)
+    widths, scales = np.concatenate([width, width[is_interval] / 2]), np.concatenate([scale, scale[is_interval]])
+    yield from unidentifiable(fit.unknowns, widths, scales, fit.estimate)
+
+
+def _of_one(fit: BandFit, k: int, item: Parameter) -> Iterator[Finding]:
+    small = ZERO * (item.upper - item.lower)
+    radius, deviation = float(fit.radius[k]), float(fit.radius_deviations[k])
+    for side, end in (("lower", fit.box.lower[k]), ("upper", fit.box.upper[k])):
+        bound = getattr(item, side)
+        if abs(end - bound) <= small:
+            yield Finding(
+                "interval-at-bound",
+                "warning",
+                {"parameter": item.name, "side": side, "bound": float(bound)},
+                f"The {side} end of {item.name!r} is at its bound {bound:.6g}.",
+                "Widen the bound if the true interval may reach beyond it.",
+            )
+    if item.name not in fit.intervals:
+        return
+    values = {"parameter": item.name, "radius": radius, "deviation": deviation}
+    if radius <= small:
+        message = f"The radius of {item.name!r} is zero: one value of it explains the bands."
+        yield Finding("zero-radius", "warning", values, message)
+    elif radius <= 2 * deviation < np.inf:
+        message = (
+            f"The radius of {item.name!r}, {radius:.2g} ± {deviation:.2g}, does not differ significantly from zero: "
+            "the bands do not show that it varies."
+        )
+        yield Finding("zero-radius", "warning", values, message)

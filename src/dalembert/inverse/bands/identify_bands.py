@@ -14,11 +14,10 @@ from dalembert.intervals import Box
 from dalembert.inverse.bands.band_fit import BandFit
 from dalembert.inverse.bands.band_problem import BandProblem, pose
 from dalembert.inverse.bands.candidate import slopes
-from dalembert.inverse.bands.conclusions import conclusions
 from dalembert.inverse.bands.found import Found, Method
 from dalembert.inverse.bands.global_surrogate import GlobalSurrogate
 from dalembert.inverse.bands.nested import Nested
-from dalembert.inverse.bands.status import status
+from dalembert.inverse.bands.outcome import conclusions, outcome
 from dalembert.inverse.bands.unknowns import unknowns_of
 from dalembert.inverse.events import Finished, OnEvent
 from dalembert.inverse.least_squares.estimate import Estimate, estimate
@@ -106,7 +105,6 @@ def identify_bands(
     problem = pose(model, bands, weights, unknowns, journal)
     found = chosen.search(problem, seed)
     at, checked = found.candidate, found.check
-    text = status(problem, found)
     concluded = conclusions(problem, found)
     ends = tuple(unknowns.search.vectors(end) for end in (at.lower, at.upper))
     told = _told(problem, found)
@@ -135,7 +133,7 @@ def identify_bands(
         history=tuple(journal.history),
         starts=tuple(journal.starts),
         success=found.success and not any(finding.severity == "error" for finding in concluded),
-        status=text,
+        outcome=tuple(outcome(problem, found)),
         method=chosen.name,
         simulations=journal.simulations,
         seconds=clock(model) - began,

@@ -12,7 +12,7 @@ from dalembert.intervals import Box
 from dalembert.inverse.bands.band_fit import BandFit
 from dalembert.inverse.fit.stored_search import search_of, stored_ends, stored_search
 from dalembert.parameters import Parameter, Parameters
-from dalembert.results import facts_of, saved_findings, stored_facts, told_of
+from dalembert.results import facts_of, saved_findings, saved_outcome, stored_facts, told_of
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 TABLES = ("weights", "lower", "upper", "error")
 """Fields of shape (samples, channels)."""
 
-FACTS = ("method", "status", "success", "fitness", "simulations", "seconds")
+FACTS = ("method", "success", "fitness", "simulations", "seconds")
 ARRAYS = ("middle_deviations", "radius_deviations", "correlation", "singular_values", "directions", *TABLES)
 
 
@@ -80,5 +80,6 @@ def from_xarray(dataset: "Dataset") -> BandFit:
         history=history,
         starts=starts,
         provenance=told["provenance"],
+        outcome=saved_outcome(dataset),
         findings=saved_findings(dataset),
     )

@@ -9,7 +9,6 @@ from dalembert.findings import Finding
 from dalembert.inverse.assessment.predict import band_end, noise_deviation, response_deviations
 from dalembert.inverse.correlation.series import series_of
 from dalembert.inverse.experiments.validation import Validation
-from dalembert.inverse.fit.confidence import quantile
 from dalembert.inverse.fit.fit import Fit
 from dalembert.inverse.problem.problem import Problem
 
@@ -38,7 +37,7 @@ def with_coverage(fit: Fit, problem: Problem) -> Fit:
     at = None if validation is None else problem.linearised(fit.values)
     if validation is None or at is None:
         return fit
-    deviations, width = response_deviations(fit, at.jacobian).ravel(), quantile(fit, LEVEL)
+    deviations, width = response_deviations(fit, at.jacobian).ravel(), fit.quantile(LEVEL)
     apart, response = np.abs(problem.misfit(at.response)).ravel(), at.response.ravel()
     inside: list[np.ndarray] = []
     for own in series_of(problem, validation.weights):

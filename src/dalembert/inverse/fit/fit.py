@@ -5,28 +5,30 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
+from scipy.special import ndtri, stdtrit  # quantiles; scipy.stats takes long to load
 
+from dalembert.arguments import is_number
 from dalembert.contents import Contents
 from dalembert.data import Measurements
-from dalembert.errors import InputError
+from dalembert.errors import InputError, shown
 from dalembert.findings import Finding
 from dalembert.inverse.correlation.correlated import CorrelatedResiduals
 from dalembert.inverse.events import StartEnd, Step
 from dalembert.inverse.experiments.experiment_fit import ExperimentFit, experiment_fit
 from dalembert.inverse.experiments.experiments import Part
 from dalembert.inverse.experiments.validation import Validation
-from dalembert.inverse.fit.doubts import doubts
 from dalembert.inverse.fit.integration import IntegrationBias
-from dalembert.inverse.fit.sentences import sentences
 from dalembert.inverse.least_squares.estimate import Estimate, Identifiability
+from dalembert.inverse.least_squares.identifiable import identifiability_findings
 from dalembert.inverse.misfit.halves import Halves
+from dalembert.inverse.problem.prior import priors
 from dalembert.inverse.shooting.nodes import Nodes
 from dalembert.parameters import Parameters
-from dalembert.results import Result
+from dalembert.results import EndedResult, fixed_lines, text_table
 
 
 @dataclass(frozen=True, eq=False)
-class Fit(Result):
+class Fit(EndedResult):
     """Identified parameters, how well they are known, and how they were found.
 
     Parameters
@@ -53,8 +55,8 @@ class Fit(Result):
         Best fitness along each start, where all samples were compared.
     starts : tuple of StartEnd
     success : bool
-    status : str
-        How it went and what to do, in full sentences.
+    outcome : tuple of Finding
+        How the search ended; ``status`` is their text.
     method : str
     simulations : int
         A response with its sensitivities counts as 1 + parameters.
@@ -91,7 +93,7 @@ class Fit(Result):
     history: tuple[Step, ...]
     starts: tuple[StartEnd, ...]
     success: bool
-    status: str
+    outcome: tuple[Finding, ...]
     method: str
     simulations: int
     provenance: Mapping[str, Any]
@@ -141,20 +143,15 @@ class Fit(Result):
             )
 
     def identifiability(self) -> Identifiability:
-        """What the data can tell: singular values, combinations, and sentences on what they cannot."""
-        told = Estimate(self.deviations, self.correlation, self.singular_values, self.directions)
-        found = sentences(self.parameters, self.values, told)
+        """What the data can identify: singular values, combinations, and findings on what they cannot."""
+        known = Estimate(self.deviations, self.correlation, self.singular_values, self.directions)
+        found = tuple(identifiability_findings(self.parameters, self.values, known))
         return Identifiability(self.singular_values, self.directions, found, self.deviations, self.correlation)
 
     @property
-    def doubts(self) -> tuple[str, ...]:
-        """Why the values are to be doubted although the search ended well, each reason in a few words.
-
-        The residuals are too large for the given deviations, another minimum explains the data as
-        well, parameters sit on a bound or are not told, or not apart, or a finding is a warning or an error; empty
-        where nothing speaks against them.
-        """
-        return (*doubts(self.status, self.identifiability()), *super().doubts)
+    def conclusions(self) -> tuple[Finding, ...]:
+        """How the search ended, what the data cannot identify, and what else the method concludes."""
+        return (*self.outcome, *self.identifiability().findings, *self.findings)
 
     def intervals(self, level: float = 0.95) -> dict[str, tuple[float, float]]:
         """Interval of each parameter that holds its true value with a probability, by name: value ∓ q × deviation.
@@ -162,15 +159,59 @@ class Fit(Result):
         q is the quantile of the normal distribution where the noise is known, else of Student's t. Right where the
         response is nearly linear within the interval; :func:`dalembert.profile` asks the response itself.
         """
-        from dalembert.inverse.fit.confidence import intervals
+        check_level(level, "intervals")
+        radius = self.quantile(level) * self.deviations
+        ends = zip(self.parameters.names, (self.values - radius).tolist(), (self.values + radius).tolist(), strict=True)
+        return {name: (lower, upper) for name, lower, upper in ends}
 
-        return intervals(self, level)
+    @property
+    def noise_is_known(self) -> bool:
+        """Return True if the standard deviations follow from those of the data, not from the residuals."""
+        given = self.data.deviations is not None and self.provenance.get("weights") == "data"
+        return given or len(priors(self.parameters)) > 0
+
+    @property
+    def degrees_of_freedom(self) -> int:
+        """Return the number of fitted values and priors, less that of parameters."""
+        return int(np.count_nonzero(self.weights)) + len(priors(self.parameters)) - len(self.parameters)
+
+    def quantile(self, level: float) -> float:
+        """Return the standard deviations on either side of a value that contain the true one with a probability.
+
+        Of the normal distribution where the noise is known, else of Student's t.
+        """
+        if self.noise_is_known:
+            return float(ndtri((1 + level) / 2))
+        return float(stdtrit(self.degrees_of_freedom, (1 + level) / 2)) if self.degrees_of_freedom > 0 else np.nan
+
+    @property
+    def residual_variance(self) -> float:
+        """Return the variance of a weighted residual: 1 where the noise is known, else estimated from the residuals."""
+        if self.noise_is_known:
+            return 1.0
+        return self.fitness / self.degrees_of_freedom if self.degrees_of_freedom > 0 else np.nan
 
     def summary(self) -> str:
-        """The result as a text table with its status."""
-        from dalembert.inverse.fit.summary import summary
-
-        return summary(self)
+        """Return a table of parameters with standard deviations, unit and bounds, then effort and findings."""
+        rows = [("parameter", "value", "± deviation", "unit", "bounds")]
+        for item, value, deviation in zip(self.parameters, self.values, self.deviations, strict=True):
+            known = "unknown" if np.isnan(deviation) else f"{deviation:.2g}"
+            rows.append((item.name, f"{value:.7g}", known, item.unit, f"{item.lower:.6g} to {item.upper:.6g}"))
+        facts = [
+            f"method       {self.method}",
+            f"fitness      {self.fitness:.6g} (weighted sum of squares of {int(self.data.present.sum())} values)",
+            f"simulations  {self.simulations}",
+            f"starts       {len(self.starts)}",
+            *_integration_facts(self),
+            *fixed_lines(self),
+        ]
+        texts = [
+            self.status,
+            *([] if self.validation is None else [str(self.validation)]),
+            *map(str, self.identifiability().findings),
+        ]
+        texts += map(str, self.findings)
+        return "\n".join([*text_table(rows), "", *facts, "", *_experiments_table(self), *_halves_table(self), *texts])
 
     def contents(self) -> Contents:
         from dalembert.inverse.fit.storage import contents_of
@@ -183,3 +224,58 @@ class Fit(Result):
         from dalembert.inverse.fit.storage import from_xarray
 
         return from_xarray(dataset)
+
+
+def check_level(level: float, where: str) -> None:
+    """Check that a level is a probability.
+
+    Raises
+    ------
+    InputError
+    """
+    if not is_number(level) or np.iscomplexobj(level) or not 0 < level < 1:
+        raise InputError(f"{where}: level is {shown(level)}; expected a number between 0 and 1, such as 0.95")
+
+
+def _integration_facts(fit: Fit) -> list[str]:
+    """Lines on the bias by the integrator and on the misfit with converged steps; none without an estimate."""
+    found = fit.integration
+    if found is None or found.failed:
+        return []
+    biases = ", ".join(
+        f"{item.name} {f'{bias:.2g} {item.unit}'.rstrip()}"
+        for item, bias in zip(fit.parameters, found.bias, strict=True)
+    )
+    return [
+        f"integrator   bias of the values {biases} (by one simulation {found.how})",
+        f"             fitness with converged steps {found.fitness:.6g}, with corrected values {found.corrected:.6g}",
+    ]
+
+
+def _experiments_table(fit: Fit) -> list[str]:
+    """Lines of a table of experiments and their residuals, with an empty one after it; none for a single one."""
+    if not fit.experiments:
+        return []
+    rows = [("experiment", "channel", "samples", "rms residual", "")]
+    for item in fit.experiments:
+        for column, channel in enumerate(item.data.channels):
+            own = item.residuals[item.data.present[:, column], column]
+            rms = f"{np.sqrt(np.mean(own**2)):.4g}"
+            rows.append((item.name, channel, str(len(own)), rms, "" if item.fitted else "predicted"))
+    return [*text_table(rows), ""]
+
+
+def _halves_table(fit: Fit) -> list[str]:
+    """Lines of a table of the parameters of the halves, with an empty one after it; none where they agree."""
+    found = fit.halves
+    if found is None or not np.any(found.drifting):
+        return []
+    rows = [("parameter", "first half", "second half", "difference / deviation")]
+    for k, name in enumerate(fit.parameters.names):
+        first, second = (
+            "not determined" if np.isnan(value) else f"{value:.5g} ± {deviation:.2g}"
+            for value, deviation in zip(found.values[:, k], found.deviations[:, k], strict=True)
+        )
+        size = found.differences[k]
+        rows.append((name, first, second, "" if np.isnan(size) else f"{size:.2g}"))
+    return [*text_table(rows), ""]

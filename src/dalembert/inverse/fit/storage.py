@@ -18,13 +18,13 @@ from dalembert.inverse.fit.stored_nodes import nodes_of, stored_nodes, told_node
 from dalembert.inverse.fit.stored_parts import parts_of, stored_parts, told_parts
 from dalembert.inverse.fit.stored_search import search_of, stored_ends, stored_search
 from dalembert.parameters import Parameter, Parameters
-from dalembert.results import facts_of, saved_findings, stored_facts, told_of
+from dalembert.results import facts_of, saved_findings, saved_outcome, stored_facts, told_of
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
 
-FACTS = ("method", "status", "success", "fitness", "simulations")
+FACTS = ("method", "success", "fitness", "simulations")
 
 
 def contents_of(fit: Fit) -> Contents:
@@ -98,6 +98,7 @@ def from_xarray(dataset: "Dataset") -> Fit:
         parts=parts_of(a, told["parts"]),
         validation=None if validation is None else _validation(a["validation_weights"], **validation),
         nodes=nodes_of(a, told.get("nodes")),
+        outcome=saved_outcome(dataset),
         findings=saved_findings(dataset),
         correlated=correlated_of(a, told.get("correlated")),
         integration=integration_of(a, told.get("integration")),

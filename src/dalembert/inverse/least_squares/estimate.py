@@ -1,8 +1,10 @@
-"""What the data tell about the parameters, in numbers: standard deviations, correlation, and combinations."""
+"""Standard deviations, correlation and combinations of identified parameters."""
 
 from dataclasses import dataclass
 
 import numpy as np
+
+from dalembert.findings import Finding
 
 UNSEEN = 1e-10
 """Singular values below this fraction of the largest are zero to the accuracy of a simulation."""
@@ -96,13 +98,13 @@ def _decomposed(slopes: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]
 
 @dataclass(frozen=True, eq=False)
 class Identifiability:
-    """What the data can tell, in numbers as in :class:`Estimate` and in plain sentences."""
+    """What the data can identify, in numbers as in :class:`Estimate` and as findings."""
 
     singular_values: np.ndarray
     directions: np.ndarray
-    sentences: tuple[str, ...]
+    findings: tuple[Finding, ...]
     deviations: np.ndarray | None = None
     correlation: np.ndarray | None = None
 
     def __str__(self) -> str:
-        return "\n".join(self.sentences) or "The data tell every parameter, and tell them apart."
+        return "\n".join(map(str, self.findings)) or "All parameters are identifiable."

@@ -19,8 +19,9 @@ class NoiseFloor:
     ----------
     fitness : float
         99.9 % quantile of the fitness at the true parameters.
-    source : str
-        Where the noise is known from.
+    source : {"given", "smoothed", "rounded", "arithmetic"}
+        Where the noise is known from: given standard deviations, local polynomials, rounding of the data, or rounding
+        errors of the arithmetic.
     conclusive : bool
         Whether reaching the floor shows that no better minimum need be looked for: the noise is so small against the
         signal that a false minimum would not get there.
@@ -33,7 +34,7 @@ class NoiseFloor:
     @property
     def known(self) -> bool:
         """Whether deviations of the data were given."""
-        return self.source == "given deviations"
+        return self.source == "given"
 
 
 def noise_floor(problem: Problem, smooth: np.ndarray | None = None) -> NoiseFloor:
@@ -51,13 +52,7 @@ def noise_floor(problem: Problem, smooth: np.ndarray | None = None) -> NoiseFloo
     spread = _filled(problem).std(axis=0)
     expected = float(np.sum(weights * (given**2 + quanta**2 / 12 + (1e-6 * spread) ** 2))) + problem.priors
     source = (
-        "local polynomials"
-        if smooth is not None
-        else "given deviations"
-        if given.any()
-        else "rounding of the data"
-        if quanta.any()
-        else "arithmetic"
+        "smoothed" if smooth is not None else "given" if given.any() else "rounded" if quanta.any() else "arithmetic"
     )
     return NoiseFloor(
         expected * float(chdtri(problem.compared, 0.001)) / problem.compared,

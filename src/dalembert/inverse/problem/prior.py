@@ -1,10 +1,11 @@
 """What is known of parameters before any data: a standard deviation around the first guess."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator
 
 import numpy as np
 
 from dalembert.errors import InputError, listed
+from dalembert.findings import Finding
 from dalembert.inverse.problem.combinations import moved, separated
 from dalembert.parameters import Parameters
 
@@ -50,30 +51,36 @@ def check_priors(parameters: Parameters, known: bool) -> None:
         )
 
 
-def told_by_priors(parameters: Parameters, deviations: np.ndarray, correlation: np.ndarray) -> Sequence[str]:
-    """Sentences on parameters and combinations that the data hardly tell more about than the priors did.
+def prior_findings(parameters: Parameters, deviations: np.ndarray, correlation: np.ndarray) -> Iterator[Finding]:
+    """Yield findings on parameters and combinations on which the data add little to the priors.
 
     They are the directions, in units of the priors' deviations, in which most of the priors' variance is left.
     """
     known = priors(parameters)
     if not len(known) or not np.all(np.isfinite(deviations[known])):
-        return ()
+        return
     before = prior_deviations(parameters)
     after = deviations[known] / before
     left, directions = np.linalg.eigh(after[:, None] * correlation[np.ix_(known, known)] * after)
     names = [parameters.names[k] for k in known]
-    found = []
     for row in separated(directions.T[left > ALONE]):
         parts = np.flatnonzero(np.abs(row) > 0.3 * np.max(np.abs(row)))
         if len(parts) == 1:
             k = parts[0]
-            found.append(
-                f"{names[k]!r} is known from its prior alone: its deviation was {before[k]:.3g} before the data and is "
-                f"{deviations[known[k]]:.3g} with them; measure what tells it."
+            yield Finding(
+                "prior-dominates",
+                "warning",
+                {"parameters": names[k], "prior": float(before[k]), "deviation": float(deviations[known[k]])},
+                f"The data add nothing to the prior of {names[k]!r}: its standard deviation is {before[k]:.3g} without "
+                f"and {deviations[known[k]]:.3g} with the data.",
+                "Measure a quantity that depends on it.",
             )
         else:
-            found.append(
-                f"{listed([repr(names[k]) for k in parts])} are told apart by their priors alone: moving "
-                f"{moved(names, row * before, before / 0.1)} together changes the response by less than its noise."
+            yield Finding(
+                "prior-dominates",
+                "warning",
+                {"parameters": ", ".join(names[k] for k in parts)},
+                f"Only the priors distinguish {listed([repr(names[k]) for k in parts])}: changing "
+                f"{moved(names, row * before, before / 0.1)} together changes the response by less than its noise.",
+                "Measure a quantity that separates them.",
             )
-    return tuple(found)

@@ -19,8 +19,8 @@ from dalembert.inverse.problem.simulated import named, simulated
 from dalembert.inverse.sets.conclusions import conclusions
 from dalembert.inverse.sets.inner_box import inner_box
 from dalembert.inverse.sets.inversion import Inversion
+from dalembert.inverse.sets.outcome import outcome
 from dalembert.inverse.sets.parameter_set import ParameterSet
-from dalembert.inverse.sets.status import status
 from dalembert.surrogate import Adaptive
 from dalembert.surrogate.scheme import Scheme
 
@@ -145,14 +145,16 @@ def identify_set(
         runs=journal.simulations,
         seconds=clock(model) - began,
         success=paving.finished and believed and not len(left_out),
-        status=status(
-            data,
-            float(np.max(surrogate.error / errors.ravel())),
-            paving,
-            nearest,
-            "" if nearest is None else named(model, search.vectors(nearest.point)),
-            believed,
-            journal.failures,
+        outcome=tuple(
+            outcome(
+                data,
+                float(np.max(surrogate.error / errors.ravel())),
+                paving,
+                nearest,
+                "" if nearest is None else named(model, search.vectors(nearest.point)),
+                believed,
+                journal.failures,
+            )
         ),
         provenance=provenance(
             model,

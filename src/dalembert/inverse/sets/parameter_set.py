@@ -11,11 +11,11 @@ from dalembert.data import Measurements
 from dalembert.findings import Finding
 from dalembert.intervals import Box
 from dalembert.parameters import Parameters
-from dalembert.results import Result
+from dalembert.results import EndedResult, fixed_lines, text_table
 
 
 @dataclass(frozen=True, eq=False)
-class ParameterSet(Result):
+class ParameterSet(EndedResult):
     """The set ``{p : |R(p) − data| ≤ error everywhere}`` within the parameters' bounds, paved with boxes.
 
     Parameters
@@ -41,8 +41,8 @@ class ParameterSet(Result):
         Spent on the whole inversion.
     success : bool
         Whether the paving was finished; it is right, but coarser, where not.
-    status : str
-        How it went and what to do, in full sentences.
+    outcome : tuple of Finding
+        How the inversion ended; ``status`` is their text.
     provenance : mapping
         Versions, seed, hashes of model and data, scheme and settings.
     findings : tuple of Finding
@@ -63,7 +63,7 @@ class ParameterSet(Result):
     runs: int
     seconds: float
     success: bool
-    status: str
+    outcome: tuple[Finding, ...]
     provenance: Mapping[str, Any]
     findings: tuple[Finding, ...] = ()
 
@@ -88,10 +88,20 @@ class ParameterSet(Result):
         return np.where(inside, 1.0, np.where(boundary, np.nan, 0.0))
 
     def summary(self) -> str:
-        """The result as a text table with its status."""
-        from dalembert.inverse.sets.summary import summary
-
-        return summary(self)
+        """Return a table of outer and inner intervals with unit and bounds, then volume, effort and findings."""
+        rows: list[tuple[str, ...]] = [("parameter", "outer", "inner", "unit", "bounds")]
+        for item in self.parameters:
+            outer, inner = ("none" if box is None else str(box[item.name]) for box in (self.outer, self.inner))
+            rows.append((item.name, outer, inner, item.unit, f"{item.lower:.6g} to {item.upper:.6g}"))
+        smallest, largest = self.volume
+        facts = [
+            f"volume       {smallest:.6g} to {largest:.6g}",
+            f"boxes        {len(self.inside)} inside, {len(self.boundary)} on the boundary",
+            f"simulations  {self.runs}",
+            f"seconds      {self.seconds:.2g}",
+            *fixed_lines(self),
+        ]
+        return "\n".join([*text_table(rows), "", *facts, "", self.status, *map(str, self.findings)])
 
     def contents(self) -> Contents:
         from dalembert.inverse.sets.storage import contents_of

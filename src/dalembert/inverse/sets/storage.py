@@ -10,13 +10,13 @@ from dalembert.intervals import Box
 from dalembert.inverse.fit.stored_data import data_labels, data_of, stored_data
 from dalembert.inverse.sets.parameter_set import ParameterSet
 from dalembert.parameters import Parameter, Parameters
-from dalembert.results import facts_of, saved_findings, stored_facts, told_of
+from dalembert.results import facts_of, saved_findings, saved_outcome, stored_facts, told_of
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
 
-FACTS = ("status", "success", "resolution", "runs", "seconds")
+FACTS = ("success", "resolution", "runs", "seconds")
 
 
 def contents_of(found: ParameterSet) -> Contents:
@@ -58,5 +58,6 @@ def from_xarray(dataset: "Dataset") -> ParameterSet:
         surrogate_error=a["surrogate_error"],
         **facts_of(ParameterSet, dataset, FACTS),
         provenance=told["provenance"],
+        outcome=saved_outcome(dataset),
         findings=saved_findings(dataset),
     )

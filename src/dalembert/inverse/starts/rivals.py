@@ -43,7 +43,7 @@ def rivals(problem: Problem, best: End, floor: NoiseFloor, deviations: np.ndarra
     parameters differ along the valley, it is recognised by a descent from the middle that keeps the misfit.
     """
     variance = best.fitness / max(1, problem.compared - len(best.point))
-    noise = max(variance, 1.0 if floor.source == "given deviations" else floor.fitness / problem.compared)
+    noise = max(variance, 1.0 if floor.known else floor.fitness / problem.compared)
     inflation = np.sqrt(max(1.0, noise / max(1.0 if known else variance, np.finfo(float).tiny)))
     with np.errstate(invalid="ignore"):  # 0 · inf
         reach = 2.0 * inflation * deviations

@@ -76,7 +76,7 @@ def of_fit(fit: FitLike, title: str | None, notes: Sequence[str]) -> Headline:
 
 def of_identified(fit: IdentifiedLike, title: str, facts: Sequence[Fact], notes: Sequence[str]) -> Headline:
     """Headline of something identified, with what speaks against it."""
-    doubts = tuple(getattr(fit, "doubts", ())) if fit.success else ()
+    doubts = tuple(doubt.message for doubt in getattr(fit, "doubts", ())) if fit.success else ()
     verdict = "not identified" if not fit.success else "identified, with doubts" if doubts else "identified"
     return Headline(title, verdict, fit.success, fit.status, facts, notes, doubts)
 

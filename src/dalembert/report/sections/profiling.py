@@ -20,7 +20,7 @@ class Profiling(Section):
 
     @property
     def sentences(self) -> tuple[str, ...]:
-        return tuple(self.profiles.sentences())
+        return tuple(str(item) for item in self.profiles.outcome if item.code != "profile-level")
 
     @property
     def plots(self) -> tuple[Plot, ...]:

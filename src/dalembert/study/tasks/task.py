@@ -20,11 +20,9 @@ def silent(kind: str, **details: Any) -> None:
 
 
 def concluded(result: Any) -> tuple[Finding, ...]:
-    """Findings of a result, and its other doubts as warnings."""
+    """Findings of a result, and what else it is doubted for."""
     findings = tuple(getattr(result, "findings", ()))
-    known = {finding.message for finding in findings}
-    others = (doubt for doubt in getattr(result, "doubts", ()) if doubt not in known)
-    return (*findings, *(Finding("doubt", "warning", {}, doubt) for doubt in others))
+    return (*findings, *(doubt for doubt in getattr(result, "doubts", ()) if doubt not in findings))
 
 
 class Outcome(Protocol):

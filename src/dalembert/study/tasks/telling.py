@@ -92,7 +92,7 @@ def foreseen(model: Any, data: Any) -> tuple[str, ...]:
         told = identifiability(model, data=data)
     except DalembertError as error:
         return (f"What the data can tell could not be foreseen: {error}",)
-    sentences = told.sentences or ("The data tell every parameter, and tell them apart.",)
+    sentences = map(str, told.findings or (told,))
     rubbing = (item for item in findings_at(model, model.parameters.start) if item.code == "slip-rate")
     units = first_unit_findings(model, data)
     return tuple(f"At the first guesses: {sentence}" for sentence in (*sentences, *rubbing, *units))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dalembert.inverse.fit.sentences import sentences
+from dalembert.inverse.least_squares.identifiable import identifiability_findings
 from dalembert.inverse.least_squares.estimate import estimate
 from dalembert.parameters import Parameters
 

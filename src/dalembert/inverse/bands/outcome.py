@@ -1,16 +1,23 @@
-"""How an identification from bands went, in full sentences with advice."""
+"""How an identification from bands ended, as findings."""
+
+from collections.abc import Iterator
 
 import numpy as np
 from scipy.special import ndtri
 
+from dalembert.findings import Finding
 from dalembert.inverse.bands.band_problem import BandProblem
 from dalembert.inverse.bands.check import scale
 from dalembert.inverse.bands.found import Found
+from dalembert.inverse.fit.outcome import converged, failed_simulations
 from dalembert.inverse.problem.matching import place
 from dalembert.inverse.problem.noise import quantum, random_residuals
 
 SMALL = 1e-2
 """Misfit, as a part of the bands' mean width, from which bands are said to be explained badly."""
+
+CLEAR = 5e-2
+"""Rms difference of reproduced and given bands, as part of their mean width, from which the box is not to be used."""
 
 CHANCE = 1e-3
 """Probability with which normal noise would make some bound stand out."""
@@ -19,50 +26,78 @@ CORRELATED = 4.0
 """Autocorrelation of noise, in its deviations, beyond which the bands are inconsistent: noise has it once in 10,000."""
 
 
-def status(problem: BandProblem, found: Found) -> str:
-    """Whether it converged, how far given and reproduced bands lie apart, and what true runs say."""
-    parts = ["Converged." if found.success else f"Not converged: {found.message}."]
-    journal = problem.journal
-    if journal.failures:
-        parts.append(
-            f"{len(journal.failures)} simulations failed and were passed over, the first: {journal.failures[0]}."
-        )
-    parts.append(_misfit(problem, found))
+def outcome(problem: BandProblem, found: Found) -> Iterator[Finding]:
+    """Yield whether the search converged, how far given and reproduced bands differ, and what true runs show."""
+    yield converged(found.success, found.message)
+    yield from failed_simulations(problem.journal.failures)
+    yield from _differences(problem, found)
     if found.check is None:
-        parts.append("No true run checks the bounds of the surrogate.")
+        yield Finding("surrogate-unchecked", "note", {}, "The bounds of the surrogate are not checked by true runs.")
     else:
-        worst = np.max(found.check.error / scale(problem))
-        parts.append(
-            f"True runs at {len(found.check.points)} points where the surrogate takes its bounds differ from it by at "
-            f"most {worst:.1g} of a channel's range."
+        worst, points = float(np.max(found.check.error / scale(problem))), len(found.check.points)
+        yield Finding(
+            "surrogate-checked",
+            "note",
+            {"points": points, "difference": worst},
+            f"The surrogate differs from true runs at {points} points, where it takes its bounds, by at most "
+            f"{worst:.1g} of a channel's range.",
         )
-    return " ".join(parts)
 
 
-def _misfit(problem: BandProblem, found: Found) -> str:
-    """What the difference between reproduced and given bands says about the given ones."""
+def _differences(problem: BandProblem, found: Found) -> Iterator[Finding]:
+    """Yield what the difference between reproduced and given bands shows."""
     given, apart = problem.bands, _apart(problem, found)
     if _rounded(problem, apart):
-        return "The given bands are reproduced to the digits that they are rounded to."
+        message = "The given bands are reproduced to the digits that they are rounded to."
+        yield Finding("bands-reproduced", "note", {}, message)
+        return
     rms, width = np.sqrt(np.mean(apart**2, axis=(0, 1))), given.width.mean(axis=0)
     share = _shares(problem, apart)
     worst = int(np.argmax(share))
-    name = repr(given.channels[worst])
-    by = f"{share[worst]:.2g} of their mean width at rms in {name}"
+    name = given.channels[worst]
+    by = f"{share[worst]:.2g} of their mean width at rms in {name!r}"
     if not width[worst] > 0:
-        by = f"{rms[worst]:.2g} at rms in {name}, where the given bands have no width"
-    parts = [f"The reproduced bands differ from the given ones by {by}; {_largest(problem, apart)}."]
+        by = f"{rms[worst]:.2g} at rms in {name!r}, where the given bands have no width"
+    yield Finding(
+        "bands-differ",
+        "note",
+        {"channel": name, "share": float(share[worst]), "rms": float(rms[worst])},
+        f"The reproduced bands differ from the given ones by {by}, {_largest(problem, apart)}.",
+    )
     largest = _standing_out(problem, apart)
     if largest:
-        parts.append(f"One bound stands out, {largest:.2g} times the rms of its channel: look whether it is a slip.")
+        message = f"One bound is an outlier: it differs by {largest:.2g} times the rms of its channel."
+        yield Finding("outlying-bound", "note", {"ratio": largest}, message, "Check it.")
     if _random(problem, apart):
-        parts.append("What remains looks like noise.")
-    elif share.max() > SMALL:
-        parts.append(
-            "No box of these parameters has these bands: look at the residuals, whether the model lacks something, or "
-            "whether the bounds leave the true intervals out."
+        yield Finding("uncorrelated-residuals", "note", {}, "The remaining differences are not correlated.")
+
+
+def conclusions(problem: BandProblem, found: Found) -> tuple[Finding, ...]:
+    """Return the findings: bands that no box has, and a best end that only one of the descents reached."""
+    findings = []
+    share = inconsistency(problem, found)
+    if share:
+        findings.append(
+            Finding(
+                "inconsistent-bands",
+                "error" if share > CLEAR else "warning",
+                {"share": share},
+                "The bands are inconsistent: no box of the parameters has them. The best box differs by "
+                f"{100 * share:.2g} % of their mean width.",
+                "Check the bands, the model and the bounds of the parameters.",
+            )
         )
-    return " ".join(parts)
+    if found.reached == 1:
+        findings.append(
+            Finding(
+                "minimum-reached-once",
+                "warning",
+                {"reached": 1},
+                "Only one of the descents reached the best fitness: another minimum may be better.",
+                "Increase starts.",
+            )
+        )
+    return tuple(findings)
 
 
 def inconsistency(problem: BandProblem, found: Found) -> float:

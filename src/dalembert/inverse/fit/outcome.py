@@ -1,0 +1,128 @@
+"""How an identification ended, as findings."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from dalembert.findings import Finding
+from dalembert.inverse.least_squares.descent import End
+from dalembert.inverse.least_squares.too_few import lacking
+from dalembert.inverse.problem.noise import NoiseFloor, signal
+from dalembert.inverse.problem.problem import Problem
+from dalembert.inverse.shooting.nodes import Nodes
+
+_MEDIAN = 0.6745  # of the size of a standard normal variable
+_AS_GIVEN = 1.2  # standard deviation of the residuals, relative to the given one, up to which they agree
+_SOURCES = {
+    "given": "from the given standard deviations",
+    "smoothed": "estimated by local polynomials",
+    "rounded": "estimated from their rounding",
+    "arithmetic": "rounding errors of the arithmetic",
+}
+
+
+def outcome(
+    problem: Problem, best: End, response: np.ndarray, floor: NoiseFloor, *, correlated: bool
+) -> Iterator[Finding]:
+    """Yield whether the search converged, and how the residuals compare with the noise of the data.
+
+    Parameters
+    ----------
+    problem : Problem
+    best : End
+    response : array, shape (samples, channels)
+        At the identified values.
+    floor : NoiseFloor
+    correlated : bool
+        Whether other findings say that the residuals are correlated.
+    """
+    few = lacking(problem)
+    yield converged(best.success, best.message, "Converged to one of many solutions." if few else "Converged.")
+    fitnesses = [start.fitness for start in problem.journal.starts]
+    if len(fitnesses) > 1:
+        there = sum(fitness <= best.fitness * (1 + 1e-3) + floor.fitness * 1e-3 for fitness in fitnesses)
+        message = f"{there} of {len(fitnesses)} starts converged to the best fitness."
+        yield Finding("starts-at-best", "note", {"at_best": there, "starts": len(fitnesses)}, message)
+    if best.nodes is not None:
+        yield _segments(best.nodes)
+    yield from failed_simulations(problem.journal.failures)
+    if problem.loss is not None:
+        plain = (np.sqrt(problem.weights) * problem.misfit(response)).ravel()
+        beyond = int(np.count_nonzero(np.abs(plain) > problem.loss.scale))
+        message = (
+            f"{beyond} of {problem.compared} weighted residuals exceed {problem.loss.scale:.4g} and count less than "
+            "their squares."
+        )
+        values = {"residuals": beyond, "of": problem.compared, "scale": problem.loss.scale}
+        yield Finding("outlying-residuals", "note", values, message)
+    elif best.fitness > floor.fitness:
+        yield _explained(best.fitness, signal(problem))
+    if not few:  # with fewer values than parameters, a misfit near zero proves nothing
+        yield from _compared(problem, best, response, floor, correlated=correlated)
+
+
+def converged(success: bool, reason: str, message: str = "Converged.") -> Finding:
+    """Return whether a search converged; ``reason`` is why it stopped."""
+    if success:
+        return Finding("converged", "note", {"reason": reason}, message)
+    return Finding("not-converged", "error", {"reason": reason}, f"Not converged: {reason}.")
+
+
+def failed_simulations(failures: list[str]) -> Iterator[Finding]:
+    """Yield a finding if simulations failed; ``failures`` are their reasons."""
+    if failures:
+        count = f"{len(failures)} simulation{'s' * (len(failures) > 1)}"
+        message = f"{count} failed and {'were' if len(failures) > 1 else 'was'} left out; the first: {failures[0]}."
+        yield Finding("failed-simulations", "note", {"failures": len(failures), "first": failures[0]}, message)
+
+
+def _segments(nodes: Nodes) -> Finding:
+    values = {"segments": nodes.segments, "gap": nodes.gap, "growth": nodes.growth}
+    code = "segments-merged" if nodes.segments == 1 else "segments-separate"
+    return Finding(code, "note", values, str(nodes))
+
+
+def _compared(
+    problem: Problem, best: End, response: np.ndarray, floor: NoiseFloor, *, correlated: bool
+) -> Iterator[Finding]:
+    """Yield how the residuals compare with the noise of the data."""
+    if best.fitness <= floor.fitness:
+        message = f"The misfit equals the noise level of the data ({_SOURCES[floor.source]})."
+        yield Finding("misfit-at-noise", "note", {"source": floor.source}, message)
+    elif problem.loss is not None and floor.known and _usual(problem, response) < _AS_GIVEN:
+        message = "Without the outliers, the residuals agree with the given standard deviations."
+        yield Finding("residuals-as-given", "note", {}, message)
+    elif floor.known:
+        ratio = float(np.sqrt(best.fitness / floor.fitness))
+        yield Finding(
+            "misfit-above-noise",
+            "warning",
+            {"ratio": ratio},
+            f"The residuals are {ratio:.2g} times as large as the given standard deviations allow.",
+            "Check the standard deviations and the model structure, or increase starts.",
+        )
+    elif not correlated:
+        advice = "Give the standard deviations of the data to compare the residuals with them."
+        yield Finding("uncorrelated-residuals", "note", {}, "The residuals are not correlated.", advice)
+
+
+def _usual(problem: Problem, response: np.ndarray) -> float:
+    """Return the standard deviation of the weighted residuals from their median size, which outliers hardly change."""
+    counted = problem.weights > 0
+    return float(np.median(np.sqrt(problem.weights[counted]) * np.abs(problem.misfit(response)[counted]))) / _MEDIAN
+
+
+def _explained(misfit: float, variation: float) -> Finding:
+    """Return the share of the data's variation that a response explains.
+
+    >>> print(_explained(1.0, 4.0))
+    The response explains 75 % of the data's variation.
+    """
+    share = 1 - misfit / variation if variation > 0 else np.nan
+    if np.isnan(share):
+        message = "The data are constant: the explained share of their variation is not defined."
+    elif share < 0:
+        message = "The response explains nothing of the data's variation: the misfit is larger than that variation."
+    else:
+        message = f"The response explains {100 * share:.4g} % of the data's variation."
+    return Finding("explained-variation", "note", {"share": share}, message)

@@ -1,0 +1,155 @@
+"""Which parameters the data identify, as findings, each fact once."""
+
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+
+from dalembert.errors import listed
+from dalembert.findings import Finding
+from dalembert.inverse.least_squares.estimate import UNSEEN, Estimate
+from dalembert.inverse.problem.combinations import members, moved, separated
+from dalembert.inverse.problem.prior import prior_findings
+from dalembert.parameters import Parameters
+
+INDISTINGUISHABLE = 0.99
+"""Correlation from which two parameters are hardly distinguishable."""
+
+SEPARATE = "Fix one of them, or measure a quantity that separates them."
+
+
+def identifiability_findings(parameters: Parameters, values: np.ndarray, known: Estimate) -> Iterator[Finding]:
+    """Yield findings on parameters at a bound, not identifiable, or hardly distinguishable.
+
+    Parameters
+    ----------
+    parameters : Parameters
+    values : array, shape (parameters,)
+        Identified values.
+    known : Estimate
+        Of these values.
+    """
+    width = parameters.upper - parameters.lower
+    for k, item in enumerate(parameters):
+        side = "lower" if values[k] - item.lower < 1e-6 * width[k] else "upper"
+        bound = getattr(item, side)
+        seen = not np.isinf(known.deviations[k])  # one that the response does not see may lie anywhere
+        if seen and abs(values[k] - bound) < 1e-6 * width[k]:
+            yield Finding(
+                "parameter-at-bound",
+                "warning",
+                {"parameter": item.name, "side": side, "bound": float(bound)},
+                f"{item.name!r} is at its {side} bound {bound:.6g}.",
+                "Widen the bound if the true value may lie beyond it.",
+            )
+    yield from prior_findings(parameters, known.deviations, known.correlation)
+    yield from unidentifiable(parameters.names, width, parameters.scale, known)
+
+
+def foreseen(parameters: Parameters, expected: Estimate, *, noise_known: bool) -> Iterator[Finding]:
+    """Yield findings before anything is identified; ``expected`` is the estimate from sensitivities alone."""
+    yield from prior_findings(parameters, expected.deviations, expected.correlation)
+    if not noise_known:
+        yield Finding(
+            "unknown-noise",
+            "note",
+            {},
+            "The noise of the data is not given: only parameters that exact data of these channels cannot identify "
+            "are listed.",
+            "Give the standard deviations of the data.",
+        )
+    yield from unidentifiable(parameters.names, parameters.upper - parameters.lower, parameters.scale, expected)
+
+
+def unidentifiable(names: tuple[str, ...], widths: np.ndarray, scale: np.ndarray, known: Estimate) -> Iterator[Finding]:
+    """Yield findings on unknowns that are not or hardly identifiable, alone, in combination, or in pairs.
+
+    Unknowns of a combination are named with it, and not again alone or in pairs. Without sensitivities there is one
+    finding, which says so.
+
+    Parameters
+    ----------
+    names : tuple of str
+    widths : array, shape (unknowns,)
+        Distances between the bounds.
+    scale : array, shape (unknowns,)
+    known : Estimate
+    """
+    if not np.all(np.isfinite(known.singular_values)):
+        message = "Identifiability is not known: the model has no sensitivities at the identified values."
+        yield Finding("no-sensitivities", "note", {}, message)
+        return
+    guesses = widths / np.sqrt(12)  # standard deviations of uniform distributions between the bounds
+    together = list(_together(widths, scale, known, known.deviations > guesses))
+    combined = {k for move, _ in together for k in members(move, widths)}
+    for k, (name, guess, deviation) in enumerate(zip(names, guesses, known.deviations, strict=True)):
+        if k in combined:
+            continue
+        if np.isinf(deviation):
+            yield Finding(
+                "unidentifiable-parameter",
+                "warning",
+                {"parameter": name},
+                f"{name!r} is not identifiable: it, or a combination with it, does not change the response.",
+                "Fix it, or measure another channel.",
+            )
+        elif deviation > guess:
+            yield Finding(
+                "weakly-identifiable-parameter",
+                "warning",
+                {"parameter": name, "deviation": float(deviation), "uniform": float(guess)},
+                f"{name!r} is hardly identifiable: its standard deviation {deviation:.3g} exceeds {guess:.3g}, that of "
+                "a uniform distribution between its bounds.",
+                "Fix it, or measure more.",
+            )
+    for move, unseen in together:
+        parts = [names[k] for k in members(move, widths)]
+        effect = "does not change the response" if unseen else "changes the response by less than its noise"
+        yield Finding(
+            "unidentifiable-combination",
+            "warning",
+            {"parameters": ", ".join(parts), "unseen": unseen},
+            f"Only a combination of {listed(list(map(repr, parts)))} is identifiable: changing "
+            f"{moved(names, move, widths)} together {effect}.",
+            SEPARATE,
+        )
+    for i, j in zip(*np.triu_indices(len(names), 1), strict=True):
+        if any({i, j} <= set(members(move, widths)) for move, _ in together):
+            continue
+        if abs(known.correlation[i, j]) > INDISTINGUISHABLE:
+            yield Finding(
+                "indistinguishable-parameters",
+                "warning",
+                {"parameters": f"{names[i]}, {names[j]}", "correlation": float(known.correlation[i, j])},
+                f"{names[i]!r} and {names[j]!r} are hardly distinguishable (correlation "
+                f"{known.correlation[i, j]:.4f}).",
+                SEPARATE,
+            )
+
+
+def _together(
+    widths: np.ndarray, scale: np.ndarray, known: Estimate, weak: np.ndarray
+) -> Iterable[tuple[np.ndarray, bool]]:
+    """Yield moves (unknowns,) of several unknowns that the data do not see, and whether the response stays unchanged.
+
+    Those that change it by less than its noise count where every unknown that moves is ``weak`` (unknowns,), known no
+    better than by a uniform distribution.
+    """
+    singular, directions = known.singular_values, known.directions
+    unseen = singular <= UNSEEN * (singular[0] or 1.0)
+    for row in separated(directions[unseen]):
+        if len(members(row * scale, widths)) > 1:
+            yield row * scale, True
+    noise = _noise(known, scale)
+    for value, row in zip(singular[~unseen], directions[~unseen], strict=True):
+        parts = members(row * scale, widths)
+        far = np.any(noise / value * np.abs(row) * scale > widths / np.sqrt(12))
+        if far and len(parts) > 1 and np.all(weak[parts]):
+            yield row * scale, False
+
+
+def _noise(known: Estimate, scale: np.ndarray) -> float:
+    """Return the standard deviation of a weighted residual that an estimate was made with; NaN if it is not known."""
+    seen = known.singular_values > UNSEEN * (known.singular_values[0] or 1.0)
+    size = np.linalg.norm(known.directions[seen].T / known.singular_values[seen], axis=1)
+    finite = np.isfinite(known.deviations)
+    return float(np.median(known.deviations[finite] / (size * scale)[finite])) if finite.any() else np.nan

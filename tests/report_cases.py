@@ -141,7 +141,7 @@ def _profiled(model: PythonModel, data: Measurements, **options: Any) -> Any:
     return profile(model, data, da.identify(model, data), **options)
 
 
-def _lopsided() -> Any:
+def _asymmetric() -> Any:
     times = np.linspace(0, 4, 9)
     model = PythonModel(lambda rate: np.exp(-rate * times), {"rate": (0.1, 50.0)}, ["x"], times)
     return _profiled(model, measured(model, [3.0], deviations=0.06))
@@ -271,21 +271,21 @@ CASES: dict[str, Case] = {
     # ── identification: how it went ─────────────────────────────────────────────────────────────────────────────────
     "exact data": Case(
         lambda: da.identify(DECAY, _exact(DECAY, [2.0, 0.8])),
-        ("Converged.", "The misfit is at the floor that the noise of the data allows (known from arithmetic)."),
+        ("Converged.", "The misfit equals the noise level of the data (rounding errors of the arithmetic)."),
         ("parameters", "responses-1", "convergence", "correlation", "singular-values"),
     ),
     "rounded data": Case(
         lambda: da.identify(DECAY, Measurements.of(TIMES, {"x": DECAY.function(2.0, 0.8).round(4)})),
-        ("(known from rounding of the data)",),
+        ("(estimated from their rounding)",),
     ),
     "given deviations": Case(
         lambda: da.identify(DECAY, _exact(DECAY, [2.0, 0.8], noise=0.02, deviations=0.02)),
-        ("(known from given deviations)", "starts ended with the best fitness."),
+        ("(from the given standard deviations)", "starts converged to the best fitness."),
         ("starts",),
     ),
     "deviations too small": Case(
         lambda: da.identify(DECAY, _exact(DECAY, [2.0, 0.8], noise=0.05, deviations=0.02)),
-        ("times what the given deviations allow; look whether they are too small",),
+        ("times as large as the given standard deviations allow. Check the standard deviations",),
     ),
     "fewer values than parameters": Case(
         lambda: da.identify(SUM.first(2), _exact(SUM, [1.0, 0.5]).first(2), weights=[[0.0], [1.0]]),
@@ -297,11 +297,11 @@ CASES: dict[str, Case] = {
     ),
     "noise unknown": Case(
         lambda: da.identify(DECAY, _exact(DECAY, [2.0, 0.8], noise=0.05)),
-        ("% of the data's variation.", "What remains looks like noise; give the data's deviations"),
+        ("% of the data's variation.", "The residuals are not correlated. Give the standard deviations"),
     ),
     "constant data": Case(
         lambda: da.identify(DECAY, Measurements.of(TIMES, {"x": np.zeros(41)})),
-        ("The data do not vary, so that no share of their variation can be explained.",),
+        ("The data are constant: the explained share of their variation is not defined.",),
     ),
     "another model's data": Case(
         lambda: da.identify(DECAY, Measurements.of(TIMES, {"x": 1 + np.cos(3 * TIMES)})),
@@ -352,16 +352,16 @@ CASES: dict[str, Case] = {
     ),
     "outliers": Case(
         lambda: da.identify(DECAY, _exact(DECAY, [2.0, 0.8], noise=0.05, deviations=0.02), loss="cauchy"),
-        ("weighted residuals exceed", "pull less than their squares would."),
+        ("weighted residuals exceed", "count less than their squares."),
     ),
     "few outliers": Case(
         lambda: da.identify(DECAY, _with_outliers(), loss="huber"),
-        ("Without the outliers the residuals are as large as the given deviations.",),
+        ("Without the outliers, the residuals agree with the given standard deviations.",),
     ),
     "failing runs": Case(
         lambda: _unsimulated(None, 1.9, 4),
         (
-            f"simulations failed and were passed over, the first: {RUNS_AWAY}",
+            f"simulations failed and were left out; the first: {RUNS_AWAY}",
             f"the first point could not be simulated: {RUNS_AWAY} (at a = 1.9)",
         ),
     ),
@@ -540,36 +540,36 @@ CASES: dict[str, Case] = {
     # ── identification: what the data tell ──────────────────────────────────────────────────────────────────────────
     "on its lower bound": Case(
         lambda: da.identify(SLOPE, Measurements.of(TIMES, {"x": -TIMES})),
-        ("'a' sits on its lower bound 0; widen the bound if the true value may lie beyond.",),
+        ("'a' is at its lower bound 0. Widen the bound if the true value may lie beyond it.",),
     ),
     "on its upper bound": Case(
-        lambda: da.identify(SLOPE, Measurements.of(TIMES, {"x": 3 * TIMES})), ("'a' sits on its upper bound 2;",)
+        lambda: da.identify(SLOPE, Measurements.of(TIMES, {"x": 3 * TIMES})), ("'a' is at its upper bound 2.",)
     ),
     "unseen": Case(
         lambda: da.identify(GHOST, _exact(GHOST, [1.0, 0.5], noise=0.1)),
-        ("'ghost' is not told by the data: it, or a combination that it is part of, leaves the response as it is;",),
+        ("'ghost' is not identifiable: it, or a combination with it, does not change the response. Fix it,",),
     ),
     "hardly told": Case(
         lambda: da.identify(SLOPE, _exact(SLOPE, [1.0], noise=9.0, deviations=9.0)),
-        ("'a' is hardly told by the data: its deviation",),
+        ("'a' is hardly identifiable: its standard deviation",),
     ),
     "a combination that is unseen": Case(
         lambda: da.identify(SUM, _exact(SUM, [0.5, 1.0], noise=0.1, deviations=0.1)),
-        ("'a' and 'b' can only be told in combination: moving 'a' by +0.2 and 'b' by -0.2 together leaves the ",),
+        ("Only a combination of 'a' and 'b' is identifiable: changing 'a' by +0.2 and 'b' by -0.2 together does not ",),
     ),
     "a combination within the noise": Case(
         lambda: da.identify(
             _model(lambda a, b: (a + b) * TIMES + 1e-3 * b * TIMES**2, a=(0.0, 2.0), b=(0.0, 2.0)),
             _exact(SUM, [0.5, 1.0], noise=0.1, deviations=0.1),
         ),
-        ("together changes the response by less than its noise; fix one of them",),
+        ("together changes the response by less than its noise. Fix one of them",),
     ),
     "a pair": Case(
         lambda: da.identify(
             _model(lambda a, b: (a + b) * TIMES + 0.1 * b * TIMES**2, a=(0.0, 2.0), b=(0.0, 2.0)),
             _exact(SUM, [0.5, 1.0], noise=0.01, deviations=0.01),
         ),
-        ("'a' and 'b' can hardly be told apart (correlation -0.99",),
+        ("'a' and 'b' are hardly distinguishable (correlation -0.99",),
     ),
     "a prior": Case(
         lambda: identifiability(
@@ -581,29 +581,33 @@ CASES: dict[str, Case] = {
             ),
             deviations=0.1,
         ),
-        ("'slope' is known from its prior alone: its deviation was 1e-05 before the data and is 1e-05 with them;",),
+        (
+            "The data add nothing to the prior of 'slope': its standard deviation is 1e-05 without and 1e-05 with the data.",
+        ),
     ),
     "two priors": Case(
         lambda: identifiability(
             PythonModel(SUM.function, {name: Parameter(name, 0.0, 2.0, deviation=0.1) for name in "ab"}, ["x"], TIMES),
             deviations=1e-3,
         ),
-        ("'a' and 'b' are told apart by their priors alone: moving 'a' by +0.1 and 'b' by -0.1 together changes",),
+        ("Only the priors distinguish 'a' and 'b': changing 'a' by +0.1 and 'b' by -0.1 together changes",),
     ),
     "no sensitivities": Case(
         _blind,
         (
-            "What the data tell could not be computed: the model gave no sensitivities at the identified values.",
-            "No bands: the fit has no deviations, since the model gave no sensitivities.",
+            "Identifiability is not known: the model has no sensitivities at the identified values.",
+            "No bands: the fit has no standard deviations, since the model has no sensitivities.",
         ),
     ),
     "a look before": Case(
         lambda: "\n".join(foreseen(LINE, _exact(LINE, [1.0, -0.5], deviations=0.1))),
-        ("At the first guesses: The data tell every parameter, and tell them apart.",),
+        ("At the first guesses: All parameters are identifiable.",),
     ),
     "a look before, noise unknown": Case(
         lambda: "\n".join(foreseen(LINE, _exact(LINE, [1.0, -0.5]))),
-        ("How exact the data are is not given, so only what no data of these channels would tell is named;",),
+        (
+            "The noise of the data is not given: only parameters that exact data of these channels cannot identify are listed.",
+        ),
     ),
     "a look before that fails": Case(
         lambda: "\n".join(foreseen(FRAGILE, _exact(FRAGILE, [0.4]))),
@@ -647,71 +651,74 @@ CASES: dict[str, Case] = {
     "profiles and prediction": Case(
         _all_told,
         (
-            "95 % intervals of 'size' and 'rate' from profile likelihoods, with noise known from given deviations.",
+            "95 % intervals of 'size' and 'rate' from profile likelihoods, noise level from given standard deviations.",
             "The 95 % band of the response is at most",
-            "The noise is known from given deviations; the bands hold if the model is right",
+            "The noise level follows from given standard deviations. The bands assume that the model is right",
         ),
         ("profile-1", "profile-2", "prediction-1", "l-curve", "steps"),
     ),
     "profiles, noise unknown": Case(
-        lambda: _profiled(DECAY, _exact(DECAY, [1.0, 0.8], noise=0.05)), ("with noise known from the residuals.",)
+        lambda: _profiled(DECAY, _exact(DECAY, [1.0, 0.8], noise=0.05)), ("noise level from residuals.",)
     ),
     "prediction, noise unknown": Case(
         lambda: predict(DECAY, da.identify(DECAY, _exact(DECAY, [1.0, 0.8], noise=0.05))),
-        ("The noise is known from the residuals;",),
+        ("The noise level follows from residuals.",),
     ),
     "open profiles": Case(
         lambda: _profiled(SUM, _exact(SUM, [0.5, 1.0], noise=0.01, deviations=0.01), names=["a"]),
-        ("'a' has no lower limit from the data: up to its bound 0 they are explained within their noise.",),
+        ("The data give no lower limit of 'a': up to its bound 0 they are explained within their noise.",),
     ),
     "flat profile": Case(
         lambda: _profiled(GHOST, _exact(GHOST, [1.0, 0.5], noise=0.1, deviations=0.1), names=["ghost"]),
-        ("'ghost' is not told by the data: wherever it is between its bounds, they are explained within their noise;",),
+        ("'ghost' is not identifiable: all values between its bounds explain the data within their noise.",),
     ),
-    "lopsided profile": Case(_lopsided, ("The interval of 'rate' is lopsided,", "the standard deviation")),
+    "asymmetric profile": Case(_asymmetric, ("The interval of 'rate' is asymmetric,", "the standard deviation")),
     "profile in two pieces": Case(
         lambda: _profiled(
             _model(lambda a: a**2 * TIMES, a=(-3.0, 2.0)),
             _exact(_model(lambda a: a**2 * TIMES, a=(-3.0, 2.0)), [1.5], noise=0.1, deviations=0.1),
         ),
-        ("Beside its interval the data do not contradict 'a' from",),
+        ("The data also allow values of 'a' from",),
     ),
-    "profile of no minimum": Case(_no_minimum, ("A better minimum lies near offset =",)),
+    "profile of no minimum": Case(_no_minimum, ("There is a better minimum near offset =",)),
     "profile into overflow": Case(
-        lambda: _broken_profile(_jump), ("The upper side of 'rate' ends early: the misfit is not finite.",)
+        lambda: _broken_profile(_jump),
+        ("The upper side of the profile of 'rate' is incomplete: the misfit is not finite.",),
     ),
     "profile with few points": Case(
         lambda: _profiled(DECAY, _exact(DECAY, [1.0, 0.8], noise=0.5, deviations=0.5), points=4),
-        ("ends early: the threshold was not reached in so many points; allow more.",),
+        ("is incomplete: the threshold was not reached; increase points.",),
     ),
     "band without an end": Case(
         lambda: predict(
             PythonModel(lambda a, b: np.stack([a * TIMES, (a + b) * TIMES], axis=1), SUM.parameters, ["y", "x"], TIMES),
             da.identify(SUM, _exact(SUM, [0.5, 1.0], noise=0.1, deviations=0.1)),
         ),
-        ("The band of 'y' is infinitely wide: it depends on a combination of the parameters that the data did not",),
+        ("The band of 'y' is infinitely wide: it depends on a combination of the parameters that the data do not",),
     ),
     "designs": Case(
         lambda: design(LINE, deviations=0.1, horizons=[1.0, 4.0]),
-        ("Best is", "in parts of the scales.", "times worse.", "This holds near offset ="),
+        ("The best design is", "of the scales.", "times worse.", "The ranking holds near offset ="),
         ("ranking", "horizons"),
     ),
     "designs by the largest deviation": Case(
-        lambda: design(LINE, deviations=0.1, criterion="E"), ("largest deviation",)
+        lambda: design(LINE, deviations=0.1, criterion="E"), ("largest standard deviation",)
     ),
-    "designs that tell too little": Case(lambda: design(SUM, deviations=0.1), ("No design tells every parameter:",)),
+    "designs that tell too little": Case(
+        lambda: design(SUM, deviations=0.1), ("No design identifies all parameters:",)
+    ),
     "designs of which some tell too little": Case(
         lambda: design(
             PythonModel(lambda a, b: np.stack([a * TIMES, (a + b) * TIMES], axis=1), SUM.parameters, ["p", "q"], TIMES),
             deviations=9.0,
             sensors=["p", ("p", "q")],
         ),
-        ("would leave a combination of the parameters unseen.", "Even the best design hardly tells"),
+        ("would leave a combination of the parameters unidentifiable.", "Even the best design hardly identifies"),
     ),
     # ── intervals from bands ────────────────────────────────────────────────────────────────────────────────────────
     "exact bands": Case(
         lambda: da.identify_bands(DECAY, BANDS),
-        ("True runs at", "points where the surrogate takes its bounds differ from it by at most"),
+        ("The surrogate differs from true runs at", "points, where it takes its bounds, by at most"),
         ("intervals", "residual-bands-1", "convergence"),
         {"truth": {"size": (1.8, 2.2)}},
     ),
@@ -727,33 +734,37 @@ CASES: dict[str, Case] = {
     ),
     "noisy bands": Case(
         lambda: da.identify_bands(DECAY, _noisy_bands()),
-        ("of their mean width at rms in 'x'; most in the", "What remains looks like noise."),
+        ("of their mean width at rms in 'x', most in the", "The remaining differences are not correlated."),
     ),
     "a slip in the bands": Case(
-        lambda: da.identify_bands(DECAY, _spoilt_bands()), ("One bound stands out,", "look whether it is a slip.")
+        lambda: da.identify_bands(DECAY, _spoilt_bands()), ("One bound is an outlier:", "Check it.")
     ),
     "bands of another model": Case(
         lambda: da.identify_bands(DECAY, Bands.of(TIMES, {"x": (np.cos(3 * TIMES) - 0.1, np.cos(3 * TIMES) + 0.1)})),
-        ("No box of these parameters has these bands:",),
+        ("The bands are inconsistent: no box of the parameters has them.",),
     ),
     "an interval on its bound": Case(
         lambda: da.identify_bands(
             PythonModel(DECAY.function, {"size": (1.9, 4.0), "rate": (0.1, 3.0)}, ["x"], TIMES), BANDS
         ),
-        ("The lower end of 'size' sits on its bound 1.9;",),
+        ("The lower end of 'size' is at its bound 1.9.",),
     ),
     "a radius of zero": Case(
         lambda: da.identify_bands(DECAY, banded(DECAY, [2.0, 0.7], [2.0, 0.9])),
-        ("The radius of 'size' is zero: the bands ask for one value of it, not an interval.",),
+        ("The radius of 'size' is zero: one value of it explains the bands.",),
     ),
-    "a radius that may be zero": Case(_trembling, ("cannot be told from zero: the bands do not show that it varies.",)),
+    "a radius that may be zero": Case(
+        _trembling, ("does not differ significantly from zero: the bands do not show that it varies.",)
+    ),
     "bands without a check": Case(
         lambda: da.identify_bands(DECAY, BANDS, method=GlobalSurrogate(Adaptive(1e-6), checks=0)),
-        ("No true run checks the bounds of the surrogate.",),
+        ("The bounds of the surrogate are not checked by true runs.",),
     ),
-    "bands with failing runs": Case(
-        _tired, ("simulations failed and were passed over, the first: RuntimeError: enough",)
+    "bands with one descent": Case(
+        lambda: da.identify_bands(DECAY, BANDS, method=GlobalSurrogate(starts=1)),
+        ("Only one of the descents reached the best fitness: another minimum may be better. Increase starts.",),
     ),
+    "bands with failing runs": Case(_tired, ("simulations failed and were left out; the first: RuntimeError: enough",)),
     # ── sets ────────────────────────────────────────────────────────────────────────────────────────────────────────
     "a set": Case(
         lambda: da.identify_set(DISC, AT_ZERO, error=1.0),
@@ -766,11 +777,11 @@ CASES: dict[str, Case] = {
     ),
     "a thin set": Case(
         lambda: da.identify_set(DISC, Measurements.of(NOW, {"r": [1.0]}), error=1e-3),
-        ("Paved, but no box lies wholly in the set:",),
+        ("Paved, but no box lies completely in the set:",),
     ),
     "too few boxes": Case(
         lambda: da.identify_set(DISC, AT_ZERO, error=1.0, resolution=1e-3, most_boxes=300),
-        ("The paving ended before its boundary was sharp:",),
+        ("The paving stopped before its boundary was sharp:",),
     ),
     "a set by a coarse surrogate": Case(
         lambda: da.identify_set(
@@ -779,24 +790,24 @@ CASES: dict[str, Case] = {
             error=0.2,
             scheme=Tensor(2),
         ),
-        ("The surrogate's error is up to", "times that of the data, and widens the boundary by as much;"),
+        ("The surrogate's error is up to", "times that of the data and widens the boundary by as much."),
     ),
-    "a set whose surrogate is wrong": Case(_spiked, ("True runs at the corners of the inner box leave the error:",)),
+    "a set whose surrogate is wrong": Case(_spiked, ("True runs at the corners of the inner box exceed the error:",)),
     "a set with failing runs": Case(
         lambda: da.identify_set(
             PythonModel(_far, DISC.parameters, ["r"], NOW), AT_ZERO, error=1.0, scheme=TotalDegree(2, oversampling=4)
         ),
-        ("simulations failed and were passed over, the first: RuntimeError: too far",),
+        ("simulations failed and were left out; the first: RuntimeError: too far",),
     ),
     # ── bounds ──────────────────────────────────────────────────────────────────────────────────────────────────────
     "bounds by optimisation": Case(
         lambda: da.propagate(DECAY, {"size": (1.8, 2.2), "rate": (0.7, 0.9)}, Optimise()),
-        ("Every bound is taken by a run of the model, and the runs let expect no more.",),
+        ("Every bound is the response of a run of the model. Further runs are not expected to widen the bounds.",),
         ("bands-1",),
     ),
     "bounds by too few runs": Case(
         lambda: da.propagate(WAVE, {"rate": (1.0, 20.0)}, Optimise(most_runs=20)),
-        ("the search ended at most_runs = 20 before it had found all; raise it.",),
+        ("the search stopped at most_runs = 20 before it was finished. Increase most_runs.",),
     ),
     "bounds of a wave by its slope": Case(
         lambda: da.propagate(WAVE, {"rate": (1.0, 20.0)}, Taylor()),
@@ -807,7 +818,7 @@ CASES: dict[str, Case] = {
         ("The Bernstein form overestimates the surrogate by up to", 'Use bounds="optimise" or a smaller box.'),
     ),
     "bounds where runs fail": Case(
-        lambda: da.propagate(FRAGILE, {"a": (0.0, 1.0)}, Scan(11)), ("runs failed and were left out, the first:",)
+        lambda: da.propagate(FRAGILE, {"a": (0.0, 1.0)}, Scan(11)), ("runs failed, the first:",)
     ),
     **{
         f"bounds by {type(method).__name__}{number}": Case(
@@ -815,11 +826,11 @@ CASES: dict[str, Case] = {
         )
         for number, (method, sentence) in enumerate(
             [
-                (Vertex(), "The extremes over the corners of the box:"),
-                (Scan(5), "The extremes over the points of a grid:"),
-                (MonteCarlo(9), "The extremes over random points:"),
-                (LatinHypercube(9), "The extremes over a Latin hypercube:"),
-                (Taylor(), "The response is taken as linear over the box,"),
+                (Vertex(), "The bounds are the extremes over the corners of the box."),
+                (Scan(5), "The bounds are the extremes over the points of a grid."),
+                (MonteCarlo(9), "The bounds are the extremes over random points."),
+                (LatinHypercube(9), "The bounds are the extremes over a Latin hypercube."),
+                (Taylor(), "The response is linearised over the box,"),
                 (Chebyshev(), "in place of the model, right within its estimated error."),
                 (Chebyshev(bounds="scan"), "right within its estimated error but for peaks between the points"),
                 (Chebyshev(bounds="bernstein"), "an enclosure of the surrogate, widened by its estimated error."),
@@ -828,14 +839,22 @@ CASES: dict[str, Case] = {
     },
     "methods compared": Case(
         lambda: da.compare(DECAY, {"size": (1.8, 2.2), "rate": (0.7, 0.9)}, ["vertex"]),
-        ("Bounds of the same response over the same box, each measured by its distance from optimise.",),
+        ("Bounds of one response over one box. The error is the distance to optimise.",),
         ("methods", "differences"),
     ),
     "methods of which one gives up": Case(
         lambda: da.compare(WAVE, {"rate": (1.0, 20.0)}, [Chebyshev(Tensor(4))]),
-        ("did not succeed; the table of methods says why.", "gave no bounds:"),
+        ("Not successful: ", "gave no bounds:"),
     ),
     # ── multiple shooting ───────────────────────────────────────────────────────────────────────────────────────────
+    "segments of data of unknown noise": Case(
+        lambda: da.identify(
+            DECAY,
+            measured(DECAY, [2.0, 0.8], noise=0.01),
+            shooting=da.MultipleShooting({"size": da.State("x", 0.0, 5.0)}, 4),
+        ),
+        ("The misfit equals the noise level of the data (estimated by local polynomials).",),
+    ),
     "segments that must meet": Case(
         lambda: da.identify(
             DECAY,

@@ -100,7 +100,16 @@ def fixed_lines(result: Any, width: int = 12) -> list[str]:
     ['fixed        mass = 2 kg']
     """
     known = [f"{item.name} = {item.lower:.7g} {item.unit}".rstrip() for item in fixed_of(result)]
-    return [f"{'fixed':<{width}} {', '.join(known)}"] if known else []
+    return fact_lines(width, fixed=", ".join(known)) if known else []
+
+
+def fact_lines(width: int = 12, **facts: object) -> list[str]:
+    """Return lines of a summary, each a name, ``width`` characters wide, and its value.
+
+    >>> fact_lines(starts=3)
+    ['starts       3']
+    """
+    return [f"{name:<{width}} {value}" for name, value in facts.items()]
 
 
 def text_table(rows: Sequence[Sequence[str]]) -> list[str]:

@@ -5,6 +5,7 @@ import re
 import numpy as np
 import pytest
 
+from conclusions import codes, only
 from dalembert.errors import SolveError
 from dalembert.forward import PythonModel
 from dalembert.inverse import GlobalSurrogate, Nested, identify_bands, identify_set
@@ -36,16 +37,14 @@ def everywhere(size, rate):
 def test_least_squares_surrogates_do_without_failed_runs():
     fit = identify_bands(model(in_a_corner), BANDS, method=GlobalSurrogate(TotalDegree(6)))
     np.testing.assert_allclose(fit.box.lower, [1.8, 0.7], rtol=1e-5)
-    assert re.search(
-        rf"simulations failed and were passed over, the first: RuntimeError: out of reach {PLACE} \(at size = ",
-        fit.status,
-    )
+    failed = only(fit, "failed-simulations").values["first"]
+    assert re.match(rf"RuntimeError: out of reach {PLACE} \(at size = ", failed)
 
 
 def test_a_swarm_of_boxes_passes_over_those_that_fail():
     fit = identify_bands(model(in_a_corner), BANDS, method=Nested(ParticleSwarm(20, 60)))
     np.testing.assert_allclose(fit.box.lower, [1.8, 0.7], rtol=0.03)
-    assert "simulations failed" in fit.status
+    assert "failed-simulations" in codes(fit)
 
 
 @pytest.mark.parametrize("scheme", [Adaptive(1e-2), Tensor(6)])

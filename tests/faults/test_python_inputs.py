@@ -4,8 +4,10 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from inline_snapshot import snapshot
 
 import dalembert.multibody as mb
+from conclusions import codes, only
 from dalembert.data import Bands, Measurements
 from dalembert.errors import DalembertError
 from dalembert.forward import PythonModel
@@ -282,26 +284,28 @@ def test_lists_make_measurements() -> None:
 
 
 @pytest.mark.parametrize(
-    ("response", "data", "sentence"),
+    ("response", "data", "message"),
     [
-        (decay, 0 * DECAY, "The data do not vary, so that no share of their variation can be explained."),
+        (decay, 0 * DECAY, snapshot("The data are constant: the explained share of their variation is not defined.")),
         (
             lambda rate: 1e100 * decay(rate),
             DECAY,
-            "The response explains nothing of the data's variation: the misfit is larger than that variation.",
+            snapshot(
+                "The response explains nothing of the data's variation: the misfit is larger than that variation."
+            ),
         ),
     ],
 )
-def test_a_response_that_explains_nothing_is_told_in_words(response: Callable, data: np.ndarray, sentence: str) -> None:
+def test_a_response_that_explains_nothing_is_described(response: Callable, data: np.ndarray, message: str) -> None:
     fit = identify(PythonModel(response, {"rate": (0.1, 3.0)}, ["x"], TIMES), measured(data))
-    assert sentence in fit.status
-    assert " %" not in fit.status
+    assert only(fit, "explained-variation").message == message
 
 
 def test_bands_without_width_have_a_finite_misfit() -> None:
     fit = identify_bands(model(), Bands.of(TIMES, {"x": (DECAY, DECAY)}))
-    assert "at rms in 'x', where the given bands have no width" in fit.status
-    assert " inf " not in fit.status
+    finding = only(fit, "bands-differ")
+    assert 0 < finding.values["rms"] < 1e-8
+    assert "inf" not in finding.message
 
 
 def of_three(samples: int, deviations: float | None = None) -> Fit:
@@ -321,10 +325,10 @@ def test_fewer_data_than_parameters_are_no_plain_success(deviations: float | Non
     fit = of_three(2, deviations)
     finding = next(finding for finding in fit.findings if finding.code == "too-few-data")
     assert (finding.severity, dict(finding.values)) == ("warning", {"values": 2, "parameters": 3})
-    assert fit.status.startswith("Converged to one of many solutions.")
-    assert "noise of the data allows" not in fit.status
+    assert only(fit, "converged").message == snapshot("Converged to one of many solutions.")
+    assert "misfit-at-noise" not in codes(fit)
     assert not np.any(np.isfinite(fit.deviations))
-    assert finding.message in fit.doubts
+    assert finding in fit.doubts
     assert finding.message in fit.summary()
 
 

@@ -48,7 +48,7 @@ def test_segments_find_what_one_run_does_not_from_every_start(record_evidence):
         start = lower + (upper - lower) * np.random.default_rng(50 + seed).random(5)
         for way, options in WAYS.items():
             fit = da.identify(model, data, start=start, starts=1, **options)
-            noise_explains = "The misfit is at the floor that the noise of the data allows" in fit.status
+            noise_explains = "misfit-at-noise" in {item.code for item in fit.outcome}
             near = np.all(np.abs(fit.values - TRUTH) < 4 * fit.deviations)
             found[way] += noise_explains and near
     record_evidence(

@@ -11,7 +11,7 @@ from dalembert.data import Bands
 from dalembert.findings import Finding
 from dalembert.intervals import Box
 from dalembert.parameters import Parameter
-from dalembert.results import EndedResult, fixed_lines, text_table
+from dalembert.results import EndedResult, fact_lines, fixed_lines, text_table
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,10 +82,13 @@ class Propagation(Bands, EndedResult):
             widths.append((name, self.units[column], f"{width.max():.5g}", f"{width.mean():.5g}", error))
         box = [("parameter", "lower", "upper"), *((n, f"{i.lower:.7g}", f"{i.upper:.7g}") for n, i in self.box.items())]
         facts = [
-            f"method   {self.method}",
-            f"kind     {self.kind}",
-            f"runs     {self.runs}" + (f", {len(self.failures)} failed" if self.failures else ""),
-            f"seconds  {self.seconds:.2f}",
+            *fact_lines(
+                8,
+                method=self.method,
+                kind=self.kind,
+                runs=f"{self.runs}" + (f", {len(self.failures)} failed" if self.failures else ""),
+                seconds=f"{self.seconds:.2f}",
+            ),
             *fixed_lines(self, width=8),
         ]
         return "\n".join(

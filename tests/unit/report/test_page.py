@@ -9,6 +9,7 @@ import pytest
 from plotly.offline import get_plotlyjs
 
 from dalembert.errors import InputError
+from dalembert.findings import Finding
 from dalembert.report import figures, report
 from dalembert.report.table import Table, cell
 from pages import Page, read_page
@@ -186,10 +187,11 @@ def test_a_fit_that_ended_well_without_doubts_is_identified(tmp_path):
 
 def test_doubts_stand_beside_the_verdict(tmp_path):
     result = fit()
-    result.doubts = ("'theta2' sits on its upper bound 0.65", "The residuals are <no> mere noise")
+    messages = ("'theta2' is at its upper bound 0.65.", "The residuals are <correlated>.")
+    result.doubts = tuple(Finding("doubt", "warning", {}, message) for message in messages)
     page = read_page(report(result, tmp_path / "a.html"))
     assert "? identified, with doubts" in page.text
-    assert all(doubt in page.text for doubt in result.doubts)
+    assert all(doubt.message in page.text for doubt in result.doubts)
     assert any(attrs.get("class") == "verdict doubtful" for _, attrs in page.tags)
     result.success = False
     page = read_page(report(result, tmp_path / "a.html"))

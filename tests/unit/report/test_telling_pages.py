@@ -56,7 +56,7 @@ def test_open_sides_are_marked_and_said(tmp_path):
     told = profile(model, data, identify(model, data), names=["a"])
     page = read_page(report(told, tmp_path / "a.html"))
     assert page.table("profiles")[1][-1] == "open: lower and upper bound"
-    assert "'a' is not told by the data: wherever it is between its bounds" in page.text
+    assert "'a' is not identifiable: all values between its bounds" in page.text
 
 
 def test_a_prediction_has_its_report(tmp_path):

@@ -145,7 +145,7 @@ def test_methods_are_compared(write):
     assert [row[0] for row in rows[1:]] == ["vertex", "taylor", "scan (points_each=3)", "optimise"]
     assert float(rows[1][3]) < 1e-12  # monotone, so the corners are exact
     assert float(rows[2][3]) > 1e-3
-    assert outcome.status.endswith("each measured by its distance from optimise.")
+    assert outcome.status.endswith("The error is the distance to optimise.")
 
 
 def test_another_reference(write):

@@ -259,11 +259,11 @@ def test_the_state_has_findings_and_deviations_so_that_a_list_loads_no_result(st
 def test_findings_of_a_result_and_its_other_doubts_are_each_told_once():
     one = Finding("one", "warning", {}, "One.", "Do something.")
     note = Finding("note", "note", {}, "Note.")
-    result = SimpleNamespace(findings=(one, note), doubts=("Two.", "One."))
+    result = SimpleNamespace(findings=(one, note), doubts=(Finding("two", "warning", {}, "Two."), one))
     assert [(each.code, each.message) for each in concluded(result)] == [
         ("one", "One."),
         ("note", "Note."),
-        ("doubt", "Two."),
+        ("two", "Two."),
     ]
     assert concluded(object()) == ()
 

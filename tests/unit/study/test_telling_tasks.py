@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from inline_snapshot import snapshot
 
 import dalembert as da
 from dalembert.errors import DalembertError
@@ -103,17 +104,19 @@ def test_without_the_keys_there_are_no_such_files(write):
 
 
 def test_a_check_foresees_what_the_data_tell(write):
-    assert foreseen(write(IDENTIFY)) == ("At the first guesses: The data tell every parameter, and tell them apart.",)
+    assert foreseen(write(IDENTIFY)) == ("At the first guesses: All parameters are identifiable.",)
     three = IDENTIFY.replace("decay", "gained").replace("[model]", "gain = { lower = 0.5, upper = 2.0 }\n[model]")
     told = foreseen(write(three))
-    assert told == (
-        "At the first guesses: 'height' and 'gain' can only be told in combination: moving 'height' by +0.126 and "
-        "'gain' by -0.15 together leaves the response as it is; fix one of them, or measure what tells them apart.",
+    assert told == snapshot(
+        (
+            "At the first guesses: Only a combination of 'height' and 'gain' is identifiable: changing 'height' by +0.126 and 'gain' by -0.15 together does not change the response. Fix one of them, or measure a quantity that separates them.",
+        )
     )
     unknown = foreseen(write(IDENTIFY.replace("deviations = { x = 0.02 }", "")))
-    assert unknown == (
-        "At the first guesses: How exact the data are is not given, so only what no data of these channels would tell "
-        "is named; give their deviations.",
+    assert unknown == snapshot(
+        (
+            "At the first guesses: The noise of the data is not given: only parameters that exact data of these channels cannot identify are listed. Give the standard deviations of the data.",
+        )
     )
 
 
@@ -144,7 +147,7 @@ def test_a_design_ranks_sensors_and_horizons(write):
     assert outcome.best["values"]["score"] == designs.scores[0]
     assert outcome.best["values"]["deviation of rate"] == designs.deviations[0, 0]
     page = read_page(folder.report)
-    assert "Best is vx until time 2 s" in page.text
+    assert "The best design is vx until time 2 s" in page.text
     assert len(page.table("designs")) == 5
 
 

@@ -84,4 +84,4 @@ def test_the_summary_is_a_table_with_a_note_a_method():
     assert lines[0].split("  ")[0] == "method"
     assert lines[2].split()[:6] == ["vertex", "inner", "bound", "1", "1.00e+00", "5.00e-01"]
     assert lines[3].split()[:5] == ["scan", "inner", "bound", "1.5", "reference"]
-    assert lines[5].startswith("vertex: The extremes over the corners of the box")
+    assert lines[5].startswith("vertex: The bounds are the extremes over the corners of the box.")

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from inline_snapshot import snapshot
 
 from dalembert.errors import InputError
 from dalembert.forward import PythonModel
@@ -26,7 +27,7 @@ def test_extremes_inside_on_an_edge_and_at_corners():
     np.testing.assert_allclose(bands.at_lower[2, 0], [0.1, -1.0], atol=1e-3)
     assert bands.kind == "inner bound"
     assert bands.success
-    assert bands.status == "Every bound is taken by a run of the model, and the runs let expect no more."
+    assert [item.code for item in bands.outcome] == ["search-finished"]
     (finding,) = bands.findings
     assert (bands.error, finding.code) == (None, "unknown-error")
     assert finding.values["expected gain"] <= 1e-6
@@ -64,9 +65,8 @@ def test_the_search_ends_at_the_most_runs_and_says_so():
     bands = propagate(wave, {"w": (3.0, 6.0)}, Optimise(most_runs=40))
     assert bands.runs == 40
     assert not bands.success
-    assert bands.status == (
-        "Every bound is taken by a run of the model, and the search ended at most_runs = 40 before it had found all; "
-        "raise it."
+    assert bands.status == snapshot(
+        "Every bound is the response of a run of the model, but the search stopped at most_runs = 40 before it was finished. Increase most_runs."
     )
     assert bands.findings[0].values["expected gain"] > 1e-6
 

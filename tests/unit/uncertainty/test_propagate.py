@@ -137,4 +137,4 @@ def test_the_summary_tells_widths_intervals_kind_runs_and_status():
     assert ["rate", "0.5", "1"] in lines
     assert ["kind", "inner", "bound"] in lines
     assert ["runs", "4"] in lines
-    assert "'optimise' finds extremes inside.\nThe error of the bounds is unknown." in text
+    assert "Use 'optimise' for extremes inside the box.\nThe error of the bounds is unknown." in text

@@ -92,7 +92,7 @@ def walked(problem: Problem, at: Linearisation, k: int, side: int, walk: Walk, e
         found.end, found.open = float(getattr(problem.model.parameters, "upper" if side > 0 else "lower")[k]), True
     else:
         found.end = float(search.vectors(path[-1][1])[k])
-        found.broken = found.broken or "the threshold was not reached in so many points; allow more"
+        found.broken = found.broken or "the threshold was not reached; increase points"
     return found
 
 

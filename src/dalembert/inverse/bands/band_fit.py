@@ -14,7 +14,7 @@ from dalembert.inverse.events import StartEnd, Step
 from dalembert.inverse.least_squares.estimate import Estimate, Identifiability
 from dalembert.inverse.least_squares.identifiable import unidentifiable
 from dalembert.parameters import Parameter, Parameters
-from dalembert.results import EndedResult, fixed_lines, text_table
+from dalembert.results import EndedResult, fact_lines, fixed_lines, text_table
 
 ZERO = 1e-6
 """Lengths below this part of the bounds' width are zero."""
@@ -155,11 +155,13 @@ class BandFit(EndedResult):
             )
         checked = "not checked" if self.checked_fitness is None else f"{self.checked_fitness:.6g} by true runs"
         facts = [
-            f"method       {self.method}",
-            f"fitness      {self.fitness:.6g} (weighted sum of squares of {2 * self.lower.size} bounds), {checked}",
-            f"simulations  {self.simulations}",
-            f"seconds      {self.seconds:.2g}",
-            f"starts       {len(self.starts)}",
+            *fact_lines(
+                method=self.method,
+                fitness=f"{self.fitness:.6g} (weighted sum of squares of {2 * self.lower.size} bounds), {checked}",
+                simulations=self.simulations,
+                seconds=f"{self.seconds:.2g}",
+                starts=len(self.starts),
+            ),
             *fixed_lines(self),
         ]
         findings = map(str, (*self.identifiability().findings, *self.findings))

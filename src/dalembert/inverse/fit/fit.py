@@ -24,7 +24,7 @@ from dalembert.inverse.misfit.halves import Halves
 from dalembert.inverse.problem.prior import priors
 from dalembert.inverse.shooting.nodes import Nodes
 from dalembert.parameters import Parameters
-from dalembert.results import EndedResult, fixed_lines, text_table
+from dalembert.results import EndedResult, fact_lines, fixed_lines, text_table
 
 
 @dataclass(frozen=True, eq=False)
@@ -198,10 +198,12 @@ class Fit(EndedResult):
             known = "unknown" if np.isnan(deviation) else f"{deviation:.2g}"
             rows.append((item.name, f"{value:.7g}", known, item.unit, f"{item.lower:.6g} to {item.upper:.6g}"))
         facts = [
-            f"method       {self.method}",
-            f"fitness      {self.fitness:.6g} (weighted sum of squares of {int(self.data.present.sum())} values)",
-            f"simulations  {self.simulations}",
-            f"starts       {len(self.starts)}",
+            *fact_lines(
+                method=self.method,
+                fitness=f"{self.fitness:.6g} (weighted sum of squares of {int(self.data.present.sum())} values)",
+                simulations=self.simulations,
+                starts=len(self.starts),
+            ),
             *_integration_facts(self),
             *fixed_lines(self),
         ]

@@ -11,7 +11,7 @@ from dalembert.data import Measurements
 from dalembert.findings import Finding
 from dalembert.intervals import Box
 from dalembert.parameters import Parameters
-from dalembert.results import EndedResult, fixed_lines, text_table
+from dalembert.results import EndedResult, fact_lines, fixed_lines, text_table
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,10 +95,12 @@ class ParameterSet(EndedResult):
             rows.append((item.name, outer, inner, item.unit, f"{item.lower:.6g} to {item.upper:.6g}"))
         smallest, largest = self.volume
         facts = [
-            f"volume       {smallest:.6g} to {largest:.6g}",
-            f"boxes        {len(self.inside)} inside, {len(self.boundary)} on the boundary",
-            f"simulations  {self.runs}",
-            f"seconds      {self.seconds:.2g}",
+            *fact_lines(
+                volume=f"{smallest:.6g} to {largest:.6g}",
+                boxes=f"{len(self.inside)} inside, {len(self.boundary)} on the boundary",
+                simulations=self.runs,
+                seconds=f"{self.seconds:.2g}",
+            ),
             *fixed_lines(self),
         ]
         return "\n".join([*text_table(rows), "", *facts, "", self.status, *map(str, self.findings)])

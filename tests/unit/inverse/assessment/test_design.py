@@ -2,7 +2,9 @@
 
 import numpy as np
 import pytest
+from inline_snapshot import snapshot
 
+from conclusions import codes, only
 from dalembert.data import Measurements
 from dalembert.errors import InputError, SolveError
 from dalembert.forward import PythonModel
@@ -45,12 +47,12 @@ def test_what_is_unseen_comes_last_and_is_counted():
     assert designs.unseen.tolist() == [0, 1, 1]
     assert np.isinf(designs.scores[1:]).all()
     assert designs.success
-    assert "2 designs would leave a combination of the parameters unseen." in designs.status
+    assert only(designs, "unusable-designs").values == {"designs": 2}
     alone = design(TWO, deviations=0.1, sensors=["r"])
     assert not alone.success
-    assert alone.status == (
-        "No design tells every parameter: the best one leaves 1 combination of them unseen; measure other channels, or "
-        "fix parameters."
+    assert codes(alone) == ["insufficient-design"]
+    assert alone.status == snapshot(
+        "No design identifies all parameters: the best one does not see 1 combination. Measure other channels, or fix parameters."
     )
 
 
@@ -113,7 +115,7 @@ def test_a_look_before_solving_foresees_the_deviations_of_the_fit():
     foreseen, fit = identifiability(LINE, data=data), identify(LINE, data)
     np.testing.assert_allclose(foreseen.deviations, fit.deviations, rtol=1e-9)
     np.testing.assert_allclose(foreseen.correlation, fit.correlation, rtol=1e-9, atol=1e-12)
-    assert foreseen.sentences == ()
+    assert foreseen.findings == ()
     same = identifiability(LINE, deviations={"x": 0.2, "y": 0.2})
     np.testing.assert_allclose(same.deviations, foreseen.deviations, rtol=1e-12)
 
@@ -134,11 +136,11 @@ def test_three_that_only_move_together_are_named_in_one_sentence():
         lambda a, b, c, d: np.stack([(a + c) * TIMES, (b + c) * TIMES, d * TIMES], axis=1), box, ["p", "q", "r"], TIMES
     )
     told = identifiability(model, deviations=0.1)
-    assert told.sentences[-1] == (
-        "'a', 'b' and 'c' can only be told in combination: moving 'a' by +0.2, 'b' by +0.2 and 'c' by -0.2 together "
-        "leaves the response as it is; fix one of them, or measure what tells them apart."
+    (finding,) = told.findings  # none on each of them, and none on pairs
+    assert finding.values == {"parameters": "a, b, c", "unseen": True}
+    assert str(finding) == snapshot(
+        "Only a combination of 'a', 'b' and 'c' is identifiable: changing 'a' by +0.2, 'b' by +0.2 and 'c' by -0.2 together does not change the response. Fix one of them, or measure a quantity that separates them."
     )
-    assert len(told.sentences) == 1  # none on each of them, and none on pairs
 
 
 def test_three_that_move_the_response_by_less_than_its_noise_are_named():
@@ -150,7 +152,7 @@ def test_three_that_move_the_response_by_less_than_its_noise_are_named():
         TIMES,
     )
     told = identifiability(model, deviations=0.1)
-    assert any("together changes the response by less than its noise" in sentence for sentence in told.sentences)
+    assert only(told, "unidentifiable-combination").values["unseen"] is False
 
 
 def test_a_simulation_that_fails_and_twice_given_noise_are_refused():
@@ -165,9 +167,8 @@ def test_a_simulation_that_fails_and_twice_given_noise_are_refused():
 def test_a_prior_that_decides_alone_is_named():
     box = {"offset": (-5.0, 5.0), "slope": Parameter("slope", -5.0, 5.0, start=1.0, deviation=1e-5)}
     told = identifiability(PythonModel(LINE.function, box, ["x", "y"], TIMES), deviations=0.1)
-    assert told.sentences[0] == (
-        "'slope' is known from its prior alone: its deviation was 1e-05 before the data and is 1e-05 with them; "
-        "measure what tells it."
+    assert str(told.findings[0]) == snapshot(
+        "The data add nothing to the prior of 'slope': its standard deviation is 1e-05 without and 1e-05 with the data. Measure a quantity that depends on it."
     )
 
 
@@ -175,8 +176,9 @@ def test_two_that_their_priors_alone_tell_apart_are_named():
     priors = {name: Parameter(name, 0.0, 2.0, deviation=0.1) for name in "ab"}
     model = PythonModel(lambda a, b: (a + b) * TIMES, priors, ["x"], TIMES)
     told = identifiability(model, deviations=1e-3)
-    pattern = "'a' and 'b' are told apart by their priors alone: moving 'a' by {}0.1 and 'b' by {}0.1 together changes "
-    assert any(told.sentences[0].startswith(pattern.format(*signs)) for signs in ("+-", "-+"))
+    finding = told.findings[0]
+    assert (finding.code, finding.values) == ("prior-dominates", {"parameters": "a, b"})
+    assert any("'a' by {}0.1 and 'b' by {}0.1".format(*signs) in finding.message for signs in ("+-", "-+"))
 
 
 def test_a_prior_needs_data_whose_noise_is_known():

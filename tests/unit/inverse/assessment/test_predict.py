@@ -2,8 +2,10 @@
 
 import numpy as np
 import pytest
+from inline_snapshot import snapshot
 from scipy.stats import norm, t
 
+from conclusions import codes, only
 from dalembert.data import Measurements
 from dalembert.errors import InputError
 from dalembert.forward import PythonModel
@@ -59,8 +61,9 @@ def test_what_the_data_did_not_see_leaves_the_band_infinite_and_the_sum_does_not
     np.testing.assert_allclose(told.deviations[-1, 0], 4 * 0.1 / np.sqrt(np.sum(TIMES**2)), rtol=1e-6)
     assert np.isinf(told.deviations[1:, 1]).all()
     assert not told.success
-    assert told.status.startswith(
-        "The band of 'y' is infinitely wide: it depends on a combination of the parameters that the data did not tell."
+    assert only(told, "infinite-band").values == {"channels": "y"}
+    assert only(told, "infinite-band").message == snapshot(
+        "The band of 'y' is infinitely wide: it depends on a combination of the parameters that the data do not identify."
     )
 
 
@@ -132,7 +135,7 @@ def test_a_band_ends_where_it_is_as_wide_as_the_motion():
     assert np.isnan(told.deviations[end:, 0]).all()
     assert np.isfinite(told.deviations[:, 1]).all()  # wide against a level that does not move, but not growing
     assert not told.success
-    assert "as wide as the response varies" in told.status
+    assert "band-width" in codes(told)
     assert "The band of 'x' ends at" in told.summary()
 
 

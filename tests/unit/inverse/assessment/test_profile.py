@@ -4,9 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from inline_snapshot import snapshot
 from scipy.optimize import brentq
 from scipy.stats import chi2, f
 
+from conclusions import codes, only
 from dalembert.data import Measurements
 from dalembert.errors import InputError
 from dalembert.forward import PythonModel
@@ -36,7 +38,7 @@ def test_a_linear_case_has_the_closed_form(known, level):
         line = fit.values[1 - k] + covariance[0, 1] / covariance[k, k] * (curve.values - fit.values[k])
         np.testing.assert_allclose(curve.points[:, 1 - k], line, atol=1e-6)
     assert told.success
-    assert told.sentences() == ()
+    assert codes(told) == ["profile-level"]
 
 
 def test_one_parameter_alone_crosses_where_its_misfit_does():
@@ -77,9 +79,8 @@ def test_two_parameters_that_make_up_for_each_other_have_open_sides():
     assert told.intervals["a"] == (0.0, 1.0)
     assert told["a"].open == (True, True)
     assert told.success
-    assert told.sentences()[0] == (
-        "'a' is not told by the data: wherever it is between its bounds, they are explained within their noise; fix "
-        "it, or measure what tells it."
+    assert str(told.outcome[1]) == snapshot(
+        "'a' is not identifiable: all values between its bounds explain the data within their noise. Fix it, or measure a quantity that depends on it."
     )
     lower, upper = told.intervals["b"]  # between 2 − 1 and 2 − 0, and what noise allows
     assert (lower, upper) == pytest.approx((1.0, 2.0), abs=0.01)
@@ -92,9 +93,10 @@ def test_a_side_without_a_limit_is_told():
     data = Measurements.of(times, {"x": [1.0, 0.001, 0.0, 0.0, 0.0]}, deviations=0.05)
     told = profile(model, data, identify(model, data))
     assert told["rate"].open == (False, True)
-    assert told.sentences() == (
-        "'rate' has no upper limit from the data: up to its bound 50 they are explained within their noise.",
+    assert str(told.outcome[1]) == snapshot(
+        "The data give no upper limit of 'rate': up to its bound 50 they are explained within their noise."
     )
+    assert codes(told) == ["profile-level", "open-interval"]
     assert "50 (bound)" in told.summary()
 
 
@@ -105,7 +107,7 @@ def test_further_intervals_are_told_and_mirror_the_first():
     ((lower, upper),) = told["a"].elsewhere
     np.testing.assert_allclose((-upper, -lower), told.intervals["a"], rtol=1e-5)
     assert told["b"].elsewhere == ()
-    assert "Beside its interval the data do not contradict 'a' from" in told.status
+    assert only(told, "further-intervals").values == {"parameter": "a", "intervals": 1}
     assert told.success
     names = [trace.name for trace in told.figures()["profile-1"].data]
     assert "not contradicted either" in names
@@ -126,8 +128,10 @@ def test_a_lopsided_interval_is_told():
     model = PythonModel(lambda rate: np.exp(-rate * times), {"rate": (0.1, 50.0)}, ["x"], times)
     data = measured(model, [3.0], deviations=0.06)
     told = profile(model, data, identify(model, data))
-    (sentence,) = told.sentences()
-    assert sentence.startswith("The interval of 'rate' is lopsided, ")
+    assert codes(told) == ["profile-level", "asymmetric-interval"]
+    assert str(told.outcome[1]) == snapshot(
+        "The interval of 'rate' is asymmetric, 0.746 below and 1.38 above its value: the standard deviation 0.486 does not describe it."
+    )
 
 
 def test_a_fit_that_is_no_minimum_is_told():
@@ -137,7 +141,7 @@ def test_a_fit_that_is_no_minimum_is_told():
     told = profile(LINE, data, off)
     assert not told.success
     assert told.better is not None
-    assert told.sentences()[0].startswith("A better minimum lies near offset = ")
+    assert only(told, "better-minimum").values == told.better
 
 
 def test_a_side_that_ends_where_the_model_fails_says_why():
@@ -153,7 +157,8 @@ def test_a_side_that_ends_where_the_model_fails_says_why():
     lower, upper = told["rate"].broken
     assert lower == ""
     assert upper.startswith("ValueError: too fast")
-    assert "The upper side of 'rate' ends early: ValueError: too fast" in told.status
+    incomplete = only(told, "incomplete-profile").values
+    assert (incomplete["parameter"], incomplete["side"], incomplete["reason"]) == ("rate", "upper", upper)
 
 
 def test_a_prior_narrows_the_profile_as_it_does_the_deviation():

@@ -2,8 +2,10 @@
 
 import numpy as np
 import pytest
+from inline_snapshot import snapshot
 
 import dalembert
+from conclusions import codes, only
 from dalembert.data import Bands
 from dalembert.errors import DataError, InputError, SolveError
 from dalembert.findings import Finding
@@ -59,7 +61,7 @@ def test_a_parameter_that_is_no_interval_is_identified_as_a_number():
 def test_a_parameter_whose_bands_ask_for_no_interval_gets_none_and_it_is_said():
     fit = identify_bands(DECAY, banded(DECAY, [2.0, 0.7], [2.0, 0.9]))
     assert fit.radius[0] < 1e-6
-    assert any("radius of 'size'" in sentence for sentence in fit.identifiability().sentences)
+    assert only(fit, "zero-radius").values["parameter"] == "size"
 
 
 def test_with_no_interval_at_all_bands_without_width_are_measurements():
@@ -183,15 +185,16 @@ def test_bands_that_no_box_has_show_themselves():
     lower, upper = EXACT.lower.copy(), EXACT.upper.copy()
     upper[20] += 0.5
     fit = identify_bands(DECAY, Bands.of(TIMES, {"x": (lower[:, 0], upper[:, 0])}))
-    assert "most in the upper bound of channel 'x', time 2 s, by 0.4" in fit.status
-    assert "One bound stands out, 8." in fit.status
-    assert "look whether it is a slip" in fit.status
+    assert only(fit, "bands-differ").message == snapshot(
+        "The reproduced bands differ from the given ones by 0.21 of their mean width at rms in 'x', most in the upper bound of channel 'x', time 2 s, by 0.48."
+    )
+    assert 8 < only(fit, "outlying-bound").values["ratio"] < 9
 
 
 def test_bands_with_noise_are_said_to_have_it():
     noise = 0.01 * np.random.default_rng(2).standard_normal((2, 41))
     lower, upper = np.sort([EXACT.lower[:, 0] + noise[0], EXACT.upper[:, 0] + noise[1]], axis=0)
-    assert "What remains looks like noise." in identify_bands(DECAY, Bands.of(TIMES, {"x": (lower, upper)})).status
+    assert "uncorrelated-residuals" in codes(identify_bands(DECAY, Bands.of(TIMES, {"x": (lower, upper)})))
 
 
 @pytest.mark.parametrize("shape", ["wave", "slip", "drift"])
@@ -207,7 +210,6 @@ def test_bands_that_no_box_has_are_inconsistent_and_no_success(shape):
         lower, upper = lower + drift, upper + drift
     fit = identify_bands(DECAY, Bands.of(TIMES, {"x": (lower, upper)}))
     assert not fit.success
-    assert "No box of these parameters has these bands" in fit.status
     assert [(item.code, item.severity) for item in fit.findings] == [("inconsistent-bands", "error")]
 
 
@@ -215,7 +217,7 @@ def test_bands_that_no_box_has_are_inconsistent_and_no_success(shape):
 def test_white_noise_that_alternates_by_chance_does_not_make_bands_inconsistent(seed):
     """These two of 1,400 seeds have an autocorrelation below -3 of its deviations."""
     fit = identify_bands(DECAY, noisy(EXACT, 0.01, seed))
-    assert "What remains looks like noise." in fit.status
+    assert "uncorrelated-residuals" in codes(fit)
     assert fit.success
     assert fit.findings == ()
 
@@ -274,9 +276,8 @@ def test_findings_on_the_model_join_those_on_the_bands(consistent):
 def test_an_interval_on_its_bound_is_said():
     model = PythonModel(DECAY.function, {"size": (1.9, 4.0), "rate": (0.1, 3.0)}, ["x"], TIMES)
     fit = identify_bands(model, EXACT)
-    assert (
-        "The lower end of 'size' sits on its bound 1.9; widen the bound if the true interval may reach beyond."
-        in fit.identifiability().sentences
+    assert str(only(fit, "interval-at-bound")) == snapshot(
+        "The lower end of 'size' is at its bound 1.9. Widen the bound if the true interval may reach beyond it."
     )
 
 
@@ -290,10 +291,9 @@ def test_a_parameter_that_the_response_does_not_see_is_said():
     fit = identify_bands(model, EXACT)
     assert np.isinf(fit.middle_deviations[2])
     assert np.isinf(fit.radius_deviations[2])
-    told = "\n".join(fit.identifiability().sentences)
-    assert "'ghost middle' is not told by the data" in told
-    assert "'ghost radius' is not told by the data" in told
-    assert "'rate" not in told
+    unseen = [item.values["parameter"] for item in fit.conclusions if item.code == "unidentifiable-parameter"]
+    assert unseen == ["ghost middle", "ghost radius"]
+    assert "'rate" not in str(fit.identifiability())
 
 
 def test_a_surrogate_that_is_not_to_be_trusted_is_refused_before_and_after_the_check():
@@ -313,7 +313,7 @@ def test_without_a_check_the_result_says_so():
     fit = identify_bands(DECAY, EXACT, method=GlobalSurrogate(Adaptive(1e-6), checks=0))
     assert fit.checked_fitness is None
     assert fit.checked_lower is None
-    assert "No true run checks the bounds of the surrogate." in fit.status
+    assert "surrogate-unchecked" in codes(fit)
     assert "not checked" in fit.summary()
 
 
@@ -331,9 +331,8 @@ def test_a_check_whose_runs_all_fail_is_none():
     fit = identify_bands(model, EXACT, method=GlobalSurrogate(Tensor(8), tolerance=1.0))
     assert fit.checked_fitness is None
     place = f"test_identify_bands.py, line {fragile.__code__.co_firstlineno + 3}"
-    assert (
-        f"simulations failed and were passed over, the first: RuntimeError: enough ({place}) (at size = " in fit.status
-    )
+    failed = only(fit, "failed-simulations").values["first"]
+    assert failed.startswith(f"RuntimeError: enough ({place}) (at size = ")
     np.testing.assert_allclose(fit.box.lower, [1.8, 0.7], rtol=1e-3)
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from conclusions import only
 from dalembert.data import Measurements
 from dalembert.errors import DataError, InputError, ModelError, SolveError
 from dalembert.forward import PythonModel, Sensor, Sensors
@@ -124,7 +125,8 @@ def test_every_method_takes_experiments_and_failed_samples_name_theirs():
     fit = identify(experiments, method=ParticleSwarm(20, 30), polish=True)
     np.testing.assert_allclose(fit.values, [2.0, 0.8, 1.5], rtol=1e-5)
     place = f"test_experiments.py, line {fragile.__code__.co_firstlineno + 2}"
-    assert f"the first: experiment 'short': RuntimeError: too fast ({place}) (at short.size = " in fit.status
+    failed = only(fit, "failed-simulations").values["first"]
+    assert failed.startswith(f"experiment 'short': RuntimeError: too fast ({place}) (at short.size = ")
 
 
 def test_weights_are_given_by_the_experiments_name():

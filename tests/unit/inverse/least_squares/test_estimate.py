@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
+from inline_snapshot import snapshot
 
-from dalembert.inverse.least_squares.identifiable import identifiability_findings
 from dalembert.inverse.least_squares.estimate import estimate
+from dalembert.inverse.least_squares.identifiable import identifiability_findings
 from dalembert.parameters import Parameters
 
 TIMES = np.linspace(0, 2, 21)
@@ -34,21 +35,21 @@ def test_a_combination_that_the_response_does_not_see_leaves_deviations_infinite
     assert np.isfinite(told.deviations[2])
     np.testing.assert_allclose(told.correlation[0, 1], -1, rtol=1e-9)
     box = Parameters.of({"a": (0, 2), "b": (0, 2), "c": (-9, 9)})
-    assert sentences(box, np.ones(3), told) == (
-        "'a' and 'b' can only be told in combination: moving 'a' by +0.2 and 'b' by -0.1 together leaves the response "
-        "as it is; fix one of them, or measure what tells them apart.",
+    (finding,) = identifiability_findings(box, np.ones(3), told)
+    assert str(finding) == snapshot(
+        "Only a combination of 'a' and 'b' is identifiable: changing 'a' by +0.2 and 'b' by -0.1 together does not change the response. Fix one of them, or measure a quantity that separates them."
     )
 
 
 def test_a_parameter_that_moves_too_little_to_be_named_with_the_others_is_said_to_be_unseen():
     told = estimate(np.stack([np.ones(21), 1 + 0.05 * TIMES, TIMES], axis=1), np.ones(3), 1.0)
     box = Parameters.of(dict.fromkeys("abc", (0, 2)))
-    found = sentences(box, np.ones(3), told)
-    assert "'a' and 'b' can only be told in combination" in found[1]
-    assert found[0] == (
-        "'c' is not told by the data: it, or a combination that it is part of, leaves the response as it is; fix it, "
-        "or measure another channel."
+    alone, together, *_ = identifiability_findings(box, np.ones(3), told)
+    assert (alone.code, alone.values) == ("unidentifiable-parameter", {"parameter": "c"})
+    assert str(alone) == snapshot(
+        "'c' is not identifiable: it, or a combination with it, does not change the response. Fix it, or measure another channel."
     )
+    assert (together.code, together.values["parameters"]) == ("unidentifiable-combination", "a, b")
 
 
 def test_fewer_values_than_parameters_tell_at_most_as_many_combinations():
@@ -64,19 +65,25 @@ def test_a_response_that_sees_nothing_tells_nothing():
 def test_a_parameter_on_a_bound_and_one_that_is_barely_known_are_named():
     box = Parameters.of({"stiffness": (0.0, 3.0), "mass": (0.0, 1.0)})
     told = estimate(np.diag([100.0, 1.0]), np.ones(2), 1.0)
-    assert sentences(box, np.array([3.0, 0.5]), told) == (
-        "'stiffness' sits on its upper bound 3; widen the bound if the true value may lie beyond.",
-        "'mass' is hardly told by the data: its deviation 1 exceeds the 0.289 of a mere guess between its bounds; "
-        "fix it, or measure more.",
+    found = tuple(identifiability_findings(box, np.array([3.0, 0.5]), told))
+    assert [item.code for item in found] == ["parameter-at-bound", "weakly-identifiable-parameter"]
+    assert list(map(str, found)) == snapshot(
+        [
+            "'stiffness' is at its upper bound 3. Widen the bound if the true value may lie beyond it.",
+            "'mass' is hardly identifiable: its standard deviation 1 exceeds 0.289, that of a uniform distribution between its bounds. Fix it, or measure more.",
+        ]
     )
-    assert sentences(box, np.array([0.0, 0.5]), told)[0].startswith("'stiffness' sits on its lower bound 0;")
+    lower = next(identifiability_findings(box, np.array([0.0, 0.5]), told))
+    assert lower.values == {"parameter": "stiffness", "side": "lower", "bound": 0.0}
 
 
 def test_the_bound_of_a_parameter_that_is_not_told_is_no_hint():
     box = Parameters.of({"stiffness": (0.0, 3.0), "mass": (0.0, 1.0)})
     told = estimate(np.diag([0.0, 100.0]), np.ones(2), 1.0)
-    assert not any("sits on" in sentence for sentence in sentences(box, np.array([3.0, 0.5]), told))
+    found = identifiability_findings(box, np.array([3.0, 0.5]), told)
+    assert [item.code for item in found] == ["unidentifiable-parameter"]
 
 
 def test_well_told_parameters_need_no_sentence():
-    assert sentences(Parameters.of({"a": (0, 2), "b": (0, 2)}), np.ones(2), estimate(10 * LINE, np.ones(2), 0.01)) == ()
+    box = Parameters.of({"a": (0, 2), "b": (0, 2)})
+    assert not list(identifiability_findings(box, np.ones(2), estimate(10 * LINE, np.ones(2), 0.01)))

@@ -25,7 +25,7 @@ def test_the_truth_lies_under_the_floor_of_given_deviations_and_twice_the_noise_
         noise = 0.05 * rng.standard_normal(200)
         known = floor(TRUE + noise, deviations=0.05)
         assert np.sum((noise / 0.05) ** 2) < known.fitness < np.sum((2 * noise / 0.05) ** 2)
-        assert known.source == "given deviations"
+        assert known.source == "given"
         assert not known.conclusive
 
 
@@ -34,7 +34,7 @@ def test_the_truth_lies_under_the_floor_of_rounded_data():
     known = floor(rounded)
     misfit = np.sum((rounded - TRUE) ** 2)
     assert misfit < known.fitness < 2 * misfit
-    assert known.source == "rounding of the data"
+    assert known.source == "rounded"
     assert known.conclusive
 
 

@@ -2,8 +2,10 @@
 
 import numpy as np
 import pytest
+from inline_snapshot import snapshot
 
 import dalembert
+from conclusions import codes, only
 from dalembert.data import Measurements
 from dalembert.errors import DataError, InputError
 from dalembert.findings import Finding
@@ -129,10 +131,9 @@ def test_inconsistent_data_have_an_empty_set_and_a_sentence_that_says_where():
     assert found.outer is None
     assert found.inner is None
     assert found.volume == (0.0, 0.0)
-    assert found.status == (
-        "No consistent parameters: the surrogate leaves the error everywhere within the bounds. The nearest run, at "
-        "x = 2, y = 2, differs by 4 times the error in channel 'r', time 0 s; raise the error, widen the bounds, or "
-        "look what the model lacks."
+    assert [item.code for item in found.outcome] == ["empty-set", "nearest-run"]
+    assert found.status == snapshot(
+        "No consistent parameters: the surrogate exceeds the error everywhere within the bounds. The nearest run, at x = 2, y = 2, differs by 4 times the error in channel 'r', time 0 s. Increase the error, widen the bounds, or check the model structure."
     )
     assert "none" in found.summary()
     (finding,) = found.findings
@@ -144,13 +145,13 @@ def test_a_set_thinner_than_the_resolution_has_no_inner_box_and_it_is_said():
     found = identify_set(DISC, Measurements.of(NOWHEN, {"r": [1.0]}), error=1e-3)
     assert found.inner is None
     assert found.outer is not None
-    assert "no box lies wholly in the set" in found.status
+    assert "thin-set" in codes(found)
 
 
 def test_too_few_boxes_are_said():
     found = identify_set(DISC, AT_ZERO, error=1.0, resolution=1e-3, most_boxes=300)
     assert not found.success
-    assert "raise most_boxes or the resolution" in found.status
+    assert "paving-unfinished" in codes(found)
     assert found.volume[0] < np.pi < found.volume[1]
 
 
@@ -175,7 +176,7 @@ def test_true_runs_that_leave_the_error_are_not_believed():
     )
     assert smooth.success
     assert not found.success
-    assert "True runs at the corners of the inner box leave the error" in found.status
+    assert "inner-box-contradicted" in codes(found)
 
 
 def test_failed_runs_are_passed_over_where_the_scheme_can_do_without_and_said():
@@ -188,7 +189,8 @@ def test_failed_runs_are_passed_over_where_the_scheme_can_do_without_and_said():
     found = identify_set(model, AT_ZERO, error=1.0, scheme=dalembert.surrogate.TotalDegree(2, oversampling=4))
     assert found.volume[0] < np.pi < found.volume[1]
     place = f"test_identify_set.py, line {fragile.__code__.co_firstlineno + 2}"
-    assert f"passed over, the first: RuntimeError: too far ({place}) (at x = " in found.status
+    failed = only(found, "failed-simulations").values["first"]
+    assert failed.startswith(f"RuntimeError: too far ({place}) (at x = ")
 
 
 def test_events_tell_of_runs_boxes_and_the_end():

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import dalembert as da
+from conclusions import only
 from dalembert.errors import InputError
 from dalembert.inverse import MultipleShooting, identify
 from dalembert.inverse.problem.journal import Journal
@@ -66,7 +67,7 @@ def test_records_as_they_come_are_fitted_without_named_states(builder, channels,
     fit = identify(model, data, shooting=MultipleShooting(), start=[0.3, 0.1, -0.5, 0.0])
     assert fit.success, fit.status
     assert np.all(np.abs(fit.values - TRUE) < 4 * fit.deviations)
-    assert "The misfit is at the floor that the noise of the data allows (known from local polynomials)." in fit.status
+    assert only(fit, "misfit-at-noise").values == {"source": "smoothed"}
     assert fit.nodes.segments == 1
     body = fit.nodes.states[0].partition(".")[0]
     assert body in ("bar", "left", "right")

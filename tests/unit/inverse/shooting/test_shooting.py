@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from conclusions import codes, only
 from dalembert.data import Measurements
 from dalembert.errors import InputError
 from dalembert.forward import PythonModel
@@ -124,7 +125,7 @@ def test_merged_segments_end_as_one_run(segments):
     assert fit.nodes.segments == 1
     assert fit.nodes.gap < 1e-8
     np.testing.assert_allclose(fit.nodes.ends, fit.nodes.begins, atol=1e-7)
-    assert "and merged into one run." in fit.status
+    assert only(fit, "segments-merged").values["segments"] == 1
     gaps = [step.gap for step in fit.history]
     assert gaps[0] > 0.01
     assert min(gap for gap in gaps if gap) < 1e-8
@@ -253,8 +254,7 @@ def test_experiments_are_cut_each_for_itself():
     np.testing.assert_allclose(fit.values, one.values, rtol=1e-6)
     np.testing.assert_allclose(fit.deviations, one.deviations, rtol=1e-4)
     assert fit.nodes.experiments == ("first",) * 3 + ("second",) * 3
-    assert "The 8 segments of 2 experiments meet" in fit.status
-    assert "and merged into one run of each." in fit.status
+    assert "segments-merged" in codes(fit)
 
 
 def test_noise_that_is_not_given_is_estimated_and_said():
@@ -262,7 +262,7 @@ def test_noise_that_is_not_given_is_estimated_and_said():
     (finding,) = [one for one in fit.findings if one.code == "smoothed-noise"]
     assert finding.values["x"] == pytest.approx(0.01, rel=0.4)
     assert "Their noise was estimated by local polynomials: 'x' 0.0" in str(finding)
-    assert "(known from local polynomials)" in fit.status
+    assert only(fit, "misfit-at-noise").values == {"source": "smoothed"}
     given = identify(SWING, measured(0.01, deviations=0.01), shooting=MultipleShooting(STATES, 4))
     np.testing.assert_allclose(fit.values, given.values, rtol=1e-6)
 
@@ -323,7 +323,7 @@ def test_what_no_single_run_can_follow_is_fitted_in_segments_and_says_so():
     assert fit.nodes.growth > 1e12
     assert fit.fitness < 1.5 * 101
     assert fit.estimates["ratio"] == pytest.approx(SHIFT, abs=1e-4)
-    assert f"the response is that of {fit.nodes.segments} segments" in fit.status
+    assert only(fit, "segments-separate").values["segments"] == fit.nodes.segments
     assert model.evaluate(fit.values[None]).only()[0, :, 0] != pytest.approx(fit.response[:, 0], abs=0.1)
     for name, refused in (
         ("predict", lambda: predict(model, fit)),

@@ -37,6 +37,16 @@ def fitted(model, values, seed, **settings):
     return identify(model, Measurements.of(TIMES, {"x": column}, deviations=known), seed=seed, **settings)
 
 
+def unidentifiable(fit):
+    """Return the names of parameters that doubts are about."""
+    return {
+        name
+        for item in fit.doubts
+        for key in ("parameter", "parameters")
+        for name in item.values.get(key, "").split(", ")
+    }
+
+
 def named(fit):
     return [finding for finding in fit.findings if finding.code == "equal-minima"]
 
@@ -71,7 +81,7 @@ def test_minima_of_methods_without_sensitivities_are_named(settings):
 def test_a_flat_valley_is_not_identifiable_and_not_two_minima(model, values):
     fits = [fitted(model, values, seed) for seed in range(1, 40, 2)]
     assert not any(map(named, fits))
-    assert all("'a'" in " ".join(fit.doubts) and "'b'" in " ".join(fit.doubts) for fit in fits)
+    assert all({"a", "b"} <= unidentifiable(fit) for fit in fits)
 
 
 def test_a_named_minimum_is_the_permuted_one():
@@ -88,8 +98,7 @@ def test_two_values_that_explain_one_channel_are_a_doubt_once():
     assert abs(abs(fit.values[0]) - 1.5) < 0.02
     (finding,) = named(fit)
     np.testing.assert_allclose(finding.values["other_1.a"], -fit.values[0], rtol=1e-3)
-    assert fit.doubts.count(finding.message) == 1
-    assert "minimum" not in fit.status.split("starts ended")[-1]
+    assert fit.doubts.count(finding) == 1
     assert fit.summary().count(finding.message) == 1
 
 

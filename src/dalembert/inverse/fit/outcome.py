@@ -78,8 +78,9 @@ def failed_simulations(failures: list[str]) -> Iterator[Finding]:
 
 def _segments(nodes: Nodes) -> Finding:
     values = {"segments": nodes.segments, "gap": nodes.gap, "growth": nodes.growth}
-    code = "segments-merged" if nodes.segments == 1 else "segments-separate"
-    return Finding(code, "note", values, str(nodes))
+    if nodes.segments == 1:
+        return Finding("segments-merged", "note", values, str(nodes))
+    return Finding("segments-separate", "note", values, str(nodes))
 
 
 def _compared(

@@ -20,6 +20,8 @@ alone, which has a kink for each sample that changes its state.
 Comparisons are of real parts: in complex arithmetic an imaginary part is a direction of differentiation.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
 from dalembert.kernels.arithmetic import Numbers2, Numbers3, kernels
@@ -28,120 +30,28 @@ from dalembert.kernels.kernel import inner, kernel
 from dalembert.kernels.words import Address, Bytes2, Integers, Reals2, Reals3, Reals4
 from dalembert.vibration.dense import dot
 from dalembert.vibration.laws.friction_law import FRICTION, GAP, LOAD, NORMAL, SEPARATED, SLIPPING, STUCK, TANGENTIAL
+from dalembert.vibration.laws.signal_zeros import LEAST, Signals, crossing, evaluate, value, waves
 
 MOST = 12
 """Events in an interval of samples; a force that changes more often is not resolved by its samples."""
-REFINEMENTS = 60
-"""Of a zero, at most: bisections that end at rounding."""
-LEAST = 1e-14
-"""Value of a signal, as part of its amplitude, that is zero."""
-SETTLED = 1e-9
-"""Newton step of an angle after which a zero is known to rounding."""
-
 #: Rows of signals: trial force k u, limit mu N, load N.
 TRIAL, LIMIT, PRESSED = range(3)
 
 
 @inner
-def waves(tau, orders, mean, table, rows):
-    """Set rows of a table (5, coefficients) to cosines and sines at an angle, and to their derivatives."""
-    if mean:
-        for row in range(rows):
-            table[row, 0] = 1.0 if row == 0 else 0.0
-    cosine, sine = np.cos(tau), np.sin(tau)
-    c, s, reached = cosine, sine, 1
-    for number in range(mean, len(orders)):
-        order = orders[number]
-        while reached < order:
-            c, s, reached = c * cosine - s * sine, s * cosine + c * sine, reached + 1
-        at = mean + 2 * (number - mean)
-        table[0, at], table[0, at + 1] = c, s
-        table[1, at], table[1, at + 1] = -order * s, order * c
-        for row in range(2, rows):
-            table[row, at] = -order * order * table[row - 2, at]
-            table[row, at + 1] = -order * order * table[row - 2, at + 1]
-
-
-@inner
-def value(weights, values, order):
-    """A combination of signals, or of their derivatives of an order, from their values (orders, signals)."""
-    return weights[0] * values[order, 0] + weights[1] * values[order, 1] + weights[2] * values[order, 2]
-
-
-@inner
-def evaluate(signals, constants, table, values):
-    """Set values (orders, signals) of the signals (signals, coefficients) from a table of waves."""
-    for order in range(len(values)):
-        for row in range(3):
-            values[order, row] = dot(signals[row], table[order])
-    for row in range(3):
-        values[0, row] += constants[row]
-
-
-@inner
-def zero(weights, shift, order, low, high, rising, orders, mean, signals, constants, table, values):
-    """The zero of a combination of signals between two angles; ``rising`` says whether it grows through zero."""
-    place = 0.5 * (low + high)
-    for _ in range(REFINEMENTS):
-        waves(place, orders, mean, table, order + 2)
-        size, slope = shift, 0.0 * shift
-        for row in range(3):
-            if weights[row] != 0.0:
-                size += weights[row] * dot(signals[row], table[order])
-                slope += weights[row] * dot(signals[row], table[order + 1])
-                size += weights[row] * constants[row] if order == 0 else 0.0
-        if (size.real > 0.0) == rising:
-            high = place
-        else:
-            low = place
-        trial = place - size.real / slope.real if slope.real != 0.0 else low
-        if not low < trial < high:
-            trial = 0.5 * (low + high)
-        close = abs(trial - place) <= SETTLED
-        place = trial
-        if close:  # Newton's next step would be the square of this one
-            break
-    return place
-
-
-@inner
-def crossing(
-    weights, shift, order, begin, end, here, there, least, orders, mean, signals, constants, table, values
-):  # fmt: skip
-    """The first angle after ``begin`` where a combination of signals becomes positive, or a negative number.
-
-    ``here`` and ``there`` are the values (orders, signals) at both ends. Of two zeros between them the first is found
-    by the maximum that they enclose. What is not larger than ``least`` is zero.
-    """
-    high = end
-    if (value(weights, there, order) + shift).real <= least:
-        rise, fall = value(weights, here, order + 1).real, value(weights, there, order + 1).real
-        if not (rise > 0.0 and fall < 0.0):
-            return -1.0
-        high = zero(weights, 0.0 * shift, order + 1, begin, end, False, orders, mean, signals, constants, table, values)
-        waves(high, orders, mean, table, 5)
-        evaluate(signals, constants, table, values)
-        if (value(weights, values, order) + shift).real <= least:
-            return -1.0
-    return zero(weights, shift, order, begin, high, True, orders, mean, signals, constants, table, values)
-
-
-@inner
-def slope_of(weights, order, numbers, table, tangents, normal, gradient):
+def slope_of(weights, order, contact, table, gradient):
     """Set the gradient (unknowns,) of a combination of signals by the displacements' coefficients."""
-    count = table.shape[1]
+    count, numbers, tangents = table.shape[1], contact.numbers, contact.tangents
     for j in range(tangents * count):
         gradient[j] = weights[0] * numbers[TANGENTIAL] * table[order, j]
-    if normal:
+    if contact.normal:
         rise = numbers[NORMAL] * (weights[1] * numbers[FRICTION] + weights[2])
         for j in range(count):
             gradient[tangents * count + j] = rise * table[order, j]
 
 
 @inner
-def add_correction(
-    weights, numbers, h, theta, tangents, normal, table, values, result, slopes, move, gradient
-):  # fmt: skip
+def add_correction(weights, contact, h, theta, table, values, result, slopes, move, gradient):
     """Add the correction for an event at which the force jumps by a combination of signals.
 
     To its coefficients (coefficients,), and their derivatives (coefficients, unknowns) if there are any; ``move``
@@ -166,7 +76,7 @@ def add_correction(
     if not len(move):
         return
     for order in range(1, 4):
-        slope_of(weights, order, numbers, table, tangents, normal, gradient)
+        slope_of(weights, order, contact, table, gradient)
         for i in range(count):
             if order == 1:
                 factor = b2 * table[0, i] + 2.0 * b3 * table[1, i] + 3.0 * b4 * table[2, i]
@@ -202,26 +112,51 @@ def entered(values, memory):
     return -1.0 if -rate - limit > 0.0 else 0.0
 
 
-@inner
-def march(
-    numbers, tangents, normal, memory, orders, mean, synthesis, grid, signals, constants, forces, states, result,
-    sampled, slopes, table, values, here, there, place, move, gradient,
-):  # fmt: skip
-    """One contact over its periodic motion, from event to event.
+class Contact(NamedTuple):
+    """A contact: its numbers (5,), its tangential directions (0 or 1), whether it has a normal one and remembers."""
 
-    Writes the forces at samples (columns, samples), the states (samples,) and the corrections (columns, coefficients)
-    of integrals. If ``place`` has entries, also the derivatives of the former (columns, samples, unknowns) and of the
-    latter (columns, coefficients, unknowns); ``place`` and ``move`` (unknowns,) are those of the slider and of an
-    event's angle.
+    numbers: np.ndarray
+    tangents: int
+    normal: bool
+    memory: bool
+
+
+class Sums(NamedTuple):
+    """What a march writes: forces at samples (columns, samples), states (samples,), corrections (columns, -).
+
+    ``sampled`` (columns, samples, unknowns) and ``slopes`` (columns, coefficients, unknowns): derivatives of forces and
+    of corrections. ``place`` and ``move`` (unknowns,): those of the slider and of an event's angle, without entries if
+    no derivatives are asked for; ``gradient`` (unknowns,) is room.
     """
+
+    forces: np.ndarray
+    states: np.ndarray
+    result: np.ndarray
+    sampled: np.ndarray
+    slopes: np.ndarray
+    place: np.ndarray
+    move: np.ndarray
+    gradient: np.ndarray
+
+
+class Room(NamedTuple):
+    """Room: a table of waves (5, coefficients), signals' values (5, 3) at an event and at both ends of an interval."""
+
+    table: np.ndarray
+    values: np.ndarray
+    here: np.ndarray
+    there: np.ndarray
+
+
+@inner
+def march(contact, signals, synthesis, grid, sums, room):
+    """One contact over its periodic motion, from event to event; ``grid`` (3, samples, 3): signals at samples."""
+    numbers, tangents, normal, memory = contact
+    forces, states, result, sampled, slopes, place, move, gradient = sums
+    table, values, here, there = room
     steps, stiffness, wanted = forces.shape[1], numbers[TANGENTIAL], len(place) > 0
     h, count, remembers = 2.0 * np.pi / steps, synthesis.shape[1], memory and tangents == 1
-    least, nothing = 0.0, 0.0 * numbers[LOAD]
-    for row in range(3):
-        size = abs(constants[row])
-        for j in range(count):
-            size += abs(signals[row, j])
-        least = max(least, LEAST * size)
+    nothing = 0.0 * numbers[LOAD]
     for order in range(3):
         for row in range(3):
             here[order, row] = grid[order, 0, row]
@@ -238,7 +173,7 @@ def march(
             if wanted:
                 for j in range(count):
                     table[0, j] = synthesis[0, j]
-                slope_of((1.0, -sign, 0.0), 0, numbers, table, tangents, normal, place)
+                slope_of((1.0, -sign, 0.0), 0, contact, table, place)
                 for j in range(len(place)):
                     place[j] /= stiffness
     for period in range(2):
@@ -284,40 +219,32 @@ def march(
                     for direction in range(2):
                         turn = 1.0 - 2.0 * direction
                         own, offset = (turn, -1.0, 0.0), -turn * stiffness * z
-                        at = crossing(
-                            own, offset, 0, begin, end, here, there, least, orders, mean, signals, constants, table,
-                            values,
-                        )  # fmt: skip
+                        at = crossing(own, offset, 0, begin, end, here, there, signals, table, values)
                         if at >= 0.0 and (event < 0.0 or at < event):
                             event, weights, shift, side = at, own, offset, turn
                 if state == SLIPPING:
                     order = 1 if memory else 0
                     weights = (-sign, 1.0, 0.0)
-                    event = crossing(
-                        weights, shift, order, begin, end, here, there, least, orders, mean, signals, constants, table,
-                        values,
-                    )  # fmt: skip
+                    event = crossing(weights, shift, order, begin, end, here, there, signals, table, values)
                 opens = False
                 if normal:
                     own = (0.0, 0.0, 1.0 if state == SEPARATED else -1.0)
-                    at = crossing(
-                        own, nothing, 0, begin, end, here, there, least, orders, mean, signals, constants, table, values
-                    )  # fmt: skip
+                    at = crossing(own, nothing, 0, begin, end, here, there, signals, table, values)
                     if at >= 0.0 and (event < 0.0 or at < event):
                         event, weights, shift, order, opens = at, own, nothing, 0, True
                 if event < 0.0:
                     break
                 moved = True
-                waves(event, orders, mean, table, 5)
-                evaluate(signals, constants, table, values)
+                waves(event, signals.orders, signals.mean, table, 5)
+                evaluate(signals, table, values)
                 error, slope = value(weights, values, order) + shift, value(weights, values, order + 1)
                 angle = event + nothing
                 if abs(error) < 1e-6 * h * abs(slope):  # Newton's last step carries directions of differentiation
                     angle = event - error / slope
-                    waves(angle, orders, mean, table, 5)
-                    evaluate(signals, constants, table, values)
+                    waves(angle, signals.orders, signals.mean, table, 5)
+                    evaluate(signals, table, values)
                 if wanted:
-                    slope_of(weights, order, numbers, table, tangents, normal, move)
+                    slope_of(weights, order, contact, table, move)
                     for j in range(len(move)):
                         own_shift = stiffness * side * place[j] if state == STUCK and not opens else 0.0
                         move[j] = -(move[j] - own_shift) / slope if slope != 0.0 else 0.0
@@ -330,7 +257,7 @@ def march(
                     if tangents == 1 and memory and state == STUCK:
                         z = values[0, TRIAL] / stiffness
                         if wanted:
-                            slope_of((1.0, 0.0, 0.0), 0, numbers, table, tangents, normal, place)
+                            slope_of((1.0, 0.0, 0.0), 0, contact, table, place)
                             for j in range(len(place)):
                                 place[j] = (place[j] + values[1, TRIAL] * move[j]) / stiffness
                 elif opens:
@@ -342,7 +269,7 @@ def march(
                     if memory:
                         z = (values[0, TRIAL] - sign * values[0, LIMIT]) / stiffness
                         if wanted:
-                            slope_of((1.0, -sign, 0.0), 0, numbers, table, tangents, normal, place)
+                            slope_of((1.0, -sign, 0.0), 0, contact, table, place)
                             for j in range(len(place)):
                                 place[j] /= stiffness
                 if last:
@@ -352,16 +279,11 @@ def march(
                         follows = (0.0, 0.0, 0.0)
                     if tangents == 1:
                         jump = (follows[0] - before[0], follows[1] - before[1], 0.0)
-                        add_correction(
-                            jump, numbers, h, theta, tangents, normal, table, values, result[0], slopes[0], move,
-                            gradient,
-                        )  # fmt: skip
+                        add_correction(jump, contact, h, theta, table, values, result[0], slopes[0], move, gradient)
                     if opens:
                         jump = (0.0, 0.0, -1.0 if state == SEPARATED else 1.0)
-                        add_correction(
-                            jump, numbers, h, theta, tangents, normal, table, values, result[tangents],
-                            slopes[tangents], move, gradient,
-                        )  # fmt: skip
+                        load, by_load = result[tangents], slopes[tangents]
+                        add_correction(jump, contact, h, theta, table, values, load, by_load, move, gradient)
                 for row in range(3):
                     for level in range(3):
                         here[level, row] = values[level, row]
@@ -371,34 +293,40 @@ def march(
 
 
 @inner
-def prepare(d, numbers, tangents, normal, orders, mean, table, signals, constants, waving, grid):
-    """Set the signals of a contact from its displacements (columns, coefficients), and their values at samples."""
-    count = d.shape[1]
+def prepare(d, contact, orders, mean, rows, constants, waving, grid):
+    """Return the signals of a contact with displacements (columns, coefficients); set their values at samples."""
+    (numbers, tangents, normal, _), count, least = contact, d.shape[1], 0.0
     for row in range(3):
         constants[row] = 0.0 * numbers[LOAD]
         for j in range(count):
-            signals[row, j] = 0.0 * numbers[LOAD]
+            rows[row, j] = 0.0 * numbers[LOAD]
     for j in range(tangents * count):
-        signals[TRIAL, j] = numbers[TANGENTIAL] * d[0, j]
+        rows[TRIAL, j] = numbers[TANGENTIAL] * d[0, j]
     constants[PRESSED] = numbers[LOAD]
     if normal:
         constants[PRESSED] -= numbers[NORMAL] * numbers[GAP]
         for j in range(count):
-            signals[PRESSED, j] = numbers[NORMAL] * d[tangents, j]
+            rows[PRESSED, j] = numbers[NORMAL] * d[tangents, j]
     if tangents == 1:
         constants[LIMIT] = numbers[FRICTION] * constants[PRESSED]
         for j in range(count):
-            signals[LIMIT, j] = numbers[FRICTION] * signals[PRESSED, j]
+            rows[LIMIT, j] = numbers[FRICTION] * rows[PRESSED, j]
     for order in range(3):
         for t in range(grid.shape[1]):
             for row in range(3):
                 grid[order, t, row] = 0.0 if order else constants[row]
             if tangents == 1:
-                grid[order, t, TRIAL] += dot(signals[TRIAL], waving[order, t])
+                grid[order, t, TRIAL] += dot(rows[TRIAL], waving[order, t])
             if normal:
-                load = dot(signals[PRESSED], waving[order, t])
+                load = dot(rows[PRESSED], waving[order, t])
                 grid[order, t, PRESSED] += load
                 grid[order, t, LIMIT] += numbers[FRICTION] * load if tangents == 1 else 0.0
+    for row in range(3):
+        size = abs(constants[row])
+        for j in range(count):
+            size += abs(rows[row, j])
+        least = max(least, LEAST * size)
+    return Signals(orders, mean, rows, constants, least)
 
 
 def _sums(
@@ -406,14 +334,13 @@ def _sums(
     waving: Reals3, grid: Numbers3, room: Numbers2, small: Numbers3, slopes: Numbers3, forces: Numbers3,
     states: Bytes2, result: Numbers3,
 ) -> None:  # fmt: skip
-    signals, table = room[:3], room[3:8]
-    constants, values, here, there = small[0, 0], small[1], small[2], small[3]
+    constants, none = small[0, 0], slopes[0, 0]
+    places = Room(room[3:8], small[1], small[2], small[3])
     for c in range(len(displacements)):
-        prepare(displacements[c], numbers[c], tangents, normal, orders, mean, table, signals, constants, waving, grid)
-        march(
-            numbers[c], tangents, normal, memory, orders, mean, waving[0], grid, signals, constants, forces[c],
-            states[c], result[c], slopes, slopes, table, values, here, there, slopes[0, 0], slopes[0, 0], slopes[0, 0],
-        )  # fmt: skip
+        contact = Contact(numbers[c], tangents, normal, memory)
+        signals = prepare(displacements[c], contact, orders, mean, room[:3], constants, waving, grid)
+        sums = Sums(forces[c], states[c], result[c], slopes, slopes, none, none, none)
+        march(contact, signals, waving[0], grid, sums, places)
 
 
 sums_real, sums_complex = kernels(_sums)
@@ -425,15 +352,13 @@ def sums_and_slopes(
     analysis: Reals2, gemm: Address, displacements: Reals3, grid: Reals3, room: Reals2, small: Reals3, sampled: Reals3,
     slopes: Reals3, given: Reals2, forces: Reals3, states: Bytes2, result: Reals3, jacobians: Reals4,
 ) -> None:  # fmt: skip
-    signals, table = room[:3], room[3:8]
-    constants, values, here, there = small[0, 0], small[1], small[2], small[3]
-    count = analysis.shape[0]
+    constants, count = small[0, 0], analysis.shape[0]
+    places = Room(room[3:8], small[1], small[2], small[3])
     for c in range(len(displacements)):
-        prepare(displacements[c], numbers[c], tangents, normal, orders, mean, table, signals, constants, waving, grid)
-        march(
-            numbers[c], tangents, normal, memory, orders, mean, waving[0], grid, signals, constants, forces[c],
-            states[c], result[c], sampled, slopes, table, values, here, there, given[0], given[1], given[2],
-        )  # fmt: skip
+        contact = Contact(numbers[c], tangents, normal, memory)
+        signals = prepare(displacements[c], contact, orders, mean, room[:3], constants, waving, grid)
+        sums = Sums(forces[c], states[c], result[c], sampled, slopes, given[0], given[1], given[2])
+        march(contact, signals, waving[0], grid, sums, places)
         for column in range(len(slopes)):
             product(gemm, analysis, sampled[column], 0.0, jacobians[c, column])
             for i in range(count):

@@ -15,8 +15,8 @@ Source: E. Hairer and G. Wanner, Solving Ordinary Differential Equations II, Spr
 import numpy as np
 
 from dalembert.kernels.kernel import inner
-from dalembert.vibration.laws.event_sums import REFINEMENTS, SETTLED, evaluate, waves
 from dalembert.vibration.laws.friction_law import FRICTION, NORMAL, TANGENTIAL
+from dalembert.vibration.laws.signal_zeros import LEAST, REFINEMENTS, SETTLED, evaluate, waves
 
 ROOT = 6.0**0.5
 NODES = ((4.0 - ROOT) / 10.0, (4.0 + ROOT) / 10.0, 1.0)
@@ -45,10 +45,10 @@ def direction(x, y):
 
 
 @inner
-def at(angle, orders, mean, signals, constants, table, values):
+def at(angle, signals, table, values):
     """Set a table of waves at an angle, and the signals' values there."""
-    waves(angle, orders, mean, table, 5)
-    evaluate(signals, constants, table, values)
+    waves(angle, signals.orders, signals.mean, table, 5)
+    evaluate(signals, table, values)
 
 
 @inner
@@ -58,7 +58,7 @@ def slides(values, phi, friction):
 
 
 @inner
-def step(begin, end, phi, friction, orders, mean, signals, constants, tables, stages, radau):
+def step(begin, end, phi, friction, signals, tables, stages, radau):
     """One step of φ: its change, and whether it was found.
 
     ``radau`` (7, 3) keeps the changes κ of the stages, their φ, and the inverse of their matrix (rows 2 to 4); the
@@ -66,7 +66,7 @@ def step(begin, end, phi, friction, orders, mean, signals, constants, tables, st
     """
     size, found, done = end - begin, False, False
     for j in range(3):
-        at(begin + NODES[j] * size, orders, mean, signals, constants, tables[j], stages[j])
+        at(begin + NODES[j] * size, signals, tables[j], stages[j])
         radau[0, j] = 0.0 * phi
     for _ in range(ITERATIONS):
         moved = 0.0
@@ -167,14 +167,14 @@ def carry(begin, end, numbers, normal, wanted, tables, stages, radau, grads):
 
 
 @inner
-def stop_slip(begin, end, phi, friction, orders, mean, signals, constants, tables, stages, radau):
+def stop_slip(begin, end, phi, friction, signals, tables, stages, radau):
     """The angle in a step at which the slider stops, as a length from its beginning; the last step was to this end."""
     low, high = 0.0, (end - begin).real
     place = 0.5 * high
     length, close = place + 0.0 * phi, False
     for _ in range(REFINEMENTS):
         change, found = step(
-            begin, begin + length, phi, friction, orders, mean, signals, constants, tables, stages, radau
+            begin, begin + length, phi, friction, signals, tables, stages, radau
         )  # fmt: skip
         angle = phi + change
         size = slides(stages[2], angle, friction)
@@ -214,24 +214,25 @@ def pull(values, zx, zy, friction):
 
 
 @inner
-def first_slip(begin, end, zx, zy, friction, least, orders, mean, signals, constants, table, values):
+def first_slip(begin, end, zx, zy, friction, signals, table, values):
     """The first angle between two at which a stuck contact begins to slip, or a negative number.
 
     Of two such changes between them the first is found by the largest force that they enclose.
     """
-    at(end, orders, mean, signals, constants, table, values)
+    least = signals.least * signals.least / LEAST
+    at(end, signals, table, values)
     size, rate = pull(values, zx, zy, friction)
     low, high = begin, end
     if size.real <= least:
         if rate.real >= 0.0:
             return -1.0
-        at(begin, orders, mean, signals, constants, table, values)
+        at(begin, signals, table, values)
         _, rate = pull(values, zx, zy, friction)
         if rate.real <= 0.0:
             return -1.0
         for _ in range(REFINEMENTS):
             middle = 0.5 * (low + high)
-            at(middle, orders, mean, signals, constants, table, values)
+            at(middle, signals, table, values)
             size, rate = pull(values, zx, zy, friction)
             if size.real > least or high - low <= SETTLED * (end - begin):
                 break
@@ -244,7 +245,7 @@ def first_slip(begin, end, zx, zy, friction, least, orders, mean, signals, const
         low, high = begin, middle
     place = 0.5 * (low + high)
     for _ in range(REFINEMENTS):
-        at(place, orders, mean, signals, constants, table, values)
+        at(place, signals, table, values)
         size, rate = pull(values, zx, zy, friction)
         if size.real > 0.0:
             high = place

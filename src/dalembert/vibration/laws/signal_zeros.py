@@ -1,0 +1,110 @@
+"""Compiled: signals of a contact, which are trigonometric polynomials, their values and their zeros."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from dalembert.kernels.kernel import inner
+from dalembert.vibration.dense import dot
+
+REFINEMENTS = 60
+"""Of a zero, at most: bisections that end at rounding."""
+LEAST = 1e-14
+"""Value of a signal, as part of its amplitude, that is zero."""
+SETTLED = 1e-9
+"""Newton step of an angle after which a zero is known to rounding."""
+
+
+class Signals(NamedTuple):
+    """Signals of a contact: constants plus trigonometric polynomials of the harmonics ``orders``, the mean if 1.
+
+    ``rows`` (3, coefficients) and ``constants`` (3,); a value that is not larger than ``least`` is zero.
+    """
+
+    orders: np.ndarray
+    mean: int
+    rows: np.ndarray
+    constants: np.ndarray
+    least: float
+
+
+@inner
+def waves(tau, orders, mean, table, rows):
+    """Set rows of a table (5, coefficients) to cosines and sines at an angle, and to their derivatives."""
+    if mean:
+        for row in range(rows):
+            table[row, 0] = 1.0 if row == 0 else 0.0
+    cosine, sine = np.cos(tau), np.sin(tau)
+    c, s, reached = cosine, sine, 1
+    for number in range(mean, len(orders)):
+        order = orders[number]
+        while reached < order:
+            c, s, reached = c * cosine - s * sine, s * cosine + c * sine, reached + 1
+        at = mean + 2 * (number - mean)
+        table[0, at], table[0, at + 1] = c, s
+        table[1, at], table[1, at + 1] = -order * s, order * c
+        for row in range(2, rows):
+            table[row, at] = -order * order * table[row - 2, at]
+            table[row, at + 1] = -order * order * table[row - 2, at + 1]
+
+
+@inner
+def value(weights, values, order):
+    """A combination of signals, or of their derivatives of an order, from their values (orders, signals)."""
+    return weights[0] * values[order, 0] + weights[1] * values[order, 1] + weights[2] * values[order, 2]
+
+
+@inner
+def evaluate(signals, table, values):
+    """Set values (orders, signals) of the signals (signals, coefficients) from a table of waves."""
+    for order in range(len(values)):
+        for row in range(3):
+            values[order, row] = dot(signals.rows[row], table[order])
+    for row in range(3):
+        values[0, row] += signals.constants[row]
+
+
+@inner
+def zero(weights, shift, order, low, high, rising, signals, table):
+    """The zero of a combination of signals between two angles; ``rising`` says whether it grows through zero."""
+    place = 0.5 * (low + high)
+    for _ in range(REFINEMENTS):
+        waves(place, signals.orders, signals.mean, table, order + 2)
+        size, slope = shift, 0.0 * shift
+        for row in range(3):
+            if weights[row] != 0.0:
+                size += weights[row] * dot(signals.rows[row], table[order])
+                slope += weights[row] * dot(signals.rows[row], table[order + 1])
+                size += weights[row] * signals.constants[row] if order == 0 else 0.0
+        if (size.real > 0.0) == rising:
+            high = place
+        else:
+            low = place
+        trial = place - size.real / slope.real if slope.real != 0.0 else low
+        if not low < trial < high:
+            trial = 0.5 * (low + high)
+        close = abs(trial - place) <= SETTLED
+        place = trial
+        if close:  # Newton's next step would be the square of this one
+            break
+    return place
+
+
+@inner
+def crossing(weights, shift, order, begin, end, here, there, signals, table, values):
+    """The first angle after ``begin`` where a combination of signals becomes positive, or a negative number.
+
+    ``here`` and ``there`` are the values (orders, signals) at both ends. Of two zeros between them the first is found
+    by the maximum that they enclose.
+    """
+    high = end
+    if (value(weights, there, order) + shift).real <= signals.least:
+        rise, fall = value(weights, here, order + 1).real, value(weights, there, order + 1).real
+        if not (rise > 0.0 and fall < 0.0):
+            return -1.0
+        high = zero(weights, 0.0 * shift, order + 1, begin, end, False, signals, table)
+        waves(high, signals.orders, signals.mean, table, 5)
+        evaluate(signals, table, values)
+        if (value(weights, values, order) + shift).real <= signals.least:
+            return -1.0
+    return zero(weights, shift, order, begin, high, True, signals, table)

@@ -17,31 +17,22 @@ from typing import Any
 
 import numpy as np
 from scipy.linalg import LinAlgError, eigh, qr
-from scipy.sparse import csc_array, diags_array, eye_array, issparse
+from scipy.sparse import csc_array, diags_array, issparse
 from scipy.sparse.linalg import splu
 
 from dalembert.errors import ModelError, SolveError, listed
 from dalembert.structure import Structure
 from dalembert.vibration.balance.coordinates import Coordinates
+from dalembert.vibration.balance.free_motions import FLOATING, free_motions, moving_names
 
 DENSE = 1500
 """Size up to which a sparse interior is treated as a dense one."""
 COUPLED = 1e-9
 """Damping between modes, as part of the largest of a mode, above which it counts."""
-FLOATING = 3e-14
-"""Smallest interior stiffness as part of the largest, below which it is none."""
 NEARLY = 1e-8
 """Dynamic stiffness, as part of the stiffness, of an interior mode that has none: half the digits are left of both."""
-MOVING = 1e-6
-"""Part of the largest motion above which a degree of freedom is said to move."""
-SOFT = 1e-12
-"""Stiffness, as part of the largest, that makes a sparse interior that moves freely one that can be factorised."""
 DECOUPLED = 1e-10
 """Stiffness or static force along a free motion, as part of the largest, that is rounding."""
-MOST_FREE = 24
-"""Free motions of a sparse interior that are looked for: four bodies in space."""
-NAMED = 4
-"""Degrees of freedom that a sentence names."""
 
 
 @dataclass(frozen=True)
@@ -149,7 +140,7 @@ class Condensation:
         self._shared: dict[str, np.ndarray] = {}
         self.free, self._pins = np.zeros((size, 0)), np.zeros(0, dtype=int)
         if self.orders[0] == 0 and self.inner_loads.shape[1]:
-            self._set_free(_free_motions(self.inner[0]))
+            self._set_free(free_motions(self.inner[0]))
 
     def at(self, omega: float) -> Point:
         """The condensed structure at ω, rad/s."""
@@ -208,23 +199,23 @@ class Condensation:
         coupled = np.abs(self.across[0] @ motions).max(initial=0.0)
         if mass[0] <= FLOATING * abs(self.inner[1]).max() or coupled > DECOUPLED * abs(self.outer[0]).max(initial=1.0):
             raise ModelError(
-                f"the structure can move freely, at {_moving(self.names, size)}, without a mass, a spring or a contact "
-                "that holds it, so its motion is not determined; clamp it, or give it mass"
+                f"the structure can move freely, at {moving_names(self.names, size)}, without a mass, a spring or a "
+                "contact that holds it, so its motion is not determined; clamp it, or give it mass"
             )
         self.free = np.linalg.qr(moved)[0]
         static = np.real(self.loads[0])
         force = float(np.linalg.norm(self.free.T @ static))
         if force > DECOUPLED * np.linalg.norm(static):
             raise ModelError(
-                f"a mean force of {force:.3g} N acts along {_moving(self.names, size)}, where no spring and no contact "
-                "holds the structure, so it has no periodic motion; clamp it, or balance the static forces"
+                f"a mean force of {force:.3g} N acts along {moving_names(self.names, size)}, where no spring and no "
+                "contact holds the structure, so it has no periodic motion; clamp it, or balance the static forces"
             )
         self._pins = qr(motions.T, mode="r", pivoting=True)[-1][: motions.shape[1]]
 
     @property
     def free_names(self) -> str:
         """Degrees of freedom whose mean position nothing holds; empty without."""
-        return _moving(self.names, np.abs(self.free).max(axis=1)) if self.free.size else ""
+        return moving_names(self.names, np.abs(self.free).max(axis=1)) if self.free.size else ""
 
     def _pinned(self, inner: Any) -> Any:
         """Interior stiffness of the mean position with a support for each free motion, which carries no force."""
@@ -277,7 +268,7 @@ class Condensation:
             free = still & ~held & (sizes[:, :, -1] > FLOATING * sizes[:, :, -1].max())
             if free.any():
                 order, mode = np.argwhere(free)[0]
-                raise _resonance(s[order : order + 1], f", at {_moving(self.names, np.abs(self.back[:, mode]))},")
+                raise _resonance(s[order : order + 1], f", at {moving_names(self.names, np.abs(self.back[:, mode]))},")
         return np.where(still, NEARLY * np.abs(self.inner[0]), inner)
 
     def interior_slope(self, point: Point, retained: np.ndarray) -> np.ndarray:
@@ -369,42 +360,9 @@ def _times_columns(matrix: Any, columns: np.ndarray) -> np.ndarray:
     return matrix[:, None] * columns if matrix.ndim == 1 else np.asarray(matrix @ columns)
 
 
-def _moving(names: tuple[str, ...], motion: np.ndarray) -> str:
-    """Names of the degrees of freedom that move in a motion (n,) of sizes."""
-    moving = [repr(name) for name, size in zip(names, motion / motion.max(), strict=True) if size > MOVING]
-    if len(moving) > NAMED:
-        moving = [*moving[:NAMED], f"{len(moving) - NAMED} more degrees of freedom"]
-    return listed(moving)
-
-
 def _resonance(s: np.ndarray, where: str) -> SolveError:
     frequencies = listed([f"{value / (2 * np.pi):.9g}" for value in s if value])
     return SolveError(
         f"the structure resonates without damping{where} at {frequencies} Hz, where its motion has no bound; give it "
         "damping, or choose another frequency"
     )
-
-
-def _free_motions(stiffness: Any) -> np.ndarray:
-    """Motions (l, motions) that a stiffness does not resist."""
-    if stiffness.ndim == 1:
-        return np.eye(len(stiffness))[:, np.abs(stiffness) <= FLOATING * np.abs(stiffness).max()]
-    if not issparse(stiffness):
-        return _unresisted(stiffness, np.eye(len(stiffness)))
-    try:
-        pivots = np.abs(splu(csc_array(stiffness)).U.diagonal())
-    except RuntimeError:  # a pivot is zero
-        pivots = np.zeros(1)
-    if pivots.min() > FLOATING * pivots.max():
-        return np.zeros((stiffness.shape[0], 0))
-    nearly = splu(csc_array(stiffness + SOFT * (abs(stiffness).max() or 1.0) * eye_array(stiffness.shape[0])))
-    basis = np.random.default_rng(0).standard_normal((stiffness.shape[0], min(MOST_FREE, stiffness.shape[0])))
-    for _ in range(3):
-        basis = np.linalg.qr(nearly.solve(basis))[0]
-    return _unresisted(stiffness, basis)
-
-
-def _unresisted(stiffness: Any, basis: np.ndarray) -> np.ndarray:
-    """Of the motions of an orthonormal basis (l, motions), those that a stiffness does not resist."""
-    values, shapes = np.linalg.eigh(basis.T @ (stiffness @ basis))
-    return basis @ shapes[:, np.abs(values) <= FLOATING * (abs(stiffness).max() or 1.0)]

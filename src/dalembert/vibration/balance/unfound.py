@@ -7,8 +7,9 @@ import numpy as np
 
 from dalembert.errors import listed
 from dalembert.findings import Finding
-from dalembert.vibration.balance.condensation import FLOATING, MOVING, NAMED, NEARLY
+from dalembert.vibration.balance.condensation import NEARLY
 from dalembert.vibration.balance.equations import Equations
+from dalembert.vibration.balance.free_motions import FLOATING, MOVING, NAMED
 from dalembert.vibration.balance.newton import VERIFIED, Solution
 
 LEFT = 0.1

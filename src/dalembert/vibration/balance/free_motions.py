@@ -1,0 +1,54 @@
+"""Motions that a stiffness does not resist, and the degrees of freedom that move in them."""
+
+from typing import Any
+
+import numpy as np
+from scipy.sparse import csc_array, eye_array, issparse
+from scipy.sparse.linalg import splu
+
+from dalembert.errors import listed
+
+FLOATING = 3e-14
+"""Stiffness of a motion, as part of the largest, below which it is rounding."""
+SOFT = 1e-12
+"""Stiffness ε, as part of the largest, with which a stiffness that leaves motions free can be factorised."""
+MOST_FREE = 24
+"""Free motions of a sparse stiffness that are looked for: four bodies in space."""
+MOVING = 1e-6
+"""Part of the largest motion above which a degree of freedom is said to move."""
+NAMED = 4
+"""Degrees of freedom that a message names."""
+
+
+def free_motions(stiffness: Any) -> np.ndarray:
+    """Return the motions (l, motions) that a stiffness (l, l), or its diagonal (l,), does not resist: K φ = 0."""
+    if stiffness.ndim == 1:
+        return np.eye(len(stiffness))[:, np.abs(stiffness) <= FLOATING * np.abs(stiffness).max()]
+    if not issparse(stiffness):
+        return _unresisted(stiffness, np.eye(len(stiffness)))
+    try:
+        pivots = np.abs(splu(csc_array(stiffness)).U.diagonal())
+    except RuntimeError:  # a pivot is zero
+        pivots = np.zeros(1)
+    if pivots.min() > FLOATING * pivots.max():
+        return np.zeros((stiffness.shape[0], 0))
+    # Subspace iteration with (K + ε)⁻¹ converges to the motions of the smallest stiffness.
+    nearly = splu(csc_array(stiffness + SOFT * (abs(stiffness).max() or 1.0) * eye_array(stiffness.shape[0])))
+    basis = np.random.default_rng(0).standard_normal((stiffness.shape[0], min(MOST_FREE, stiffness.shape[0])))
+    for _ in range(3):
+        basis = np.linalg.qr(nearly.solve(basis))[0]
+    return _unresisted(stiffness, basis)
+
+
+def _unresisted(stiffness: Any, basis: np.ndarray) -> np.ndarray:
+    """Of the motions of an orthonormal basis (l, motions), those that a stiffness does not resist."""
+    values, shapes = np.linalg.eigh(basis.T @ (stiffness @ basis))
+    return basis @ shapes[:, np.abs(values) <= FLOATING * (abs(stiffness).max() or 1.0)]
+
+
+def moving_names(names: tuple[str, ...], motion: np.ndarray) -> str:
+    """Names of the degrees of freedom that move in a motion (n,) of sizes."""
+    moving = [repr(name) for name, size in zip(names, motion / motion.max(), strict=True) if size > MOVING]
+    if len(moving) > NAMED:
+        moving = [*moving[:NAMED], f"{len(moving) - NAMED} more degrees of freedom"]
+    return listed(moving)

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple, Protocol
+from typing import Any, ClassVar, NamedTuple, Protocol
 
 import numpy as np
 
@@ -114,141 +114,99 @@ class EventSums:
     series : Fourier
     """
 
+    kernels: ClassVar = (sums_and_slopes, sums_real, sums_complex)
+    """With Jacobians, alone, and for derivatives with respect to parameters."""
+
     numbers: np.ndarray
     shape: Shape
     series: Fourier
 
     def forces(self, displacements: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Coefficients of forces, and states; see :class:`ContactSums`."""
-        series, numbers, kernel = self.series, self.numbers, sums_real
-        if not displacements.dtype == numbers.dtype == float:
-            kernel, displacements, numbers = sums_complex, displacements.astype(complex), numbers.astype(complex)
-        place = np.ascontiguousarray(displacements)
-        sampled, states, corrections = _results(place, series)
-        kernel(
-            place, numbers, *self.shape, self._orders, series.mean, series.waves, *self._room(place.dtype),
-            np.zeros((2, 1, 0), place.dtype), sampled, states, corrections,
-        )  # fmt: skip
-        return _times(sampled, series.analysis) + corrections * self._weights, states
+        real = displacements.dtype == self.numbers.dtype == float
+        dtype, kernel = (float, self.kernels[1]) if real else (complex, self.kernels[2])
+        place = np.ascontiguousarray(displacements, dtype)
+        results = self._results(place)
+        kernel(place, self.numbers.astype(dtype, copy=False), *self._given, *self._room(dtype), *results)
+        return self._coefficients(results), results[1]
 
     def with_slopes(self, displacements: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Coefficients of forces, states and Jacobians; see :class:`ContactSums`."""
-        series, place = self.series, np.ascontiguousarray(displacements)
+        place = np.ascontiguousarray(displacements)
         contacts, columns, count = place.shape
-        unknowns = columns * count
-        sampled, states, corrections = _results(place, series)
+        unknowns, results = columns * count, self._results(place)
         jacobians = np.empty((contacts, columns, count, unknowns))
-        self._call(
-            place, *self._room(float), np.empty((columns, series.samples, unknowns)),
-            np.empty((columns, count, unknowns)), np.empty((3, unknowns)), sampled, states, corrections, jacobians,
-        )  # fmt: skip
-        force = _times(sampled, series.analysis) + corrections * self._weights
-        return force, states, jacobians.reshape(contacts, unknowns, unknowns)
+        self._call(place, *self._room_for_slopes(columns, unknowns), *results, jacobians)
+        return self._coefficients(results), results[1], jacobians.reshape(contacts, unknowns, unknowns)
 
-    def _room(self, dtype: np.dtype | type) -> tuple[np.ndarray, ...]:
-        """Room for the signals' values at samples, the signals with a table of waves, and small arrays."""
-        count = self.series.count
-        return np.empty((3, self.series.samples, 3), dtype), np.empty((8, count), dtype), np.empty((4, 5, 3), dtype)
+    @property
+    def _given(self) -> tuple[Any, ...]:
+        """Arguments that all displacements share: the shape of the contacts, and the series."""
+        return *self.shape, *self._waves
+
+    def _room(self, dtype: type) -> tuple[np.ndarray, ...]:
+        """Room for the signals' values at samples, the signals with a table of waves, small arrays; no derivatives."""
+        return *self._signals(dtype), np.zeros((2, 1, 0), dtype)
+
+    def _room_for_slopes(self, columns: int, unknowns: int) -> tuple[np.ndarray, ...]:
+        """The same, and room for the derivatives at samples, of corrections, and of three numbers."""
+        shapes = (columns, self.series.samples, unknowns), (columns, self.series.count, unknowns), (3, unknowns)
+        return *self._signals(float), *map(np.empty, shapes)
+
+    def _signals(self, dtype: type) -> tuple[np.ndarray, ...]:
+        return tuple(np.empty(own, dtype) for own in ((3, self.series.samples, 3), (8, self.series.count), (4, 5, 3)))
+
+    def _results(self, displacements: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Room for the forces at samples, the states and the corrections."""
+        contacts, columns, _ = displacements.shape
+        sampled = np.empty((contacts, columns, self.series.samples), displacements.dtype)
+        return sampled, np.empty((contacts, self.series.samples), np.uint8), np.empty_like(displacements)
+
+    def _coefficients(self, results: tuple[np.ndarray, np.ndarray, np.ndarray]) -> np.ndarray:
+        """Coefficients of the forces: the sums of samples, and the corrections as integrals over a period."""
+        sampled, _, corrections = results
+        return _times(sampled, self.series.analysis) + corrections * self._weights
 
     @cached_property
     def _call(self) -> Callable[..., None]:
-        series = self.series
-        return sums_and_slopes.given(
-            self.numbers, *self.shape, self._orders, series.mean, series.waves, series.analysis, gemm()
-        )
+        return self.kernels[0].given(self.numbers, *self._given, self.series.analysis, gemm())
 
     @cached_property
-    def _orders(self) -> np.ndarray:
-        return _orders(self.series)
+    def _waves(self) -> tuple[np.ndarray, int, np.ndarray]:
+        series = self.series
+        return np.array(series.orders, dtype=np.int64), series.mean, series.waves
 
     @cached_property
     def _weights(self) -> np.ndarray:
-        return _weights(self.series)
+        """From integrals over a period to coefficients."""
+        weights = np.full(self.series.count, 1 / np.pi)
+        weights[: self.series.mean] /= 2
+        return weights
 
 
 @dataclass(frozen=True)
-class PlaneEventSums:
-    """Sums of samples, corrected at the events of :mod:`dalembert.vibration.laws.event_sums_in_plane`.
+class PlaneEventSums(EventSums):
+    """Sums of contacts with two directions of slip, see :mod:`dalembert.vibration.laws.event_sums_in_plane`."""
 
-    Parameters
-    ----------
-    numbers : array, shape (contacts, 5)
-    shape : Shape
-        With two directions of slip, and sliders.
-    series : Fourier
-    """
+    kernels: ClassVar = (in_plane.sums_and_slopes, in_plane.sums_real, in_plane.sums_complex)
 
-    numbers: np.ndarray
-    shape: Shape
-    series: Fourier
+    @property
+    def _given(self) -> tuple[Any, ...]:
+        return self.shape.normal, *self._waves
 
-    def forces(self, displacements: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Coefficients of forces, and states; see :class:`ContactSums`."""
-        series, numbers, kernel = self.series, self.numbers, in_plane.sums_real
-        if not displacements.dtype == numbers.dtype == float:
-            kernel, displacements, numbers = (
-                in_plane.sums_complex,
-                displacements.astype(complex),
-                numbers.astype(complex),
-            )
-        place = np.ascontiguousarray(displacements)
-        sampled, states, corrections = _results(place, series)
-        kernel(
-            place, numbers, self.shape.normal, _orders(series), series.mean, series.waves, *self._room(place.dtype),
-            np.empty((ROWS, 3), place.dtype), *self._vectors(place.dtype), sampled, states, corrections,
-        )  # fmt: skip
-        return _times(sampled, series.analysis) + corrections * _weights(series), states
+    def _room(self, dtype: type) -> tuple[np.ndarray, ...]:
+        """Room for the signals, tables of waves, values and stages, gradients of the slider alone, and vectors."""
+        return *self._signals(dtype), np.empty((ROWS, 3), dtype), np.empty((4, 11), dtype), np.empty(11, complex)
 
-    def with_slopes(self, displacements: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Coefficients of forces, states and Jacobians; see :class:`ContactSums`."""
-        series, place = self.series, np.ascontiguousarray(displacements)
-        contacts, columns, count = place.shape
-        unknowns = columns * count
-        sampled, states, corrections = _results(place, series)
-        jacobians = np.empty((contacts, columns, count, unknowns))
-        self._call(
-            place, *self._room(float), np.empty((ROWS, unknowns + 3)), np.empty((ROWS, 3)),
-            *self._vectors(float), np.empty((columns, series.samples, unknowns + 2)),
-            np.empty((columns, count, unknowns + 2)), np.empty((count, unknowns + 2)), sampled, states, corrections,
-            jacobians,
-        )  # fmt: skip
-        force = _times(sampled, series.analysis) + corrections * _weights(series)
-        return force, states, jacobians.reshape(contacts, unknowns, unknowns)
+    def _room_for_slopes(self, columns: int, unknowns: int) -> tuple[np.ndarray, ...]:
+        samples, count, width = self.series.samples, self.series.count, unknowns + 2
+        shapes = (columns, samples, width), (columns, count, width), (count, width)
+        *signals, few, vectors, seeds = self._room(float)
+        return *signals, np.empty((ROWS, width + 1)), few, vectors, seeds, *map(np.empty, shapes)
 
-    def _room(self, dtype: np.dtype | type) -> tuple[np.ndarray, ...]:
-        """Room for the signals, tables of waves, the signals' values, and the stages of a step."""
+    def _signals(self, dtype: type) -> tuple[np.ndarray, ...]:
         count = self.series.count
-        shapes = (3, count), (20, count), (35, 3), (7, 3)
-        signals, tables, small, radau = (np.empty(shape, dtype) for shape in shapes)
-        return signals, tables.reshape(4, 5, count), small.reshape(7, 5, 3), radau
-
-    def _vectors(self, dtype: np.dtype | type) -> tuple[np.ndarray, np.ndarray]:
-        return np.empty((4, 11), dtype), np.empty(11, complex)
-
-    @cached_property
-    def _call(self) -> Callable[..., None]:
-        series = self.series
-        return in_plane.sums_and_slopes.given(
-            self.numbers, self.shape.normal, _orders(series), series.mean, series.waves, series.analysis, gemm()
-        )
-
-
-def _results(displacements: np.ndarray, series: Fourier) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Room for the forces at samples, the states and the corrections."""
-    contacts, columns, _ = displacements.shape
-    sampled = np.empty((contacts, columns, series.samples), displacements.dtype)
-    return sampled, np.empty((contacts, series.samples), np.uint8), np.empty_like(displacements)
-
-
-def _orders(series: Fourier) -> np.ndarray:
-    return np.array(series.orders, dtype=np.int64)
-
-
-def _weights(series: Fourier) -> np.ndarray:
-    """From integrals over a period to coefficients."""
-    weights = np.full(series.count, 1 / np.pi)
-    weights[: series.mean] /= 2
-    return weights
+        return tuple(np.empty(own, dtype) for own in ((3, count), (4, 5, count), (7, 5, 3), (7, 3)))
 
 
 def _times(rows: np.ndarray, matrix: np.ndarray) -> np.ndarray:

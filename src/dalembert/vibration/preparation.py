@@ -5,25 +5,16 @@ from threading import Lock
 
 from dalembert.kernels.kernel import Compiled
 from dalembert.kernels.preparation import prepare
-from dalembert.vibration.laws import event_sums_in_plane as in_plane
-from dalembert.vibration.laws.contact_sums import Shape, has_events
-from dalembert.vibration.laws.event_sums import sums_and_slopes, sums_complex, sums_real
-from dalembert.vibration.laws.friction_period import forces_complex, forces_real
+from dalembert.vibration.laws.contact_sums import EventSums, Shape, sums_for
 from dalembert.vibration.laws.friction_tangent import forces_and_slopes
 from dalembert.vibration.laws.law_sums import law_forces, law_samples, law_slopes
 from dalembert.vibration.laws.linearised_law import linearise
-from dalembert.vibration.system.lowering import ELASTIC, FrictionBlock, Lowered
+from dalembert.vibration.system.lowering import ELASTIC, Lowered
 from dalembert.vibration.time.elements import react, settle
 from dalembert.vibration.time.steps import go_through
 
 _TURN = Lock()
 """Threads of an ensemble start together: one of them compiles, and the others wait."""
-
-
-_PLAIN = (forces_and_slopes, forces_real, forces_complex)
-_CORRECTED = (sums_and_slopes, sums_real, sums_complex)
-_IN_PLANE = (in_plane.sums_and_slopes, in_plane.sums_real, in_plane.sums_complex)
-"""Kernels of sums with their Jacobians, of sums alone, and of their derivatives with respect to parameters."""
 
 
 def prepare_balance(lowered: Lowered, events: bool, *, residuals: bool, stability: bool, derivatives: bool) -> None:
@@ -40,25 +31,16 @@ def prepare_balance(lowered: Lowered, events: bool, *, residuals: bool, stabilit
 
 def _kernels(lowered: Lowered, events: bool, residuals: bool, derivatives: bool) -> list[Compiled]:
     """Kernels of the sums of contacts and stops."""
-    sums = {_sums(block, events) for block in lowered.blocks}
+    shapes = [(block.numbers, Shape(block.tangents, block.normal, block.memory)) for block in lowered.blocks]
     corrected = [events and block.kind.switches for block in lowered.laws]
-    sums |= {_CORRECTED} if any(corrected) else set()
+    used = [sums_for(*own, events).kernels for own in shapes] + [EventSums.kernels] * any(corrected)
+    needed = (True, residuals, derivatives)
     kernels: list[Compiled] = [
-        kernel
-        for own in (_PLAIN, _CORRECTED, _IN_PLANE)
-        for kernel, needed in zip(own, (True, residuals, derivatives), strict=True)
-        if own in sums and needed
+        kernel for own in dict.fromkeys(used) for kernel, use in zip(own, needed, strict=True) if use
     ]
     if not all(corrected):
         kernels += [law_forces, law_slopes]
     return kernels + [kernel for block in lowered.laws for kernel in block.law.all_kernels()]
-
-
-def _sums(block: FrictionBlock, events: bool) -> tuple[Compiled, ...]:
-    """Kernels of the sums that a block takes."""
-    if not (events and has_events(block.numbers, Shape(block.tangents, block.normal, block.memory))):
-        return _PLAIN
-    return _IN_PLANE if block.tangents == 2 else _CORRECTED
 
 
 def prepare_time(lowered: Lowered, events: bool | None) -> None:

@@ -22,7 +22,7 @@ STEP = 1e-30
 """Size of the imaginary step; second-order terms vanish below the rounding of the first."""
 
 
-def sensitivities(problem: Equations, solution: Solution, tilted: Sequence[Lowered]) -> np.ndarray:
+def sensitivities(problem: Equations, solution: Solution, perturbed: Sequence[Lowered]) -> np.ndarray:
     """Derivatives of all degrees of freedom' coefficients, (parameters, n, coefficients).
 
     Parameters
@@ -30,7 +30,7 @@ def sensitivities(problem: Equations, solution: Solution, tilted: Sequence[Lower
     problem : Equations
     solution : Solution
         Converged.
-    tilted : sequence of Lowered
+    perturbed : sequence of Lowered
         The system along each parameter, moved by a complex step.
     """
     series, condensation, point = problem.balance(solution.samples).series, problem.condensation, solution.point
@@ -38,7 +38,7 @@ def sensitivities(problem: Equations, solution: Solution, tilted: Sequence[Lower
     motion = condensation.full(retained, point.interior(retained))
     linear = problem.balance(solution.samples).linear(point.stiffness, point.force, solution.unknowns)
     given, residuals = [], []
-    for own in tilted:
+    for own in perturbed:
         push = series.phasors(_step(own.loads(series))) - _unbalanced(own, point.frequencies, motion)
         outer, inner = push @ condensation.retained, np.asarray((condensation.back.T @ push.T).T)
         condensed = outer - (np.swapaxes(point.follow, 1, 2) @ inner[:, :, None])[:, :, 0]

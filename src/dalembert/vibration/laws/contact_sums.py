@@ -12,8 +12,8 @@ from dalembert.vibration.balance.fourier import Fourier
 from dalembert.vibration.laws import event_sums_in_plane as in_plane
 from dalembert.vibration.laws.event_sums import sums_and_slopes, sums_complex, sums_real
 from dalembert.vibration.laws.friction_law import FRICTION, LOAD, TANGENTIAL
-from dalembert.vibration.laws.friction_period import forces
-from dalembert.vibration.laws.friction_tangent import Tangent, tangent_of
+from dalembert.vibration.laws.friction_period import forces, forces_complex, forces_real
+from dalembert.vibration.laws.friction_tangent import Tangent, forces_and_slopes, tangent_of
 from dalembert.vibration.laws.slip_in_plane import ROWS
 
 
@@ -52,9 +52,17 @@ def contact_sums(numbers: np.ndarray, shape: Shape, series: Fourier, events: boo
     series : Fourier
     events : bool
     """
+    return sums_for(numbers, shape, events)(numbers, shape, series)
+
+
+def sums_for(numbers: np.ndarray, shape: Shape, events: bool) -> "type[PlainSums | EventSums]":
+    """Return the class of the sums for contacts; its ``kernels`` are what they call.
+
+    These are for Jacobians, for forces alone, and for derivatives with respect to parameters.
+    """
     if not (events and has_events(numbers, shape)):
-        return PlainSums(numbers, shape, series)
-    return (PlaneEventSums if shape.tangents == 2 else EventSums)(numbers, shape, series)
+        return PlainSums
+    return PlaneEventSums if shape.tangents == 2 else EventSums
 
 
 def has_events(numbers: np.ndarray, shape: Shape) -> bool:
@@ -79,6 +87,8 @@ class PlainSums:
     shape : Shape
     series : Fourier
     """
+
+    kernels: ClassVar = (forces_and_slopes, forces_real, forces_complex)
 
     numbers: np.ndarray
     shape: Shape
@@ -115,7 +125,6 @@ class EventSums:
     """
 
     kernels: ClassVar = (sums_and_slopes, sums_real, sums_complex)
-    """With Jacobians, alone, and for derivatives with respect to parameters."""
 
     numbers: np.ndarray
     shape: Shape

@@ -4,9 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import asdict, replace
 
 import numpy as np
-import scipy
 
-import dalembert
 from dalembert.arguments import numbers_of, takes_checked
 from dalembert.errors import InputError
 from dalembert.forward import Checkpoint
@@ -16,6 +14,7 @@ from dalembert.vibration.modes.backbone import Backbone
 from dalembert.vibration.modes.mode_equations import Linear, ModeEquations, Motion, Plane
 from dalembert.vibration.modes.recorded_modes import recorded_modes
 from dalembert.vibration.paths.continuation import EASY, MOST_POINTS, SHORTEST, STEADY
+from dalembert.vibration.storage import versions
 from dalembert.vibration.system.system import StaticForce, VibrationSystem
 from dalembert.vibration.threads import one_thread
 
@@ -258,12 +257,7 @@ def _kept(own: ModeEquations, mode: int, found: list[Motion]) -> Backbone:
         residuals=np.array([motion.error for motion in found]),
         converged=converged,
         samples=np.array([motion.samples for motion in found]),
-        provenance={
-            "version": dalembert.__version__,
-            "numpy": np.__version__,
-            "scipy": scipy.__version__,
-            "method": asdict(own.problem.method),
-        },
+        provenance={**versions(), "method": asdict(own.problem.method)},
     )
 
 

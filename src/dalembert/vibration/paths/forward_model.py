@@ -224,11 +224,11 @@ class FrequencyResponse:
         places = self._places(problem.lowered)
         values = np.empty((len(self.frequencies), len(places)))
         jacobian = np.empty((*values.shape, len(vector)))
-        tilted = [self._tilted(vector, column, problem.lowered) for column in range(len(vector))]
+        perturbed = [self._perturbed(vector, column, problem.lowered) for column in range(len(vector))]
         for number, solution in enumerate(self._solutions(problem)):
             self._check(vector, problem, solution)
             response = response_of(problem, solution)
-            slopes = sensitivities(problem, solution, tilted)
+            slopes = sensitivities(problem, solution, perturbed)
             for channel, (row, size) in enumerate(places):
                 values[number, channel] = size.of(response[row])
                 jacobian[number, channel] = slopes[:, row] @ size.slope(response[row])
@@ -272,18 +272,18 @@ class FrequencyResponse:
         responses = (response_of(problem, solution) for solution in self._solutions(problem))
         return np.array([[size.of(response[row]) for row, size in places] for response in responses])
 
-    def _tilted(self, vector: np.ndarray, column: int, real: Lowered) -> Lowered:
+    def _perturbed(self, vector: np.ndarray, column: int, real: Lowered) -> Lowered:
         """The system along one parameter, moved by a complex step of its scale."""
         name = self.parameters.names[column]
         given: dict[str, complex] = dict(self.parameters.mapping(vector))
         given[name] = complex(vector[column], STEP * self.parameters.scale[column])
         try:
-            tilted = lower(built(self.builder, given, VibrationSystem))
+            perturbed = lower(built(self.builder, given, VibrationSystem))
         except (TypeError, ModelError, np.exceptions.ComplexWarning) as error:
             error = error.__cause__ if isinstance(error, ModelError) else error
             if not isinstance(error, TypeError | np.exceptions.ComplexWarning):
                 raise
             raise inexact(name, error) from error
-        if tilted.row_names != real.row_names or tilted.structure.dofs.names != real.structure.dofs.names:
+        if perturbed.row_names != real.row_names or perturbed.structure.dofs.names != real.structure.dofs.names:
             raise restructured()
-        return tilted
+        return perturbed

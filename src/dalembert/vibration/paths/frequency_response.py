@@ -5,9 +5,7 @@ from dataclasses import asdict, dataclass
 from typing import NamedTuple
 
 import numpy as np
-import scipy
 
-import dalembert
 from dalembert.arguments import numbers_of, takes_checked
 from dalembert.errors import InputError, unknown
 from dalembert.forward import Checkpoint
@@ -20,6 +18,7 @@ from dalembert.vibration.paths.continuation import across, at_frequencies, natur
 from dalembert.vibration.paths.curve import FrequencyCurve
 from dalembert.vibration.paths.recorded import recorded
 from dalembert.vibration.stability.bifurcations import Judged, judged, unjudged
+from dalembert.vibration.storage import versions
 from dalembert.vibration.system.hysteretic import require_viscous
 from dalembert.vibration.system.lowering import Lowered
 from dalembert.vibration.system.system import VibrationSystem
@@ -223,7 +222,6 @@ def _curve(
             done = float(max(done, min(come, 1.0)))
             on_point(FollowedPoint(records[-1].frequencies, records[-1].response, dofs, done))
     kept = {name: np.array([getattr(one, name) for one in records]) for name in _Record._fields if name != "marker"}
-    provenance = {"version": dalembert.__version__, "numpy": np.__version__, "scipy": scipy.__version__}
     return FrequencyCurve(
         dofs=dofs,
         coordinates=lowered.row_names,
@@ -231,7 +229,7 @@ def _curve(
         orders=problem.method.orders,
         **{**kept, "stable": kept["stable"].astype(np.int8)},
         markers=tuple((one.marker, number) for number, one in enumerate(records) if one.marker),
-        provenance={**provenance, "method": asdict(problem.method), **settings},
+        provenance={**versions(), "method": asdict(problem.method), **settings},
         findings=(
             *unfound_findings(len(records), filter(None, lost)),
             *free_findings(problem),

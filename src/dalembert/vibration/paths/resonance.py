@@ -11,10 +11,8 @@ from dataclasses import asdict, dataclass, replace
 from typing import cast
 
 import numpy as np
-import scipy
 from scipy.optimize import brentq
 
-import dalembert
 from dalembert.arguments import numbers_of, takes_checked
 from dalembert.errors import InputError
 from dalembert.forward import Checkpoint
@@ -29,6 +27,7 @@ from dalembert.vibration.paths.curve import FrequencyCurve
 from dalembert.vibration.paths.frequency_response import ARC_LENGTH, frequency_response, response_of, restarted
 from dalembert.vibration.paths.recorded import recorded
 from dalembert.vibration.paths.resonance_track import ResonanceTrack
+from dalembert.vibration.storage import versions
 from dalembert.vibration.system.system import VibrationSystem
 from dalembert.vibration.threads import one_thread
 
@@ -140,12 +139,7 @@ def track_resonance(
         amplitudes=np.array([amplitude for _, amplitude in found]),
         solves=solves,
         converged=np.array([one is not None for one, _ in peaks]),
-        provenance={
-            "version": dalembert.__version__,
-            "numpy": np.__version__,
-            "scipy": scipy.__version__,
-            "method": asdict(method),
-        },
+        provenance={**versions(), "method": asdict(method)},
     )
 
 

@@ -1,4 +1,4 @@
-"""Evidence: numbers that tests compare with published ones, kept for the validation page."""
+"""Evidence: numbers that tests compare with references, kept for the validation pages."""
 
 import json
 from collections.abc import Callable
@@ -9,17 +9,30 @@ import numpy as np
 import pytest
 from numpy.typing import ArrayLike
 
+KINDS = (
+    "published",  # a number or a rule in a paper, a book, a benchmark collection
+    "closed form",  # a formula
+    "other code",  # a program that shares no code with dalembert
+    "other method",  # another method for the same problem, of the test or of dalembert
+    "conservation law",  # energy, momentum, constraints
+    "known truth",  # data made with known parameters or noise
+    "target",  # an accuracy or a cost that dalembert aims at
+)
+"""Kinds of references."""
+
 
 @dataclass(frozen=True)
 class Evidence:
-    """One row of the validation page; values of more than one entry are kept as their number of entries."""
+    """One row of a validation page. Of several values it keeps the one with the largest reference."""
 
     topic: str
     quantity: str
     unit: str
+    kind: str
     source: str
-    published: float | int
-    ours: float | None
+    count: int
+    reference: float
+    ours: float
     difference: float
     tolerance: float | None
     relative: bool
@@ -28,43 +41,55 @@ class Evidence:
 
 def compare(
     quantity: str,
-    published: ArrayLike,
+    reference: ArrayLike,
     ours: ArrayLike,
     *,
     tolerance: float | None,
     topic: str,
+    kind: str,
     source: str,
     unit: str = "",
     relative: bool = False,
     noisy: bool = False,
 ) -> Evidence:
-    """Evidence that ``ours`` lies within ``tolerance`` of ``published``; AssertionError where it does not.
-
-    Without a tolerance the numbers only stand beside each other, as where the published model is not described whole.
+    """Return the evidence that ``ours`` agrees with ``reference`` within ``tolerance``.
 
     Parameters
     ----------
-    published, ours : array-like of the same shape
+    reference, ours : array-like of the same shape
     tolerance : float or None
-        Largest allowed absolute difference; with ``relative``, as a part of the largest published magnitude.
+        Largest allowed absolute difference; with ``relative``, relative to the largest magnitude of ``reference``. With
+        None nothing is asserted, as where the published model is not fully described.
+    kind : str
+        Kind of the reference, one of ``KINDS``.
     noisy : bool
-        The difference is rounding noise, which another machine need not repeat: the page prints no digit of it.
+        The difference is rounding noise, which another machine need not repeat: the page shows no digit of it.
+
+    Raises
+    ------
+    AssertionError
+        If the difference exceeds the tolerance, the shapes differ or the kind is unknown.
     """
-    expected, given = np.asarray(published, dtype=float), np.asarray(ours, dtype=float)
-    assert expected.shape == given.shape, f"{quantity}: shapes {expected.shape} (published) and {given.shape} (ours)"
-    difference = float(np.max(np.abs(given - expected))) / (float(np.max(np.abs(expected))) if relative else 1.0)
-    assert tolerance is None or difference <= tolerance, (
-        f"{quantity}: ours {given} and the published {expected} differ by {difference:.3g}"
-        f"{' relative' if relative else ''}; allowed: {tolerance:g} ({source})"
+    assert kind in KINDS, f"{quantity}: '{kind}' is not one of the kinds of references {KINDS}"
+    expected, computed = np.asarray(reference, dtype=float), np.asarray(ours, dtype=float)
+    assert expected.shape == computed.shape, (
+        f"{quantity}: shapes {expected.shape} (reference) and {computed.shape} (ours)"
     )
-    single = expected.ndim == 0
+    largest = np.unravel_index(np.argmax(np.abs(expected)), expected.shape)
+    difference = float(np.max(np.abs(computed - expected))) / (float(np.abs(expected[largest])) if relative else 1.0)
+    assert tolerance is None or difference <= tolerance, (
+        f"{quantity}: ours {computed} and the reference {expected} differ by {difference:.3g}"
+        f"{' relative' if relative else ''}; tolerance: {tolerance:g} ({kind}: {source})"
+    )
     return Evidence(
         topic,
         quantity,
         unit,
+        kind,
         source,
-        float(expected) if single else expected.size,
-        float(given) if single else None,
+        expected.size,
+        float(expected[largest]),
+        float(computed[largest]),
         difference,
         tolerance,
         relative,
@@ -99,7 +124,7 @@ class Collector:
 
 @pytest.fixture
 def record_evidence(request: pytest.FixtureRequest) -> Callable[..., None]:
-    """Assert and record: ``record_evidence(quantity, published, ours, tolerance=..., topic=..., source=...)``."""
+    """Assert and record: ``record_evidence(quantity, reference, ours, tolerance=..., topic=..., kind=..., source=...)``."""
 
     def record(*args: object, **options: object) -> None:
         row = compare(*args, **options)  # type: ignore[arg-type]

@@ -19,6 +19,7 @@ def test_a_study_without_other_settings_recovers_all_parameters(even, record_evi
         max(map(abs, found.errors.values())),
         tolerance=3.0,
         topic="Identification of chaotic motion",
+        kind="known truth",
         source="the values that the records are made with",
     )
 

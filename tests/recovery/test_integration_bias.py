@@ -38,7 +38,7 @@ def test_inertias_of_a_slider_crank_at_coarse_steps(engine, record_evidence):
     record_evidence(
         "inertias of a slider–crank at coarse steps less their estimated bias, in deviations from those at a tenth of "
         "the step", np.zeros(2), (fit.values - fit.integration.bias - fine.values) / fine.deviations, tolerance=0.2,
-        topic="What the data can tell", source="a second identification at a tenth of the step",
+        topic="Statistics of estimates", kind="other method", source="a second identification at a tenth of the step",
     )  # fmt: skip
     np.testing.assert_allclose(fit.integration.corrected, fine.fitness, rtol=1e-3)
 

@@ -21,9 +21,9 @@ def test_inertias_come_back_from_noisy_motions(level, median, monkeypatch, recor
     assert np.all(np.abs(bias - STEP) < 3 * spread / np.sqrt(len(errors)))
     record_evidence(
         f"median error of two inertias over 20 draws of {level} % noise", np.zeros(2), typical,
-        tolerance=median, noisy=True, topic="Response sensitivity", source="the inertias that made the motion",
+        tolerance=median, noisy=True, topic="Response sensitivity", kind="known truth", source="the inertias that made the motion",
     )  # fmt: skip
     record_evidence(
         f"spread of two inertias over 20 draws of {level} % noise", level * np.array([0.00053, 0.00137]), spread,
-        tolerance=0.4, relative=True, noisy=True, topic="Response sensitivity", source="standard deviations of one fit",
+        tolerance=0.4, relative=True, noisy=True, topic="Response sensitivity", kind="other method", source="standard deviations of one fit",
     )  # fmt: skip

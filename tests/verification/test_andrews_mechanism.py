@@ -45,6 +45,7 @@ def test_end_values_of_the_test_set(reference, record_evidence) -> None:
             tolerance=tolerance,
             relative=True,
             topic="Rigid mechanisms",
+            kind=data["kind"],
             source=data["source"],
         )
 
@@ -72,5 +73,6 @@ def test_initial_accelerations_and_joint_forces(reference, record_evidence) -> N
             relative=True,
             noisy=True,
             topic="Rigid mechanisms",
+            kind=data["kind"],
             source=data["source"],
         )

@@ -74,7 +74,7 @@ def test_a_thin_strip_sags_and_swings_as_an_elastica(record_evidence, kind: str)
     assert frequency == pytest.approx(3.0234, abs=2e-4)
     assert sag == pytest.approx(0.042115, abs=1e-6)
     system = strip(kind, 2)
-    common = {"relative": True, "topic": TOPIC, "source": "elastica by SciPy's solve_bvp"}
+    common = {"relative": True, "topic": TOPIC, "kind": "other code", "source": "elastica by SciPy's solve_bvp"}
     name = f"steel strip of 520 × 80 × 1 mm, level under its weight (2 {kind}s)"
     ours = -np.ravel(da.equilibrium(system).channels(["bar.end.y"]))[0]
     record_evidence(f"{name}, sag", sag, ours, unit="m", tolerance=2e-3, **common)
@@ -106,6 +106,7 @@ def test_cantilevers_of_every_slenderness_with_one_element(record_evidence, law:
         np.array(ours) / exact,
         tolerance=1e-4,
         topic=TOPIC,
+        kind="closed form",
         source="Timoshenko beam, shear factor of Cowper (1966)",
     )
 
@@ -127,7 +128,7 @@ def circle(slenderness: float, elements: int) -> np.ndarray:
 @pytest.mark.parametrize("slenderness", [10.0, 1000.0], ids=["thick", "thin"])
 def test_a_beam_rolls_up_to_a_circle(record_evidence, slenderness: float) -> None:
     coarse, fine = circle(slenderness, 8), circle(slenderness, 16)
-    common = {"topic": TOPIC, "source": "circle of radius E I / M"}
+    common = {"topic": TOPIC, "kind": "closed form", "source": "circle of radius E I / M"}
     name = f"cantilever of length/height {slenderness:g} rolled up to a circle by a moment"
     record_evidence(f"{name}, x and y of its nodes (16 beams)", 0 * fine, fine, unit="m", tolerance=1e-4, **common)
     order = np.log2(np.abs(coarse).max() / np.abs(fine).max())

@@ -46,6 +46,7 @@ def test_cantilever_under_an_end_force(reference, record_evidence) -> None:
             unit=unit,
             tolerance=1e-5,
             topic=TOPIC,
+            kind=data["kind"],
             source=data["source"],
         )
 
@@ -63,6 +64,7 @@ def test_a_bar_rolls_up_under_an_end_moment(record_evidence, part: float) -> Non
         unit="m",
         tolerance=1e-5,
         topic=TOPIC,
+        kind="closed form",
         source="circle of radius E I / M",
     )
 
@@ -82,7 +84,7 @@ def test_frequencies_of_slender_beams(reference, record_evidence, support: str) 
 
     exact = np.square(data["wave_numbers"][support]) / (2 * np.pi)
     coarse, fine = frequencies(16), frequencies(32)
-    common = {"topic": TOPIC, "source": data["source"]}
+    common = {"topic": TOPIC, "kind": data["kind"], "source": data["source"]}
     name = f"{support.replace('_', ' ')} beam"
     record_evidence(
         f"{name}, first four frequencies (32 cables)", exact, fine, unit="Hz", tolerance=2e-5, relative=True, **common
@@ -119,6 +121,7 @@ THICK = {
     "unit": "Hz",
     "relative": True,
     "topic": TOPIC,
+    "kind": "closed form",
     "source": "Timoshenko, Phil. Mag. 41 (1921), simply supported beam",
 }
 
@@ -135,6 +138,7 @@ def test_frequencies_of_a_thick_beam(record_evidence) -> None:
         order,
         tolerance=0.1,
         topic=TOPIC,
+        kind=THICK["kind"],
         source=THICK["source"],
     )
 

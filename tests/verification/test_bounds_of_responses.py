@@ -62,6 +62,7 @@ def compared(record_evidence, case: str, method: str, tolerance: float) -> None:
         tolerance=tolerance,
         noisy=True,
         topic=TOPIC,
+        kind="closed form",
         source=CLOSED,
     )
 
@@ -107,7 +108,14 @@ def test_published_tables(record_evidence, case: tuple[str, dict[str, da.Propaga
     what = f"flexible double pendulum, Table {name.upper()}, bounds of the tip by {method} ({bands.runs} runs)"
     source = PAPER + name.upper()
     record_evidence(
-        f"{what}: rms difference", 0.0, np.sqrt(np.mean(apart**2)), unit="m", tolerance=rms, topic=TOPIC, source=source
+        f"{what}: rms difference",
+        0.0,
+        np.sqrt(np.mean(apart**2)),
+        unit="m",
+        tolerance=rms,
+        topic=TOPIC,
+        kind="published",
+        source=source,
     )
     record_evidence(
         f"{what}: all bounds",
@@ -116,6 +124,7 @@ def test_published_tables(record_evidence, case: tuple[str, dict[str, da.Propaga
         unit="m",
         tolerance=largest,
         topic=TOPIC,
+        kind="published",
         source=source,
     )
     assert bands.success
@@ -132,6 +141,7 @@ def test_a_surrogate_agrees_with_direct_optimisation(record_evidence, case) -> N
         unit="m",
         tolerance=1e-5,
         topic=TOPIC,
+        kind="other method",
         source="direct optimisation of the model",
         noisy=True,
     )
@@ -185,6 +195,7 @@ def test_refusals_lead_to_an_order_that_does(record_evidence) -> None:
         unit="m",
         tolerance=2e-5,
         topic=TOPIC,
+        kind="other method",
         source="adaptive surrogate, its error below 2e-6 m",
         noisy=True,
     )

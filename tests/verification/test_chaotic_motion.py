@@ -57,6 +57,7 @@ def test_segments_find_what_one_run_does_not_from_every_start(record_evidence):
         found["segments"] / SEEDS,
         tolerance=0.0,
         topic="Identification of chaotic motion",
+        kind="known truth",
         source="the true parameters, within four standard deviations and the noise of the data",
     )
     assert found["whole"] == 0

@@ -25,6 +25,7 @@ def test_a_function_with_poles_converges_geometrically(record_evidence) -> None:
         -np.polyfit(orders, np.log(errors), 1)[0],
         tolerance=2e-3,
         topic=TOPIC,
+        kind="published",
         source="Trefethen, Approximation Theory and Approximation Practice, theorem 8.2",
     )
 
@@ -39,6 +40,7 @@ def test_coefficients_of_an_oscillation_are_bessel_functions(record_evidence) ->
         found,
         tolerance=1e-14,
         topic=TOPIC,
+        kind="closed form",
         source="Jacobi–Anger expansion, DLMF 10.12.2",
         noisy=True,
     )
@@ -55,6 +57,7 @@ def test_the_adaptive_order_is_the_one_that_the_phase_needs(record_evidence, pha
         float(found.polynomial.degrees[0]),
         tolerance=2,
         topic=TOPIC,
+        kind="closed form",
         source="Jacobi–Anger expansion, DLMF 10.12",
     )
 
@@ -72,6 +75,7 @@ def test_the_published_scheme_takes_two_runs_a_term(
         float(len(points)),
         tolerance=0,
         topic=TOPIC,
+        kind="published",
         source="Guo & Jin 2025, equations (5)–(13), P = (p + d)!/(p! d!)",
     )
     sides = round(grid ** (1 / directions))
@@ -113,6 +117,7 @@ def test_published_minima_of_polynomials_with_several_valleys(
         found.lower[0] / size,
         tolerance=1e-13,
         topic=TOPIC,
+        kind="published",
         source="Dixon & Szegő, Towards Global Optimisation 2 (1978)",
     )
     assert enclosed.lower[0] <= lowest

@@ -33,6 +33,7 @@ def test_orders(record_evidence, arm, degree: int, points: int, order: int, coar
         np.log2(np.linalg.norm(coarse - middle) / np.linalg.norm(middle - fine)),
         tolerance=tolerance,
         topic="Convergence",
+        kind="published",
         source="Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I, II.7 (Gauss: twice the points)",
     )
 
@@ -65,6 +66,7 @@ def test_published_arm_over_20_s(record_evidence, arm, minimiser) -> None:
             ours,
             tolerance=tolerance,
             topic="Rigid mechanisms",
+            kind="published",
             source=SOURCE,
             noisy=True,
         )
@@ -81,6 +83,7 @@ def test_more_gauss_points_hold_the_energy_that_the_published_method_loses(recor
             energy_error(trajectory),
             tolerance=bound,
             topic="Rigid mechanisms",
+            kind="conservation law",
             source="conservation of energy; published for fireflies at 2 ms: 2.88e-4",
             noisy=True,
         )
@@ -98,5 +101,6 @@ def test_the_arm_agrees_with_an_independent_integration(reference, record_eviden
         unit="rad",
         tolerance=1e-8,  # the digits of the source
         topic="Rigid mechanisms",
+        kind=data["kind"],
         source=data["source"],
     )

@@ -32,6 +32,7 @@ def test_a_beam_that_stands_still_is_not_strained(record_evidence, kind: str) ->
         unit="m",
         tolerance=1e-13,
         topic=TOPIC,
+        kind="conservation law",
         source=SOURCE,
         noisy=True,
     )
@@ -52,6 +53,7 @@ def test_free_fall_does_not_strain(record_evidence, kind: str) -> None:
             unit="m",
             tolerance=1e-11,
             topic=TOPIC,
+            kind="conservation law",
             source=SOURCE,
             noisy=True,
         )
@@ -64,6 +66,7 @@ def test_free_fall_does_not_strain(record_evidence, kind: str) -> None:
         unit="J",
         tolerance=1e-9,
         topic=TOPIC,
+        kind="conservation law",
         source=SOURCE,
         noisy=True,
     )
@@ -78,7 +81,7 @@ def test_rigid_rotation_is_not_strained_and_has_the_kinetic_energy_of_a_rigid_ba
     centre = np.array([0.5, -1.0]) + 3.0 * np.array([-along[1], along[0]])
     # The cable's section has no inertia of its own; the beam's has that of the depth in the plane of motion.
     inertia = MASS * (2.0**2 + (0.1**2 if kind == "beam" else 0.0)) / 12
-    common = {"topic": TOPIC, "source": "rigid bar"}
+    common = {"topic": TOPIC, "kind": "closed form", "source": "rigid bar"}
     record_evidence(
         f"{kind} turning as a rigid bar, kinetic energy",
         MASS * centre @ centre / 2 + inertia * 3.0**2 / 2,
@@ -140,6 +143,7 @@ def test_energy_and_constraints(
         (total - total[0]) / kinetic.max(),
         tolerance=tolerance,
         topic=TOPIC,
+        kind="conservation law",
         source=SOURCE,
     )
     violation = trajectory.violations["position"]
@@ -150,6 +154,7 @@ def test_energy_and_constraints(
         unit="m",
         tolerance=1e-11,
         topic=TOPIC,
+        kind="conservation law",
         source=SOURCE,
         noisy=True,
     )
@@ -171,5 +176,6 @@ def test_work_of_loads_dampers_and_friction_balances_the_energy(record_evidence)
         drifts[1],
         tolerance=1e-4,
         topic=TOPIC,
+        kind="conservation law",
         source=SOURCE,
     )

@@ -52,6 +52,7 @@ def test_second_order_in_position_and_velocity(record_evidence, mechanism, radiu
             np.log2(gaps[0] / gaps[1]),
             tolerance=0.1,
             topic="Convergence",
+            kind="published",
             source=SOURCE,
         )
 
@@ -72,5 +73,6 @@ def test_a_start_without_accelerations_is_of_first_order(record_evidence) -> Non
         np.log2(np.linalg.norm(coarse - middle) / np.linalg.norm(middle - fine)),
         tolerance=0.2,
         topic="Convergence",
+        kind="published",
         source=SOURCE,
     )

@@ -9,7 +9,7 @@ from dalembert.data import Measurements
 from dalembert.forward import PythonModel
 from dalembert.inverse import identify, predict, profile
 
-TOPIC = "What the data can tell"
+TOPIC = "Statistics of estimates"
 SOURCE = "the definition of a confidence interval, 500 repetitions"
 LEVEL, REPETITIONS, NOISE = 0.95, 500, 0.1
 TIMES = np.linspace(0, 2, 21)
@@ -57,6 +57,7 @@ def test_95_percent_intervals_hold_the_truth_in_93_to_97_percent(record_evidence
                 share,
                 tolerance=0.02,
                 topic=TOPIC,
+                kind="known truth",
                 source=SOURCE,
             )
     record_evidence(
@@ -65,6 +66,7 @@ def test_95_percent_intervals_hold_the_truth_in_93_to_97_percent(record_evidence
         found["bands"],
         tolerance=0.02,
         topic=TOPIC,
+        kind="known truth",
         source=SOURCE,
     )
 
@@ -105,7 +107,13 @@ def test_intervals_under_correlated_noise(record_evidence, name, model, known):
     for parameter, share, relative in zip(model.parameters.names, coverage, ratio, strict=True):
         words = f"{parameter} of {name}, noise {noise}"
         record_evidence(
-            f"coverage under correlated noise, {words}", LEVEL, share, tolerance=0.03, topic=TOPIC, source=source
+            f"coverage under correlated noise, {words}",
+            LEVEL,
+            share,
+            tolerance=0.03,
+            topic=TOPIC,
+            kind="known truth",
+            source=source,
         )
         record_evidence(
             f"mean deviation over scatter under correlated noise, {words}",
@@ -113,6 +121,7 @@ def test_intervals_under_correlated_noise(record_evidence, name, model, known):
             relative,
             tolerance=0.1,
             topic=TOPIC,
+            kind="known truth",
             source=source,
         )
 
@@ -139,6 +148,7 @@ def test_profile_likelihood_of_a_linear_case(record_evidence):
         np.array(list(found.values())),
         tolerance=1e-7,
         topic=TOPIC,
+        kind="closed form",
         source="closed form: estimate ∓ quantile × deviation",
         noisy=True,
     )

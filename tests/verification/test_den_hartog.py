@@ -94,7 +94,7 @@ def test_the_amplitude_is_right_to_half_a_percent_or_refused(record_evidence, ki
     record_evidence(
         f"den Hartog's block, rigid law of kind {kind}, 9 harmonics: largest error of the {accepted} amplitudes of "
         f"{len(GRID)} that are not refused", 0.0, max(errors, default=0.0), tolerance=5e-3, topic=TOPIC,
-        source="exact solution of each phase of slip and stick",
+        kind="closed form", source="exact solution of each phase of slip and stick",
     )  # fmt: skip
 
 
@@ -106,7 +106,7 @@ def test_the_velocity_kind_is_accepted_with_more_harmonics(record_evidence) -> N
         errors.append(abs(curve.amplitude("m")[0] / exact(friction, ratio)[0] - 1))
     record_evidence(
         "den Hartog's block, rigid law of kind velocity, 45 harmonics: largest error of amplitudes", 0.0, max(errors),
-        tolerance=5e-3, topic=TOPIC, source="exact solution of each phase of slip and stick",
+        tolerance=5e-3, topic=TOPIC, kind="closed form", source="exact solution of each phase of slip and stick",
     )  # fmt: skip
 
 
@@ -117,5 +117,5 @@ def test_the_elastic_slider_is_that_of_fine_integration_in_time(record_evidence,
     motion = steady_state(system, ratio / (2 * np.pi), Newmark(16384), way="shooting")
     record_evidence(
         f"elastic slider of 10 N/m on a mass, 25 harmonics: amplitude at {ratio} rad/s", motion.amplitude("m"),
-        curve.amplitude("m")[0], tolerance=1e-3, relative=True, topic=TOPIC, source="integration in time, 16,384 steps",
+        curve.amplitude("m")[0], tolerance=1e-3, relative=True, topic=TOPIC, kind="other method", source="integration in time, 16,384 steps",
     )  # fmt: skip

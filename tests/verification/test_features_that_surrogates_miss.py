@@ -176,6 +176,7 @@ def test_a_kink_is_never_worse_than_claimed(
         wrong,
         tolerance=0,
         topic=TOPIC,
+        kind="target",
         source="target: none",
     )
 
@@ -215,6 +216,7 @@ def test_features_wider_than_the_stated_gap_are_seen(directions: int, record_evi
         missed / wider,
         tolerance=0.05,
         topic=TOPIC,
+        kind="target",
         source="target: at most 5 %",
     )
 

@@ -34,7 +34,7 @@ def test_one_mass_with_a_slider(record_evidence, harmonics: int, published: floa
     curve = frequency_response(one_mass(), np.array([1.12]) / TURN, method)
     record_evidence(
         f"one mass with a slider, {harmonics} harmonics: largest displacement at 1.12 rad/s",
-        published, curve.amplitude("m")[0], tolerance=5e-11, topic=TOPIC, source=CODES, unit="m",
+        published, curve.amplitude("m")[0], tolerance=5e-11, topic=TOPIC, kind="other code", source=CODES, unit="m",
     )  # fmt: skip
 
 
@@ -46,7 +46,7 @@ def test_two_masses_with_a_slider(record_evidence, harmonics: int, published: fl
     curve = frequency_response(two_masses(), np.array([0.88]) / TURN, method)
     record_evidence(
         f"two masses with a slider, {harmonics} harmonics: largest displacement at 0.88 rad/s",
-        published, curve.amplitude("m2")[0], tolerance=5e-11, topic=TOPIC, source=CODES, unit="m",
+        published, curve.amplitude("m2")[0], tolerance=5e-11, topic=TOPIC, kind="other code", source=CODES, unit="m",
     )  # fmt: skip
 
 
@@ -70,7 +70,7 @@ def test_sums_corrected_at_events_leave_no_error_of_sampling(
         record_evidence(
             f"slider on {mass}, {harmonics} harmonics, {samples} samples corrected at events: largest displacement",
             exact, curve.amplitude(mass)[0], tolerance=tolerance, topic=TOPIC, unit="m",
-            source="independent event-driven evaluation, 1,024 corrected samples",
+            kind="other method", source="independent event-driven evaluation, 1,024 corrected samples",
         )  # fmt: skip
 
 
@@ -83,7 +83,7 @@ def test_three_masses_with_sliders_cubic_springs_and_a_stop(record_evidence) -> 
         sizes = curve.amplitude(mass, "rms")
         record_evidence(
             f"three masses with sliders, cubic springs and a stop: largest rms of {mass}",
-            published, sizes.max(), tolerance=5e-6, topic=TOPIC, source=CODES, unit="m",
+            published, sizes.max(), tolerance=5e-6, topic=TOPIC, kind="other code", source=CODES, unit="m",
         )  # fmt: skip
         assert omegas[sizes.argmax()] == pytest.approx(at, abs=1e-9)
 
@@ -95,16 +95,16 @@ def test_duffing_oscillator_past_its_folds(record_evidence) -> None:
     for folds, published in zip(curve.folds * TURN, (1.269602, 1.115700), strict=True):
         record_evidence(
             "Duffing oscillator: frequency of a fold", published, folds,
-            tolerance=1e-6, topic=TOPIC, source=CODES, unit="rad/s",
+            tolerance=1e-6, topic=TOPIC, kind="other code", source=CODES, unit="rad/s",
         )  # fmt: skip
     record_evidence(
         "Duffing oscillator: largest first harmonic", 2.83019, curve.peak("m", "harmonic 1").amplitude,
-        tolerance=1e-5, topic=TOPIC, source=CODES, unit="m",
+        tolerance=1e-5, topic=TOPIC, kind="other code", source=CODES, unit="m",
     )  # fmt: skip
     up = frequency_response(duffing(), np.append(np.arange(0.8, 1.265, 0.02), 1.26878) / TURN, method)
     record_evidence(
         "Duffing oscillator: first harmonic at 1.26878 rad/s, where the published curve is largest", 2.83019,
-        up.amplitude("m", "harmonic 1")[-1], tolerance=5e-6, topic=TOPIC, source=CODES, unit="m",
+        up.amplitude("m", "harmonic 1")[-1], tolerance=5e-6, topic=TOPIC, kind="other code", source=CODES, unit="m",
     )  # fmt: skip
 
 
@@ -121,7 +121,7 @@ def test_a_rigid_contact_on_a_massless_foot_is_the_elastic_one_with_the_stiffnes
     record_evidence(
         f"rigid contact of a massless foot beside the elastic law, {harmonics} harmonics: largest displacement",
         largest(one_mass(), 1.12, harmonics), largest(massless_foot(Rigid()), 1.12, harmonics),
-        tolerance=1e-13, topic=TOPIC, source="elastic law with the same stiffness", unit="m", noisy=True,
+        tolerance=1e-13, topic=TOPIC, kind="other method", source="elastic law with the same stiffness", unit="m", noisy=True,
     )  # fmt: skip
 
 
@@ -141,15 +141,15 @@ def test_a_rigid_contact_forgets_its_penalty_as_harmonics_are_added(record_evide
         record_evidence(
             f"rigid contact, {number} harmonics: largest change of the response, as part of it, by a penalty over "
             "three decades",
-            0.0, size, tolerance=2.5 / number**2, topic=TOPIC, source=source,
+            0.0, size, tolerance=2.5 / number**2, topic=TOPIC, kind="other method", source=source,
         )  # fmt: skip
     record_evidence(
         "rigid contact: order in the harmonics of what a penalty over three decades changes",
-        2.0, -np.polyfit(np.log(harmonics), np.log(spread), 1)[0], tolerance=0.25, topic=TOPIC, source=source,
+        2.0, -np.polyfit(np.log(harmonics), np.log(spread), 1)[0], tolerance=0.25, topic=TOPIC, kind="other method", source=source,
     )  # fmt: skip
     record_evidence(
         "rigid contact, 19 harmonics, with the penalty that is chosen: difference from the limit, as part of it",
-        0.0, largest(massless_foot(Rigid()), 1.12, 19) / exact - 1, tolerance=2e-5, topic=TOPIC, source=source,
+        0.0, largest(massless_foot(Rigid()), 1.12, 19) / exact - 1, tolerance=2e-5, topic=TOPIC, kind="other method", source=source,
     )  # fmt: skip
 
 
@@ -182,7 +182,7 @@ def test_the_elastic_law_tends_to_the_rigid_one(record_evidence) -> None:
     ]
     record_evidence(
         "elastic contact beside the rigid one: order in the inverse of its stiffness",
-        1.0, np.log10(differences[1] / differences[2]), tolerance=0.05, topic=TOPIC, source="series of springs",
+        1.0, np.log10(differences[1] / differences[2]), tolerance=0.05, topic=TOPIC, kind="closed form", source="series of springs",
     )  # fmt: skip
     assert differences[0] > differences[1] > differences[2]
 
@@ -197,11 +197,11 @@ def test_one_harmonic_of_a_slider_is_the_closed_form(record_evidence) -> None:
     balance = np.hypot((1 - 1.12**2) * size + spring, 0.04 * 1.12 * size + loss)
     record_evidence(
         "one harmonic of a slider: force that balances the response", 1.0, balance,
-        tolerance=1e-6, topic=TOPIC, source="closed form of Jenkins' element", unit="N",
+        tolerance=1e-6, topic=TOPIC, kind="closed form", source="closed form of Jenkins' element", unit="N",
     )  # fmt: skip
     record_evidence(
         "energy that a slider takes in a period of full slip", 4 * limit * (size - limit / stiffness),
-        curve.dissipated("slider.x")[0], tolerance=1e-5, topic=TOPIC, source="4 μN (X - μN/k)", unit="J",
+        curve.dissipated("slider.x")[0], tolerance=1e-5, topic=TOPIC, kind="closed form", source="4 μN (X - μN/k)", unit="J",
     )  # fmt: skip
 
 
@@ -217,7 +217,7 @@ def test_slip_in_two_directions(record_evidence, shape: str, width: float, stick
     record_evidence(
         f"slip in two directions along a {shape} ellipse: largest error of the force's coefficients, 128 samples",
         0.0, np.abs(force[0, :2] - exact).max(), tolerance=1e-6, topic=TOPIC, unit="N", noisy=True,
-        source="the slider's place integrated in time, between its stops, by DOP853",
+        kind="other code", source="the slider's place integrated in time, between its stops, by DOP853",
     )  # fmt: skip
 
 

@@ -16,7 +16,7 @@ from dalembert.vibration import (
 from event_driven import Rubbing
 from vibrating_systems import chain, duffing, heavy_foot, one_mass, pressed, two_masses
 
-TOPIC = "Friction in frequency beside time"
+TOPIC = "Friction in frequency and in time"
 TURN = 2 * np.pi
 IN_TIME = "integration in time, 4096 steps of a period"
 EVENTS = "integration from one change of stick and slip to the next"
@@ -41,7 +41,7 @@ def test_the_references_in_time(record_evidence, request, system: VibrationSyste
     record_evidence(
         f"reference system {request.node.callspec.id}, 29 harmonics: largest displacement at {omegas[-1]} rad/s",
         comparison.time[0, row], comparison.balance[0, row],
-        tolerance=2e-5, topic=TOPIC, source=IN_TIME, unit="m", relative=True,
+        tolerance=2e-5, topic=TOPIC, kind="other method", source=IN_TIME, unit="m", relative=True,
     )  # fmt: skip
 
 
@@ -72,7 +72,7 @@ def test_a_pressed_mass_under_a_variable_normal_load(
         record_evidence(
             f"{what}: largest displacement {direction}, at {TURN * curve.frequencies[top]:.2f} rad/s",
             comparison.time[0, row], comparison.balance[0, row],
-            tolerance=tolerance, topic=TOPIC, source=IN_TIME, unit="m", relative=True,
+            tolerance=tolerance, topic=TOPIC, kind="other method", source=IN_TIME, unit="m", relative=True,
         )  # fmt: skip
 
 
@@ -89,7 +89,7 @@ def test_an_elastic_contact_that_lifts_off_with_the_samples(record_evidence) -> 
             f"elastic contact that lifts off, {samples} samples of a period: largest difference at any instant, as "
             "part of the largest displacement",
             0.0, np.abs(moved - motion.motion("m.x")).max() / size,
-            tolerance=tolerance, topic=TOPIC, source="integration in time, 16384 steps of a period",
+            tolerance=tolerance, topic=TOPIC, kind="other method", source="integration in time, 16384 steps of a period",
         )  # fmt: skip
 
 
@@ -130,11 +130,11 @@ def test_rigid_friction_with_long_sticking(
         record_evidence(
             f"rigid contact of {kind} kind that sticks for {stuck:.0%} of the period, {number} harmonics: error of the "
             "motion (root mean square)",
-            0.0, errors[harmonics.index(number)], tolerance=leading / number, topic=TOPIC, source=EVENTS,
+            0.0, errors[harmonics.index(number)], tolerance=leading / number, topic=TOPIC, kind="other method", source=EVENTS,
         )  # fmt: skip
     record_evidence(
         f"rigid contact of {kind} kind that sticks for {stuck:.0%} of the period: order of the error in the harmonics",
-        1.0, -np.polyfit(np.log(harmonics), np.log(errors), 1)[0], tolerance=0.3, topic=TOPIC, source=EVENTS,
+        1.0, -np.polyfit(np.log(harmonics), np.log(errors), 1)[0], tolerance=0.3, topic=TOPIC, kind="other method", source=EVENTS,
     )  # fmt: skip
 
 
@@ -148,5 +148,5 @@ def test_the_elastic_law_in_time_tends_to_the_rigid_one(record_evidence, stickin
         errors.append(off(own.displacements[::4], motion))
     record_evidence(
         "elastic contact in time beside the rigid one: order in the inverse of its stiffness",
-        1.0, -np.polyfit(np.log(stiffnesses), np.log(errors), 1)[0], tolerance=0.1, topic=TOPIC, source=EVENTS,
+        1.0, -np.polyfit(np.log(stiffnesses), np.log(errors), 1)[0], tolerance=0.1, topic=TOPIC, kind="other method", source=EVENTS,
     )  # fmt: skip

@@ -10,7 +10,7 @@ import dalembert as da
 from momenta import momenta
 
 TOPIC = "Gears and bushings"
-CLOSED = {"topic": TOPIC, "source": "closed form"}
+CLOSED = {"topic": TOPIC, "kind": "closed form", "source": "closed form"}
 PRECISE = da.RadauIIA(tolerance=1e-11)
 
 
@@ -199,6 +199,7 @@ def test_roots_of_a_damped_body_held_anywhere(record_evidence) -> None:
             relative=True,
             noisy=True,
             topic=TOPIC,
+            kind="closed form",
             source="eigenvalues of the linear equations, written by hand",
         )
 
@@ -273,6 +274,7 @@ def test_a_bushing_between_free_bodies_keeps_their_momenta(record_evidence) -> N
             tolerance=1e-10,
             noisy=True,
             topic=TOPIC,
+            kind="conservation law",
             source="conservation law",
         )
     record_evidence(
@@ -281,6 +283,7 @@ def test_a_bushing_between_free_bodies_keeps_their_momenta(record_evidence) -> N
         unexplained_energy(floating(), 3.0, 5e-4),
         tolerance=1e-4,
         topic=TOPIC,
+        kind="conservation law",
         source="conservation law",
     )
 
@@ -343,6 +346,7 @@ def test_a_geared_rotor_runs_up_through_its_critical_speeds(record_evidence) -> 
             relative=True,
             noisy=True,
             topic=TOPIC,
+            kind="other code",
             source="equations of motion in displacements and motor angle, integrated by SciPy to 1e-12",
         )
     record_evidence(
@@ -352,6 +356,7 @@ def test_a_geared_rotor_runs_up_through_its_critical_speeds(record_evidence) -> 
         unexplained_energy(system, 2.0, 2e-4),
         tolerance=1e-5,
         topic=TOPIC,
+        kind="conservation law",
         source="conservation law",
     )
 

@@ -34,6 +34,7 @@ def test_fourth_order_of_runge_kutta(reference, record_evidence, way: str) -> No
             np.log2(gaps[0] / gaps[1]),
             tolerance=0.25,
             topic=TOPIC,
+            kind="published",
             source=SOURCE,
         )
 
@@ -57,6 +58,7 @@ def test_dense_output_keeps_the_order(reference, record_evidence) -> None:
         np.log2(errors[0] / errors[1]),
         tolerance=0.25,
         topic=TOPIC,
+        kind="published",
         source=SOURCE,
     )
 
@@ -82,6 +84,7 @@ def test_four_bar_through_its_singular_positions(reference, record_evidence, sol
         tolerance=1e-6,
         relative=True,
         topic=TOPIC,
+        kind=data["kind"],
         source=data["source"],
     )
     assert all(np.max(level) < 1e-12 for level in trajectory.violations.values())
@@ -105,6 +108,7 @@ def test_auto_passes_the_flat_four_bar(reference, record_evidence, tolerance: fl
         unit="m",
         tolerance=100 * tolerance,
         topic=TOPIC,
+        kind=data["kind"],
         source=data["source"],
     )
     response = da.TimeResponse(
@@ -148,6 +152,7 @@ def test_published_drift_of_the_augmented_equations(reference, record_evidence) 
             np.log10(ours),
             tolerance=0.6,
             topic=TOPIC,
+            kind="published",
             source=PUBLISHED,
         )
     assert drift["Baumgarte (α = β = 10/s)"] < 0.05 * drift["augmented"]
@@ -179,6 +184,7 @@ def test_flexible_pendulum(record_evidence) -> None:
             tolerance=1e-5,
             relative=True,
             topic=TOPIC,
+            kind="other method",
             source="generalized-α at a fine step",
         )
 
@@ -208,5 +214,6 @@ def test_andrews_mechanism(reference, record_evidence, solver, name: str) -> Non
             tolerance=tolerance,
             relative=True,
             topic=TOPIC,
+            kind=data["kind"],
             source=data["source"],
         )

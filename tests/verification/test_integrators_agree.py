@@ -80,5 +80,6 @@ def test_integrators_agree(model, name, solver, tolerance, record_evidence):
         np.max(np.abs(apart)),
         tolerance=tolerance,
         topic=TOPIC,
+        kind="other method",
         source=SOURCE,
     )

@@ -25,6 +25,7 @@ def test_table_a2(record_evidence) -> None:
         ends(found),
         tolerance=5e-5,
         topic=TOPIC,
+        kind="published",
         source=f"{SOURCE}, table 4",
         unit="rad",
     )
@@ -34,6 +35,7 @@ def test_table_a2(record_evidence) -> None:
         found.checked_fitness,
         tolerance=1e-6,
         topic=TOPIC,
+        kind="published",
         source=f"{SOURCE}, table 4",
         unit="m2",
     )
@@ -43,6 +45,7 @@ def test_table_a2(record_evidence) -> None:
         found.simulations,
         tolerance=20,
         topic=TOPIC,
+        kind="target",
         source="target: 120",
     )
 
@@ -57,6 +60,7 @@ def test_table_a3(record_evidence) -> None:
         ends(found),
         tolerance=5e-4,
         topic=TOPIC,
+        kind="published",
         source=f"{SOURCE}, table 5",
         unit="rad",
     )
@@ -86,6 +90,7 @@ def test_table_a3_by_the_polynomials_that_it_was_made_by(record_evidence) -> Non
         ends(found),
         tolerance=2e-4,
         topic=TOPIC,
+        kind="published",
         source=f"{SOURCE}, table 5",
         unit="rad",
     )
@@ -95,6 +100,7 @@ def test_table_a3_by_the_polynomials_that_it_was_made_by(record_evidence) -> Non
         found.fitness,
         tolerance=1e-6,
         topic=TOPIC,
+        kind="published",
         source=f"{SOURCE}, table 5",
         unit="m2",
     )
@@ -110,6 +116,7 @@ def test_table_a4(record_evidence) -> None:
         ends(found)[1:] / [[np.pi / 6], [2e7]],
         tolerance=3e-4,
         topic=TOPIC,
+        kind="published",
         source=f"{SOURCE}, table 6",
     )
     record_evidence(
@@ -118,6 +125,7 @@ def test_table_a4(record_evidence) -> None:
         found.radius[0],
         tolerance=1e-4,
         topic=TOPIC,
+        kind="published",
         source=f"{SOURCE}, table A4",
         unit="rad",
     )
@@ -127,6 +135,7 @@ def test_table_a4(record_evidence) -> None:
         found.checked_fitness,
         tolerance=3e-6,
         topic=TOPIC,
+        kind="published",
         source=f"{SOURCE}, table 6",
         unit="m2",
     )

@@ -30,7 +30,7 @@ def fitted(problem, number):
 @pytest.mark.parametrize("name", MODELS)
 def test_values_and_deviations_are_the_certified_ones_from_both_starts(name, regressions, record_evidence):
     values, deviations = (np.array(both) for both in zip(*(fitted(regressions[name], k) for k in (0, 1)), strict=True))
-    common = {"tolerance": 1e-4, "topic": TOPIC, "source": SOURCE}
+    common = {"tolerance": 1e-4, "topic": TOPIC, "kind": "published", "source": SOURCE}
     record_evidence(f"{name}, both starts: values over the certified ones", np.ones_like(values), values, **common)
     record_evidence(
         f"{name}, both starts: deviations over the certified ones", np.ones_like(values), deviations, **common
@@ -60,7 +60,7 @@ def test_one_descent_needs_no_more_evaluations_than_trf_and_lm(regressions, reco
             "one descent from each of 30 starts: share with four digits",
             sum(reached[peer, name, number] for name in MODELS for number in (0, 1)) / 30,
             sum(reached[ours, name, number] for name in MODELS for number in (0, 1)) / 30,
-            tolerance=None, topic=TOPIC, source=source,
+            tolerance=None, topic=TOPIC, kind="other code", source=source,
         )  # fmt: skip
         for name in MODELS:
             both = [k for k in (0, 1) if reached[peer, name, k] and reached[ours, name, k]]
@@ -68,7 +68,7 @@ def test_one_descent_needs_no_more_evaluations_than_trf_and_lm(regressions, reco
             starts = f"start{'s' if len(both) > 1 else ''} {' and '.join(str(k + 1) for k in both)}"
             record_evidence(
                 f"{name}, {starts}: evaluations of one descent", theirs, mine,
-                tolerance=None, topic=TOPIC, source=source,
+                tolerance=None, topic=TOPIC, kind="other code", source=source,
             )  # fmt: skip
         # From the first start of MGH17 a descent may end in a valley at infinity; further starts lead out of it.
         assert all(reached[ours, name, k] for name in MODELS for k in (0, 1) if (name, k) != ("MGH17", 0))

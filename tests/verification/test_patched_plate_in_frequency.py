@@ -36,17 +36,17 @@ def test_the_preload_that_damps_the_fifth_mode_best(record_evidence, plate) -> N
     best = min(peaks, key=lambda load: peaks[load])
     record_evidence(
         "plate with four patches, peak with free feet", 400.6, free.peak("left").frequency,
-        unit="Hz", tolerance=0.5, topic=TOPIC, source=SOURCE,
+        unit="Hz", tolerance=0.5, topic=TOPIC, kind="published", source=SOURCE,
     )  # fmt: skip
     record_evidence(
         "plate with four patches, best preload of 60, 75 and 90 N at each node of a foot", 80.0, best,
-        unit="N", tolerance=10.0, topic=TOPIC, source=CHOSEN,
+        unit="N", tolerance=10.0, topic=TOPIC, kind="published", source=CHOSEN,
     )  # fmt: skip
     lowered = 1 - peaks[best] / free.peak("left", "harmonic 1").amplitude
     assert 0.6 < lowered < 0.9  # how deep depends on where the forces act, which is not published
     record_evidence(
         "plate with four patches, part by which the best preload lowers the peak of free feet",
-        0.754, lowered, tolerance=None, topic=TOPIC, source=CHOSEN,
+        0.754, lowered, tolerance=None, topic=TOPIC, kind="published", source=CHOSEN,
     )  # fmt: skip
 
 
@@ -62,5 +62,5 @@ def test_stuck_feet(record_evidence, plate) -> None:
     assert antisymmetric == [5]
     record_evidence(
         "plate with four patches, frequency with stuck feet, reduced", 408.4, np.sqrt(squares[5]) / (2 * np.pi),
-        unit="Hz", tolerance=0.5, topic=TOPIC, source=CHOSEN,
+        unit="Hz", tolerance=0.5, topic=TOPIC, kind="published", source=CHOSEN,
     )  # fmt: skip

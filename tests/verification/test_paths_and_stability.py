@@ -90,13 +90,13 @@ def test_duffing_oscillator_is_unstable_between_its_folds(record_evidence) -> No
         differences.append(np.abs(sorted_values(floquet_multipliers(duffing(), curve, point)) - sorted_values(exact)))
     record_evidence(
         "Duffing oscillator: Floquet multipliers by Hill's method, before, between and behind the folds",
-        0.0, np.max(differences), tolerance=1e-7, topic=TOPIC, source=TIME, noisy=True,
+        0.0, np.max(differences), tolerance=1e-7, topic=TOPIC, kind="other code", source=TIME, noisy=True,
     )  # fmt: skip
     for number, fold in enumerate((first, last)):
         multipliers = floquet_multipliers(duffing(), curve, fold)
         record_evidence(
             f"Duffing oscillator: Floquet multiplier at fold {number + 1}", 1.0,
-            multipliers[np.argmin(np.abs(multipliers - 1))].real, tolerance=1e-4, topic=TOPIC, source="a fold's own",
+            multipliers[np.argmin(np.abs(multipliers - 1))].real, tolerance=1e-4, topic=TOPIC, kind="closed form", source="a fold's own",
         )  # fmt: skip
 
 
@@ -121,7 +121,7 @@ def test_period_doublings_of_an_oscillator_pushed_to_one_side(record_evidence) -
         exact = np.linalg.eigvals(monodromy(*cubic(0.0, 0.05, 1.0, 0.03, 0.16, omega), omega, begin(curve, point)))
         record_evidence(
             f"oscillator pushed to one side: Floquet multiplier at period doubling {number + 1}, at "
-            f"{omega:.4f} rad/s", -1.0, np.min(exact.real), tolerance=1e-3, topic=TOPIC, source=TIME,
+            f"{omega:.4f} rad/s", -1.0, np.min(exact.real), tolerance=1e-3, topic=TOPIC, kind="other code", source=TIME,
         )  # fmt: skip
 
 
@@ -162,7 +162,7 @@ def test_tori_of_an_oscillator_with_an_absorber(record_evidence) -> None:
         assert abs(largest.imag) > 0.1
         record_evidence(
             f"oscillator with an absorber: magnitude of the Floquet multipliers at torus {number + 1}, at "
-            f"{omega:.4f} rad/s", 1.0, abs(largest), tolerance=1e-3, topic=TOPIC, source=TIME,
+            f"{omega:.4f} rad/s", 1.0, abs(largest), tolerance=1e-3, topic=TOPIC, kind="other code", source=TIME,
         )  # fmt: skip
 
 
@@ -174,7 +174,7 @@ def test_the_time_map_is_of_second_order(record_evidence) -> None:
         differences.append(np.abs(hill - steps).max())
     record_evidence(
         "Floquet multipliers by steps in time beside Hill's method: order in the step", 2.0,
-        np.log2(differences[1] / differences[2]), tolerance=0.05, topic=TOPIC, source="trapezoidal rule",
+        np.log2(differences[1] / differences[2]), tolerance=0.05, topic=TOPIC, kind="closed form", source="trapezoidal rule",
     )  # fmt: skip
 
 
@@ -209,7 +209,7 @@ def test_a_slider_forgets_in_its_own_time(record_evidence) -> None:
     for number in range(2):
         record_evidence(
             f"one mass with a slider: Floquet multiplier {number + 1}", exact[number], ours[number],
-            tolerance=2e-3, topic=TOPIC, source="disturbed simulations, 20,000 steps a period",
+            tolerance=2e-3, topic=TOPIC, kind="other method", source="disturbed simulations, 20,000 steps a period",
         )  # fmt: skip
 
 
@@ -226,7 +226,7 @@ def test_a_rigid_contact_of_a_massless_foot_is_as_stable_as_the_elastic_one(reco
     ]
     record_evidence(
         "rigid contact of a massless foot beside the elastic law: Floquet multipliers", 0.0, np.max(differences),
-        tolerance=1e-9, topic=TOPIC, source="elastic law with the same stiffness", noisy=True,
+        tolerance=1e-9, topic=TOPIC, kind="other method", source="elastic law with the same stiffness", noisy=True,
     )  # fmt: skip
 
 
@@ -246,12 +246,12 @@ def test_backbone_of_the_duffing_oscillator(record_evidence) -> None:
     record_evidence(
         "Duffing oscillator: frequencies of the mode up to ten times the linear stiffness",
         np.pi / 2 * np.sqrt(1 + part) / ellipk(part / 2 / (1 + part)), TURN * found.frequencies,
-        tolerance=1e-8, topic=TOPIC, source="Jacobi's elliptic functions", unit="rad/s", noisy=True,
+        tolerance=1e-8, topic=TOPIC, kind="closed form", source="Jacobi's elliptic functions", unit="rad/s", noisy=True,
     )  # fmt: skip
     size = found.amplitude("m")
     record_evidence(
         "Duffing oscillator: energies of the mode", size**2 / 2 + 0.1 * size**4 / 4, found.energies,
-        tolerance=1e-8, topic=TOPIC, source="x²/2 + εx⁴/4", unit="J", relative=True, noisy=True,
+        tolerance=1e-8, topic=TOPIC, kind="closed form", source="x²/2 + εx⁴/4", unit="J", relative=True, noisy=True,
     )  # fmt: skip
     np.testing.assert_allclose(found.damping * 2 * TURN * found.frequencies, 0.05, rtol=1e-9)  # c = 2 ζ ω m
 
@@ -265,12 +265,12 @@ def test_damping_of_a_slider_with_one_harmonic(record_evidence) -> None:
     loss = 4 * limit / np.pi * (1 - limit / (stiffness * size))
     record_evidence(
         "one mass with a slider, one harmonic: frequencies of the mode", omega, TURN * found.frequencies,
-        tolerance=1e-6, topic=TOPIC, source="closed form of Jenkins' element", unit="rad/s",
+        tolerance=1e-6, topic=TOPIC, kind="closed form", source="closed form of Jenkins' element", unit="rad/s",
     )  # fmt: skip
     record_evidence(
         "one mass with a slider, one harmonic: damping ratios of the mode",
         0.02 / omega + loss / (2 * omega**2 * size), found.damping,
-        tolerance=1e-6, topic=TOPIC, source="closed form of Jenkins' element",
+        tolerance=1e-6, topic=TOPIC, kind="closed form", source="closed form of Jenkins' element",
     )  # fmt: skip
 
 
@@ -285,7 +285,7 @@ def test_a_force_at_the_frequency_of_the_mode_keeps_its_motion(record_evidence) 
         forced.append(frequency_response(system, np.array([frequency]), method).amplitude("m", "harmonic 1")[0])
     record_evidence(
         "one mass with a slider, one harmonic: forced response at the mode's frequency and force",
-        found.amplitudes, forced, tolerance=1e-8, topic=TOPIC, source="the mode's amplitude", unit="m", noisy=True,
+        found.amplitudes, forced, tolerance=1e-8, topic=TOPIC, kind="other method", source="the mode's amplitude", unit="m", noisy=True,
     )  # fmt: skip
 
 
@@ -303,12 +303,12 @@ def test_the_mode_predicts_forced_peaks_with_friction(record_evidence) -> None:
     record_evidence(
         "two masses with a slider: amplitudes of forced peaks from the mode", sizes,
         [peak.amplitude for peak in peaks], tolerance=0.01, topic=TOPIC,
-        source="the mode at the force that its damping needs", unit="m", relative=True,
+        kind="other method", source="the mode at the force that its damping needs", unit="m", relative=True,
     )  # fmt: skip
     record_evidence(
         "two masses with a slider: frequencies of forced peaks from the mode", found.frequencies,
         [peak.frequency for peak in peaks], tolerance=0.02, topic=TOPIC,
-        source="the mode at the force that its damping needs", unit="Hz", relative=True,
+        kind="other method", source="the mode at the force that its damping needs", unit="Hz", relative=True,
     )  # fmt: skip
 
 
@@ -339,11 +339,11 @@ def test_a_track_over_forces_is_that_of_whole_curves(record_evidence) -> None:
     source = "largest points of whole curves, by splines"
     record_evidence(
         "Duffing oscillator: peaks over the force", [peak.amplitude for peak in peaks], track.amplitudes[::7],
-        tolerance=1e-6, topic=TOPIC, source=source, unit="m", relative=True, noisy=True,
+        tolerance=1e-6, topic=TOPIC, kind="other method", source=source, unit="m", relative=True, noisy=True,
     )  # fmt: skip
     record_evidence(
         "Duffing oscillator: frequencies of the peaks over the force", [peak.frequency for peak in peaks],
-        track.frequencies[::7], tolerance=1e-6, topic=TOPIC, source=source, unit="Hz", relative=True, noisy=True,
+        track.frequencies[::7], tolerance=1e-6, topic=TOPIC, kind="other method", source=source, unit="Hz", relative=True, noisy=True,
     )  # fmt: skip
     assert np.all(track.solves[1:] <= 8)
     assert track.solves[1:].mean() * len(peaks) < 0.05 * points
@@ -363,6 +363,6 @@ def test_a_track_over_preloads_is_that_of_whole_curves(record_evidence) -> None:
         points += len(curve)
     record_evidence(
         "one mass with a slider: peaks over the preload", peaks, track.amplitudes, tolerance=1e-6, topic=TOPIC,
-        source="largest points of whole curves, by splines", unit="m", relative=True, noisy=True,
+        kind="other method", source="largest points of whole curves, by splines", unit="m", relative=True, noisy=True,
     )  # fmt: skip
     assert track.solves[1:].sum() < 0.2 * points

@@ -51,6 +51,7 @@ def check(record_evidence, structure: Structure, name: str, tolerances: list[flo
             unit="Hz",
             tolerance=tolerance * published,
             topic=TOPIC,
+            kind="other method",
             source=SOURCE,
         )
 
@@ -86,6 +87,7 @@ def test_ten_modes_of_the_reduced_plate(record_evidence) -> None:
         tolerance=5e-3,
         relative=True,
         topic=TOPIC,
+        kind="other method",
         source=source,
     )
     assert np.all(np.abs(errors.relative) < 5e-3)
@@ -95,6 +97,7 @@ def test_ten_modes_of_the_reduced_plate(record_evidence) -> None:
         errors.similarity.min(),
         tolerance=1e-3,
         topic=TOPIC,
+        kind="other method",
         source=source,
     )
 
@@ -110,7 +113,13 @@ def test_plate_with_patches(record_evidence) -> None:
     source = "Ma, Li, Fan, Wu: Friction damping analysis by an accelerated dynamic Lagrangian method (2019)"
     added = lift @ (unheld.mass @ lift) / (STEEL.density * SIZE[0] * SIZE[1] * THICKNESS) - 1
     record_evidence(
-        "plate with four patches, added mass", 0.006, added, tolerance=5e-5, topic=TOPIC, source=f"{source}; chosen"
+        "plate with four patches, added mass",
+        0.006,
+        added,
+        tolerance=5e-5,
+        topic=TOPIC,
+        kind="published",
+        source=f"{source}; chosen",
     )
     quarter, middle = SIZE[0] / 4, SIZE[0] / 2
     places = ((quarter, middle, THICKNESS), (middle, quarter, THICKNESS))
@@ -126,5 +135,6 @@ def test_plate_with_patches(record_evidence) -> None:
             unit="Hz",
             tolerance=0.5,
             topic=TOPIC,
+            kind="published",
             source=source + ("; chosen" if state == "stuck" else ""),
         )

@@ -37,5 +37,6 @@ def test_table_a1(
         unit="m",
         tolerance=tolerance,
         topic="Flexible mechanisms",
+        kind="published",
         source=SOURCE,
     )

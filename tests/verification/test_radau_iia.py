@@ -33,6 +33,7 @@ def test_fifth_order_in_position_and_velocity(reference, record_evidence, mechan
             np.log2(gaps[0] / gaps[1]),
             tolerance=0.4,
             topic=TOPIC,
+            kind="published",
             source=SOURCE,
         )
 
@@ -58,6 +59,7 @@ def test_orders_of_all_stages(record_evidence, stages: int, coarse: int) -> None
         np.log2(error(coarse) / error(2 * coarse)),
         tolerance=0.1,
         topic=TOPIC,
+        kind="published",
         source="Hairer & Wanner, Stiff differential equations solved by Radau methods (1999)",
     )
 
@@ -76,6 +78,7 @@ def test_ninth_order_with_constraints(reference, record_evidence) -> None:
         np.log2(np.linalg.norm(coarse - middle) / np.linalg.norm(middle - fine)),
         tolerance=0.4,
         topic=TOPIC,
+        kind="published",
         source=SOURCE,
     )
 
@@ -96,6 +99,7 @@ def test_two_link_arm_to_ten_digits(reference, record_evidence, stages: int, tol
             tolerance=1e-10,
             relative=True,
             topic=TOPIC,
+            kind="other method",
             source="explicit midpoint rule, extrapolated in extended precision",
         )
 
@@ -110,6 +114,7 @@ def test_two_link_arm_over_twenty_seconds(reference, record_evidence) -> None:
         np.abs(total / total[0] - 1).max(),
         tolerance=2.8e-4,
         topic=TOPIC,
+        kind="published",
         source="below the published 2.88e-4 of the firefly algorithm at h = 2 ms",
     )
     for level, violation in trajectory.violations.items():
@@ -119,6 +124,7 @@ def test_two_link_arm_over_twenty_seconds(reference, record_evidence) -> None:
             violation,
             tolerance=1e-12,
             topic=TOPIC,
+            kind="conservation law",
             source="constraints",
             noisy=True,
         )
@@ -160,6 +166,7 @@ def test_andrews_mechanism(reference, record_evidence) -> None:
             tolerance=tolerance,
             relative=True,
             topic=TOPIC,
+            kind=data["kind"],
             source=data["source"],
         )
 
@@ -187,6 +194,7 @@ def test_flexible_pendulum_agrees_with_generalized_alpha(record_evidence) -> Non
         unit="m",
         tolerance=1e-5,
         topic=TOPIC,
+        kind="other method",
         source="generalized-α",
     )
 
@@ -209,6 +217,7 @@ def test_errors_of_a_stiff_slider_crank_fall_with_the_tolerance(record_evidence,
             unit="m, m/s",
             tolerance=bound,
             topic=TOPIC,
+            kind="other method",
             source="DOP853 with coordinate partitioning, relative tolerance 1e-12",
             noisy=True,
         )

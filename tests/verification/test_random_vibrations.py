@@ -17,7 +17,7 @@ def judged(record_evidence, numbers: list[int]) -> None:
     worst = max(residual for outcome in outcomes.values() for residual in outcome.residuals)
     record_evidence(
         f"{len(numbers)} random systems: largest residual of a point found, as part of the forces",
-        0.0, worst, tolerance=ACCEPTED, topic=TOPIC, source=SOURCE,
+        0.0, worst, tolerance=ACCEPTED, topic=TOPIC, kind="other method", source=SOURCE,
     )  # fmt: skip
     assert not {number: outcome.lost for number, outcome in outcomes.items() if outcome.lost}
     refused = {number: outcome.refused for number, outcome in outcomes.items() if outcome.refused}

@@ -122,7 +122,7 @@ def test_success_is_no_rarer_and_simulations_are_no_more_than_by_trf_and_lm(rati
         source = f"scipy.optimize.least_squares, {name}"
         assert success >= reached
         assert spent <= cost or reached < success
-        common = {"topic": TOPIC, "source": source}
+        common = {"topic": TOPIC, "kind": "other code", "source": source}
         record_evidence(f"{what}: share that reaches the truth", reached, success, tolerance=None, **common)
         record_evidence(f"{what}: simulations a start", cost, spent, tolerance=None, **common)
 
@@ -134,6 +134,6 @@ def test_both_inertias_come_back_to_a_millionth_through_identify(record_evidence
     fit = da.identify(exact, data, method=da.ResponseSensitivity())
     record_evidence(
         "inertias of crank and rod", TRUTH, fit.values, unit="kg m²", tolerance=1e-6, relative=True, noisy=True,
-        topic=TOPIC, source="the model's own response",
+        topic=TOPIC, kind="known truth", source="the model's own response",
     )  # fmt: skip
     assert fit.simulations < 60

@@ -30,6 +30,7 @@ def test_simple_pendulum(reference, record_evidence) -> None:
             tolerance=1e-6,
             relative=True,
             topic=TOPIC,
+            kind=data["kind"],
             source=data["source"],
         )
 
@@ -56,6 +57,7 @@ def test_n_four_bar(reference, record_evidence, case: int, step: float) -> None:
         tolerance=1e-6,
         relative=True,
         topic=TOPIC,
+        kind=data["kind"],
         source=data["source"],
     )
 
@@ -67,7 +69,7 @@ def test_two_link_arm(reference, record_evidence) -> None:
         two_link_arm(data["model"]), 5.0, solver=fine(4.5e-5), times=np.array([0.0, *values["times"]])
     )
     angles = trajectory.channels(["upper.centre.angle", "lower.centre.angle"])
-    common = {"topic": TOPIC, "source": data["source"], "relative": True}
+    common = {"topic": TOPIC, "kind": data["kind"], "source": data["source"], "relative": True}
     record_evidence(
         "two-link arm, energy at first",
         values["energy"],
@@ -103,5 +105,6 @@ def test_slider_crank(reference, record_evidence) -> None:
         tolerance=1e-6,
         relative=True,
         topic=TOPIC,
+        kind=data["kind"],
         source=data["source"],
     )

@@ -47,7 +47,7 @@ def test_the_path_of_a_mass_that_meets_a_stop_has_two_turning_points(record_evid
     touching = next(omega for omega in np.linspace(0.66, 0.64, 20_001) if _linear(reference, omega) >= 1.0)
     record_evidence(
         "two masses with a stop: frequency at which it is touched and the path turns, rad/s", touching, grazing,
-        tolerance=2e-6, topic=TOPIC, source="closed form of the motion without contact",
+        tolerance=2e-6, topic=TOPIC, kind="closed form", source="closed form of the motion without contact",
     )  # fmt: skip
     # Beyond the last turning point shooting finds none of the motions on the branch, and before it all.
     found = [reference.periodic(state(curve, point), TURN * curve.frequencies[point]) for point in range(len(curve))]
@@ -86,7 +86,7 @@ def test_stability_of_a_mass_that_meets_a_stop_is_that_of_shooting(
         right.append((curve.stable[point] == 1) == (np.abs(np.linalg.eigvals(found[1])).max() < 1))
     record_evidence(
         f"two masses with a stop, {harmonics} harmonics: share of judged points with the right stability", 1.0,
-        np.mean(right), tolerance=0.0, topic=TOPIC, source=TIME,
+        np.mean(right), tolerance=0.0, topic=TOPIC, kind="other method", source=TIME,
     )  # fmt: skip
 
 
@@ -109,7 +109,7 @@ def test_the_path_of_a_chain_with_sliders_and_a_stop_has_four_turning_points(rec
     worst = max(unbalanced(own, curve, point) for point in (*range(0, len(curve), 10), *np.flatnonzero(curve.fold)))
     record_evidence(
         "three masses with sliders and a stop: largest residual of the path, as part of the forces", 0.0, worst,
-        tolerance=ACCEPTED, topic=TOPIC, source="the balance of forces in plain NumPy",
+        tolerance=ACCEPTED, topic=TOPIC, kind="other method", source="the balance of forces in plain NumPy",
     )  # fmt: skip
 
 
@@ -148,7 +148,7 @@ def test_the_turning_points_of_a_chain_with_sliders_and_a_stop_are_those_of_shoo
     worst = float(np.abs(TURN * curve.folds - frequencies).max())
     record_evidence(
         "three masses with sliders and a stop: largest error of the four turning points, rad/s", 0.0, worst,
-        tolerance=2e-5, topic=TOPIC, source=SHOOTING,
+        tolerance=2e-5, topic=TOPIC, kind="other method", source=SHOOTING,
     )  # fmt: skip
     # Two turns are folds, with a multiplier of 1. At the two others a slider begins to stick or to slip.
     nearest = [float(np.abs(one.multipliers - 1).min()) for one in turned if one is not None]
@@ -178,11 +178,11 @@ def test_points_between_the_turning_points_of_a_chain_are_those_of_shooting(reco
             right.append((curve.stable[point] == 1) == (largest < 1))
     record_evidence(
         "three masses with sliders and a stop: largest error of points of the path, as part of the motion", 0.0,
-        max(errors), tolerance=1e-3, topic=TOPIC, source=SHOOTING,
+        max(errors), tolerance=1e-3, topic=TOPIC, kind="other method", source=SHOOTING,
     )  # fmt: skip
     record_evidence(
         "three masses with sliders and a stop: share of points with the right stability", 1.0, float(np.mean(right)),
-        tolerance=0.0, topic=TOPIC, source=SHOOTING,
+        tolerance=0.0, topic=TOPIC, kind="other method", source=SHOOTING,
     )  # fmt: skip
     assert len(right) > 20
     # The determinant of I - M changes its sign at the turning points, and nowhere else.

@@ -43,6 +43,7 @@ def test_second_order_in_position_velocity_and_forces(record_evidence, links, so
             np.log2(gaps[0] / gaps[1]),
             tolerance=0.1,
             topic=TOPIC,
+            kind="published",
             source=SOURCE,
         )
 
@@ -67,6 +68,7 @@ def test_second_order_with_friction_of_the_joints_forces(record_evidence, solver
         np.log2(np.linalg.norm(coarse - middle) / np.linalg.norm(middle - fine)),
         tolerance=0.1,
         topic=TOPIC,
+        kind="published",
         source=SOURCE,
     )
 
@@ -93,6 +95,7 @@ def test_momenta_of_a_free_flight(record_evidence, solver: type) -> None:
         (found - found[0]) / np.abs(found[0]).max(),
         tolerance=1e-12,
         topic=TOPIC,
+        kind="conservation law",
         source="conservation law",
         noisy=True,
     )
@@ -114,6 +117,7 @@ def test_angular_momentum_about_a_fixed_pin(record_evidence, solver: type) -> No
         found / found[0] - 1,
         tolerance=1e-12,
         topic=TOPIC,
+        kind="conservation law",
         source="conservation law",
         noisy=True,
     )
@@ -131,6 +135,7 @@ def test_the_energy_does_not_drift(record_evidence, arm) -> None:
         deviations[-1] / deviations.max(),
         tolerance=0.5,
         topic=TOPIC,
+        kind="published",
         source=SOURCE,
     )
     means = total.reshape(-1)[1:].reshape(10, -1).mean(axis=1)
@@ -140,6 +145,7 @@ def test_the_energy_does_not_drift(record_evidence, arm) -> None:
         (means[-1] - means[0]) / kinetic,
         tolerance=2e-4,
         topic=TOPIC,
+        kind="published",
         source=SOURCE,
     )
 
@@ -169,6 +175,7 @@ def test_energy_to_rounding(record_evidence, name: str, builder, end: float, ste
         (total - total[0]) / kinetic,
         tolerance=1e-12,
         topic=TOPIC,
+        kind="conservation law",
         source="conservation law",
         noisy=True,
     )
@@ -183,6 +190,7 @@ def test_energy_of_the_two_link_arm_to_rounding(record_evidence, arm) -> None:
         (total - total[0]) / kinetic,
         tolerance=1e-12,
         topic=TOPIC,
+        kind="conservation law",
         source="conservation law",
         noisy=True,
     )
@@ -196,6 +204,7 @@ def test_the_momentum_across_gravity_stays_in_free_fall(record_evidence) -> None
         found / found[0] - 1,
         tolerance=1e-12,
         topic=TOPIC,
+        kind="conservation law",
         source="conservation law",
         noisy=True,
     )
@@ -216,6 +225,7 @@ def test_work_of_loads_dampers_and_friction_balances_the_energy(record_evidence,
         np.log2(gaps[1] / gaps[2]),
         tolerance=0.2,
         topic=TOPIC,
+        kind="conservation law",
         source="conservation law",
     )
 
@@ -230,6 +240,7 @@ def test_constraints_hold_between_the_steps(record_evidence, arm, solver: type) 
             violation,
             tolerance=1e-12,
             topic=TOPIC,
+            kind="conservation law",
             source="constraints",
             noisy=True,
         )
@@ -248,6 +259,7 @@ def test_andrews_mechanism(reference, record_evidence, solver: type) -> None:
         tolerance=1e-4,
         relative=True,
         topic=TOPIC,
+        kind=data["kind"],
         source=data["source"],
     )
 
@@ -265,5 +277,6 @@ def test_flexible_pendulum_agrees_with_radau(record_evidence, solver: type) -> N
         unit="m",
         tolerance=1e-5,
         topic=TOPIC,
+        kind="other method",
         source="Radau IIA of order 5",
     )

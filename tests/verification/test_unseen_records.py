@@ -7,7 +7,7 @@ import pytest
 
 from unseen_records import CASES, MOTIONS, row, table
 
-TOPIC = "What the data can tell"
+TOPIC = "Statistics of estimates"
 SOURCE = "synthetic records drawn by seed, tests/unseen_records.py"
 FEW = [("right", seed) for seed in range(4)] + [(case, seed) for case in ("unit", "delay", "model") for seed in (2, 9)]
 
@@ -18,15 +18,21 @@ def judged(record_evidence, rows):
     for warning in ("unit", "delay", "model"):
         false = sum(getattr(item, warning) for item in of["right"])
         words = f"false alarms on the {warning}, {len(of['right'])} records that the model explains"
-        record_evidence(words, 0.0, false / len(of["right"]), tolerance=0.01, topic=TOPIC, source=SOURCE)
+        record_evidence(
+            words, 0.0, false / len(of["right"]), tolerance=0.01, topic=TOPIC, kind="known truth", source=SOURCE
+        )
         right = sum(getattr(item, warning) for item in of[warning])
         words = f"warnings on the {warning}, {len(of[warning])} records for which it is wrong"
-        record_evidence(words, 1.0, right / len(of[warning]), tolerance=1e-9, topic=TOPIC, source=SOURCE)
+        record_evidence(
+            words, 1.0, right / len(of[warning]), tolerance=1e-9, topic=TOPIC, kind="known truth", source=SOURCE
+        )
     for motion in MOTIONS:
         for noise in ("white", "AR(1)"):
             shares = [item.covered for item in of["right"] if (item.motion, item.noise) == (motion, noise)]
             words = f"coverage of unseen records by 95 % bands, {motion} oscillator, {noise} noise"
-            record_evidence(words, 0.945, float(np.mean(shares)), tolerance=0.045, topic=TOPIC, source=SOURCE)
+            record_evidence(
+                words, 0.945, float(np.mean(shares)), tolerance=0.045, topic=TOPIC, kind="known truth", source=SOURCE
+            )
 
 
 def test_warnings_and_bands_of_all_cases(record_evidence):

@@ -1,31 +1,36 @@
-"""A real browser: headless Chromium, asked over its debugging pipe, with nothing between it and the tests."""
+"""A real browser: Debian's Chromium, headless, driven by Playwright."""
 
 import os
 import shutil
 from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
+from playwright.sync_api import Browser, sync_playwright
 
-from browser.chromium import Chromium
+from browser.visitor import Visitor
 
 NAMES = ("chromium", "chromium-browser", "google-chrome", "chrome")
 
 
-@pytest.fixture(scope="session")
-def running(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Chromium]:
-    """The browser for all tests; ``CHROMIUM`` in the environment names the program."""
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    """The browser of one module; ``CHROMIUM`` in the environment names the program.
+
+    Playwright runs an event loop in this thread, in which other tests could not start theirs: it ends with the module.
+    """
     program = os.environ.get("CHROMIUM") or next(filter(None, map(shutil.which, NAMES)), None)
     if program is None:
-        pytest.skip("no Chromium was found, so no page was opened in a browser; install one, or name it in CHROMIUM")
-    browser = Chromium(Path(program), tmp_path_factory.mktemp("profile"))
-    yield browser
-    browser.close()
+        pytest.skip("Chromium is not installed. Install it, or name the program in CHROMIUM.")
+    with sync_playwright() as playwright:
+        running = playwright.chromium.launch(executable_path=program)
+        yield running
+        running.close()
 
 
 @pytest.fixture
-def chromium(running: Chromium) -> Iterator[Chromium]:
-    """The browser for one test. Its pages are closed after it: a page that plays an animation takes half a core."""
-    assert running.pages == []
-    yield running
-    running.close_pages()
+def chromium(browser: Browser) -> Iterator[Visitor]:
+    """The browser for one test, without pages of earlier ones."""
+    assert browser.contexts == []
+    visitor = Visitor(browser)
+    yield visitor
+    visitor.close()

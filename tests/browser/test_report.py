@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from browser.visitor import move_focus, wait_until
 from dalembert.report import figures, report
 from dalembert.report.look import DARK, LIGHT
 from stand_ins import band_fit, comparison, fit, motion, parameter_set, propagation, sweep
@@ -25,51 +26,57 @@ def _colour(hexadecimal: str) -> str:
 
 
 def test_every_figure_is_drawn_and_nothing_is_asked_for_or_refused(chromium, path):
-    tab = chromium.open(path)
-    drawn = tab.run("[...document.querySelectorAll('.canvas[data-drawn]')].map((place) => place.id)")
+    page = chromium.open(path)
+    drawn = page.evaluate("[...document.querySelectorAll('.canvas[data-drawn]')].map((place) => place.id)")
     assert drawn == [f"figure-{name}" for name in figures(fit(), trajectory=motion())]
-    assert tab.requests == [path.as_uri()]
-    assert tab.complaints == []
+    assert chromium.requests == [path.as_uri()]
+    assert chromium.complaints == []
 
 
 def test_a_script_that_slipped_in_would_be_refused(chromium, path, tmp_path):
     copy = tmp_path / "slipped.html"
     copy.write_text(path.read_text().replace("</main>", "<script>document.title = 'run'</script></main>"))
-    tab = chromium.open(copy)
-    assert tab.run("document.title") == "Pendulum"
-    assert "Content Security Policy" in tab.complaints[0]
+    page = chromium.open(copy)
+    assert page.evaluate("document.title") == "Pendulum"
+    assert "Content Security Policy" in chromium.complaints[0]
 
 
 def test_names_are_shown_and_never_run(chromium, path):
-    tab = chromium.open(path)
-    assert tab.run("document.title") == "Pendulum"
-    assert tab.run("document.images.length") == 0
-    assert tab.run("document.querySelector('#figure-responses-1 .legendtext').textContent") == "<b>AB</b>.x measured"
-    assert NASTY in tab.run("[...document.querySelectorAll('#figure-parameters text')].map((text) => text.textContent)")
+    page = chromium.open(path)
+    assert page.evaluate("document.title") == "Pendulum"
+    assert page.evaluate("document.images.length") == 0
+    assert (
+        page.evaluate("document.querySelector('#figure-responses-1 .legendtext').textContent") == "<b>AB</b>.x measured"
+    )
+    assert NASTY in page.evaluate(
+        "[...document.querySelectorAll('#figure-parameters text')].map((text) => text.textContent)"
+    )
 
 
 @pytest.mark.parametrize(("scheme", "palette"), [("light", LIGHT), ("dark", DARK)])
 def test_figures_follow_the_page_into_the_dark(chromium, path, scheme, palette):
-    tab = chromium.open(path, scheme=scheme)
-    assert tab.run("getComputedStyle(document.body).backgroundColor") == _colour(palette.page)
-    assert tab.run("document.querySelector('#figure-energies .main-svg').style.background") == _colour(palette.surface)
+    page = chromium.open(path, scheme=scheme)
+    assert page.evaluate("getComputedStyle(document.body).backgroundColor") == _colour(palette.page)
+    assert page.evaluate("document.querySelector('#figure-energies .main-svg').style.background") == _colour(
+        palette.surface
+    )
     line = "document.querySelector('#figure-energies .scatterlayer .js-line').style.stroke"
-    assert tab.run(line) == _colour(palette.series[0])
+    assert page.evaluate(line) == _colour(palette.series[0])
 
 
 def test_figures_change_with_the_system_and_are_light_in_print(chromium, path):
-    tab = chromium.open(path)
+    page = chromium.open(path)
     ground = "document.querySelector('#figure-energies .main-svg').style.background"
-    tab.send("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "dark"}])
-    tab.until(f"{ground} === '{_colour(DARK.surface)}'")
-    tab.run("dispatchEvent(new Event('beforeprint'))")
-    tab.until(f"{ground} === '{_colour(LIGHT.surface)}'")
+    page.emulate_media(color_scheme="dark")
+    wait_until(page, f"{ground} === '{_colour(DARK.surface)}'")
+    page.evaluate("dispatchEvent(new Event('beforeprint'))")
+    wait_until(page, f"{ground} === '{_colour(LIGHT.surface)}'")
 
 
 def test_play_moves_the_mechanism_to_its_end_in_real_time(chromium, path):
-    tab = chromium.open(path)
-    before = tab.run(LAST_BODY)
-    lasted = tab.run(
+    page = chromium.open(path)
+    before = page.evaluate(LAST_BODY)
+    lasted = page.evaluate(
         """new Promise((done) => {
             const button = document.querySelector(".player button"), began = performance.now();
             button.click();
@@ -81,26 +88,26 @@ def test_play_moves_the_mechanism_to_its_end_in_real_time(chromium, path):
         })"""
     )
     assert 1.8 < lasted < 4.0
-    assert tab.run("document.querySelector('.player output').textContent") == "t = 2.00 s"
-    assert tab.run(LAST_BODY) != before
+    assert page.evaluate("document.querySelector('.player output').textContent") == "t = 2.00 s"
+    assert page.evaluate(LAST_BODY) != before
 
 
 def test_the_player_obeys_the_keyboard(chromium, path):
-    tab = chromium.open(path)
-    tab.run("document.querySelector('.player button').focus()")
-    tab.press("Enter")
-    tab.until("document.querySelector('.player button').getAttribute('aria-pressed') === 'true'")
-    tab.press("Enter")
-    tab.until("document.querySelector('.player button').getAttribute('aria-pressed') === 'false'")
-    tab.press("Tab")
-    tab.press("Home")
-    tab.press("ArrowRight")
-    tab.until("document.querySelector('.player input').getAttribute('aria-valuetext') === '0.04 seconds'")
+    page = chromium.open(path)
+    page.evaluate("document.querySelector('.player button').focus()")
+    page.keyboard.press("Enter")
+    wait_until(page, "document.querySelector('.player button').getAttribute('aria-pressed') === 'true'")
+    page.keyboard.press("Enter")
+    wait_until(page, "document.querySelector('.player button').getAttribute('aria-pressed') === 'false'")
+    page.keyboard.press("Tab")
+    page.keyboard.press("Home")
+    page.keyboard.press("ArrowRight")
+    wait_until(page, "document.querySelector('.player input').getAttribute('aria-valuetext') === '0.04 seconds'")
 
 
 def test_the_slider_shows_the_mechanism_at_its_time(chromium, path):
-    tab = chromium.open(path)
-    tab.run(
+    page = chromium.open(path)
+    page.evaluate(
         """(() => {
             const slider = document.querySelector(".player input");
             slider.value = 25;
@@ -109,60 +116,62 @@ def test_the_slider_shows_the_mechanism_at_its_time(chromium, path):
     )
     figure = figures(fit(), trajectory=motion())["mechanism"]
     shown = "document.getElementById('figure-mechanism').calcdata.at(-1)[0].x"
-    tab.until(f"Math.abs({shown} - {float(figure.frames[25].data[-1].x[0])}) < 1e-6")
-    assert tab.run("document.querySelector('.player output').textContent") == "t = 1.02 s"
+    wait_until(page, f"Math.abs({shown} - {float(figure.frames[25].data[-1].x[0])}) < 1e-6")
+    assert page.evaluate("document.querySelector('.player output').textContent") == "t = 1.02 s"
 
 
 def test_a_phone_scrolls_down_and_never_sideways(chromium, path):
-    tab = chromium.open(path, width=400, height=800, touch=True)
-    assert tab.run("[innerWidth, document.documentElement.scrollWidth]") == [400, 400]
-    assert tab.run(
+    page = chromium.open(path, width=400, height=800, touch=True)
+    assert page.evaluate("[innerWidth, document.documentElement.scrollWidth]") == [400, 400]
+    assert page.evaluate(
         "[...document.querySelectorAll('.main-svg')].every((svg) => svg.getBoundingClientRect().right <= 400)"
     )
-    assert tab.run("document.getElementById('figure-energies').layout.dragmode") is False
+    assert page.evaluate("document.getElementById('figure-energies').layout.dragmode") is False
 
 
 def test_each_control_can_be_reached_by_tab_and_each_has_a_name(chromium, path):
-    tab = chromium.open(path)
+    page = chromium.open(path)
     names, wanted = [], {"To the result", "▶ Play", "Time in seconds", "Download as CSV", "Identified values"}
     while not wanted <= set(names):
         assert len(names) < 100, f"Tab never came to {wanted - set(names)}"
-        tab.move_focus()
+        move_focus(page)
         names.append(
-            tab.run("(document.activeElement.getAttribute('aria-label') || document.activeElement.textContent).trim()")
+            page.evaluate(
+                "(document.activeElement.getAttribute('aria-label') || document.activeElement.textContent).trim()"
+            )
         )
     assert "" not in names[: names.index("Time in seconds") + 1]
 
 
 def test_a_sweep_is_drawn(chromium, tmp_path):
-    tab = chromium.open(report(sweep(), tmp_path / "sweep.html"))
-    assert tab.run("document.querySelectorAll('.canvas[data-drawn] .main-svg .js-line').length") >= 6
-    assert tab.complaints == []
+    page = chromium.open(report(sweep(), tmp_path / "sweep.html"))
+    assert page.evaluate("document.querySelectorAll('.canvas[data-drawn] .main-svg .js-line').length") >= 6
+    assert chromium.complaints == []
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("make", [propagation, comparison, band_fit, parameter_set])
 def test_reports_on_intervals_are_drawn(chromium, tmp_path, make, scheme):
     path = report(make(), tmp_path / "a.html")
-    tab = chromium.open(path, scheme=scheme)
-    drawn = tab.run("[...document.querySelectorAll('.canvas[data-drawn]')].map((place) => place.id)")
+    page = chromium.open(path, scheme=scheme)
+    drawn = page.evaluate("[...document.querySelectorAll('.canvas[data-drawn]')].map((place) => place.id)")
     assert drawn == [f"figure-{name}" for name in figures(make())]
-    assert tab.complaints == []
-    assert tab.requests == [path.as_uri()]
+    assert chromium.complaints == []
+    assert chromium.requests == [path.as_uri()]
 
 
 @pytest.mark.parametrize(("scheme", "palette"), [("light", LIGHT), ("dark", DARK)])
 def test_the_inside_of_a_band_is_faint_and_follows_the_page(chromium, tmp_path, scheme, palette):
-    tab = chromium.open(report(propagation(), tmp_path / "a.html"), scheme=scheme)
+    page = chromium.open(report(propagation(), tmp_path / "a.html"), scheme=scheme)
     fill = "document.querySelector('#figure-bands-1 .js-fill').style"
-    assert tab.run(f"{fill}.fill") == _colour(palette.series[0])
-    assert 0.1 < float(tab.run(f"{fill}.fillOpacity")) < 0.4
+    assert page.evaluate(f"{fill}.fill") == _colour(palette.series[0])
+    assert 0.1 < float(page.evaluate(f"{fill}.fillOpacity")) < 0.4
 
 
 @pytest.mark.parametrize("make", [propagation, comparison, band_fit, parameter_set])
 def test_reports_on_intervals_fit_a_phone(chromium, tmp_path, make):
-    tab = chromium.open(report(make(), tmp_path / "a.html"), width=400, height=800, touch=True)
-    assert tab.run("[innerWidth, document.documentElement.scrollWidth]") == [400, 400]
+    page = chromium.open(report(make(), tmp_path / "a.html"), width=400, height=800, touch=True)
+    assert page.evaluate("[innerWidth, document.documentElement.scrollWidth]") == [400, 400]
 
 
 def test_a_film_of_a_period_goes_on_without_end(chromium, tmp_path):
@@ -178,11 +187,11 @@ def test_a_film_of_a_period_goes_on_without_end(chromium, tmp_path):
         energies=np.array([1.0]),
         motion=lambda phases: np.cos(phases)[:, None, None] * np.array([[0, 0, 0], [0, 0, 1], [0, 0, 2], [0, 0, 1]]),
     )
-    tab = chromium.open(report(shape, tmp_path / "a.html"))
+    page = chromium.open(report(shape, tmp_path / "a.html"))
     fill = "document.querySelector('#figure-interface-map .scatterlayer .trace:last-child .point').style.fill"
-    assert tab.run(fill) == _colour(LIGHT.series[0])
-    tab.run("document.querySelector('.player[data-for=figure-interface-map] button').click()")
-    tab.until(f"{fill} === '{_colour(LIGHT.series[1])}'")
-    tab.until(f"{fill} === '{_colour(LIGHT.series[0])}'")
+    assert page.evaluate(fill) == _colour(LIGHT.series[0])
+    page.evaluate("document.querySelector('.player[data-for=figure-interface-map] button').click()")
+    wait_until(page, f"{fill} === '{_colour(LIGHT.series[1])}'")
+    wait_until(page, f"{fill} === '{_colour(LIGHT.series[0])}'")
     pressed = "document.querySelector('.player[data-for=figure-interface-map] button').getAttribute('aria-pressed')"
-    assert tab.run(pressed) == "true"
+    assert page.evaluate(pressed) == "true"

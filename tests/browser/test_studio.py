@@ -10,7 +10,9 @@ import urllib.request
 from pathlib import Path
 
 import pytest
+from playwright.sync_api import Locator, Page
 
+from browser.visitor import move_focus, wait_until
 from dalembert.study.template import begin
 
 pytestmark = pytest.mark.slow
@@ -46,50 +48,54 @@ def visit(chromium, address):
     """Open a page of the studio, until it is alive."""
 
     def visit(path, **device):
-        tab = chromium.tab(**device)
-        tab.send("Page.navigate", url=address + path)
-        tab.until("document.querySelector('[role=main]') && window.socket?.connected && window.did_handshake")
-        return tab
+        page = chromium.page(**device)
+        page.goto(address + path)
+        wait_until(page, "document.querySelector('[role=main]') && window.socket?.connected && window.did_handshake")
+        return page
 
     return visit
 
 
-def button(text):
-    return f"[...document.querySelectorAll('button')].find((one) => one.innerText.includes({json.dumps(text)}))"
+def button(page: Page, text: str) -> Locator:
+    return page.locator("button", has_text=re.compile(re.escape(text))).first
 
 
-def link(text):
-    return f"[...document.querySelectorAll('a')].find((one) => one.innerText === {json.dumps(text)})"
+def link(page: Page, text: str) -> Locator:
+    return page.locator("a", has_text=re.compile(f"^{re.escape(text)}$")).first
 
 
-def begun(tab, name, template):
-    """A study from a template, once it is found in order."""
-    tab.until(f"Boolean({button(template)})")
-    tab.click("document.querySelector('input[placeholder]')")
-    tab.write(name)
-    tab.click(button(template))
-    tab.until("location.pathname.startsWith('/study/')")
-    tab.until(f"{TEXT}.includes('In order.')")
+def name_of_study(page: Page) -> Locator:
+    return page.locator("input[placeholder]").first
 
 
-def external(tab, address):
-    return [request for request in tab.requests if not request.startswith((address, address.replace("http", "ws")))]
+def new_study(page: Page, name: str, template: str) -> None:
+    """Make a study from a template, and wait until it is checked."""
+    name_of_study(page).fill(name)
+    button(page, template).click()
+    wait_until(page, "location.pathname.startsWith('/study/')")
+    wait_until(page, f"{TEXT}.includes('In order.')")
 
 
-def test_from_nothing_to_an_identified_parameter(visit, address, root):
-    tab = visit("/new")
-    begun(tab, "drag", "Parameters from a measured motion")
-    tab.until("document.querySelectorAll('.js-plotly-plot .trace').length === 2")
-    tab.click(button("Run"))
-    tab.until("location.pathname === '/run/drag'")
-    tab.until(f"{TEXT}.includes('finished') && Boolean(document.querySelector('iframe'))")
+def external(chromium, address):
+    return [
+        request for request in chromium.requests if not request.startswith((address, address.replace("http", "ws")))
+    ]
+
+
+def test_from_nothing_to_an_identified_parameter(chromium, visit, address, root):
+    page = visit("/new")
+    new_study(page, "drag", "Parameters from a measured motion")
+    wait_until(page, "document.querySelectorAll('.js-plotly-plot .trace').length === 2")
+    button(page, "Run").click()
+    wait_until(page, "location.pathname === '/run/drag'")
+    wait_until(page, f"{TEXT}.includes('finished') && Boolean(document.querySelector('iframe'))")
     assert json.loads((root / "runs" / "drag" / "state.json").read_text())["best"]["values"]["drag"] == pytest.approx(
         0.2, abs=1e-3
     )
-    tab.click(link("Runs"))
-    tab.until(f"location.pathname === '/' && {TEXT}.includes('drag = 0.199')")
-    assert external(tab, address) == []
-    assert tab.complaints == []
+    link(page, "Runs").click()
+    wait_until(page, f"location.pathname === '/' && {TEXT}.includes('drag = 0.199')")
+    assert external(chromium, address) == []
+    assert chromium.complaints == []
 
 
 LONG = """
@@ -124,69 +130,66 @@ def test_a_run_is_watched_stopped_and_resumed(visit, root):
     folder.mkdir(parents=True)
     (folder / "slow.py").write_text(LONG)
     (folder / "study.toml").write_text(SWEEP)
-    tab = visit("/study/long/study")
-    tab.until(f"{TEXT}.includes('In order.')")
-    tab.click(button("Run"))
-    tab.until(f"location.pathname === '/run/long' && /rate = .* of 5000/.test({TEXT})")
-    tab.click(button("Stop"))
-    tab.until(f"{TEXT}.includes('interrupted')")
+    page = visit("/study/long/study")
+    wait_until(page, f"{TEXT}.includes('In order.')")
+    button(page, "Run").click()
+    wait_until(page, f"location.pathname === '/run/long' && /rate = .* of 5000/.test({TEXT})")
+    button(page, "Stop").click()
+    wait_until(page, f"{TEXT}.includes('interrupted')")
     (root / "runs" / "go").touch()  # a run that is resumed has its copy of the file in runs/long/inputs
-    tab.click(button("Resume"))
-    tab.until(f"{TEXT}.includes('finished') && Boolean(document.querySelector('iframe'))")
+    button(page, "Resume").click()
+    wait_until(page, f"{TEXT}.includes('finished') && Boolean(document.querySelector('iframe'))")
 
 
 def test_mistakes_stand_at_their_lines(visit):
-    tab = visit("/new")
-    begun(tab, "wrong", "A motion of a mechanism")
-    tab.click("[...document.querySelectorAll('.cm-line')].find((one) => one.innerText.startsWith('mass'))")
-    tab.press("End")
-    tab.write("x")
-    tab.until(f"{TEXT}.includes('1 to put right')")
-    tab.until("document.querySelector('.cm-line.wrong')?.innerText.startsWith('mass')")
-    assert tab.run(f"{button('Run')}.disabled")
-    tab.until("[...document.querySelectorAll('[role=alert]')].some((one) => one.innerText.includes('line '))")
+    page = visit("/new")
+    new_study(page, "wrong", "A motion of a mechanism")
+    page.locator(".cm-line", has_text=re.compile("^mass")).first.click()
+    page.keyboard.press("End")
+    page.keyboard.insert_text("x")
+    wait_until(page, f"{TEXT}.includes('1 to put right')")
+    wait_until(page, "document.querySelector('.cm-line.wrong')?.innerText.startsWith('mass')")
+    assert button(page, "Run").is_disabled()
+    wait_until(page, "[...document.querySelectorAll('[role=alert]')].some((one) => one.innerText.includes('line '))")
 
 
 def test_measured_data_are_taken_and_drawn_before_anything_runs(visit, root, tmp_path):
-    tab = visit("/new")
-    begun(tab, "data", "Parameters from a measured motion")
+    page = visit("/new")
+    new_study(page, "data", "Parameters from a measured motion")
     (tmp_path / "mine.csv").write_text((root / "studies" / "data" / "motion.csv").read_text())
-    tab.upload("input[type=file]", tmp_path / "mine.csv")
-    tab.until(f"{TEXT}.includes('mine.csv lies beside the study now')")
+    page.locator("input[type=file]").first.set_input_files(tmp_path / "mine.csv")
+    wait_until(page, f"{TEXT}.includes('mine.csv lies beside the study now')")
     assert (root / "studies" / "data" / "mine.csv").is_file()
     (tmp_path / "evil.py").write_text("")
-    tab.upload("input[type=file]", tmp_path / "evil.py")
+    page.locator("input[type=file]").first.set_input_files(tmp_path / "evil.py")
     (tmp_path / "late.csv").write_text((tmp_path / "mine.csv").read_text())
-    tab.upload("input[type=file]", tmp_path / "late.csv")
-    tab.until(f"{TEXT}.includes('late.csv lies beside the study now')")
+    page.locator("input[type=file]").first.set_input_files(tmp_path / "late.csv")
+    wait_until(page, f"{TEXT}.includes('late.csv lies beside the study now')")
     assert not (root / "studies" / "data" / "evil.py").exists()
 
 
 def test_a_study_file_that_is_no_text_is_refused(visit, tmp_path, root):
-    tab = visit("/new")
-    tab.click("document.querySelector('input[placeholder]')")
-    tab.write("latin")
+    page = visit("/new")
+    name_of_study(page).fill("latin")
     (tmp_path / "latin.toml").write_bytes(b"a = '\xff'")
-    tab.upload("input[type=file]", tmp_path / "latin.toml")
-    tab.until(f"{TEXT}.includes('the file is not UTF-8 text')")
+    page.locator("input[type=file]").first.set_input_files(tmp_path / "latin.toml")
+    wait_until(page, f"{TEXT}.includes('the file is not UTF-8 text')")
     assert not (root / "studies" / "latin").exists()
 
 
 def test_a_name_with_a_script_is_refused_and_one_that_is_there_is_shown_as_text(visit, root):
-    tab = visit("/new")
-    tab.until(f"Boolean({button('A motion')})")
-    tab.click("document.querySelector('input[placeholder]')")
-    tab.write("<img src=x onerror=document.title='run'>")
-    tab.click(button("A motion"))
-    tab.until(f"{TEXT}.includes('cannot be a name here')")
+    page = visit("/new")
+    name_of_study(page).fill("<img src=x onerror=document.title='run'>")
+    button(page, "A motion").click()
+    wait_until(page, f"{TEXT}.includes('cannot be a name here')")
     nasty = root / "runs" / "<img src=x onerror=document.title='run'>"
     nasty.mkdir(parents=True)
     state = {"state": "failed", "task": "<b>bold</b>", "since": "2000-01-01T00:00:00+00:00"}
     (nasty / "state.json").write_text(json.dumps(state))
-    tab = visit("/")
-    tab.until(f"{TEXT}.includes('onerror') && {TEXT}.includes('<b>bold</b>')")
-    assert tab.run("document.title") == "Runs · dalembert"
-    assert tab.run("document.images.length") == 0
+    page = visit("/")
+    wait_until(page, f"{TEXT}.includes('onerror') && {TEXT}.includes('<b>bold</b>')")
+    assert page.evaluate("document.title") == "Runs · dalembert"
+    assert page.evaluate("document.images.length") == 0
 
 
 def test_findings_are_in_the_list_and_beside_each_other(visit, known, root):
@@ -197,12 +200,12 @@ def test_findings_are_in_the_list_and_beside_each_other(visit, known, root):
     doubtful = root / "runs" / "doubtful"
     doubtful.mkdir()
     (doubtful / "state.json").write_text(json.dumps({**state, "findings": [finding, note]}))
-    tab = visit("/")
-    tab.until(f"{TEXT}.includes('The residuals <b>are</b> correlated.') && {TEXT}.includes('1 warning')")
-    assert not tab.run(f"{TEXT}.includes('few samples')")
-    tab = visit("/compare?run=first&run=doubtful")
-    tab.until("document.querySelectorAll('tr').length > 3")
-    rows = tab.run("[...document.querySelectorAll('tr')].map((row) => row.innerText.split(/\\s*\\t\\s*/))")
+    page = visit("/")
+    wait_until(page, f"{TEXT}.includes('The residuals <b>are</b> correlated.') && {TEXT}.includes('1 warning')")
+    assert not page.evaluate(f"{TEXT}.includes('few samples')")
+    page = visit("/compare?run=first&run=doubtful")
+    wait_until(page, "document.querySelectorAll('tr').length > 3")
+    rows = page.evaluate("[...document.querySelectorAll('tr')].map((row) => row.innerText.split(/\\s*\\t\\s*/))")
     (drag,) = [row for row in rows if row[0].strip() == "drag"]
     assert re.fullmatch(r"[\d.]+ ± [\d.e-]+", drag[1].strip()), drag
     assert re.fullmatch(r"[\d.]+", drag[2].strip()), drag
@@ -210,16 +213,16 @@ def test_findings_are_in_the_list_and_beside_each_other(visit, known, root):
     assert findings[-1].strip() == finding["message"]  # that of the other run is empty
 
 
-def test_two_runs_side_by_side(visit, known, address):
-    tab = visit("/")
+def test_two_runs_side_by_side(chromium, visit, known, address):
+    page = visit("/")
     for name in ("first", "second"):
-        tab.click(f"document.querySelector('[aria-label=\"Choose {name}\"]')")
-    tab.click(button("Compare"))
-    tab.until("location.pathname === '/compare' && document.querySelectorAll('iframe').length === 2")
-    rows = tab.run("[...document.querySelectorAll('tr')].map((row) => row.innerText.split(/\\s*\\t\\s*/))")
+        page.locator(f'[aria-label="Choose {name}"]').click()
+    button(page, "Compare").click()
+    wait_until(page, "location.pathname === '/compare' && document.querySelectorAll('iframe').length === 2")
+    rows = page.evaluate("[...document.querySelectorAll('tr')].map((row) => row.innerText.split(/\\s*\\t\\s*/))")
     (drag,) = [row for row in rows if row[0].strip() == "drag"]
     assert drag[1] == drag[2]
-    assert external(tab, address) == []
+    assert external(chromium, address) == []
 
 
 @pytest.mark.parametrize(
@@ -240,32 +243,32 @@ def test_two_runs_side_by_side(visit, known, address):
 )
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_pages_fit_a_phone_in_light_and_dark(visit, known, path, shown, scheme):
-    tab = visit(path, width=390, height=844, touch=True, scheme=scheme)
-    tab.until(f"Boolean({shown})")
-    assert tab.run("document.documentElement.scrollWidth") <= 390
-    ground = tab.run("getComputedStyle(document.body).backgroundColor")
+    page = visit(path, width=390, height=844, touch=True, scheme=scheme)
+    wait_until(page, f"Boolean({shown})")
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    ground = page.evaluate("getComputedStyle(document.body).backgroundColor")
     assert (ground == "rgb(255, 255, 255)" or ground == "rgba(0, 0, 0, 0)") == (scheme == "light")
 
 
 def test_the_keyboard_reaches_everything(visit, known):
-    tab = visit("/")
-    tab.until(f"{TEXT}.includes('Compare chosen runs')")
-    tab.move_focus()
-    assert tab.run("document.activeElement.innerText") == "Skip to the content"
+    page = visit("/")
+    wait_until(page, f"{TEXT}.includes('Compare chosen runs')")
+    move_focus(page)
+    assert page.evaluate("document.activeElement.innerText") == "Skip to the content"
     for wanted in ("New study", "Choose first", "first", "Compare chosen runs"):
-        press_tab_to(tab, wanted)
-    tab.run(f"{link('New study')}.focus()")
-    tab.press("Enter")
-    tab.until("location.pathname === '/new'")
+        press_tab_to(page, wanted)
+    link(page, "New study").focus()
+    page.keyboard.press("Enter")
+    wait_until(page, "location.pathname === '/new'")
 
 
-def press_tab_to(tab, text):
+def press_tab_to(page: Page, text: str) -> None:
     """Press Tab until the focus comes to what has a text or a label."""
     for _ in range(60):
-        tab.move_focus()
-        if text in tab.run("document.activeElement.innerText || document.activeElement.ariaLabel || ''"):
+        move_focus(page)
+        if text in page.evaluate("document.activeElement.innerText || document.activeElement.ariaLabel || ''"):
             return
-    raise AssertionError(f"Tab never came to {text}")
+    raise AssertionError(f"Tab does not reach {text}")
 
 
 def test_ten_thousand_events_do_not_slow_it(visit, root):
@@ -275,9 +278,11 @@ def test_ten_thousand_events_do_not_slow_it(visit, root):
     event = {"event": "iteration", "start": 0, "values": [1.0], "samples": 9}
     lines = [json.dumps(event | {"n": n, "simulations": n, "best": 1 / (n + 1)}) for n in range(10_000)]
     (folder / "events.jsonl").write_text("\n".join(lines) + "\n")
-    tab = visit("/run/events")
-    tab.until(f"{TEXT}.includes('9999 simulations') && Boolean(document.querySelector('.js-plotly-plot .trace'))")
-    assert tab.run("document.querySelectorAll('*').length") < 3000
+    page = visit("/run/events")
+    wait_until(
+        page, f"{TEXT}.includes('9999 simulations') && Boolean(document.querySelector('.js-plotly-plot .trace'))"
+    )
+    assert page.evaluate("document.querySelectorAll('*').length") < 3000
 
 
 def fetched(url, **headers):

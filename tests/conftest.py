@@ -23,7 +23,7 @@ KINDS = (
 
 @dataclass(frozen=True)
 class Evidence:
-    """One row of a validation page. Of several values it keeps the one with the largest reference."""
+    """One row of a validation page. Of several values it keeps the one with the largest reference, of zeros the worst."""
 
     topic: str
     quantity: str
@@ -63,7 +63,7 @@ def compare(
     kind : str
         Kind of the reference, one of ``KINDS``.
     noisy : bool
-        The difference is rounding noise, which another machine need not repeat: the page shows no digit of it.
+        The difference is rounding noise, which another machine need not repeat: the page shows "≤" and the tolerance.
 
     Raises
     ------
@@ -75,7 +75,8 @@ def compare(
     assert expected.shape == computed.shape, (
         f"{quantity}: shapes {expected.shape} (reference) and {computed.shape} (ours)"
     )
-    largest = np.unravel_index(np.argmax(np.abs(expected)), expected.shape)
+    sizes = np.abs(expected if np.any(expected) else computed)
+    largest = np.unravel_index(np.argmax(sizes), expected.shape)
     difference = float(np.max(np.abs(computed - expected))) / (float(np.abs(expected[largest])) if relative else 1.0)
     assert tolerance is None or difference <= tolerance, (
         f"{quantity}: ours {computed} and the reference {expected} differ by {difference:.3g}"

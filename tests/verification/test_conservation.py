@@ -171,7 +171,7 @@ def test_work_of_loads_dampers_and_friction_balances_the_energy(record_evidence)
         drifts.append(np.max(np.abs(trajectory.energies["balance"])) / trajectory.energies["kinetic"].max())
     assert drifts[1] < 0.3 * drifts[0], "the balance must close with the square of the step"
     record_evidence(
-        "driven, damped two-link arm: energy without explanation, as a part of the largest kinetic energy (h = 1 ms)",
+        "driven, damped two-link arm: unexplained energy, as a part of the largest kinetic energy (h = 1 ms)",
         0.0,
         drifts[1],
         tolerance=1e-4,

@@ -149,6 +149,6 @@ def test_profile_likelihood_of_a_linear_case(record_evidence):
         tolerance=1e-7,
         topic=TOPIC,
         kind="closed form",
-        source="closed form: estimate ∓ quantile × deviation",
+        source="estimate ∓ quantile × deviation",
         noisy=True,
     )

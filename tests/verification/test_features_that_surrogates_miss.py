@@ -177,7 +177,7 @@ def test_a_kink_is_never_worse_than_claimed(
         tolerance=0,
         topic=TOPIC,
         kind="target",
-        source="target: none",
+        source="none",
     )
 
 
@@ -217,7 +217,7 @@ def test_features_wider_than_the_stated_gap_are_seen(directions: int, record_evi
         tolerance=0.05,
         topic=TOPIC,
         kind="target",
-        source="target: at most 5 %",
+        source="at most 5 %",
     )
 
 

@@ -119,7 +119,7 @@ def test_a_rigid_contact_on_a_massless_foot_is_the_elastic_one_with_the_stiffnes
     record_evidence, harmonics: int
 ) -> None:
     record_evidence(
-        f"rigid contact of a massless foot beside the elastic law, {harmonics} harmonics: largest displacement",
+        f"rigid contact of a massless foot against the elastic law, {harmonics} harmonics: largest displacement",
         largest(one_mass(), 1.12, harmonics), largest(massless_foot(Rigid()), 1.12, harmonics),
         tolerance=1e-13, topic=TOPIC, kind="other method", source="elastic law with the same stiffness", unit="m", noisy=True,
     )  # fmt: skip
@@ -181,7 +181,7 @@ def test_the_elastic_law_tends_to_the_rigid_one(record_evidence) -> None:
         for k in stiffnesses
     ]
     record_evidence(
-        "elastic contact beside the rigid one: order in the inverse of its stiffness",
+        "elastic contact against the rigid one: order in the inverse of its stiffness",
         1.0, np.log10(differences[1] / differences[2]), tolerance=0.05, topic=TOPIC, kind="closed form", source="series of springs",
     )  # fmt: skip
     assert differences[0] > differences[1] > differences[2]
@@ -197,7 +197,7 @@ def test_one_harmonic_of_a_slider_is_the_closed_form(record_evidence) -> None:
     balance = np.hypot((1 - 1.12**2) * size + spring, 0.04 * 1.12 * size + loss)
     record_evidence(
         "one harmonic of a slider: force that balances the response", 1.0, balance,
-        tolerance=1e-6, topic=TOPIC, kind="closed form", source="closed form of Jenkins' element", unit="N",
+        tolerance=1e-6, topic=TOPIC, kind="closed form", source="Jenkins' element", unit="N",
     )  # fmt: skip
     record_evidence(
         "energy that a slider takes in a period of full slip", 4 * limit * (size - limit / stiffness),

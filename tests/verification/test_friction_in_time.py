@@ -147,6 +147,6 @@ def test_the_elastic_law_in_time_tends_to_the_rigid_one(record_evidence, stickin
         assert own.converged
         errors.append(off(own.displacements[::4], motion))
     record_evidence(
-        "elastic contact in time beside the rigid one: order in the inverse of its stiffness",
+        "elastic contact in time against the rigid one: order in the inverse of its stiffness",
         1.0, -np.polyfit(np.log(stiffnesses), np.log(errors), 1)[0], tolerance=0.1, topic=TOPIC, kind="other method", source=EVENTS,
     )  # fmt: skip

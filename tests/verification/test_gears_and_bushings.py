@@ -278,7 +278,7 @@ def test_a_bushing_between_free_bodies_keeps_their_momenta(record_evidence) -> N
             source="conservation law",
         )
     record_evidence(
-        "two free bodies on a damped bushing: energy without explanation, relative to the kinetic energy (h = 0.5 ms)",
+        "two free bodies on a damped bushing: unexplained energy, relative to the kinetic energy (h = 0.5 ms)",
         0.0,
         unexplained_energy(floating(), 3.0, 5e-4),
         tolerance=1e-4,
@@ -350,7 +350,7 @@ def test_a_geared_rotor_runs_up_through_its_critical_speeds(record_evidence) -> 
             source="equations of motion in displacements and motor angle, integrated by SciPy to 1e-12",
         )
     record_evidence(
-        "unbalanced rotor, geared to a motor, run up on a bushing: energy without explanation, relative to the kinetic "
+        "unbalanced rotor, geared to a motor, run up on a bushing: unexplained energy, relative to the kinetic "
         "energy (h = 0.2 ms)",
         0.0,
         unexplained_energy(system, 2.0, 2e-4),

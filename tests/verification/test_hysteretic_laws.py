@@ -56,7 +56,8 @@ def test_the_joint_dissipates_by_the_power_law(
         relative=True,
         unit="J",
         topic=TOPIC,
-        source="closed form: Segalman (2005), equation 16",
+        kind="closed form",
+        source="Segalman (2005), equation 16",
     )
 
 
@@ -76,7 +77,8 @@ def test_a_joint_beyond_its_limit_dissipates_as_its_sliders_do(record_evidence) 
         relative=True,
         unit="J",
         topic=TOPIC,
-        source="closed form: integral over the sliders' density",
+        kind="closed form",
+        source="integral over the sliders' density",
     )
 
 
@@ -96,7 +98,8 @@ def test_bouc_wen_cycles_take_the_energy_in_closed_form(amplitude: float, record
         relative=True,
         unit="J",
         topic=TOPIC,
-        source="closed form: exponential branches for β = γ = 1/2",
+        kind="closed form",
+        source="exponential branches for β = γ = 1/2",
     )
 
 
@@ -140,7 +143,8 @@ def test_bouc_wen_motions_are_those_of_its_differential_equations(exponent, beta
         relative=True,
         unit="m",
         topic=TOPIC,
-        source="another code: DOP853 of SciPy on the differential equations of the model, 60 periods",
+        kind="other code",
+        source="DOP853 of SciPy on the differential equations of the model, 60 periods",
     )
 
 
@@ -166,6 +170,7 @@ def test_harmonic_balance_and_steps_in_time_agree(name: str, record_evidence) ->
         comparison.differences[:, 0],
         tolerance=1e-4,
         topic=TOPIC,
+        kind="other method",
         source="integration in time, 4,096 steps of a period",
     )
 
@@ -184,7 +189,8 @@ def test_quadratic_drag_at_resonance_has_the_amplitude_of_its_mean_power(record_
         relative=True,
         unit="m",
         topic=TOPIC,
-        source="closed form: first harmonic 8/(3 π) of v|v|",
+        kind="closed form",
+        source="first harmonic 8/(3 π) of v|v|",
     )
 
 
@@ -206,5 +212,6 @@ def test_multipliers_with_a_memory_are_those_of_the_differential_equations(recor
         ours[:2],
         tolerance=2e-3,
         topic=TOPIC,
-        source="another code: differences of DOP853 of SciPy over a period",
+        kind="other code",
+        source="differences of DOP853 of SciPy over a period",
     )

@@ -75,7 +75,7 @@ def test_integrators_agree(model, name, solver, tolerance, record_evidence):
     known = reference(model)
     apart = (mb.simulate(make(), TIMES[-1], solver, TIMES).channels(channels) - known) / np.ptp(known, axis=0)
     record_evidence(
-        f"{model}: {name} beside Radau IIA, relative to the range",
+        f"{model}: {name} against Radau IIA, relative to the range",
         0.0,
         np.max(np.abs(apart)),
         tolerance=tolerance,

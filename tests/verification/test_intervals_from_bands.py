@@ -46,7 +46,7 @@ def test_table_a2(record_evidence) -> None:
         tolerance=20,
         topic=TOPIC,
         kind="target",
-        source="target: 120",
+        source="at most 120",
     )
 
 

@@ -173,7 +173,7 @@ def test_the_time_map_is_of_second_order(record_evidence) -> None:
         hill, steps = (sorted_values(floquet_multipliers(duffing(), curve, 0, way)) for way in ("hill", "time map"))
         differences.append(np.abs(hill - steps).max())
     record_evidence(
-        "Floquet multipliers by steps in time beside Hill's method: order in the step", 2.0,
+        "Floquet multipliers by steps in time against Hill's method: order in the step", 2.0,
         np.log2(differences[1] / differences[2]), tolerance=0.05, topic=TOPIC, kind="closed form", source="trapezoidal rule",
     )  # fmt: skip
 
@@ -225,7 +225,7 @@ def test_a_rigid_contact_of_a_massless_foot_is_as_stable_as_the_elastic_one(reco
         for point in range(2)
     ]
     record_evidence(
-        "rigid contact of a massless foot beside the elastic law: Floquet multipliers", 0.0, np.max(differences),
+        "rigid contact of a massless foot against the elastic law: Floquet multipliers", 0.0, np.max(differences),
         tolerance=1e-9, topic=TOPIC, kind="other method", source="elastic law with the same stiffness", noisy=True,
     )  # fmt: skip
 
@@ -265,12 +265,12 @@ def test_damping_of_a_slider_with_one_harmonic(record_evidence) -> None:
     loss = 4 * limit / np.pi * (1 - limit / (stiffness * size))
     record_evidence(
         "one mass with a slider, one harmonic: frequencies of the mode", omega, TURN * found.frequencies,
-        tolerance=1e-6, topic=TOPIC, kind="closed form", source="closed form of Jenkins' element", unit="rad/s",
+        tolerance=1e-6, topic=TOPIC, kind="closed form", source="Jenkins' element", unit="rad/s",
     )  # fmt: skip
     record_evidence(
         "one mass with a slider, one harmonic: damping ratios of the mode",
         0.02 / omega + loss / (2 * omega**2 * size), found.damping,
-        tolerance=1e-6, topic=TOPIC, kind="closed form", source="closed form of Jenkins' element",
+        tolerance=1e-6, topic=TOPIC, kind="closed form", source="Jenkins' element",
     )  # fmt: skip
 
 

@@ -47,7 +47,7 @@ def test_the_path_of_a_mass_that_meets_a_stop_has_two_turning_points(record_evid
     touching = next(omega for omega in np.linspace(0.66, 0.64, 20_001) if _linear(reference, omega) >= 1.0)
     record_evidence(
         "two masses with a stop: frequency at which it is touched and the path turns, rad/s", touching, grazing,
-        tolerance=2e-6, topic=TOPIC, kind="closed form", source="closed form of the motion without contact",
+        tolerance=2e-6, topic=TOPIC, kind="closed form", source="motion without contact",
     )  # fmt: skip
     # Beyond the last turning point shooting finds none of the motions on the branch, and before it all.
     found = [reference.periodic(state(curve, point), TURN * curve.frequencies[point]) for point in range(len(curve))]

@@ -220,7 +220,7 @@ def test_work_of_loads_dampers_and_friction_balances_the_energy(record_evidence,
         trajectory = da.simulate(arm, 2.0, solver=da.EnergyMomentum(step=step))
         gaps.append(np.abs(trajectory.energies["balance"]).max() / trajectory.energies["kinetic"].max())
     record_evidence(
-        "EnergyMomentum: order of the driven, damped arm's energy without explanation",
+        "EnergyMomentum: order of the driven, damped arm unexplained energy",
         2.0,
         np.log2(gaps[1] / gaps[2]),
         tolerance=0.2,

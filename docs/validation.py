@@ -83,7 +83,8 @@ The tests compare dalembert with numbers that it did not compute. Each compariso
 - **reference value** and **dalembert**: the expected number and the computed one. Of several values the row shows the
   largest reference, and the difference is the largest of all.
 - **difference** and **tolerance**: a test fails if the difference exceeds the tolerance. "≤" rounds a difference up to
-  1, 2 or 5, and rounding noise up to the tolerance. "Relative" divides by the largest reference value. A row without a tolerance is for information: the source is incomplete, or its method differs.
+  1, 2 or 5, and rounding noise up to the tolerance. "Relative" divides by the largest reference value. A row without a
+  tolerance is for information: the source is incomplete, or its method differs.
 - **reference**: where the reference value comes from, after its kind.
 
 | kind of reference | meaning |

@@ -78,7 +78,7 @@ INDEX = f"""\
 
 {GENERATED}
 
-The tests compare dalembert with numbers that it did not compute. Each comparison is one row of these pages:
+The tests compare results of dalembert with reference values. Each comparison is one row of these pages:
 
 - **reference value** and **dalembert**: the expected number and the computed one. Of several values the row shows the
   largest reference, and the difference is the largest of all.

@@ -148,7 +148,7 @@ def test_energy_and_constraints(
     )
     violation = trajectory.violations["position"]
     record_evidence(
-        f"{name}, opening of its joints over {end:g} s",
+        f"{name}, constraint violation over {end:g} s",
         np.zeros(len(violation)),
         violation,
         unit="m",

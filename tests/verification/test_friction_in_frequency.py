@@ -136,7 +136,7 @@ def test_a_rigid_contact_forgets_its_penalty_as_harmonics_are_added(record_evide
         max(abs(largest(massless_foot(Rigid(penalty)), 1.12, number) / exact - 1) for penalty in (0.025, 0.8, 25.0))
         for number in harmonics
     ]
-    source = "the law itself, which knows no penalty"
+    source = "the rigid law without a penalty"
     for number, size in zip(harmonics, spread, strict=True):
         record_evidence(
             f"rigid contact, {number} harmonics: largest change of the response, as part of it, by a penalty over "

@@ -111,7 +111,7 @@ class NodesLike(Protocol):
 
 
 class StepLike(Protocol):
-    """One iteration of one start: its best fitness after so many simulations.
+    """One iteration of one start: its best fitness, and the simulations up to here.
 
     ``regularised``, where there is one, is a :class:`RegularisedStepLike`; ``gap``, where there is one, the largest
     between segments.
@@ -119,6 +119,8 @@ class StepLike(Protocol):
 
     @property
     def start(self) -> int: ...
+    @property
+    def iteration(self) -> int: ...
     @property
     def simulations(self) -> int: ...
     @property

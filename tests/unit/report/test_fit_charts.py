@@ -61,7 +61,8 @@ def test_convergence_draws_every_start_and_the_winner_last_in_colour():
     assert drawn[-1].name == "start 2, the best"
     assert drawn[-1].line.color == LIGHT.series[0]
     own = [step for step in result.history if step.start == 1]
-    assert list(drawn[-1].x) == [step.simulations for step in own]
+    assert list(drawn[-1].x) == [step.iteration for step in own]
+    assert list(drawn[-1].customdata) == [step.simulations for step in own]
     assert list(drawn[-1].y) == [step.best for step in own]
 
 

@@ -27,7 +27,7 @@ def test_a_long_run_keeps_its_largest_violation():
     traces = _named(figure)
     assert figure.layout.yaxis.type == "log"
     assert np.nanmax(traces["position (m)"].y) == 1e-5
-    assert len(traces["position (m)"].y) <= 4000
+    assert len(traces["position (m)"].y) <= 200  # a point is the largest of 500 samples: noise does not fill it
     assert set(traces) == {"position (m)", "velocity (m/s)", "acceleration (m/s²)"}
 
 

@@ -10,7 +10,7 @@ from dalembert.report.thin import thin
 
 
 def convergence(fit: IdentifiedLike, *, title: str = "Convergence") -> go.Figure:
-    """Best fitness so far over the number of simulations, one line a start, the winning start in colour.
+    """Best fitness so far over the iterations, one line a start, the winning start in colour.
 
     Parameters
     ----------
@@ -34,8 +34,10 @@ def convergence(fit: IdentifiedLike, *, title: str = "Convergence") -> go.Figure
         kept = thin(fitness, most=1000)
         won = start == best
         figure.add_scatter(
-            x=np.array([step.simulations for step in steps])[kept],
+            x=np.array([step.iteration for step in steps])[kept],
             y=fitness[kept],
+            customdata=np.array([step.simulations for step in steps])[kept],
+            hovertemplate="iteration %{x}, %{customdata} simulations: %{y}",
             name=f"start {start + 1}, the best" if won else f"start {start + 1}",
             legendgroup="best" if won else "others",
             mode="lines+markers" if len(steps) <= 60 else "lines",
@@ -45,7 +47,7 @@ def convergence(fit: IdentifiedLike, *, title: str = "Convergence") -> go.Figure
             showlegend=won,
         )
     themed(figure, title, height=360)
-    figure.update_xaxes(title="simulations", rangemode="tozero")
+    figure.update_xaxes(title="iteration")
     figure.update_yaxes(title="best fitness so far", **logarithmic(figure))
     return figure.update_layout(showlegend=True)
 

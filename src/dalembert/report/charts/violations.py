@@ -6,13 +6,15 @@ import plotly.graph_objects as go
 from dalembert.report.charts.logarithm import logarithmic, positive
 from dalembert.report.look import LIGHT, themed
 from dalembert.report.needs import TrajectoryLike
-from dalembert.report.thin import thin
+from dalembert.report.thin import largest_of_stretches
 
 LEVELS = {"position": "position (m)", "velocity": "velocity (m/s)", "acceleration": "acceleration (m/s²)"}
 
 
 def violations(trajectory: TrajectoryLike, *, title: str = "Constraint violations") -> go.Figure:
     """Largest violation of a constraint over time at the three levels, on a logarithmic scale; zero is a gap.
+
+    Of a long motion each point is the largest of a stretch, so that rounding noise does not fill the figure.
 
     Parameters
     ----------
@@ -28,11 +30,9 @@ def violations(trajectory: TrajectoryLike, *, title: str = "Constraint violation
     figure = go.Figure()
     for (level, label), colour in zip(LEVELS.items(), LIGHT.series, strict=False):
         if level in trajectory.violations:
-            values = positive(np.asarray(trajectory.violations[level], dtype=float))
-            kept = thin(values)
-            figure.add_scatter(
-                x=times[kept], y=values[kept], name=label, mode="lines", line={"color": colour, "width": 1.5}
-            )
+            ends, values = largest_of_stretches(times, np.asarray(trajectory.violations[level], dtype=float))
+            line = {"color": colour, "width": 1.5, "shape": "vh"}
+            figure.add_scatter(x=ends, y=positive(values), name=label, mode="lines", line=line)
     themed(figure, title, height=360)
     figure.update_xaxes(title="time (s)")
     return figure.update_yaxes(title="violation", **logarithmic(figure))

@@ -62,13 +62,13 @@ class Result(ABC):
         """
         return cls.from_xarray(read_dataset(path, form=cls.FORMAT, expected=f"a result written by {cls.__name__}.save"))
 
-    def figures(self, **options: Any) -> dict[str, Any]:
-        """Plotly figures by name; options as those of :func:`dalembert.report.figures`."""
-        return hook("figures")(self, **options)
+    def figures(self, *beside: object, **options: Any) -> dict[str, Any]:
+        """Plotly figures by name; arguments as those of :func:`dalembert.report.figures`."""
+        return hook("figures")(self, *beside, **options)
 
-    def report(self, path: str | Path, **options: Any) -> Any:
-        """Write an HTML report that opens offline; options as those of :func:`dalembert.report.report`."""
-        return hook("report")(self, path, **options)
+    def report(self, path: str | Path, *beside: object, **options: Any) -> Any:
+        """Write an HTML report that opens offline; arguments as those of :func:`dalembert.report.report`."""
+        return hook("report")(self, path, *beside, **options)
 
 
 class EndedResult(Result):

@@ -23,7 +23,7 @@ SVG = "{http://www.w3.org/2000/svg}"
 
 @pytest.fixture(scope="module")
 def path(tmp_path_factory):
-    return report(fit(), tmp_path_factory.mktemp("page") / "fit.html", title="Pendulum", trajectory=motion())
+    return report(fit(), tmp_path_factory.mktemp("page") / "fit.html", motion(), title="Pendulum")
 
 
 def _saved(page: Page, act: Callable[[], None], name: str) -> bytes:
@@ -55,7 +55,7 @@ def _numbers(line: str) -> list[float]:
 
 
 def test_every_figure_is_saved_as_svg_and_as_png(chromium, path):
-    names = list(figures(fit(), trajectory=motion()))
+    names = list(figures(fit(), motion()))
     assert 4 < len(names) <= 10
     saved: dict[str, bytes] = {}
     for kind in ("SVG", "PNG"):  # one page each: Chromium drops downloads of a page beyond ten per second

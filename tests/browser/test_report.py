@@ -18,7 +18,7 @@ LAST_BODY = "[...document.querySelectorAll('#figure-mechanism .scatterlayer .js-
 @pytest.fixture(scope="module")
 def path(tmp_path_factory):
     result = fit(names=(NASTY, "theta2"), channels=("<b>AB</b>.x", "<b>AB</b>.y"))
-    return report(result, tmp_path_factory.mktemp("page") / "fit.html", title="Pendulum", trajectory=motion())
+    return report(result, tmp_path_factory.mktemp("page") / "fit.html", motion(), title="Pendulum")
 
 
 def _colour(hexadecimal: str) -> str:
@@ -28,7 +28,7 @@ def _colour(hexadecimal: str) -> str:
 def test_every_figure_is_drawn_and_nothing_is_asked_for_or_refused(chromium, path):
     page = chromium.open(path)
     drawn = page.evaluate("[...document.querySelectorAll('.canvas[data-drawn]')].map((place) => place.id)")
-    assert drawn == [f"figure-{name}" for name in figures(fit(), trajectory=motion())]
+    assert drawn == [f"figure-{name}" for name in figures(fit(), motion())]
     assert chromium.requests == [path.as_uri()]
     assert chromium.complaints == []
 
@@ -114,7 +114,7 @@ def test_the_slider_shows_the_mechanism_at_its_time(chromium, path):
             slider.dispatchEvent(new Event("input"));
         })()"""
     )
-    figure = figures(fit(), trajectory=motion())["mechanism"]
+    figure = figures(fit(), motion())["mechanism"]
     shown = "document.getElementById('figure-mechanism').calcdata.at(-1)[0].x"
     wait_until(page, f"Math.abs({shown} - {float(figure.frames[25].data[-1].x[0])}) < 1e-6")
     assert page.evaluate("document.querySelector('.player output').textContent") == "t = 1.02 s"

@@ -4,5 +4,8 @@ from dalembert.report import charts
 from dalembert.report.gather import figures
 from dalembert.report.look import dark
 from dalembert.report.page import report
+from dalembert.report.registry import sections_of
+from dalembert.report.sections.part import Part
+from dalembert.report.table import Table, cell
 
-__all__ = ["charts", "dark", "figures", "report"]
+__all__ = ["Part", "Table", "cell", "charts", "dark", "figures", "report", "sections_of"]

@@ -4,18 +4,18 @@ from typing import Any
 
 import plotly.graph_objects as go
 
-from dalembert.report.contents import Result, contents
+from dalembert.report.asked import asked
+from dalembert.report.contents import contents
 
 
-def figures(result: Result, **options: Any) -> dict[str, go.Figure]:
+def figures(result: object, *beside: object, **options: Any) -> dict[str, go.Figure]:
     """Every figure that a report of the result would show, by name.
 
     Parameters
     ----------
     result : Fit, Trajectory, FrequencyCurve, Propagation, Comparison, BandFit, ParameterSet, Profiles …
-    **options
-        ``trajectory``, ``points``, ``truth``, ``profiles``, ``prediction``, ``dofs``, ``amplitude``,
-        ``time_comparison``, ``backbone``, ``deformation`` and ``reduction``, as in :func:`dalembert.report.report`.
+    *beside, **options
+        As in :func:`dalembert.report.report`.
 
     Returns
     -------
@@ -33,4 +33,4 @@ def figures(result: Result, **options: Any) -> dict[str, go.Figure]:
     InputError
         For a result that is none of these.
     """
-    return {plot.name: plot.figure for section in contents(result, **options) for plot in section.plots}
+    return {plot.name: plot.figure for section in contents(result, asked(beside, **options)) for plot in section.plots}

@@ -193,7 +193,7 @@ def test_points_in_time_lie_beside_the_curve(curve, tmp_path):
     np.testing.assert_array_equal(drawn["m2.x"].y, curve.amplitude("m2"))
     np.testing.assert_array_equal(drawn["m2.x, in time"].y, compared.time[:, column])
     np.testing.assert_array_equal(drawn["m2.x, harmonic balance"].y, curve.amplitude("m2")[[4, 8]])
-    rows = read_page(report(curve, tmp_path / "a.html", time_comparison=compared)).table("in-time")
+    rows = read_page(report(curve, tmp_path / "a.html", compared)).table("in-time")
     own = [row for row in rows if row[1] == "m2.x"]
     np.testing.assert_allclose([float(row[4]) for row in own], 100 * compared.differences[:, column])
 
@@ -307,4 +307,4 @@ def test_folds_are_tabled_by_the_amplitude_that_is_drawn(folded, tmp_path):
 
 def test_a_family_takes_what_is_known_beside_it(family):
     mode = backbone(duffing(), np.array([0.5, 1.0]), method=HarmonicBalance(3))
-    assert list(figures(family, backbone=mode))[-1] == "backbone"
+    assert list(figures(family, mode))[-1] == "backbone"

@@ -26,7 +26,7 @@ def whole(tmp_path_factory):
     told = SimpleNamespace(singular_values=np.array([120.0, 3.0]), directions=np.eye(2))
     result.identifiability = lambda: told
     path = tmp_path_factory.mktemp("report") / "new" / "fit.html"
-    return report(result, path, title="Pendulum", trajectory=motion(), notes="A note.", study="[model]\nlength = 1")
+    return report(result, path, motion(), title="Pendulum", notes="A note.", study="[model]\nlength = 1")
 
 
 def test_sections_stand_in_reading_order(whole):
@@ -113,7 +113,7 @@ def test_every_figure_is_in_the_page_with_its_numbers(whole):
         "violations",
         "newton",
     ]
-    assert set(drawn) - {"singular-values"} == set(figures(fit(), trajectory=motion()))
+    assert set(drawn) - {"singular-values"} == set(figures(fit(), motion()))
     places = {attrs["id"] for tag, attrs in page.tags if "canvas" in attrs.get("class", "")}
     assert places == {f"figure-{name}" for name in drawn}
     packed = next(trace["y"] for trace in drawn["responses-1"]["data"] if trace["name"] == "AB.end.x computed")
@@ -265,5 +265,5 @@ def test_a_report_that_cannot_be_written_leaves_the_old_one(tmp_path, monkeypatc
 
 
 def test_the_same_result_gives_the_same_bytes(tmp_path):
-    pages = [report(fit(), tmp_path / name, trajectory=motion()).read_bytes() for name in ("a.html", "b.html")]
+    pages = [report(fit(), tmp_path / name, motion()).read_bytes() for name in ("a.html", "b.html")]
     assert pages[0] == pages[1]

@@ -146,9 +146,9 @@ class Response(Outcome):
         from dalembert.report import report
 
         about = self.study.file.study
-        options: Any = {"dofs": self._drawn(), "amplitude": self.study.table.amplitude, **self.told}
-        text = self.study.content.decode()
-        report(self.result, path, title=self.study.title, notes=about.description, study=text, **options)
+        options: Any = {"dofs": self._drawn(), "amplitude": self.study.table.amplitude}
+        text, beside = self.study.content.decode(), self.told.values()
+        report(self.result, path, *beside, title=self.study.title, notes=about.description, study=text, **options)
 
     def _drawn(self) -> tuple[str, ...]:
         """The degrees of freedom that figures show: the one whose peak is told, or those that were asked for."""

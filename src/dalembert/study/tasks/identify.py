@@ -194,11 +194,11 @@ class Identification(Outcome):
         report(
             self.fit,
             path,
+            self._motion(),
+            *self.told.values(),
             title=study.title,
-            trajectory=self._motion(),
             notes=study.file.study.description,
             study=study.content.decode(),
-            **self.told,
         )
 
     def _motion(self) -> Any:

@@ -1,0 +1,92 @@
+"""What a report is asked to show with a result."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, fields
+from typing import Any, TypeVar
+
+from dalembert.errors import InputError, shown, unknown
+from dalembert.report.sections.section import Section
+
+Kind = TypeVar("Kind")
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What a report is asked to show with a result.
+
+    Parameters
+    ----------
+    beside : tuple
+        Other results, mappings of str to results (one for each experiment), and sections.
+    title : str, optional
+    notes : sequence of str
+        Paragraphs.
+    study : str, optional
+        Text of the study file.
+    points, dofs : tuple of str
+    truth : mapping
+    amplitude : str
+    """
+
+    beside: tuple[Any, ...] = ()
+    title: str | None = None
+    notes: Sequence[str] = ()
+    study: str | None = None
+    points: tuple[str, ...] = ()
+    truth: Mapping[str, Any] = field(default_factory=dict)
+    dofs: tuple[str, ...] = ()
+    amplitude: str = "peak"
+
+    def each(self, kind: type[Kind]) -> dict[str, Kind]:
+        """Results of a kind by the names of their experiments; by no name where there is only one.
+
+        >>> Asked((3, {"warm": 1.0, "cold": 2.0})).each(int), Asked((3, {"warm": 1.0, "cold": 2.0})).each(float)
+        ({'': 3}, {'warm': 1.0, 'cold': 2.0})
+        """
+        found: dict[str, Kind] = {}
+        for one in self.beside:
+            given = one if isinstance(one, Mapping) else {"": one}
+            found.update({name: value for name, value in given.items() if isinstance(value, kind)})
+        return found
+
+    def one(self, kind: type[Kind]) -> Kind | None:
+        """The first result of a kind; None if there is none."""
+        return next(iter(self.each(kind).values()), None)
+
+    @property
+    def sections(self) -> list[Section]:
+        """Sections of the user's."""
+        return [one for one in self.beside if isinstance(one, Section)]
+
+    def require(self, kinds: Sequence[type]) -> None:
+        """Refuse what no section shows.
+
+        Raises
+        ------
+        InputError
+            For anything else than results of some kinds, and sections.
+        """
+        for one in self.beside:
+            values = list(one.values()) if isinstance(one, Mapping) else [one]
+            if not all(isinstance(value, (Section, *kinds)) for value in values):
+                raise InputError(
+                    f"report: {shown(one)} was given beside the result; expected a trajectory, profiles, a prediction, "
+                    "a comparison in time, a backbone, a deformation, reduction errors, or a section"
+                )
+
+
+def asked(beside: tuple[Any, ...], **options: Any) -> Asked:
+    """What is asked for, from the arguments of :func:`dalembert.report.report`.
+
+    Raises
+    ------
+    InputError
+        For an unknown option.
+    """
+    known = {one.name for one in fields(Asked)} - {"beside"}
+    for name in options:
+        if name not in known:
+            raise InputError(unknown("option", name, sorted(known), "report"))
+    lists = {name: tuple(options[name]) for name in ("points", "dofs") if name in options}
+    given = tuple(one for one in beside if one is not None)
+    return Asked(given, **{**options, **lists, "truth": options.get("truth") or {}})

@@ -1,0 +1,1 @@
+"""Sections of the package's results, by subject."""

@@ -1,0 +1,128 @@
+"""Sections of structures in frequency."""
+
+from dalembert.report.asked import Asked
+from dalembert.report.charts.resonance_peaks import value_text
+from dalembert.report.focus import Look, family_dofs
+from dalembert.report.needs_frequency import (
+    BackboneLike,
+    CurveFamilyLike,
+    DeformationLike,
+    FrequencyCurveLike,
+    ModeShapesLike,
+    PeriodicMotionLike,
+    ReductionErrorsLike,
+    ResonanceTrackLike,
+    TimeComparisonLike,
+)
+from dalembert.report.registry import sections_of
+from dalembert.report.sections import (
+    Balance,
+    Deformed,
+    Family,
+    ForcedResponse,
+    Friction,
+    Harmonics,
+    InTime,
+    Modes,
+    NonlinearMode,
+    Period,
+    Reduction,
+    Section,
+    Tracks,
+    vibration_headlines,
+)
+from dalembert.report.sections.family import best_curve
+
+
+@sections_of(FrequencyCurveLike)
+def frequency_curve(result: FrequencyCurveLike, asked: Asked) -> list[Section]:
+    """The response, its contacts and harmonics, and what was computed beside it."""
+    look = Look.of(result, asked.dofs, asked.amplitude) if result.converged.any() else None
+    return [
+        vibration_headlines.of_frequency_curve(result, look, asked.title, asked.notes),
+        *_vibrating(look, asked.one(BackboneLike)),
+        *_beside(asked, result),
+        Balance(result),
+    ]
+
+
+@sections_of(DeformationLike)
+def deformation(result: DeformationLike, asked: Asked) -> list[Section]:
+    """The structure at one point of a response."""
+    return [vibration_headlines.of_deformation(result, asked.title, asked.notes), Deformed(result)]
+
+
+@sections_of(PeriodicMotionLike)
+def periodic_motion(result: PeriodicMotionLike, asked: Asked) -> list[Section]:
+    """A period in time."""
+    return [vibration_headlines.of_period(result, asked.title, asked.notes), Period(result)]
+
+
+@sections_of(ReductionErrorsLike)
+def reduction_errors(result: ReductionErrorsLike, asked: Asked) -> list[Section]:
+    """What a reduction changes."""
+    return [vibration_headlines.of_reduction(result, asked.title, asked.notes), Reduction(result)]
+
+
+@sections_of(ModeShapesLike)
+def mode_shapes(result: ModeShapesLike, asked: Asked) -> list[Section]:
+    """Modes of a structure."""
+    return [vibration_headlines.of_modes(result, asked.title, asked.notes), Modes(result)]
+
+
+@sections_of(TimeComparisonLike)
+def time_comparison(result: TimeComparisonLike, asked: Asked) -> list[Section]:
+    """Points of a response in time."""
+    return [vibration_headlines.of_time_comparison(result, asked.title, asked.notes), InTime(result)]
+
+
+@sections_of(BackboneLike)
+def backbone(result: BackboneLike, asked: Asked) -> list[Section]:
+    """A nonlinear mode."""
+    return [vibration_headlines.of_backbone(result, asked.title, asked.notes), NonlinearMode(result)]
+
+
+@sections_of(ResonanceTrackLike)
+def resonance_track(result: ResonanceTrackLike, asked: Asked) -> list[Section]:
+    """A resonance over a parameter."""
+    return [vibration_headlines.of_track(result, asked.title, asked.notes), Tracks(result)]
+
+
+@sections_of(CurveFamilyLike)
+def curve_family(result: CurveFamilyLike, asked: Asked) -> list[Section]:
+    """Curves for several values of a parameter, and what was computed beside the best."""
+    dofs = asked.dofs or family_dofs(result, asked.amplitude)
+    own = vibration_headlines.of_family(result, dofs, asked.amplitude, asked.title, asked.notes)
+    return [own, *_family(result, dofs, asked.amplitude), *_beside(asked)]
+
+
+def _beside(asked: Asked, curve: FrequencyCurveLike | None = None) -> list[Section]:
+    """Sections of what was computed beside a response."""
+    sections: list[Section] = []
+    if (deformed := asked.one(DeformationLike)) is not None:
+        sections.append(Deformed(deformed))
+    if (mode := asked.one(BackboneLike)) is not None:
+        sections.append(NonlinearMode(mode))
+    if (compared := asked.one(TimeComparisonLike)) is not None:
+        sections.append(InTime(compared, curve) if curve is not None else InTime(compared))
+    if (reduced := asked.one(ReductionErrorsLike)) is not None:
+        sections.append(Reduction(reduced))
+    return sections
+
+
+def _vibrating(look: Look | None, backbone: BackboneLike | None) -> list[Section]:
+    """The sections on a response over frequency, where any of it was found."""
+    if look is None:
+        return []
+    elements = [Friction(look)] if look.curve.coordinates else []
+    return [ForcedResponse(look, backbone), *elements, Harmonics(look)]
+
+
+def _family(family: CurveFamilyLike, dofs: tuple[str, ...], amplitude: str) -> list[Section]:
+    """The sections on curves for several values of a parameter, and on the contacts at the best value."""
+    if not dofs:
+        return []
+    best = best_curve(family, dofs[0], amplitude)
+    lead = f"With {family.parameter} = {value_text(family, family.best(dofs[0], amplitude))}, "
+    contacts = [Friction(Look.of(best, dofs[:1], amplitude), lead)] if best.coordinates else []
+    return [Family(family, dofs, amplitude), *contacts]

@@ -1,0 +1,14 @@
+"""The section on mechanisms in motion, alone or with the measurements of a fit."""
+
+from collections.abc import Mapping
+
+from dalembert.report.needs import FitLike, TrajectoryLike
+from dalembert.report.sections import Motion, Section, motion
+
+
+def motions(moving: Mapping[str, TrajectoryLike], points: tuple[str, ...], fit: FitLike | None = None) -> list[Section]:
+    """The section on the mechanism in motion, beside the measurements of each experiment."""
+    data = {} if fit is None else {"": fit.data, **{item.name: item.data for item in getattr(fit, "experiments", ())}}
+    drawn = {name: motion.motion(trajectory, points, data.get(name)) for name, trajectory in moving.items()}
+    left_out = [] if "" in moving else [name for name in data if name and name not in moving]
+    return [Motion(drawn, left_out)] if drawn else []

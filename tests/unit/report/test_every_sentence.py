@@ -3,6 +3,7 @@
 import ast
 import re
 from collections.abc import Iterator
+from dataclasses import fields
 from inspect import signature
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,7 @@ import pytest
 import dalembert
 from dalembert.inverse import Identifiability
 from dalembert.report import report
+from dalembert.report.asked import Asked
 from pages import read_page
 from report_cases import CASES
 
@@ -87,7 +89,9 @@ def _told(case: Any, folder: Path) -> tuple[str, set[str]]:
     if isinstance(result, str | Identifiability):
         return str(result), set()
     summaries = [getattr(one, "summary", "") for one in (result, *options.values())]
-    page = read_page(report(result, folder / "report.html", **options))
+    named = {name: value for name, value in options.items() if name in {one.name for one in fields(Asked)}}
+    beside = [value for name, value in options.items() if name not in named]
+    page = read_page(report(result, folder / "report.html", *beside, **named))
     tables = [value for tag, entries in page.tags if tag == "a" and (value := entries.get("download"))]
     cells = " ".join(cell for name in tables for row in page.table(name.removesuffix(".csv")) for cell in row)
     words = " ".join([*(one() if callable(one) else one for one in summaries), page.text, cells])

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from inline_snapshot import snapshot
 from plotly.offline import get_plotlyjs
 
 from dalembert.errors import InputError
@@ -13,6 +14,7 @@ from dalembert.findings import Finding
 from dalembert.report import figures, report
 from dalembert.report.table import Table, cell
 from pages import Page, read_page
+from refusals import refused
 from stand_ins import fit, motion, sweep
 from support import says
 
@@ -134,9 +136,7 @@ def test_names_with_markup_are_shown_as_they_stand(tmp_path):
     result.identifiability = lambda: NASTY
     trajectory = motion()
     trajectory.extra[NASTY] = trajectory.drawing().lines["AB"]
-    path = report(
-        result, tmp_path / "a.html", title=NASTY, notes=[NASTY], study=NASTY, trajectory=trajectory, points=["AB.end"]
-    )
+    path = report(result, tmp_path / "a.html", trajectory, title=NASTY, notes=[NASTY], study=NASTY, points=["AB.end"])
     text = path.read_text()
     assert "<script>alert" not in text
     page = Page(text)
@@ -243,9 +243,12 @@ def test_notes_in_one_text_are_parted_by_empty_lines(tmp_path):
 
 
 def test_something_else_is_refused(tmp_path):
-    with pytest.raises(
+    with refused(
         InputError,
-        match=says("report: a dict was given; expected a result, such as identify(), simulate() or propagate() return"),
+        snapshot(
+            "report: a dict was given; expected a result, such as identify(), simulate() or propagate() return, or one "
+            "whose sections are registered by sections_of"
+        ),
     ):
         report({}, tmp_path / "a.html")
 

@@ -37,7 +37,7 @@ class Linear:
 
 
 @dataclass(frozen=True)
-class Motion:
+class FreeMotion:
     """A motion without force: harmonics (n, coefficients), ω, ξ = 2 ζ ω and amplitude, and how it was found."""
 
     harmonics: np.ndarray
@@ -55,10 +55,10 @@ class Plane:
     """A plane across the path of motions, in (Y/scale, log ω, ξ/ω, log a), through a motion."""
 
     direction: np.ndarray
-    at: Motion
+    at: FreeMotion
     scale: float
 
-    def from_here(self, motion: Motion) -> np.ndarray:
+    def from_here(self, motion: FreeMotion) -> np.ndarray:
         """The way from the plane's own motion to another."""
         change = (motion.harmonics - self.at.harmonics).ravel() / self.scale
         others = [
@@ -68,11 +68,11 @@ class Plane:
         ]
         return np.append(change, others)
 
-    def distance(self, motion: Motion) -> float:
+    def distance(self, motion: FreeMotion) -> float:
         """Of a motion from the plane."""
         return float(self.direction @ self.from_here(motion))
 
-    def moved(self, motion: Motion, step: np.ndarray) -> Motion:
+    def moved(self, motion: FreeMotion, step: np.ndarray) -> FreeMotion:
         """A motion some step on."""
         return replace(
             motion,
@@ -87,7 +87,7 @@ class Plane:
 class _Trial:
     """A place in Newton's method."""
 
-    motion: Motion
+    motion: FreeMotion
     local: Local
     residual: np.ndarray
     error: float
@@ -144,18 +144,18 @@ class ModeEquations:
         omega = float(np.sqrt(squares[order[mode - 1]]))
         return Linear(omega, growth, rest, moved, self.basis @ moved)
 
-    def scale(self, motion: Motion) -> float:
+    def scale(self, motion: FreeMotion) -> float:
         """Size of the oscillating part of a motion."""
         return float(np.linalg.norm(motion.harmonics[:, int(self.problem.method.orders[0] == 0) :]))
 
-    def at_size(self, guess: Motion, size: float, samples: int) -> Motion:
+    def at_size(self, guess: FreeMotion, size: float, samples: int) -> FreeMotion:
         """The motion at an amplitude, from a guess at any."""
         level = np.zeros(guess.harmonics.size + 3)
         level[-1] = 1.0
         at = replace(guess, size=size)
         return self.solve(at, Plane(level, at, self.scale(guess)), samples)
 
-    def solve(self, guess: Motion, plane: Plane, samples: int) -> Motion:
+    def solve(self, guess: FreeMotion, plane: Plane, samples: int) -> FreeMotion:
         """Newton's method on a plane across the path, with as many samples as it needs, and at least those given."""
         method = self.problem.method
         motion = self._corrected(guess, plane, samples)
@@ -166,7 +166,7 @@ class ModeEquations:
             motion = replace(better, iterations=motion.iterations + better.iterations)
         return motion
 
-    def direction(self, motion: Motion, before: np.ndarray) -> np.ndarray:
+    def direction(self, motion: FreeMotion, before: np.ndarray) -> np.ndarray:
         """Unit tangent of the path at a motion, to the same side as a direction before."""
         plane = Plane(before, motion, self.scale(motion))
         system = self.system(motion.samples)
@@ -201,7 +201,7 @@ class ModeEquations:
         inertia = mass @ (omega * velocity @ turn.T)
         return stiffness @ harmonics + (damping - growth * mass) @ velocity + inertia - self.static
 
-    def _at(self, system: Uncondensed, motion: Motion, plane: Plane) -> _Trial:
+    def _at(self, system: Uncondensed, motion: FreeMotion, plane: Plane) -> _Trial:
         count, harmonics, size = system.retained, motion.harmonics, motion.size
         linear = self._linear_part(system, harmonics, motion.omega, motion.growth)
         local = system.elements(linear[:count], harmonics[:count], motion.omega)
@@ -214,13 +214,13 @@ class ModeEquations:
         error = float(np.linalg.norm(everything))
         return _Trial(motion, local, everything, error, float(floor))
 
-    def _scale(self, system: Uncondensed, motion: Motion, local: Local) -> float:
+    def _scale(self, system: Uncondensed, motion: FreeMotion, local: Local) -> float:
         """Size of the forces that are in balance."""
         stiffness, mass, _ = system.matrices
         elastic = np.linalg.norm(stiffness @ motion.harmonics) + np.linalg.norm(local.evaluation.forces)
         return float(elastic + np.linalg.norm(mass @ motion.harmonics) * motion.omega**2)
 
-    def _corrected(self, guess: Motion, plane: Plane, samples: int) -> Motion:
+    def _corrected(self, guess: FreeMotion, plane: Plane, samples: int) -> FreeMotion:
         system, method = self.system(samples), self.problem.method
         at, iterations = self._at(system, guess, plane), 0
         while not (converged := at.error <= max(method.tolerance, at.floor)) and iterations < method.iterations:

@@ -11,7 +11,7 @@ from dalembert.forward import Checkpoint
 from dalembert.vibration.balance.equations import Equations, equations
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.modes.backbone import Backbone
-from dalembert.vibration.modes.mode_equations import Linear, ModeEquations, Motion, Plane
+from dalembert.vibration.modes.mode_equations import FreeMotion, Linear, ModeEquations, Plane
 from dalembert.vibration.modes.recorded_modes import recorded_modes
 from dalembert.vibration.paths.continuation import EASY, MOST_POINTS, SHORTEST, STEADY
 from dalembert.vibration.storage import versions
@@ -123,19 +123,19 @@ def _scaled(linear: Linear, row: int, name: str) -> Linear:
     return replace(linear, moved=linear.moved / linear.shape[row], shape=linear.shape / linear.shape[row])
 
 
-def _first(own: ModeEquations, linear: Linear, size: float) -> Motion:
+def _first(own: ModeEquations, linear: Linear, size: float) -> FreeMotion:
     """The motion at the first amplitude, or at a smaller one where the linear mode is too far from it."""
     for part in SMALLER:
         harmonics = linear.rest.copy()
         harmonics[:, int(own.problem.method.orders[0] == 0)] += part * size * linear.moved
-        guess = Motion(harmonics, linear.omega, linear.growth, part * size)
+        guess = FreeMotion(harmonics, linear.omega, linear.growth, part * size)
         motion = own.at_size(guess, part * size, own.problem.method.first_samples)
         if _accepted(own, guess, motion):
             break
     return motion
 
 
-def _accepted(own: ModeEquations, known: Motion, found: Motion) -> bool:
+def _accepted(own: ModeEquations, known: FreeMotion, found: FreeMotion) -> bool:
     """Whether a motion was found, and is one of the same mode."""
     if not found.converged:
         return False
@@ -145,7 +145,7 @@ def _accepted(own: ModeEquations, known: Motion, found: Motion) -> bool:
     return inner[0] > SAME * np.sqrt(inner[1] * inner[2])
 
 
-def _at_sizes(own: ModeEquations, first: Motion, sizes: np.ndarray, rest: np.ndarray) -> Iterator[Motion]:
+def _at_sizes(own: ModeEquations, first: FreeMotion, sizes: np.ndarray, rest: np.ndarray) -> Iterator[FreeMotion]:
     """Motions at one amplitude after the other."""
     known = first
     for size in sizes:
@@ -154,7 +154,7 @@ def _at_sizes(own: ModeEquations, first: Motion, sizes: np.ndarray, rest: np.nda
         yield motion
 
 
-def _towards(own: ModeEquations, known: Motion, size: float, rest: np.ndarray) -> Motion:
+def _towards(own: ModeEquations, known: FreeMotion, size: float, rest: np.ndarray) -> FreeMotion:
     """The motion at an amplitude from that at another, by halves of the way, as ratios, where need be."""
     way = [size]
     worst = None
@@ -175,7 +175,7 @@ def _towards(own: ModeEquations, known: Motion, size: float, rest: np.ndarray) -
     return known
 
 
-def _along(own: ModeEquations, first: Motion, begin: float, end: float) -> Iterator[Motion]:
+def _along(own: ModeEquations, first: FreeMotion, begin: float, end: float) -> Iterator[FreeMotion]:
     """Motions along the path from one amplitude to another, by arc length."""
     low, high = min(begin, end), max(begin, end)
     known, onward = first, np.zeros(first.harmonics.size + 3)
@@ -214,8 +214,8 @@ def _along(own: ModeEquations, first: Motion, begin: float, end: float) -> Itera
 
 
 def _around_a_corner(
-    own: ModeEquations, known: Motion, direction: np.ndarray, step: float
-) -> tuple[Motion, np.ndarray] | None:
+    own: ModeEquations, known: FreeMotion, direction: np.ndarray, step: float
+) -> tuple[FreeMotion, np.ndarray] | None:
     """A motion behind a corner of the path, such as where a contact begins to slip, and the direction there.
 
     The tangent behind it is that of the equations a little beyond; of its two senses one leads on, the other back.
@@ -235,7 +235,7 @@ def _around_a_corner(
     return None
 
 
-def _kept(own: ModeEquations, mode: int, found: list[Motion]) -> Backbone:
+def _kept(own: ModeEquations, mode: int, found: list[FreeMotion]) -> Backbone:
     names = own.problem.lowered.structure.dofs.names
     converged = np.array([motion.converged for motion in found])
     energies, works = np.array([_energy_and_work(own, motion) for motion in found]).T
@@ -261,7 +261,7 @@ def _kept(own: ModeEquations, mode: int, found: list[Motion]) -> Backbone:
     )
 
 
-def _energy_and_work(own: ModeEquations, motion: Motion) -> tuple[float, float]:
+def _energy_and_work(own: ModeEquations, motion: FreeMotion) -> tuple[float, float]:
     """Largest kinetic energy, J, and ω Σ h² X_h^T M X_h, whose product with ξ π is what a period loses."""
     system = own.system(motion.samples)
     velocity = motion.omega * motion.harmonics @ system.series.derivative.T

@@ -8,7 +8,7 @@ import numpy as np
 
 from dalembert.forward import Checkpoint
 from dalembert.vibration.balance.equations import Equations
-from dalembert.vibration.modes.mode_equations import ModeEquations, Motion, Plane
+from dalembert.vibration.modes.mode_equations import FreeMotion, ModeEquations, Plane
 from dalembert.vibration.system.fingerprint import fingerprint
 
 
@@ -25,7 +25,7 @@ class RecordedModes(ModeEquations):
 
     checkpoint: Checkpoint
 
-    def solve(self, guess: Motion, plane: Plane, samples: int) -> Motion:
+    def solve(self, guess: FreeMotion, plane: Plane, samples: int) -> FreeMotion:
         solve = super().solve
 
         def compute() -> tuple[np.ndarray, ...]:
@@ -37,9 +37,9 @@ class RecordedModes(ModeEquations):
         iterations, error, converged, own = how.tolist()
         omega, growth, size = place[-3:].tolist()
         harmonics = place[:-3].reshape(guess.harmonics.shape)
-        return Motion(harmonics, omega, growth, size, int(iterations), error, bool(converged), int(own))
+        return FreeMotion(harmonics, omega, growth, size, int(iterations), error, bool(converged), int(own))
 
-    def direction(self, motion: Motion, before: np.ndarray) -> np.ndarray:
+    def direction(self, motion: FreeMotion, before: np.ndarray) -> np.ndarray:
         direction = super().direction
         key = self._key(_place(motion), before, np.array([motion.samples]))
         return self.checkpoint.once(key, lambda: (direction(motion, before),))[0]
@@ -53,7 +53,7 @@ class RecordedModes(ModeEquations):
         return b"nonlinear mode" + fingerprint(self.problem.lowered, self.problem.method, self.row).encode()
 
 
-def _place(motion: Motion) -> np.ndarray:
+def _place(motion: FreeMotion) -> np.ndarray:
     """Harmonics, ω, ξ and amplitude of a motion."""
     return np.append(motion.harmonics, [motion.omega, motion.growth, motion.size])
 

@@ -45,7 +45,7 @@ class Problem(Protocol):
 
 
 @dataclass(frozen=True)
-class Found:
+class PathPoint:
     """A point of a curve.
 
     Parameters
@@ -62,13 +62,13 @@ class Found:
     returned: bool = False
 
 
-def at_frequencies(equations: Problem, omegas: np.ndarray, start: Solution | None) -> Iterator[Found]:
+def at_frequencies(equations: Problem, omegas: np.ndarray, start: Solution | None) -> Iterator[PathPoint]:
     """Solutions at given frequencies, each from the one before; a point that is not found does not end the curve."""
     known = start
     for omega in omegas:
         solution = equations.first(omega) if known is None else _towards(equations, known, omega)
         known = solution if solution.converged else known
-        yield Found(solution)
+        yield PathPoint(solution)
 
 
 def _towards(equations: Problem, known: Solution, omega: float) -> Solution:
@@ -108,10 +108,10 @@ def _predicted(known: Solution, omega: float) -> np.ndarray:
         return known.unknowns
 
 
-def natural(equations: Problem, begin: float, end: float, start: Solution | None) -> Iterator[Found]:
+def natural(equations: Problem, begin: float, end: float, start: Solution | None) -> Iterator[PathPoint]:
     """Solutions from one frequency to another, with steps as long as Newton's method allows."""
     known = start if start is not None else equations.first(begin)
-    yield Found(known)
+    yield PathPoint(known)
     longest = (end - begin) * equations.method.resolution
     step = longest / 4
     while known.omega != end:
@@ -125,18 +125,20 @@ def natural(equations: Problem, begin: float, end: float, start: Solution | None
         if not solution.converged:
             fresh = equations.first(target)
             solution = fresh if fresh.converged else solution
-        yield Found(solution)
+        yield PathPoint(solution)
         known = solution if solution.converged else replace(known, omega=target)
         step = min(2 * step, longest, key=abs) if solution.iterations <= EASY else step
 
 
-def along(equations: Problem, begin: float, end: float, start: Solution | None, behind: float = 0.0) -> Iterator[Found]:
+def along(
+    equations: Problem, begin: float, end: float, start: Solution | None, behind: float = 0.0
+) -> Iterator[PathPoint]:
     """Points along the curve from one frequency to another, by arc length, with its folds.
 
     It may turn back behind its beginning, by a part of the way.
     """
     known = start if start is not None else equations.first(begin)
-    yield Found(known)
+    yield PathPoint(known)
     if not known.converged:
         return
     width = abs(end - begin) / 10
@@ -151,32 +153,32 @@ def along(equations: Problem, begin: float, end: float, start: Solution | None, 
         if direction is None and step <= SHARP * longest:
             beyond = path.turned(equations, solution, step)
             if beyond is not None:
-                yield Found(beyond.known, fold=bool(beyond.direction[-1] * path.direction[-1] < 0))
+                yield PathPoint(beyond.known, fold=bool(beyond.direction[-1] * path.direction[-1] < 0))
                 path, points = beyond, points + 1
                 continue
         bent = direction is not None and float(path.direction @ direction) < STEADY
         if direction is None or (bent and step > longest * 1e-2):
             step /= 2
             if step < SHORTEST * longest:
-                yield Found(solution)
+                yield PathPoint(solution)
                 return
             continue
         if not low <= solution.omega <= high:
             border = low if solution.omega < low else high
             last = equations.solve(*_on_border(path.known, solution, border), solution.samples)
-            yield Found(last)
+            yield PathPoint(last)
             return
         folds = bool(direction[-1] * path.direction[-1] < 0)
         fold = _fold(equations, path, step) if folds else None
         if fold is not None:
-            yield Found(fold, fold=True)
-        yield Found(solution, fold=folds and fold is None)
+            yield PathPoint(fold, fold=True)
+        yield PathPoint(solution, fold=folds and fold is None)
         points += 1
         path = Path(solution, direction_at(solution, direction, width), width)
         step = min(longest, step * (1.5 if solution.iterations <= EASY else 0.7))
 
 
-def across(equations: Problem, begin: float, end: float, start: Solution | None) -> Iterator[Found]:
+def across(equations: Problem, begin: float, end: float, start: Solution | None) -> Iterator[PathPoint]:
     """Points of :func:`along` between two frequencies, where the curve may leave and come back at the first of them."""
     low, high = min(begin, end), max(begin, end)
     before: Solution | None = None
@@ -185,7 +187,7 @@ def across(equations: Problem, begin: float, end: float, start: Solution | None)
         solution, leaves = found.solution, not low <= found.solution.omega <= high
         if before is not None and leaves != bool(outside) and solution.converged:
             border = equations.solve(*_on_border(before, solution, begin), solution.samples)
-            yield Found(border, returned=not leaves)
+            yield PathPoint(border, returned=not leaves)
         if not leaves:
             yield found
         outside = outside + 1 if leaves else 0

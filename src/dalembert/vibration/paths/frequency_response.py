@@ -13,7 +13,7 @@ from dalembert.vibration.balance.equations import Equations, equations
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.balance.newton import Solution
 from dalembert.vibration.balance.truncation import largest, truncation_findings
-from dalembert.vibration.balance.unfound import free_findings, unfound, unfound_findings
+from dalembert.vibration.balance.unconverged import free_findings, unconverged, unconverged_findings
 from dalembert.vibration.paths.continuation import across, at_frequencies, natural
 from dalembert.vibration.paths.curve import FrequencyCurve
 from dalembert.vibration.paths.recorded import recorded
@@ -214,7 +214,7 @@ def _curve(
     dofs = tuple(lowered.structure.dofs.names[row] for row in rows)
     for one in points:
         records.append(_Record.of(problem, one, rows))
-        lost.append(unfound(problem, one.found.solution))
+        lost.append(unconverged(problem, one.found.solution))
         top = largest(top, one.found.solution) if check else None
         if on_point is not None:
             given, omega = settings["frequencies"] == "given", one.found.solution.omega
@@ -231,7 +231,7 @@ def _curve(
         markers=tuple((one.marker, number) for number, one in enumerate(records) if one.marker),
         provenance={**versions(), "method": asdict(problem.method), **settings},
         findings=(
-            *unfound_findings(len(records), filter(None, lost)),
+            *unconverged_findings(len(records), filter(None, lost)),
             *free_findings(problem),
             *(() if top is None else truncation_findings(problem, top)),
         ),

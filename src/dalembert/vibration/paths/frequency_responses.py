@@ -24,7 +24,7 @@ from dalembert.vibration.system.lowering import lower
 from dalembert.vibration.system.system import VibrationSystem
 from dalembert.vibration.threads import one_thread
 
-Found = tuple[FrequencyCurve | None, DalembertError | None, float]
+CurveOrError = tuple[FrequencyCurve | None, DalembertError | None, float]
 """A curve or why there is none, and the seconds that it took."""
 
 
@@ -101,7 +101,7 @@ def frequency_responses(
     one = _One(builder, parameter, frequencies, method or HarmonicBalance(), options)
     stopped = Event()
 
-    def here(value: float) -> Found:
+    def here(value: float) -> CurveOrError:
         """In a thread of this process, which ends at its next point where nobody waits for it."""
 
         def go_on(_: FollowedPoint) -> None:
@@ -112,7 +112,7 @@ def frequency_responses(
 
     kept = [None if checkpoint is None else one.recall(checkpoint, value) for value in given.tolist()]
     missing = [value for value, curve in zip(given.tolist(), kept, strict=True) if curve is None]
-    work: Callable[[float], Found] = here if executor is None else one
+    work: Callable[[float], CurveOrError] = here if executor is None else one
     curves: list[FrequencyCurve | None] = []
     errors: list[DalembertError | None] = []
     found = ensemble(work, missing, workers=workers, executor=executor, on_stop=stopped.set)
@@ -142,7 +142,7 @@ class _One:
     method: HarmonicBalance
     options: Mapping[str, Any]
 
-    def __call__(self, value: float, **more: Any) -> Found:
+    def __call__(self, value: float, **more: Any) -> CurveOrError:
         began = perf_counter()
         try:
             curve = frequency_response(
@@ -167,7 +167,7 @@ class _One:
         except Exception:  # a system that cannot be made is told when its turn comes
             return None
 
-    def keep(self, checkpoint: Checkpoint, value: float, found: Found) -> None:
+    def keep(self, checkpoint: Checkpoint, value: float, found: CurveOrError) -> None:
         """Keep a whole curve."""
         curve, _, seconds = found
         if curve is not None:

@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 
 from dalembert.vibration.balance.equations import Equations
 from dalembert.vibration.balance.newton import Plane, Solution
-from dalembert.vibration.paths.continuation import Found
+from dalembert.vibration.paths.continuation import PathPoint
 from dalembert.vibration.stability.stability import Exponents, exponents, remembers
 
 FOLD, TORUS, DOUBLING, BRANCH = "fold", "torus", "period doubling", "branch point"
@@ -26,31 +26,31 @@ class Judged:
 
     Parameters
     ----------
-    found : Found
+    found : PathPoint
     stable : int
         1, 0, or -1 where it is not known.
     marker : str
         Kind of the bifurcation that lies here, or nothing.
     """
 
-    found: Found
+    found: PathPoint
     stable: int = NOT_ASKED
     marker: str = ""
 
 
-def unjudged(path: Iterable[Found]) -> Iterator[Judged]:
+def unjudged(path: Iterable[PathPoint]) -> Iterator[Judged]:
     """Points with no more than their folds."""
     for one in path:
         yield Judged(one, marker=FOLD if one.fold else "")
 
 
-def judged(problem: Equations, path: Iterable[Found], located: bool) -> Iterator[Judged]:
+def judged(problem: Equations, path: Iterable[PathPoint], located: bool) -> Iterator[Judged]:
     """Points with their stability, and where it changes.
 
     Parameters
     ----------
     problem : Equations
-    path : iterable of Found
+    path : iterable of PathPoint
     located : bool
         Whether changes become points of their own; else the first point behind one is marked.
     """
@@ -81,7 +81,7 @@ def judged(problem: Equations, path: Iterable[Found], located: bool) -> Iterator
                 place = _located(problem, before, (one.solution, own)) if located and adjacent and kind else None
                 if place is not None:
                     stable = _said(before[1]) if place[1].judged else NOT_ASKED
-                    yield Judged(Found(place[0]), stable, _kind(place[1], place[1], _rank(before[1], own)))
+                    yield Judged(PathPoint(place[0]), stable, _kind(place[1], place[1], _rank(before[1], own)))
                     kind = ""
             yield Judged(one, _said(own), kind)
             before, folded, adjacent = (one.solution, own), False, True

@@ -17,7 +17,7 @@ LEFT = 0.1
 
 
 @dataclass(frozen=True)
-class Unfound:
+class Unconverged:
     """A point that was not found.
 
     Parameters
@@ -45,7 +45,7 @@ class Unfound:
     resonance: bool = False
 
 
-def unfound(problem: Equations, solution: Solution) -> Unfound | None:
+def unconverged(problem: Equations, solution: Solution) -> Unconverged | None:
     """Return the cause if a point was not found."""
     if solution.converged:
         return None
@@ -54,13 +54,13 @@ def unfound(problem: Equations, solution: Solution) -> Unfound | None:
     along = motions.T @ residual[:, 0]
     largest = max(LEFT * float(np.linalg.norm(residual)), VERIFIED * solution.point.load)
     if not np.linalg.norm(along) > largest:
-        return Unfound(
+        return Unconverged(
             frequency, solution.error, element=_not_finite(problem, solution), resonance=_resonates(solution)
         )
     balance = problem.balance(solution.samples)
     moved = np.abs(balance.displacements((motions @ along)[:, None])[:, 0])
     names = [repr(balance.lowered.row_names[row]) for row in np.flatnonzero(moved > MOVING * moved.max())]
-    return Unfound(frequency, solution.error, listed(names[:NAMED]), float(np.linalg.norm(along)))
+    return Unconverged(frequency, solution.error, listed(names[:NAMED]), float(np.linalg.norm(along)))
 
 
 def _not_finite(problem: Equations, solution: Solution) -> str:
@@ -89,7 +89,7 @@ def _resonates(solution: Solution) -> bool:
     return bool(np.any(smallest <= NEARLY * point.stiffest))
 
 
-def unfound_findings(points: int, lost: Iterable[Unfound]) -> tuple[Finding, ...]:
+def unconverged_findings(points: int, lost: Iterable[Unconverged]) -> tuple[Finding, ...]:
     """Return the finding on the points of a curve, of so many, that were not found."""
     lost = list(lost)
     if not lost:

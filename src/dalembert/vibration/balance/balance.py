@@ -33,7 +33,7 @@ case for it: a point of 480 unknowns took 28 ms densely and 31 by the structure,
 
 @dataclass(frozen=True)
 class Evaluation:
-    """Residual and what else is known of the equations at a point.
+    """Residual, forces and states of contacts at a point.
 
     Parameters
     ----------
@@ -240,7 +240,7 @@ class Balance:
         return states
 
     def _predicted(self, block: FrictionBlock, unknowns: np.ndarray, total: np.ndarray) -> np.ndarray:
-        """Displacements (cells, columns, coefficients) that the law is given."""
+        """Return the displacements (cells, columns, coefficients) that the law sees."""
         if block.kind == ELASTIC:
             return (self._combination @ unknowns)[block.rows]
         places = self._retained[block.rows]
@@ -294,7 +294,7 @@ class Balance:
 
     @cached_property
     def _separate(self) -> bool:
-        """Whether elements depend on each other through the structure alone, so that the Jacobian has structure."""
+        """Whether elements are coupled by the structure alone, so that the Jacobian has blocks."""
         return self.shape[0] == len(self.lowered.row_names) and all(block.memory for block in self.lowered.blocks)
 
     @cached_property
@@ -308,7 +308,7 @@ class Balance:
 
     @cached_property
     def _kind(self) -> np.dtype:
-        """Real or complex: of the elements' numbers."""
+        """Real or complex: the type of the elements' numbers."""
         blocks = (*self.lowered.blocks, *self.lowered.laws)
         return np.result_type(float, *(block.numbers for block in blocks))
 

@@ -28,7 +28,7 @@ ACTIVE = 1e-11
 DIRECT = 500
 """Active unknowns up to which a dense system costs less than iterations."""
 EXACT = 1e-12
-"""Residual of a linear system, as part of its right-hand side, to which GMRES goes unless told otherwise."""
+"""Default tolerance of GMRES: residual of a linear system, as part of its right-hand side."""
 KRYLOV, CYCLES = 100, 4
 """Iterations of GMRES in a cycle, which begins with the residual as it is, and cycles; then the dense system."""
 
@@ -177,7 +177,7 @@ class BlockTangent:
 
     @cached_property
     def _preconditioner(self) -> np.ndarray:
-        """Inverse of A + E m V without what couples harmonics, (orders, q, q)."""
+        """Inverse of A + E m V without its coupling of harmonics, (orders, q, q)."""
         q, mean = len(self.reference), self.series.mean
         own = np.zeros((len(self.series.orders), q, q), dtype=complex)
         for places, blocks in self.active:
@@ -202,7 +202,7 @@ class BlockTangent:
         return result.ravel()
 
     def _iterated(self, right: np.ndarray, tolerance: float) -> np.ndarray:
-        """J⁻¹ times (q, coefficients) by GMRES, or directly where that does not arrive."""
+        """J⁻¹ times (q, coefficients) by GMRES, or directly if GMRES does not converge."""
         series, size = self.series, right.size
 
         def precondition(values: np.ndarray) -> np.ndarray:

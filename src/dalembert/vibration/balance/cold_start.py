@@ -1,4 +1,4 @@
-"""A first point of a curve by the path over the force, from little to all of it."""
+"""First point of a curve by continuation over the force, from a small part to all of it."""
 
 from dataclasses import dataclass, replace
 from itertools import islice
@@ -12,16 +12,16 @@ from dalembert.vibration.balance.newton import Plane, Solution, correct
 from dalembert.vibration.paths.continuation import along
 
 FIRST_LOAD = 0.01
-"""Part of the force with which the path begins; contacts that are pressed at all then stick."""
+"""Part of the force at the start of the path, at which pressed contacts stick."""
 RESOLUTION = 0.1
-"""Of the path, whose points on the way nobody looks at."""
+"""Resolution of the path, whose points are not kept."""
 MOST_STEPS = 120
-"""Points of the path after which it is given up."""
+"""Points after which continuation stops."""
 
 
 @dataclass(frozen=True)
 class Loading:
-    """The equations at one frequency, with the part of the varying forces that acts in the place of the frequency.
+    """The equations at one frequency, with the part of the varying forces as the parameter in place of the frequency.
 
     Static forces act from the beginning: they may be what presses the contacts.
 
@@ -50,11 +50,11 @@ class Loading:
         return correct(self.balance, self, self.method, unknowns, load, plane)
 
     def first(self, load: float) -> Solution:
-        """From where contacts are closed and stick."""
+        """Return the solution from closed contacts that stick."""
         return self.solve(self.balance.stuck(self.at(load)), load, self.balance.series.samples)
 
     def last(self) -> np.ndarray:
-        """Unknowns where the path over the force, past its folds, ends: with all of it, if it gets there."""
+        """Return the unknowns at the end of the path over the force: at full force if the path reaches it."""
         unknowns = np.zeros(self.balance.shape)
         # A path may turn back, through none of the force even, before it comes to all of it.
         for found in islice(along(self, -1.0, 1.0, self.first(FIRST_LOAD)), MOST_STEPS):
@@ -64,5 +64,5 @@ class Loading:
 
 
 def by_force(balance: Balance, method: HarmonicBalance, point: Point) -> np.ndarray:
-    """Unknowns at a frequency, from rest by the path over the force."""
+    """Return unknowns at a frequency by continuation from rest over the force."""
     return Loading(balance, replace(method, resolution=RESOLUTION), point).last()

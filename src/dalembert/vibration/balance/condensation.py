@@ -37,7 +37,7 @@ DECOUPLED = 1e-10
 
 @dataclass(frozen=True)
 class Point:
-    """A condensed structure at one frequency, with what is needed to go back.
+    """A condensed structure at one frequency, and the matrices that recover all coordinates.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ class Point:
 
     @property
     def free_motions(self) -> np.ndarray:
-        """Mean motions (q, motions) that the stiffness does not hold: only contacts can, and perhaps none does."""
+        """Mean motions (q, motions) that the stiffness does not resist. Contacts may hold them."""
         if "free motions" not in self.shared:
             self.shared["free motions"] = self._free_motions()
         return self.shared["free motions"]
@@ -172,7 +172,7 @@ class Condensation:
         )
 
     def full(self, retained: np.ndarray, interior: np.ndarray) -> np.ndarray:
-        """All degrees of freedom (orders, n) from the retained and the interior ones.
+        """Return all degrees of freedom (orders, n) from the retained and the interior ones.
 
         Where nothing holds a mean position, it is the smallest one: without a part along :attr:`free`.
         """
@@ -246,7 +246,7 @@ class Condensation:
         return 2 * FLOATING * np.abs(self.inner[0])
 
     def _off_resonance(self, s: np.ndarray, inner: Any, right: np.ndarray | None = None) -> Any:
-        """Dynamic stiffness of the interior modes, a little of it where there is none.
+        """Return the dynamic stiffness of the interior modes, with a small value in place of zero.
 
         That is exact where nothing moves such a mode, and close to it where the retained coordinates hold it.
 
@@ -314,7 +314,7 @@ class Condensation:
 
     @cached_property
     def _side_by_side(self) -> tuple[list[np.ndarray], list[tuple[slice, tuple[int, ...]]]]:
-        """Entries of the matrices that are not sparse, one after the other, and the place and shape of each."""
+        """Entries of the matrices that are not sparse in one vector, and the slice and shape of each."""
         parts = [part for part in (self.outer, self.across, self.inner) if not issparse(part[0])]
         ends = np.cumsum([part[0].size for part in parts]).tolist()
         places = [(slice(end - part[0].size, end), part[0].shape) for part, end in zip(parts, ends, strict=True)]
@@ -329,7 +329,7 @@ class Condensation:
 
 
 def norm(array: np.ndarray) -> float:
-    """Square root of the sum of squares, without what :func:`numpy.linalg.norm` asks before it."""
+    """Return the Euclidean norm of all entries. It is faster than :func:`numpy.linalg.norm` for small arrays."""
     return float(np.sqrt(np.vdot(array, array).real))
 
 

@@ -1,4 +1,4 @@
-"""Coordinates that split a structure into what its nonlinear elements move and the rest, exactly."""
+"""Exact split of coordinates: retained ones, which nonlinear elements move, and interior ones."""
 
 from dataclasses import dataclass
 from typing import Any

@@ -1,4 +1,4 @@
-"""The equations of a system under harmonic balance, ready to be solved at any frequency."""
+"""Equations of harmonic balance of a system, solved at any frequency."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
@@ -64,7 +64,7 @@ class Equations:
         plane: Plane | None = None,
         point: Point | None = None,
     ) -> Solution:
-        """Newton's method from a guess, with as many samples as it needs, and at least those given.
+        """Solve the equations by Newton's method from a guess. Samples are doubled until they suffice.
 
         Where nothing holds a mean position, few samples may leave a mean force that more of them remove.
         """
@@ -86,7 +86,7 @@ class Equations:
         return solution
 
     def first(self, omega: float) -> Solution:
-        """A first point: from closed contacts that stick, from the motion without contacts, with more force.
+        """Return a first point: from closed contacts that stick, from the motion without contacts, or by more and more force.
 
         With little varying force contacts stick, so that this is the way of a friction limit from infinity to its own.
         """
@@ -116,7 +116,7 @@ class Equations:
         return touching if touching.converged else min(best, touching, key=lambda one: one.error)
 
     def once(self, what: str, solution: Solution, compute: Callable[[], np.ndarray]) -> np.ndarray:
-        """What follows from a solution, by name; it is kept where solutions are."""
+        """Return a named quantity of a solution. It is stored where solutions are."""
         return compute()
 
     def _doubles(self, solution: Solution) -> bool:

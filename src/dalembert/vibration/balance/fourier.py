@@ -67,12 +67,12 @@ class Fourier:
 
     @cached_property
     def cosines(self) -> np.ndarray:
-        """Places of the cosine coefficients, and of the mean, (orders,)."""
+        """Indices of the cosine coefficients, and of the mean, (orders,)."""
         return np.array([*range(self.mean), *range(self.mean, self.count, 2)], dtype=int)
 
     @cached_property
     def sines(self) -> np.ndarray:
-        """Places of the sine coefficients, (orders without 0,)."""
+        """Indices of the sine coefficients, (orders without 0,)."""
         return np.arange(self.mean + 1, self.count, 2)
 
     def phasors(self, coefficients: np.ndarray) -> np.ndarray:
@@ -135,7 +135,7 @@ def _diagonal(blocks: np.ndarray) -> np.ndarray:
 
 
 def complex_blocks(matrices: np.ndarray, mean: int) -> np.ndarray:
-    """What of matrices on real coefficients (..., q, coefficients, r, coefficients) multiplies each phasor by a number.
+    """Return the part of matrices (..., q, coefficients, r, coefficients) that multiplies each phasor by a number.
 
     (orders, ..., q, r): the inverse of :func:`real_blocks`, and without what couples harmonics or conjugates.
     """

@@ -11,7 +11,7 @@ AUTOMATIC = "automatic"
 
 @dataclass(frozen=True)
 class HarmonicBalance(Checked):
-    """How a periodic response is balanced.
+    """Settings of harmonic balance.
 
     Parameters
     ----------
@@ -30,11 +30,11 @@ class HarmonicBalance(Checked):
     sampling : float
         Largest change, as part of the forces, for which samples are enough.
     tolerance : float
-        Residual at which a point is found, as part of the forces.
+        Residual of a converged point, as part of the forces.
     iterations : int
-        Newton iterations after which a point is given up and the step towards it halved.
+        Newton iterations of a point, at most. The step to a point that is not converged is halved.
     halvings : int
-        How often it is halved before the point is marked as not found. With 0, a first point is not sought along a
+        Halvings of a step, after which the point is marked as not converged. With 0, a first point is not sought along a
         path over the force either.
     resolution : float
         Largest step of a path between two frequencies, as part of the way.

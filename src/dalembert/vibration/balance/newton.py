@@ -16,9 +16,9 @@ from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.balance.tangents import Tangent, bordered
 
 DAMPINGS = (1.0, 0.5, 0.25, 0.125, 0.03125)
-"""Parts of a Newton step that are tried, until the residual falls."""
+"""Parts of a Newton step of the line search, until the residual falls."""
 PATIENCE, PROGRESS = 10, 0.7
-"""Iterations after which Newton's method is given up if the least residual has not come to this part of itself."""
+"""Newton's method stops if this many iterations do not reduce the least residual to this part."""
 SAME = 1e-6
 """Difference of residuals, as part of them, of the same place."""
 COARSE = 1e-6
@@ -55,14 +55,14 @@ class Plane:
     width: float
 
     def distance(self, unknowns: np.ndarray, omega: float) -> float:
-        """Of a place from the plane."""
+        """Return the distance of a point from the plane."""
         moved = np.append((unknowns - self.unknowns).ravel() / self.size, (omega - self.omega) / self.width)
         return float(self.direction @ moved)
 
 
 @dataclass(frozen=True)
 class Solution:
-    """Where Newton's method ended.
+    """Last iterate of Newton's method, converged or not.
 
     Parameters
     ----------
@@ -120,7 +120,7 @@ def correct(
     plane: Plane | None = None,
     point: Point | None = None,
 ) -> Solution:
-    """Newton's method from a guess, at ω or, with a plane, on that; ``point`` if it is condensed already."""
+    """Solve by Newton's method from a guess, at ω or on a plane. ``point`` is the structure at ω if it is known."""
 
     def place(unknowns: np.ndarray, omega: float, point: Point | None, step: bool = True) -> _Place:
         point = condensation.at(omega) if point is None else point
@@ -167,7 +167,7 @@ def evaluated(balance: Balance, point: Point, unknowns: np.ndarray) -> tuple[Eva
 
 
 def _stalls(errors: list[float]) -> bool:
-    """Whether residuals make no more progress: Newton's method goes around between the sides of kinks."""
+    """Whether residuals stagnate: Newton's method alternates between the sides of kinks."""
     if not np.isfinite(errors[-1]):
         return True
     if len(errors) > 4 and np.allclose(errors[-2:], errors[-4:-2], rtol=SAME, atol=0):  # around between two places

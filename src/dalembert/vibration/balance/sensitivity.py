@@ -23,7 +23,7 @@ STEP = 1e-30
 
 
 def sensitivities(problem: Equations, solution: Solution, perturbed: Sequence[Lowered]) -> np.ndarray:
-    """Derivatives of all degrees of freedom' coefficients, (parameters, n, coefficients).
+    """Return the derivatives of the coefficients of all degrees of freedom, (parameters, n, coefficients).
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The Jacobian of the balance as one dense matrix or by its structure, alone and with a row beside it."""
+"""The Jacobian of the balance, dense or in blocks, alone or bordered by a row."""
 
 from dataclasses import dataclass
 
@@ -29,7 +29,7 @@ class DenseTangent:
     held: bool = True
 
     def copy(self) -> "DenseTangent":
-        """The same in other places of memory."""
+        """Return a copy of the arrays."""
         return DenseTangent(self.jacobian.copy(), self.slope.copy(), self.held)
 
     @property
@@ -58,7 +58,7 @@ def bordered(
     bottom: float,
     tolerance: float = EXACT,
 ) -> tuple[np.ndarray, float]:
-    """Solution with the tangent and a row beside it, regular at a fold too: changes of U/size and ω/width.
+    """Return the solution of the bordered system, which is regular at folds: changes of U/size and ω/width.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def bordered(
 
 
 def orientation(tangent: Tangent, direction: np.ndarray, scales: tuple[float, float, float]) -> float:
-    """Sign of the determinant of the tangent with a row, which a direction along a path keeps; 0 where it is 0."""
+    """Return the sign of the determinant of the bordered tangent, which is constant along a path; 0 if it is 0."""
     if isinstance(tangent, DenseTangent):
         return float(np.linalg.slogdet(_with_row(tangent, direction, scales))[0])
     size, width, _ = scales

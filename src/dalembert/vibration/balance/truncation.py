@@ -1,4 +1,4 @@
-"""Whether the harmonics that are kept resolve a motion: how much of it more harmonics change."""
+"""Truncation error: the change of a motion with more harmonics."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -57,7 +57,7 @@ def truncation_findings(problem: Equations, solution: Solution) -> Iterator[Find
 
 
 def _error(problem: Equations, solution: Solution) -> float:
-    """Error of the peak of the retained coordinate that moves most, as part of it; NaN if no finer motion is found."""
+    """Return the relative error of the peak of the coordinate that moves most; NaN if no finer motion is converged."""
     method = problem.method.refined()
     if method is None or not problem.nonlinear:
         return 0.0

@@ -1,4 +1,4 @@
-r"""The balance with all coordinates as unknowns, for what a condensed structure does not say: growth, and damping.
+r"""The balance with all coordinates as unknowns, for stability and nonlinear modes.
 
 With y = (q, l) the retained coordinates of the elements and the interior ones side by side, and L(Y) the linear part of
 the balance, the derivative of the residual is :math:`W\,\mathrm{d}L + B\,\mathrm{d}U` in the rows of q, and
@@ -25,7 +25,7 @@ REMEMBERING = "displacement"
 
 
 class Local(NamedTuple):
-    """The elements at a place: what they do, and W and B, (q · coefficients, q · coefficients); W None for the unit.
+    """The elements at a point: forces, and W (None for 1) and B, (q · coefficients, q · coefficients).
 
     ``slope`` (q, coefficients): the derivative of their forces by ω.
     """

@@ -1,4 +1,4 @@
-"""Why points of a curve were not found, and what is free in those that were."""
+"""Causes of points that are not converged, and motions that nothing holds."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ LEFT = 0.1
 
 @dataclass(frozen=True)
 class Unconverged:
-    """A point that was not found.
+    """A point that is not converged.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ class Unconverged:
 
 
 def unconverged(problem: Equations, solution: Solution) -> Unconverged | None:
-    """Return the cause if a point was not found."""
+    """Return the cause if a point is not converged."""
     if solution.converged:
         return None
     frequency, residual = float(solution.omega) / (2 * np.pi), solution.evaluation.residual
@@ -90,7 +90,7 @@ def _resonates(solution: Solution) -> bool:
 
 
 def unconverged_findings(points: int, lost: Iterable[Unconverged]) -> tuple[Finding, ...]:
-    """Return the finding on the points of a curve, of so many, that were not found."""
+    """Return the finding on the points of a curve that are not converged."""
     lost = list(lost)
     if not lost:
         return ()

@@ -99,7 +99,7 @@ class Backbone(Result):
 
     @property
     def success(self) -> bool:
-        """Whether every one was found."""
+        """Whether every motion is converged."""
         return bool(self.converged.all())
 
     @property

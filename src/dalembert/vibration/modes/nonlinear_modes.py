@@ -19,11 +19,11 @@ from dalembert.vibration.system.system import StaticForce, VibrationSystem
 from dalembert.vibration.threads import one_thread
 
 SMALLER = (1.0, 0.1, 1e-2, 1e-3, 1e-4)
-"""Parts of the first amplitude from which it is approached where it is not found at once."""
+"""Parts of the first amplitude that are tried in turn."""
 CORNER = 1e-2
 """Step behind a corner of the path, as part of the longest."""
 RETRACED = 1e-3
-"""Difference of frequencies, as part of them, by which a path that comes back to its begin has lost its way."""
+"""Relative difference of frequencies below which a path has returned to its start."""
 SAME = 0.7
 """Cosine of the angle between two motions, weighted by the mass, below which they belong to different modes."""
 
@@ -38,7 +38,7 @@ def backbone(
     dof: str | None = None,
     checkpoint: Checkpoint | None = None,
 ) -> Backbone:
-    r"""Frequency and damping of a nonlinear mode over its amplitude, by the extended periodic motion concept.
+    r"""Return frequency and damping of a nonlinear mode over its amplitude, by the extended periodic motion concept.
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ def _scaled(linear: Linear, row: int, name: str) -> Linear:
 
 
 def _first(own: ModeEquations, linear: Linear, size: float) -> FreeMotion:
-    """The motion at the first amplitude, or at a smaller one where the linear mode is too far from it."""
+    """Return the motion at the first amplitude, or at a smaller one if the linear mode is too far from it."""
     for part in SMALLER:
         harmonics = linear.rest.copy()
         harmonics[:, int(own.problem.method.orders[0] == 0)] += part * size * linear.moved
@@ -136,7 +136,7 @@ def _first(own: ModeEquations, linear: Linear, size: float) -> FreeMotion:
 
 
 def _accepted(own: ModeEquations, known: FreeMotion, found: FreeMotion) -> bool:
-    """Whether a motion was found, and is one of the same mode."""
+    """Whether a motion is converged, and belongs to the same mode."""
     if not found.converged:
         return False
     matrix, mean = own.system(found.samples).matrices[1], int(own.problem.method.orders[0] == 0)
@@ -146,7 +146,7 @@ def _accepted(own: ModeEquations, known: FreeMotion, found: FreeMotion) -> bool:
 
 
 def _at_sizes(own: ModeEquations, first: FreeMotion, sizes: np.ndarray, rest: np.ndarray) -> Iterator[FreeMotion]:
-    """Motions at one amplitude after the other."""
+    """Yield motions at given amplitudes, each from the one before."""
     known = first
     for size in sizes:
         motion = _towards(own, known, float(size), rest) if known.converged else replace(first, size=float(size))
@@ -155,7 +155,7 @@ def _at_sizes(own: ModeEquations, first: FreeMotion, sizes: np.ndarray, rest: np
 
 
 def _towards(own: ModeEquations, known: FreeMotion, size: float, rest: np.ndarray) -> FreeMotion:
-    """The motion at an amplitude from that at another, by halves of the way, as ratios, where need be."""
+    """Return the motion at an amplitude from that at another. Ratios that do not converge are halved."""
     way = [size]
     worst = None
     while way:
@@ -176,7 +176,7 @@ def _towards(own: ModeEquations, known: FreeMotion, size: float, rest: np.ndarra
 
 
 def _along(own: ModeEquations, first: FreeMotion, begin: float, end: float) -> Iterator[FreeMotion]:
-    """Motions along the path from one amplitude to another, by arc length."""
+    """Yield motions along the path from one amplitude to another, by arc length."""
     low, high = min(begin, end), max(begin, end)
     known, onward = first, np.zeros(first.harmonics.size + 3)
     onward[-1] = np.sign(end - begin)

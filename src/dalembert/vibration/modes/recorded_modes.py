@@ -1,4 +1,4 @@
-"""Motions of a nonlinear mode that are kept: an interrupted backbone is followed again without Newton's method."""
+"""Stored motions of a nonlinear mode: an interrupted backbone continues without repeating Newton's method."""
 
 import hashlib
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from dalembert.vibration.system.fingerprint import fingerprint
 
 @dataclass(frozen=True)
 class RecordedModes(ModeEquations):
-    """Equations of a mode that take from a checkpoint the motions and directions that it holds, and add others.
+    """Equations of a mode that read motions and directions from a checkpoint, and add new ones to it.
 
     A path goes from one motion to the next, so it takes the same way again, bit for bit.
 
@@ -59,5 +59,5 @@ def _place(motion: FreeMotion) -> np.ndarray:
 
 
 def recorded_modes(problem: Equations, row: int, checkpoint: Checkpoint | None) -> ModeEquations:
-    """The equations of a mode with its motions in a checkpoint, or the equations themselves without one."""
+    """Return the equations of a mode with its motions in a checkpoint, or as they are without one."""
     return ModeEquations(problem, row) if checkpoint is None else RecordedModes(problem, row, checkpoint)

@@ -38,13 +38,13 @@ class Amplitude:
             raise InputError(f"the kind of amplitude is {self.kind!r}; expected {KINDS}: {_listed(self.orders)}")
 
     def of(self, coefficients: np.ndarray) -> np.ndarray:
-        """Sizes of motions, from coefficients (..., coefficients)."""
+        """Return the sizes of motions with coefficients (..., coefficients)."""
         if self.kind == "peak":
             return np.abs(coefficients @ self._waves.T).max(axis=-1)
         return np.sqrt(coefficients**2 @ self._weights())
 
     def slope(self, coefficients: np.ndarray) -> np.ndarray:
-        """Derivative of the size by the coefficients; both (..., coefficients)."""
+        """Return the derivative of the size by the coefficients, both (..., coefficients)."""
         if self.kind == "peak":
             waves = self._waves
             samples = coefficients @ waves.T
@@ -79,7 +79,7 @@ def _listed(orders: tuple[int, ...]) -> str:
 
 
 def observed_column(dofs: Sequence[str], dof: str) -> int:
-    """Place of a degree of freedom among the observed ones; a node with only one may stand alone.
+    """Return the column of an observed degree of freedom. A node with only one may be named alone.
 
     Raises
     ------

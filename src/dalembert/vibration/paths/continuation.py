@@ -1,4 +1,4 @@
-"""Following the response over frequency: from one given frequency to the next, or along the curve past its folds."""
+"""Continuation of responses over frequency: from one given frequency to the next, or along the curve past its folds."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -16,9 +16,9 @@ from dalembert.vibration.balance.tangents import bordered, orientation
 STEADY = 0.9
 """Cosine of the angle between directions of a path, below which a step was too long."""
 EASY = 4
-"""Newton iterations that a step may take and the next still be longer."""
+"""Newton iterations of a step up to which the next step is longer."""
 SHORTEST = 1e-7
-"""Step, as part of the longest, at which a path is given up."""
+"""Smallest step relative to the largest. Continuation stops below it."""
 SHARP = 1e-3
 """Step, as part of the longest, from which on the path may have a sharp turn."""
 REACHES = (1.0, 4.0, 16.0, 64.0)
@@ -27,14 +27,14 @@ BEHIND = 2.0
 """Part of the way between two frequencies by which the curve from one to the other may turn back behind the first, as
 long as it keeps half of that."""
 MOST_AROUND = 500
-"""Points of that curve after which the second is given up."""
+"""Points of that curve after which continuation to the second frequency stops."""
 STILL = 1e-3
 """Motion, as part of what the forces would cause on the stiffness of the structure alone, that counts as none."""
 MOST_POINTS = 20_000
 
 
 class Problem(Protocol):
-    """Equations with a parameter, the frequency or another, in which paths are followed."""
+    """Equations with a parameter, such as the frequency, over which paths are followed."""
 
     @property
     def method(self) -> HarmonicBalance: ...
@@ -63,7 +63,7 @@ class PathPoint:
 
 
 def at_frequencies(equations: Problem, omegas: np.ndarray, start: Solution | None) -> Iterator[PathPoint]:
-    """Solutions at given frequencies, each from the one before; a point that is not found does not end the curve."""
+    """Yield solutions at given frequencies, each from the one before. The curve continues after points not converged."""
     known = start
     for omega in omegas:
         solution = equations.first(omega) if known is None else _towards(equations, known, omega)
@@ -72,7 +72,7 @@ def at_frequencies(equations: Problem, omegas: np.ndarray, start: Solution | Non
 
 
 def _towards(equations: Problem, known: Solution, omega: float) -> Solution:
-    """The solution at a frequency from a known one, by halves of the way where need be."""
+    """Return the solution at a frequency from a known one. Steps that do not converge are halved."""
     way = [omega]
     worst = None
     while way:
@@ -90,7 +90,7 @@ def _towards(equations: Problem, known: Solution, omega: float) -> Solution:
 
 
 def _around(equations: Problem, known: Solution, omega: float) -> Solution | None:
-    """The solution at a frequency from a known one along the curve, past folds where no motion is near by."""
+    """Return the solution at a frequency along the curve from a known one, past folds."""
     if known.omega == omega or not equations.method.halvings:
         return None
     for found in islice(along(equations, known.omega, omega, known, _behind(known.omega, omega)), MOST_AROUND):
@@ -109,7 +109,7 @@ def _predicted(known: Solution, omega: float) -> np.ndarray:
 
 
 def natural(equations: Problem, begin: float, end: float, start: Solution | None) -> Iterator[PathPoint]:
-    """Solutions from one frequency to another, with steps as long as Newton's method allows."""
+    """Yield solutions from one frequency to another, with steps as long as Newton's method allows."""
     known = start if start is not None else equations.first(begin)
     yield PathPoint(known)
     longest = (end - begin) * equations.method.resolution
@@ -202,7 +202,7 @@ def _behind(begin: float, end: float) -> float:
 
 @dataclass(frozen=True)
 class Path:
-    """A known point of a curve and the direction in which it goes on, in scaled unknowns."""
+    """A point of a curve and the direction of the curve there, in scaled unknowns."""
 
     known: Solution
     direction: np.ndarray
@@ -213,7 +213,7 @@ class Path:
         return _size(self.known)
 
     def step(self, equations: Problem, length: float) -> tuple[Solution, np.ndarray | None]:
-        """The point some length on, and the direction there in the scales of here, or None if it is not found."""
+        """Return the point after a step, and the direction there in the scales of this point; None if not converged."""
         moved = self.direction[:-1].reshape(self.known.unknowns.shape) * (length * self.size)
         guess, omega = self.known.unknowns + moved, self.known.omega + self.direction[-1] * length * self.width
         plane = Plane(self.direction, guess, omega, self.size, self.width)
@@ -223,7 +223,7 @@ class Path:
         return solution, direction_at(solution, self.direction, self.width, self.size)
 
     def turned(self, equations: Problem, failed: Solution, length: float) -> "Path | None":
-        """The path beyond a sharp turn, by the tangent where a step over it failed.
+        """Return the path behind a sharp turn, from the tangent where a step over it failed.
 
         The tangent is oriented by the sign of the determinant with the direction as a row, which a path keeps.
         """
@@ -260,7 +260,7 @@ def _size(known: Solution) -> float:
 
 
 def direction_at(known: Solution, before: np.ndarray, width: float, size: float | None = None) -> np.ndarray:
-    """Unit tangent of the curve in scaled unknowns, to the same side as the one before."""
+    """Return the unit tangent of the curve in scaled unknowns, in the sense of the one before."""
     size = size or _size(known)
     change, turned = bordered(known.tangent, before, (size, width, _scale(known)), np.zeros_like(known.unknowns), 1.0)
     tangent = np.append(change, turned)
@@ -268,13 +268,13 @@ def direction_at(known: Solution, before: np.ndarray, width: float, size: float 
 
 
 def _on_border(before: Solution, after: Solution, border: float) -> tuple[np.ndarray, float]:
-    """Guess where the way between two points crosses the border of the frequencies."""
+    """Return a guess of the point at which the curve between two points crosses a limit of the frequencies."""
     part = (border - before.omega) / (after.omega - before.omega)
     return before.unknowns + part * (after.unknowns - before.unknowns), border
 
 
 def _fold(equations: Problem, path: Path, step: float) -> Solution | None:
-    """The point of a step at which the frequency turns back: a zero of the direction's last component."""
+    """Return the fold within a step: the point at which the last component of the direction is zero."""
     tried: dict[float, Solution] = {}
 
     def turning(length: float) -> float:

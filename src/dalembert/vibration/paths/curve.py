@@ -51,7 +51,7 @@ _ROUNDING = 1e-10  # of the work done in and out in a period: energies below it 
 
 @dataclass(frozen=True, eq=False)
 class FrequencyCurve(Result):
-    """Periodic responses of a system along a path over frequency, as :func:`frequency_response` returns them.
+    """Periodic responses of a system over frequency, as :func:`frequency_response` returns them.
 
     Parameters
     ----------
@@ -119,7 +119,7 @@ class FrequencyCurve(Result):
         return len(self.frequencies)
 
     def harmonics(self, dof: str) -> np.ndarray:
-        """Coefficients of an observed degree of freedom, (points, coefficients); a node with only one may stand alone.
+        """Coefficients of an observed degree of freedom or of a node with only one, (points, coefficients).
 
         Raises
         ------
@@ -151,7 +151,7 @@ class FrequencyCurve(Result):
         return waves @ self.displacements[point, row], waves @ self.forces[point, row]
 
     def dissipated(self, coordinate: str) -> np.ndarray:
-        """Energy that an element takes from the motion in a period along a coordinate, J, (points,).
+        """Energy that an element dissipates in a period along a coordinate, J, (points,).
 
         ∮ λ du, which of all harmonics of the force takes those that the displacement has too; 0 where it is rounding.
         """
@@ -169,11 +169,11 @@ class FrequencyCurve(Result):
 
     @property
     def folds(self) -> np.ndarray:
-        """Frequencies at which the path turns back, Hz, (folds,)."""
+        """Frequencies of the folds, Hz, (folds,)."""
         return self.frequencies[self.fold]
 
     def peak(self, dof: str, kind: str = "peak") -> Peak:
-        """The largest response, between the points by a cubic spline of the harmonics along the path.
+        """Return the largest response, interpolated by a cubic spline of the harmonics along the path.
 
         Raises
         ------
@@ -200,7 +200,7 @@ class FrequencyCurve(Result):
 
     @property
     def success(self) -> bool:
-        """Whether every point was found, and no finding is an error."""
+        """Whether every point is converged, and no finding is an error."""
         return bool(self.converged.all()) and all(finding.severity != "error" for finding in self.findings)
 
     @property
@@ -211,7 +211,7 @@ class FrequencyCurve(Result):
         return f"{text}; not found, with residuals as part of the forces: {worst}" if worst else text
 
     def summary(self) -> str:
-        """A few lines: points, iterations, samples, and the largest responses."""
+        """Return some lines: points, iterations, samples, and the largest responses."""
         found, lines = int(self.converged.sum()), []
         lines.append(
             f"{found} of {len(self)} points found between {self.frequencies.min():.6g} and "

@@ -69,7 +69,7 @@ class CurveFamily(Result):
         return tuple(none if peak is None else peak for peak in found)
 
     def best(self, dof: str, kind: str = "peak") -> float:
-        """The value whose curve has the smallest peak.
+        """Return the value whose curve has the smallest peak.
 
         Raises
         ------
@@ -82,7 +82,7 @@ class CurveFamily(Result):
         return float(self.values[np.nanargmin(sizes)])
 
     def reduction(self, dof: str, kind: str = "peak") -> np.ndarray:
-        """By which part each peak is lower than that of the first value, (values,): 1 - peak / first peak.
+        """Reduction of each peak relative to that of the first value, (values,): 1 - peak / first peak.
 
         NaN where there is no first peak, or no motion at it.
         """
@@ -112,7 +112,7 @@ class CurveFamily(Result):
 
     @property
     def success(self) -> bool:
-        """Whether every point of every curve was found."""
+        """Whether every point of every curve is converged."""
         return all(curve is not None and curve.success for curve in self.curves)
 
     @property

@@ -33,7 +33,7 @@ ALL = 60
 
 @dataclass(frozen=True)
 class FollowedPoint:
-    """A point of a curve when it is found.
+    """A point of a curve that was just followed.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def frequency_response(
     checkpoint: Checkpoint | None = None,
     on_point: OnPoint | None = None,
 ) -> FrequencyCurve:
-    """Periodic responses over frequency by harmonic balance.
+    """Return the periodic responses over frequency by harmonic balance.
 
     Parameters
     ----------
@@ -161,7 +161,7 @@ def _followed(
     check: bool,
     on_point: OnPoint | None,
 ) -> FrequencyCurve:
-    """The curve through given frequencies, or between two."""
+    """Return the curve through given frequencies, or between two."""
     known = None if start is None else restarted(problem, *start, "frequency_response")
     given = settings["frequencies"] == "given"
     if given:
@@ -174,7 +174,7 @@ def _followed(
 
 
 def restarted(problem: Equations, curve: FrequencyCurve, point: int, where: str) -> Solution:
-    """The point of a curve, solved again; ``where`` says whose start it is if the curve is another system's."""
+    """Solve a point of a curve again. ``where`` is the caller, for errors."""
     if not -len(curve) <= point < len(curve):
         raise InputError(
             f"{where}: the point is {point}; expected a number below {len(curve)}, the points of the curve"
@@ -190,7 +190,7 @@ def restarted(problem: Equations, curve: FrequencyCurve, point: int, where: str)
 
 
 def observed(lowered: Lowered, names: Sequence[str] | None) -> np.ndarray:
-    """Rows of the observed degrees of freedom: of those named, or of all, or of those with forces and elements."""
+    """Return the rows of the observed degrees of freedom: those named, or all, or those with forces and elements."""
     structure = lowered.structure
     if names is not None:
         return np.array(structure.rows(names), dtype=int)
@@ -239,7 +239,7 @@ def _curve(
 
 
 class _Record(NamedTuple):
-    """What a curve keeps of a point, by the names of its arrays: not its matrices, some megabytes each."""
+    """Values of a point that a curve keeps, by the names of its arrays. Matrices of some megabytes are not kept."""
 
     frequencies: float
     unknowns: np.ndarray
@@ -270,7 +270,7 @@ class _Record(NamedTuple):
 def _read(
     problem: Equations, solution: Solution, rows: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Response, elements' displacements and forces, and states of the contacts."""
+    """Return the response, the elements' displacements and forces, and the states of the contacts."""
     balance, lowered = problem.balance(solution.samples), problem.lowered
     states = np.zeros((len(lowered.contacts), PHASES), dtype=np.uint8)
     instants = np.arange(PHASES) * solution.samples // PHASES
@@ -284,7 +284,7 @@ def _read(
 
 
 def response_of(problem: Equations, solution: Solution) -> np.ndarray:
-    """Coefficients of all degrees of freedom at a solution, (n, coefficients)."""
+    """Return the coefficients of all degrees of freedom at a solution, (n, coefficients)."""
     series = problem.balance(solution.samples).series
     retained = series.phasors(solution.unknowns)
     return series.coefficients(problem.condensation.full(retained, solution.point.interior(retained)))

@@ -43,7 +43,7 @@ def frequency_responses(
     on_curve: Callable[[int, FrequencyCurve | None, str | None], None] | None = None,
     **options: Any,
 ) -> CurveFamily:
-    """Responses over frequency for several values of a parameter, over all cores or on a cluster.
+    """Return responses over frequency for several values of a parameter, computed on all cores or on a cluster.
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ def frequency_responses(
     stopped = Event()
 
     def here(value: float) -> CurveOrError:
-        """In a thread of this process, which ends at its next point where nobody waits for it."""
+        """Follow a curve in a thread of this process. After an interruption it stops at its next point."""
 
         def go_on(_: FollowedPoint) -> None:
             if stopped.is_set():

@@ -1,4 +1,4 @@
-"""Solutions and curves that are kept: an interrupted curve is followed again without Newton's method."""
+"""Stored solutions and curves: an interrupted curve continues without repeating Newton's method."""
 
 import hashlib
 import json
@@ -20,7 +20,7 @@ from dalembert.vibration.system.fingerprint import fingerprint
 
 @dataclass(frozen=True)
 class RecordedEquations(Equations):
-    """Equations that take from a checkpoint the solutions that it holds, and add those that it does not.
+    """Equations that read solutions from a checkpoint, and add new ones to it.
 
     A path goes from one solution to the next, so it takes the same way again, bit for bit. Where a solution is known
     its forces and its Jacobian are evaluated once, in place of once an iteration.
@@ -57,7 +57,7 @@ class RecordedEquations(Equations):
         return self.checkpoint.once(key, lambda: (compute(),))[0]
 
     def _restored(self, unknowns: np.ndarray, numbers: np.ndarray) -> Solution:
-        """A solution from what is kept of it."""
+        """Return a solution from its stored values."""
         omega, iterations, error, converged, samples, sampling_error = numbers.tolist()
         point = self.condensation.at(omega)
         evaluation, tangent = evaluated(self.balance(int(samples)), point, unknowns)
@@ -79,12 +79,12 @@ class RecordedEquations(Equations):
 
 
 def recorded(problem: Equations, checkpoint: Checkpoint | None) -> Equations:
-    """The equations with their solutions in a checkpoint, or the equations themselves without one."""
+    """Return the equations with their solutions in a checkpoint, or as they are without one."""
     return problem if checkpoint is None else RecordedEquations(problem.lowered, problem.method, checkpoint=checkpoint)
 
 
 def keep_curve(checkpoint: Checkpoint, key: bytes, curve: FrequencyCurve, seconds: float) -> None:
-    """Keep a whole curve, which took so long."""
+    """Store a whole curve, with the seconds that it took."""
     contents = curve.contents()
     over = {name: dimensions for name, (dimensions, *_) in contents.variables.items()}
     text = np.frombuffer(json.dumps({"variables": over, "attributes": dict(contents.attributes)}).encode(), np.uint8)
@@ -92,7 +92,7 @@ def keep_curve(checkpoint: Checkpoint, key: bytes, curve: FrequencyCurve, second
 
 
 def kept_curve(checkpoint: Checkpoint, key: bytes) -> FrequencyCurve | None:
-    """The curve that was kept, or None."""
+    """Return the stored curve, or None."""
     known = checkpoint.recall(key)
     if known is None:
         return None

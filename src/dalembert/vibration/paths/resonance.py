@@ -1,4 +1,4 @@
-r"""Following the peak of a response over a parameter, without whole curves.
+r"""Continuation of the peak of a response over a parameter, without whole curves.
 
 At a peak the amplitude a(U, ω) neither rises nor falls along the path of solutions,
 :math:`\nabla a \cdot (\mathrm{d}U, \mathrm{d}\omega) = 0`, with the tangent of the path from the exact Jacobian. That
@@ -55,7 +55,7 @@ def track_resonance(
     unit: str = "",
     checkpoint: Checkpoint | None = None,
 ) -> ResonanceTrack:
-    """The peak of a response over a parameter of the system, such as a preload or the level of a force.
+    """Follow the peak of a response over a parameter of the system, such as a preload or a force.
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ def track_resonance(
 
 
 def _name(problem: Equations, dof: str) -> str:
-    """Full name of a degree of freedom; a node with only one may stand alone."""
+    """Return the full name of a degree of freedom. A node with only one may be named alone."""
     names = problem.lowered.structure.dofs
     own = [name for name in names.names if name.rpartition(".")[0] == dof]
     return names.names[names.index(own[0] if len(own) == 1 else dof)]
@@ -160,7 +160,7 @@ def _top(curve: FrequencyCurve, name: str, size: Amplitude) -> int:
 
 @dataclass(frozen=True)
 class _Peak:
-    """A peak at a value of the parameter, and how the logarithm of the amplitude bends there along the path."""
+    """A peak at a value of the parameter, and the curvature of the logarithm of the amplitude along the path."""
 
     value: float
     problem: Equations
@@ -172,7 +172,7 @@ class _Peak:
 def _followed(
     problem: Callable[[float], Equations], climber: "_Climber", values: np.ndarray, begin: _Peak
 ) -> Iterator[tuple[_Peak | None, int]]:
-    """The peak at each value, None where it is not found, and the solutions that it took."""
+    """Yield the peak at each value, None if not converged, and the number of solutions."""
     known, before = begin, None
     for value in values:
         way, count, found = [float(value)], 0, None
@@ -193,7 +193,7 @@ def _followed(
 
 
 def _carried(own: Equations, known: _Peak, before: _Peak | None, value: float) -> tuple[Solution | None, int]:
-    """A solution at another value near a known peak, on a plane across the path, and how many were tried."""
+    """Return a solution at another value near a known peak, on a plane across the path, and the number of trials."""
     last, tries = known.solution, [0.0]
     if before is not None and known.value != before.value:
         tries.insert(0, (value - known.value) / (known.value - before.value))
@@ -220,13 +220,13 @@ def _upwards(solution: Solution) -> np.ndarray:
 
 @dataclass(frozen=True)
 class _Climber:
-    """Finds the top of a path, in the amplitude of a row of the structure."""
+    """Search of the largest amplitude of a row of the structure along a path."""
 
     row: int
     size: Amplitude
 
     def climb(self, own: Equations, solution: Solution, bend: float) -> tuple[_Peak | None, int]:
-        """The peak next to a solution, and the solutions that it took."""
+        """Return the peak next to a solution, and the number of solutions."""
         width = WIDTH * solution.omega
         direction = direction_at(solution, _upwards(solution), width)
         rise = self._rise(own, solution, direction, Path(solution, direction, width).size, width)
@@ -252,7 +252,7 @@ class _Climber:
     def _narrowed(
         self, own: Equations, path: Path, rises: tuple[float, float], length: float
     ) -> tuple[_Peak | None, int]:
-        """The place between the ends of a step at which the amplitude no longer rises."""
+        """Return the peak between the ends of a step: a zero of the slope of the amplitude."""
         tried: dict[float, Solution] = {}
 
         def rise(part: float) -> float:

@@ -77,7 +77,7 @@ class ResonanceTrack(Result):
 
     @property
     def success(self) -> bool:
-        """Whether every one was found."""
+        """Whether every peak is converged."""
         return bool(self.converged.all())
 
     @property
@@ -86,7 +86,7 @@ class ResonanceTrack(Result):
         return self.summary().partition("\n")[0]
 
     def summary(self) -> str:
-        """A few lines: peaks found, the smallest and the largest, and what they cost."""
+        """Return some lines: converged peaks, the smallest and the largest, and the number of solutions."""
         found = self.converged
         lines = [
             f"{found.sum()} of {len(self)} peaks found of {self.dof} ({self.kind}), by {self.solves.sum()} solutions"

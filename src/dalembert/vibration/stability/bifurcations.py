@@ -1,4 +1,4 @@
-"""Where the stability of a path of periodic motions changes, and how."""
+"""Bifurcations: points at which the stability of periodic motions changes."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -39,13 +39,13 @@ class Judged:
 
 
 def unjudged(path: Iterable[PathPoint]) -> Iterator[Judged]:
-    """Points with no more than their folds."""
+    """Yield points with their folds, without stability."""
     for one in path:
         yield Judged(one, marker=FOLD if one.fold else "")
 
 
 def judged(problem: Equations, path: Iterable[PathPoint], located: bool) -> Iterator[Judged]:
-    """Points with their stability, and where it changes.
+    """Yield points with their stability, and the points at which it changes.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ def _said(own: Exponents) -> int:
 
 
 def _rank(before: Exponents, after: Exponents) -> int:
-    """Which exponent changes sides, in the order of growth."""
+    """Return the number of the exponent whose real part changes its sign, in the order of growth."""
     return max(before.unstable, after.unstable) - 1
 
 

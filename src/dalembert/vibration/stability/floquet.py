@@ -15,7 +15,7 @@ from dalembert.vibration.threads import one_thread
 
 @takes_checked("way")
 def floquet_multipliers(system: VibrationSystem, curve: FrequencyCurve, point: int, way: str = AUTOMATIC) -> np.ndarray:
-    """Factors by which small disturbances of a periodic motion grow over a period.
+    """Return the Floquet multipliers: the factors by which small perturbations of a periodic motion grow in a period.
 
     Parameters
     ----------

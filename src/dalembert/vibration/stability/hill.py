@@ -69,7 +69,7 @@ def _pencil(system: Uncondensed, linear: np.ndarray, unknowns: np.ndarray, omega
 
 
 def _eigenvalues(pencil: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-    """Finite eigenvalues and their vectors, by 1/(μ - shift), which is zero where there is no mass."""
+    """Return finite eigenvalues and their vectors. The pencil is solved for 1/(μ - shift), which is zero without mass."""
     still, moving, mass = pencil
     size = len(still)
     at_shift = still + SHIFT * moving + SHIFT**2 * mass
@@ -95,7 +95,7 @@ def _centres(vectors: np.ndarray, mass: np.ndarray) -> np.ndarray:
 
 
 def _distinct(values: np.ndarray, centres: np.ndarray, count: int) -> np.ndarray:
-    """As many exponents as there are states, those about the mean, each once; the fastest growing first."""
+    """Return as many exponents as states, those centred about the mean, each once, the fastest growing first."""
     kept: list[complex] = []
     for number in np.argsort(centres, kind="stable"):
         turns = [(values[number] - other) / 1j for other in kept]

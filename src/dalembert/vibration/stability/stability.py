@@ -47,12 +47,12 @@ class Exponents:
 
     @property
     def judged(self) -> bool:
-        """Whether the fastest growth is beyond its error."""
+        """Whether the fastest growth exceeds its error."""
         return bool(abs(np.max(np.real(self.values), initial=-np.inf)) >= self.error)
 
     @property
     def unstable(self) -> int:
-        """How many grow."""
+        """Number of exponents that grow."""
         return int(np.sum(np.real(self.values) > NEUTRAL))
 
 
@@ -83,7 +83,7 @@ def exponents(problem: Equations, solution: Solution, way: str = AUTOMATIC) -> E
 
 
 def _held(problem: Equations, values: np.ndarray) -> np.ndarray:
-    """Exponents with those of free motions, of place and of speed, at zero: rounding splits such pairs."""
+    """Return exponents with the pairs of free motions (position and velocity) at zero: rounding splits such pairs."""
     nearest = np.argsort(np.abs(values))[: 2 * problem.condensation.free.shape[1]]
     result = values.copy()
     result[nearest[np.abs(values[nearest]) < SPLIT]] = 0.0
@@ -91,7 +91,7 @@ def _held(problem: Equations, values: np.ndarray) -> np.ndarray:
 
 
 def _change(values: np.ndarray, finer: np.ndarray) -> float:
-    """How much the growth of either's fastest exponent differs from that of the other's next to it.
+    """Return the difference of the growth of the fastest exponent of each to the nearest exponent of the other.
 
     Next to each other in the plane: beside a fold or a crossing the fastest ones of both are not the same exponent.
     """
@@ -100,13 +100,13 @@ def _change(values: np.ndarray, finer: np.ndarray) -> float:
 
 
 def _nearest(one: complex, others: np.ndarray) -> int:
-    """The exponent next to one, up to its copies and conjugates."""
+    """Return the number of the nearest exponent, up to copies and conjugates."""
     turns = np.minimum(abs(np.imag(others) % 1 - one.imag % 1), abs(np.imag(others) % 1 - -one.imag % 1))
     return int(np.argmin(np.hypot(np.real(others) - one.real, np.minimum(turns, 1 - turns))))
 
 
 def _finer(finer: Equations, problem: Equations, solution: Solution) -> np.ndarray:
-    """Exponents of the motion with more harmonics, by Hill's method; none where it is not found (near a fold)."""
+    """Return the exponents with more harmonics, by Hill's method; none if the motion is not converged (near a fold)."""
     begin = in_orders(solution.unknowns, problem.method.orders, finer.method.orders)
     samples = max(finer.method.first_samples, solution.samples)
     better = finer.solve(begin, solution.omega, samples)

@@ -86,7 +86,7 @@ class Equations:
         return solution
 
     def first(self, omega: float) -> Solution:
-        """Return a first point: from closed contacts that stick, from the motion without contacts, or by more and more force.
+        """Return a first point: from contacts that stick, from the motion without contacts, or by increasing force.
 
         With little varying force contacts stick, so that this is the way of a friction limit from infinity to its own.
         """

@@ -34,8 +34,8 @@ class HarmonicBalance(Checked):
     iterations : int
         Newton iterations of a point, at most. The step to a point that is not converged is halved.
     halvings : int
-        Halvings of a step, after which the point is marked as not converged. With 0, a first point is not sought along a
-        path over the force either.
+        Halvings of a step, after which the point is marked as not converged. With 0, a first point is not sought along
+        a path over the force either.
     resolution : float
         Largest step of a path between two frequencies, as part of the way.
 

@@ -63,7 +63,7 @@ class PathPoint:
 
 
 def at_frequencies(equations: Problem, omegas: np.ndarray, start: Solution | None) -> Iterator[PathPoint]:
-    """Yield solutions at given frequencies, each from the one before. The curve continues after points not converged."""
+    """Yield solutions at given frequencies, each from the last converged one."""
     known = start
     for omega in omegas:
         solution = equations.first(omega) if known is None else _towards(equations, known, omega)

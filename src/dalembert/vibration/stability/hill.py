@@ -69,7 +69,7 @@ def _pencil(system: Uncondensed, linear: np.ndarray, unknowns: np.ndarray, omega
 
 
 def _eigenvalues(pencil: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-    """Return finite eigenvalues and their vectors. The pencil is solved for 1/(μ - shift), which is zero without mass."""
+    """Return finite eigenvalues and their vectors, from those of 1/(μ - shift), which are zero without mass."""
     still, moving, mass = pencil
     size = len(still)
     at_shift = still + SHIFT * moving + SHIFT**2 * mass

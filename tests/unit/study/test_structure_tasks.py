@@ -407,8 +407,8 @@ def refused(write, text) -> str:
         ),
         (
             ("samples = 256", "samples = 8"),
-            "study.toml: [harmonic_balance]: HarmonicBalance: 8 samples of a period cannot tell 5 harmonics apart; "
-            "expected at least 11",
+            "study.toml: [harmonic_balance]: HarmonicBalance: samples is 8, too few for 5 harmonics. Use at "
+            "least 11",
         ),
         (
             ('name = "m2"\nmass = "1000 g"', 'name = "m1"\nmass = 2.0'),

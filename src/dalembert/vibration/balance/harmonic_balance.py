@@ -50,8 +50,7 @@ class HarmonicBalance(Checked):
     ((0, 1, 2, 3), (1, 3))
     >>> HarmonicBalance(harmonics=9, samples=16)
     Traceback (most recent call last):
-    dalembert.errors.InputError: HarmonicBalance: 16 samples of a period cannot tell 9 harmonics apart; expected at
-    least 19
+    dalembert.errors.InputError: HarmonicBalance: samples is 16, too few for 9 harmonics. Use at least 19
     """
 
     harmonics: int = 9
@@ -75,8 +74,8 @@ class HarmonicBalance(Checked):
                 raise InputError(f"HarmonicBalance: samples is {self.samples!r}; expected a number or 'automatic'")
         elif self.samples < needed:
             raise InputError(
-                f"HarmonicBalance: {self.samples} samples of a period cannot tell {self.harmonics} harmonics apart; "
-                f"expected at least {needed}"
+                f"HarmonicBalance: samples is {self.samples}, too few for {self.harmonics} harmonics. "
+                f"Use at least {needed}"
             )
         elif self.samples > MOST_GIVEN:
             raise InputError(

@@ -94,7 +94,7 @@ class Lowered:
             if row not in result.rows:
                 raise ModelError(
                     f"the rigid contact coordinate {self.row_names[row]!r} moves only together with other rigid "
-                    "contacts, so their forces cannot be told apart; leave one of them out, or give it an elastic law"
+                    "contacts, so their forces are not determined. Remove one of them, or choose an elastic law"
                 )
         return result
 

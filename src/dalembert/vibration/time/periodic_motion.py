@@ -139,8 +139,8 @@ def _coefficients(samples: np.ndarray, highest: int) -> np.ndarray:
     """Real Fourier coefficients 0..highest of equally spaced samples of a period."""
     if 2 * highest >= len(samples):
         raise InputError(
-            f"{len(samples)} samples of a period cannot tell {highest} harmonics apart; expected at least "
-            f"{2 * highest + 1}"
+            f"The motion has {len(samples)} samples of a period, too few for {highest} harmonics. Use at least "
+            f"{2 * highest + 1} steps of a period"
         )
     phasors = np.fft.rfft(samples, norm="forward")[: highest + 1]
     pairs = np.column_stack([2 * phasors.real, -2 * phasors.imag]).ravel()

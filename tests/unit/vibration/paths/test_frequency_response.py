@@ -132,7 +132,7 @@ CONTACT = {"friction": 0.3, "preload": 1.0}
             {},
             ModelError,
             "the rigid contact coordinate 'two.x' moves only together with other rigid contacts, so their forces "
-            "cannot be told apart; leave one of them out, or give it an elastic law",
+            "are not determined. Remove one of them, or choose an elastic law",
         ),
         (
             free_mass(HarmonicForce("a", 1.0, harmonic=9)),
@@ -235,7 +235,7 @@ def test_a_part_that_nothing_holds_moves_about_its_place(
         ),
         (
             lambda: HarmonicBalance(5, samples=10),
-            "HarmonicBalance: 10 samples of a period cannot tell 5 harmonics apart; expected at least 11",
+            "HarmonicBalance: samples is 10, too few for 5 harmonics. Use at least 11",
         ),
         (
             lambda: HarmonicForce("a", 1.0, harmonic=0),

@@ -329,7 +329,7 @@ def large() -> VibrationSystem:
         (
             lambda: steady_state(oscillator(), 0.1, Newmark(8)).harmonics("m", 4),
             InputError,
-            "8 samples of a period cannot tell 4 harmonics apart; expected at least 9",
+            "The motion has 8 samples of a period, too few for 4 harmonics. Use at least 9 steps of a period",
         ),
         (
             lambda: steady_state(oscillator(), 0.1).motion("a"),

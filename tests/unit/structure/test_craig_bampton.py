@@ -2,10 +2,12 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from inline_snapshot import snapshot
 from scipy.sparse import csc_array
 
 from dalembert.errors import InputError, SolveError
 from dalembert.structure import Material, Rayleigh, Structure, box, craig_bampton, eigenmodes, lumped, solid
+from refusals import refused
 from support import says
 
 ALUMINIUM = Material(70e9, 0.33, 2700.0)
@@ -77,7 +79,7 @@ def test_what_does_not_fit_is_told() -> None:
     )
     with pytest.raises(SolveError, match=says(sentence)):
         craig_bampton(free, ["a"])
-    with pytest.raises(InputError, match=says("craig_bampton: modes is -1; expected 0 or more")):
+    with refused(InputError, snapshot("craig_bampton: modes is -1; expected 0 or more")):
         craig_bampton(free, ["a"], modes=-1)
     sentence = (
         "errors: the structure given has 3 degrees of freedom, which are not those of the structure that was reduced, "

@@ -3,11 +3,11 @@
 from dataclasses import replace
 
 import numpy as np
-import pytest
+from inline_snapshot import snapshot
 
 from dalembert.errors import InputError
 from dalembert.structure import Dofs, Nodes, Structure, eigenmodes, mode_shapes
-from support import says
+from refusals import refused
 
 BAR = Structure(
     np.diag([1.0, 4.0]), np.eye(2), Dofs(("b.z", "b.x")), nodes=Nodes(("a", "b"), np.array([[0.0, 0, 0], [1, 0, 0]]))
@@ -21,11 +21,10 @@ def test_the_heavier_way_comes_first_and_the_largest_motion_is_one():
 
 def test_complex_shapes_are_refused():
     modes = eigenmodes(BAR, 2)
-    with pytest.raises(
+    with refused(
         InputError,
-        match=says(
-            "mode_shapes: the shapes are complex; expected those of the undamped structure, which `eigenmodes` finds, "
-            "whose nodes move in phase"
+        snapshot(
+            "mode_shapes: the shapes are complex; expected those of the undamped structure, which `eigenmodes` finds, whose nodes move in phase"
         ),
     ):
         mode_shapes(BAR, replace(modes, shapes=modes.shapes * (1 + 1j)))

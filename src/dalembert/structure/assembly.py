@@ -1,4 +1,4 @@
-"""What all finite elements here share: the library of their shape functions, and the sum of element matrices.
+"""Finite elements: the library of their shape functions, and the assembly of element matrices.
 
 The shape functions, meshes and quadratures are scikit-fem's. Its own assembly evaluates a form once for each pair of
 local functions, 3,600 times for a brick of 20 nodes; products of the arrays of all elements at once are faster.
@@ -16,7 +16,7 @@ PACKAGES = {"skfem": "scikit-fem"}
 
 
 def library(name: str, what: str) -> Any:
-    """A module that comes with the extra ``fem``.
+    """Import a module that comes with the extra ``fem``.
 
     Raises
     ------
@@ -32,7 +32,7 @@ def library(name: str, what: str) -> Any:
 
 
 def assemble(local: np.ndarray, dofs: np.ndarray, size: int) -> csc_array:
-    """Sum of element matrices (elements, m, m) at their degrees of freedom (elements, m), shape (size, size).
+    """Assemble element matrices (elements, m, m) at their degrees of freedom (elements, m), shape (size, size).
 
     Made exactly symmetric: the two sums that meet across the diagonal round differently.
     """

@@ -1,4 +1,4 @@
-"""Sizes of meshes, checked."""
+"""Checks of the sizes of meshes."""
 
 from collections.abc import Sequence
 

@@ -20,7 +20,7 @@ NEIGHBOURS = 0.01
 
 
 class HeldBases:
-    """Bases of the reductions in a function that builds a system, kept from its first call for all later ones.
+    """Bases of the reductions in a builder of systems. Later calls use the bases of the first one.
 
     So differences of the reduced matrices leave out how the basis changes, as the complex step does.
     """
@@ -51,7 +51,7 @@ _held: ContextVar[HeldBases | None] = ContextVar("held", default=None)
 
 @dataclass(frozen=True, eq=False)
 class ReductionErrors:
-    """The lowest modes of a reduced structure beside those of the full one.
+    """Errors of the lowest modes of a reduced structure relative to those of the full one.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ class ReductionErrors:
 
     @property
     def relative(self) -> np.ndarray:
-        """Errors of the frequencies, as parts of the full ones; positive, since a reduction only stiffens."""
+        """Relative errors of the frequencies; not negative, since a reduction only stiffens."""
         return self.reduced / self.full - 1
 
 
@@ -105,7 +105,7 @@ class ReducedStructure(Structure):
         return np.tensordot(self.basis, motion, axes=1)
 
     def errors(self, full: Structure, count: int = 10) -> ReductionErrors:
-        """Frequencies and shapes of the lowest modes beside those of the full structure.
+        """Return the errors of frequencies and shapes of the lowest modes relative to those of the full structure.
 
         Parameters
         ----------
@@ -132,7 +132,7 @@ class ReducedStructure(Structure):
 
 @takes_checked("masters")
 def craig_bampton(structure: Structure, masters: str | Sequence[str], modes: int = 50) -> ReducedStructure:
-    r"""A structure in its master degrees of freedom and the lowest modes with these held.
+    r"""Reduce a structure to its master degrees of freedom and the lowest modes with these held.
 
     With the masters m and the others i, the motion is
     :math:`u_i = -K_{ii}^{-1} K_{im} u_m + \Phi q`, where :math:`\Phi` holds the lowest modes of

@@ -54,7 +54,7 @@ class Dofs:
         return len(self.names)
 
     def index(self, name: str) -> int:
-        """Row of a degree of freedom; a node that has only one may be named alone.
+        """Return the row of a degree of freedom. A node that has only one may be named alone.
 
         Raises
         ------
@@ -73,7 +73,7 @@ class Dofs:
         raise InputError(unknown("degree of freedom", name, self.names))
 
     def rows(self, names: Iterable[str]) -> list[int]:
-        """Rows of several degrees of freedom; a node alone stands for all of its own.
+        """Return the rows of several degrees of freedom. A node alone means all that it has.
 
         Raises
         ------

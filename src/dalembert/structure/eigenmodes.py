@@ -36,7 +36,7 @@ class EigenModes:
 
 @takes_checked()
 def eigenmodes(structure: Structure, count: int = 10, shift: float = 0.0) -> EigenModes:
-    """The modes whose frequencies are nearest to a shift, by Lanczos iteration on the inverse; dense if small.
+    """Return the modes whose frequencies are nearest to a shift, by Lanczos iteration on the inverse; dense if small.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ def eigenmodes(structure: Structure, count: int = 10, shift: float = 0.0) -> Eig
 
 
 def similarity(shapes: np.ndarray, others: np.ndarray, mass: Matrix) -> np.ndarray:
-    r"""Modal assurance criterion of each of some shapes with each of others, weighted by the mass.
+    r"""Return the modal assurance criterion of each pair of shapes, weighted by the mass.
 
     :math:`(\phi^T M \psi)^2 / (\phi^T M \phi \; \psi^T M \psi)`: 1 for the same shape, 0 for orthogonal ones.
 
@@ -114,7 +114,7 @@ def similarity(shapes: np.ndarray, others: np.ndarray, mass: Matrix) -> np.ndarr
 
 
 def real_part(matrix: Matrix) -> Matrix:
-    """A dense or sparse matrix without what a complex step adds."""
+    """Return the real part of a dense or sparse matrix."""
     return matrix.real if np.iscomplexobj(matrix.data if issparse(matrix) else matrix) else matrix
 
 

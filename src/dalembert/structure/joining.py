@@ -1,4 +1,4 @@
-"""Structures made of parts: put side by side, their nodes paired by geometry, and tied."""
+"""Structures made of parts: combined, their nodes paired by geometry, and tied."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -18,7 +18,7 @@ Pairs = tuple[tuple[str, str], ...]
 
 @takes_checked()
 def combine(parts: Mapping[str, Structure]) -> Structure:
-    """Several structures as one, not yet connected.
+    """Combine several structures into one, without connections.
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ def combine(parts: Mapping[str, Structure]) -> Structure:
 
 @takes_checked()
 def pairs(structure: Structure, first: str, second: str, tolerance: float) -> Pairs:
-    """Nodes of one set with their nearest nodes of another, for contacts or ties.
+    """Return pairs of nodes of one set and their nearest nodes of another, for contacts or ties.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ def pairs(structure: Structure, first: str, second: str, tolerance: float) -> Pa
 
 @takes_checked()
 def tie(structure: Structure, joined: Sequence[tuple[str, str]]) -> Structure:
-    """The structure with pairs of nodes made one.
+    """Return the structure with each pair of nodes merged into one node.
 
     Parameters
     ----------

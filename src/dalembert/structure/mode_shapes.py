@@ -1,4 +1,4 @@
-"""Shapes of free vibrations at the nodes of a structure, to be drawn."""
+"""Mode shapes at the nodes of a structure, for drawing."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
@@ -104,7 +104,7 @@ def mode_shapes(structure: Structure, modes: EigenModes) -> ModeShapes:
 
 
 def drawn_nodes(motion: np.ndarray, faces: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
-    """Rows of the nodes to draw, and the faces between them: corners of faces, or all that move where there are none.
+    """Return the rows of the nodes to draw, corners of faces or all that move if there are none, and the faces.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""From the motion of degrees of freedom to that of nodes, to draw it."""
+"""Motion of nodes from that of degrees of freedom, for drawing."""
 
 import numpy as np
 
@@ -51,7 +51,7 @@ def node_motion(structure: Structure, motion: np.ndarray) -> np.ndarray:
 
 
 def known_nodes(structure: Structure) -> Nodes:
-    """The nodes of a structure; InputError for one that does not say where they are."""
+    """Return the nodes of a structure. Refuse a structure without positions of nodes."""
     if structure.nodes is None:
         raise InputError(
             "the structure does not say where its nodes are, so its motion cannot be drawn; give it nodes=Nodes(...)"

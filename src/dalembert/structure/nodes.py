@@ -1,4 +1,4 @@
-"""Where the nodes of a structure are, and named sets of them."""
+"""Positions of the nodes of a structure, and named sets of nodes."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field

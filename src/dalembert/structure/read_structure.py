@@ -1,4 +1,4 @@
-"""Structures from and into files."""
+"""Read and write structures."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -27,7 +27,7 @@ def read_structure(
     dofs: Sequence[str] | None = None,
     directions: Sequence[str] = ("x",),
 ) -> Structure:
-    """A structure whose matrices another program has written.
+    """Read a structure whose matrices another program has written.
 
     ========================  ======================================================================================
     file                      what is read

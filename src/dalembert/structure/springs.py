@@ -16,7 +16,7 @@ Spring = tuple[str, str | None, complex, complex] | tuple[str, str | None, compl
 
 
 def with_springs(structure: Structure, springs: Sequence[Spring]) -> Structure:
-    """The structure with springs and dampers between its degrees of freedom, or between one and the ground.
+    """Add springs and dampers between degrees of freedom of a structure, or between one and the ground.
 
     Parameters
     ----------

@@ -144,7 +144,7 @@ class Structure:
         return list(dict.fromkeys(self.dofs.rows(single)))
 
     def fixed(self, held: str | Sequence[str]) -> Structure:
-        """The structure with some of its degrees of freedom clamped: their rows and columns are taken out.
+        """Return the structure with clamped degrees of freedom: their rows and columns are removed.
 
         Parameters
         ----------
@@ -164,7 +164,7 @@ class Structure:
         )
 
     def with_damping(self, damping: Rayleigh | Modal | Matrix) -> Structure:
-        """The structure with another damping in place of its own.
+        """Return the structure with another damping.
 
         Parameters
         ----------
@@ -185,7 +185,7 @@ class Structure:
         return replace(self, damping=matrix)
 
     def with_loss(self, loss: float | complex | Matrix) -> Structure:
-        r"""The structure with another hysteretic damping in place of its own.
+        r"""Return the structure with another hysteretic damping.
 
         Parameters
         ----------
@@ -209,7 +209,7 @@ class Structure:
 
 
 def checked_factor(what: str, factor: Any) -> Any:
-    """A loss factor that is a number and not negative.
+    """Return a loss factor that is a number and not negative.
 
     Raises
     ------
@@ -221,7 +221,7 @@ def checked_factor(what: str, factor: Any) -> Any:
 
 
 def _require_direction(matrix: Matrix, name: str) -> None:
-    """Refuse imaginary parts that are no complex step."""
+    """Refuse imaginary parts that are larger than a complex step."""
     if not np.iscomplexobj(matrix):
         return
     imaginary, largest = abs(matrix.imag).max(), abs(matrix.real).max()

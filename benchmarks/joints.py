@@ -15,7 +15,7 @@ from dalembert.multibody.components.planar import pairs
 from dalembert.multibody.components.planar.markers import direction, spin, spin_rate
 from dalembert.multibody.components.planar.prismatic_joint import PRISMATIC
 from dalembert.multibody.components.planar.revolute_joint import REVOLUTE
-from dalembert.multibody.kernels.dual import sin_cos
+from dalembert.multibody.kernels.elementary import sin_cos
 from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.kernels.model import Blocks, Model
 from dalembert.multibody.kernels.records import RESIDUAL, TANGENT

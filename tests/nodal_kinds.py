@@ -13,7 +13,7 @@ from dalembert.multibody.components.planar.body import GRADIENT, POSITION, Body,
 from dalembert.multibody.components.planar.joint import Joint
 from dalembert.multibody.components.planar.load import Load
 from dalembert.multibody.kernels.charts import Chart, flat
-from dalembert.multibody.kernels.dual import reciprocal, root
+from dalembert.multibody.kernels.elementary import reciprocal, root
 from dalembert.multibody.kernels.kind import Kind
 
 

@@ -62,7 +62,7 @@ def lost_step(numbers: Callable[[complex], np.ndarray], scale: float) -> Lost | 
     >>> lost_step(lambda shift: np.array([abs(2.0 + shift) + 1j * 0]), 1.0)
     Lost(entry=0, by_step=0.0, by_differences=1.0)
     """
-    here, by_step = _lifted(numbers, 0.0, scale)
+    here, by_step = _complex_step(numbers, 0.0, scale)
     slope, error = _differences(numbers, here, DIFFERENCE * scale)
     sizes = np.maximum(np.abs(by_step), np.abs(slope))
     excess = np.abs(by_step - slope) - error - _AGREES * sizes - _CANCELLED * _largest(sizes)
@@ -127,7 +127,7 @@ class _Intervals(NamedTuple):
         """Intervals around the parameter, moved inside its bounds."""
         begin = np.clip(-size / 2, room[0], max(room[1] - size, room[0]))
         points = begin + size * np.linspace(0.0, 1.0, 2 * count + 1)
-        values, slopes = map(np.array, zip(*(_lifted(numbers, point, scale) for point in points), strict=True))
+        values, slopes = map(np.array, zip(*(_complex_step(numbers, point, scale) for point in points), strict=True))
         first, middle, last = slopes[:-1:2], slopes[1::2], slopes[2::2]
         step = size / count
         coarse, fine = step * (first + last) / 2, step * (first + 4 * middle + last) / 6
@@ -179,10 +179,12 @@ def _largest(sizes: np.ndarray) -> float:
     return float(np.max(sizes, initial=0.0, where=np.isfinite(sizes)))
 
 
-def _lifted(numbers: Callable[[complex], np.ndarray], shift: float, scale: float) -> tuple[np.ndarray, np.ndarray]:
+def _complex_step(
+    numbers: Callable[[complex], np.ndarray], shift: float, scale: float
+) -> tuple[np.ndarray, np.ndarray]:
     """Numbers, and their derivatives by the complex step."""
-    lifted: Any = np.asarray(numbers(shift + 1j * STEP * scale), dtype=complex)
-    return lifted.real, lifted.imag / (STEP * scale)
+    stepped: Any = np.asarray(numbers(shift + 1j * STEP * scale), dtype=complex)
+    return stepped.real, stepped.imag / (STEP * scale)
 
 
 def _noise(numbers: Callable[[complex], np.ndarray], shift: float, scale: float) -> np.ndarray:
@@ -190,7 +192,7 @@ def _noise(numbers: Callable[[complex], np.ndarray], shift: float, scale: float)
 
     A number that nearly cancels varies by more than its size suggests.
     """
-    here, slope = _lifted(numbers, shift, scale)
+    here, slope = _complex_step(numbers, shift, scale)
     moves = scale * _TINY * np.sqrt(np.arange(1.0, 9.0))
     return np.max([np.abs(np.real(numbers(shift + move)) - here - slope * move) for move in moves], axis=0)
 
@@ -276,8 +278,8 @@ def _together(
     def along(shift: complex) -> np.ndarray:
         if not isinstance(shift, complex):
             return numbers(vector + shift * moves.sum(axis=0))
-        lifted = [numbers(vector + shift * move) for move in moves]
-        return np.real(lifted[0]) + 1j * np.sum(np.imag(lifted), axis=0)
+        stepped = [numbers(vector + shift * move) for move in moves]
+        return np.real(stepped[0]) + 1j * np.sum(np.imag(stepped), axis=0)
 
     return along
 

@@ -17,7 +17,7 @@ from dalembert.multibody.components.planar.body import Body
 from dalembert.multibody.equilibrium_start import begin_at_rest, unstable_body
 from dalembert.multibody.evaluate import constraint_jacobian, residual
 from dalembert.multibody.initial_velocities import initial_velocities
-from dalembert.multibody.kernels.dual import STEP
+from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.model import Model
 from dalembert.multibody.lowering import Lowered, lower
 from dalembert.multibody.rigid_motions import CLOSED, coordinates_of, modes_of, size_of, smallest, spread, unknowns
@@ -28,12 +28,12 @@ _MOST_ITERATIONS = 60
 _FRAME = {"x": 0, "y": 1, "angle": 2}
 
 
-def assembled(system: System, tilted: bool = False, placed: Lowered | None = None, begin: float = 0.0) -> Lowered:
+def assembled(system: System, perturbed: bool = False, placed: Lowered | None = None, begin: float = 0.0) -> Lowered:
     """Arrays of a system whose joints are closed and whose velocities are consistent, at the time ``begin`` (s).
 
     A system that starts at its equilibrium is moved there once its joints are closed.
 
-    A ``tilted`` system is treated in complex numbers even if only functions of the user's hold the imaginary step;
+    A ``perturbed`` system is treated in complex numbers even if only functions of the user's hold the imaginary step;
     ``placed`` are the arrays of the system as `lower` makes them, where they are there already.
 
     Raises
@@ -48,8 +48,8 @@ def assembled(system: System, tilted: bool = False, placed: Lowered | None = Non
     if lowered.structure.size == lowered.structure.n:
         return begin_at_rest(lowered) if rests else lowered
     model = lowered.real
-    if lowered.is_complex or tilted:
-        model = lowered.dual
+    if lowered.is_complex or perturbed:
+        model = lowered.complex_model
         lowered = replace(
             lowered, **{name: getattr(lowered, name).astype(complex) for name in ("frames", "rates", "x", "v")}
         )

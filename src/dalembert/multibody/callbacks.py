@@ -58,8 +58,8 @@ def force_callback(function: Callable[..., Any], owner: str, failures: Failures)
         return plain(function)
     real = _compiled_force(function, float64)
     try:
-        lifted = _compiled_force(function, complex128)
-        return Callback(real.address, lifted.address, (real, lifted))
+        complex_state = _compiled_force(function, complex128)
+        return Callback(real.address, complex_state.address, (real, complex_state))
     except NumbaError as error:
         reason = error
 
@@ -115,8 +115,8 @@ def _plain(
         return _C_FUNCTION(call)
 
     pair = trampoline(float), trampoline(complex)
-    own, dual = (ctypes.cast(entry, ctypes.c_void_p).value or 0 for entry in pair)
-    return Callback(own, dual, pair)
+    own, complex_model = (ctypes.cast(entry, ctypes.c_void_p).value or 0 for entry in pair)
+    return Callback(own, complex_model, pair)
 
 
 def _view(address: int, count: int, dtype: type) -> np.ndarray:

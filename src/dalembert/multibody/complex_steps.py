@@ -20,7 +20,7 @@ from dalembert.multibody.components.planar.user_force import USER_FORCE, UserFor
 from dalembert.multibody.components.signals import Custom
 from dalembert.multibody.evaluate import residual
 from dalembert.multibody.kernels.kind import Kind
-from dalembert.multibody.kernels.motion import Motion
+from dalembert.multibody.kernels.motion import MotionState
 from dalembert.multibody.lowering import Lowered, lower
 from dalembert.multibody.observe import Observer
 from dalembert.multibody.system import System
@@ -37,14 +37,14 @@ class Along:
     ----------
     observer : Observer
     times : array (samples,)
-    states : Motion of arrays (samples, N + 1)
+    states : MotionState of arrays (samples, N + 1)
     begin : float
         Time of the signals at which the motion starts, s.
     """
 
     observer: Observer
     times: np.ndarray
-    states: Motion
+    states: MotionState
     begin: float = 0.0
 
     @cached_property
@@ -168,7 +168,7 @@ def _of_signals(system: System, along: Along) -> Iterator[tuple[str, np.ndarray]
 
 def _of_components(lowered: Lowered, along: Along) -> Iterator[tuple[str, np.ndarray]]:
     """Forces and channels of functions of the user's and of kinds of other packages, the state held."""
-    model = lowered.dual
+    model = lowered.complex_model
     states = [part[along.samples].astype(complex) for part in along.states[:3]]
     for kind in filter(_foreign, lowered.data):
         for t, x, v, a in zip(along.times[along.samples], *states, strict=True):
@@ -213,7 +213,7 @@ def _foreign(kind: Kind) -> bool:
     return kind is USER_FORCE or (kind.source.__module__ or "").partition(".")[0] != __name__.partition(".")[0]
 
 
-def _directions(lowered: Lowered, states: Motion, scale: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
+def _directions(lowered: Lowered, states: MotionState, scale: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
     """Changes of coordinates and of velocities, each of the size that the motion has."""
     signs = np.where(np.random.default_rng(0).random(len(scale)) < 0.5, -1.0, 1.0)
     signs[lowered.structure.n :] = 0.0  # multipliers
@@ -230,7 +230,7 @@ def _check_force(
 
     def force(shift: complex) -> np.ndarray:
         if isinstance(shift, complex):
-            return residual(lowered, lowered.upright, x + shift * dx, v + shift * dv, a.astype(complex), t, kind)
+            return residual(lowered, lowered.unperturbed, x + shift * dx, v + shift * dv, a.astype(complex), t, kind)
         return residual(lowered, lowered.real, x + shift * dx, v + shift * dv, a, t, kind)
 
     lost = attempted(lambda: lost_step(force, 1.0))
@@ -251,7 +251,7 @@ def _check_channels(
     dx, dv = direction
 
     def read(shift: complex) -> np.ndarray:
-        model, kind = (lowered.upright, complex) if isinstance(shift, complex) else (lowered.real, float)
+        model, kind = (lowered.unperturbed, complex) if isinstance(shift, complex) else (lowered.real, float)
         moved = (part[None].astype(kind) for part in (x + shift * dx, v + shift * dv, a))
         return observer.read(lowered, model, *moved, times=np.array([t]))[0]
 

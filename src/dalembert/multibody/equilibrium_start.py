@@ -40,7 +40,7 @@ def begin_at_rest(lowered: Lowered) -> Lowered:
     if lowered.is_complex:
         still = np.zeros(len(place), dtype=complex)
         place = place.astype(complex)
-        moved = np.imag(residual(lowered, lowered.dual, place, still, still))
+        moved = np.imag(residual(lowered, lowered.complex_model, place, still, still))
         step = _solution(tangent(lowered, np.real(place), np.real(still), (1.0, 0.0, 0.0)), moved)
         if step is None:
             raise SolveError(

@@ -29,7 +29,7 @@ def initial_velocities(bodies: Sequence[Body], lowered: Lowered, model: Model) -
         ones; where no velocities satisfy the joints.
     """
     turning = np.array([[True, True, body.turns] for body in bodies])
-    motion = _Motion(bodies, lowered, model)
+    motion = _RigidMotion(bodies, lowered, model)
     _, v, left = motion.completed(np.where(lowered.stated, lowered.rates, 0.0), turning & ~lowered.stated)
     wrong, wrong_slope = size_of(left)
     speed, slope = motion.sizes(v)
@@ -44,7 +44,7 @@ def initial_velocities(bodies: Sequence[Body], lowered: Lowered, model: Model) -
     return v
 
 
-class _Motion:
+class _RigidMotion:
     """The first rigid motion of a mechanism as a function of the chosen rates, (bodies, 3)."""
 
     def __init__(self, bodies: Sequence[Body], lowered: Lowered, model: Model) -> None:
@@ -94,7 +94,7 @@ class _Motion:
         return np.tensordot(self._modes, rates, 2)
 
 
-def _contradiction(motion: _Motion, turning: np.ndarray, left: np.ndarray) -> ModelError:
+def _contradiction(motion: _RigidMotion, turning: np.ndarray, left: np.ndarray) -> ModelError:
     """Error for stated velocities that leave constraint rates."""
     wide = np.abs(np.real(left))
     joints = sorted({motion.owner(row) for row in np.flatnonzero(wide > 0.5 * wide.max()).tolist()})

@@ -129,17 +129,17 @@ class Lowered:
         return self.model(float)
 
     @cached_property
-    def dual(self) -> Model:
+    def complex_model(self) -> Model:
         """The model in complex numbers."""
         return self.model(complex)
 
     @cached_property
-    def upright(self) -> Model:
+    def unperturbed(self) -> Model:
         """The model in complex numbers without imaginary parts, for tangents."""
         if not self.is_complex:
-            return self.dual
+            return self.complex_model
         data = {kind: np.real(array) for kind, array in self.data.items()}
-        return replace(self, data=data, signal_data=np.real(self.signal_data)).dual
+        return replace(self, data=data, signal_data=np.real(self.signal_data)).complex_model
 
 
 def _cast(array: np.ndarray, dtype: type) -> np.ndarray:
@@ -422,6 +422,6 @@ def _stand(marker: Marker, coordinates: np.ndarray) -> tuple[Number, Number, Num
     if marker.kind == markers.NODE:
         real = np.arctan2(np.real(own[3]), np.real(own[2]))
         # First-order imaginary part: the gradient has length one here.
-        tilt = np.imag(own[3]) * np.real(own[2]) - np.imag(own[2]) * np.real(own[3])
-        return own[0], own[1], (real + 1j * tilt if np.iscomplexobj(coordinates) else real) + phi
+        turn = np.imag(own[3]) * np.real(own[2]) - np.imag(own[2]) * np.real(own[3])
+        return own[0], own[1], (real + 1j * turn if np.iscomplexobj(coordinates) else real) + phi
     return own[0], own[1], 0.0

@@ -16,7 +16,7 @@ from dalembert.multibody.evaluate import constraint_jacobian, constraint_rates, 
 from dalembert.multibody.fingerprint import fingerprint
 from dalembert.multibody.integrators.problem import Problem
 from dalembert.multibody.integrators.run import make_problem
-from dalembert.multibody.kernels.dual import STEP
+from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.lowering import Lowered
 from dalembert.multibody.scales import scales
 from dalembert.parameters import Parameter, Parameters
@@ -137,16 +137,16 @@ class Completion:
     def applied(self, lowered: Lowered, numbers: np.ndarray) -> Lowered:
         """Return arrays that begin at these numbers, whose real part the completion is for; with their derivatives."""
         n, half = lowered.structure.n, len(self.chart.places) // 2
-        lifted = lowered.is_complex or bool(lowered.callbacks) or np.iscomplexobj(numbers)
-        x = self.x.astype(complex if lifted else float)
+        complex_state = lowered.is_complex or bool(lowered.callbacks) or np.iscomplexobj(numbers)
+        x = self.x.astype(complex if complex_state else float)
         v, still = np.zeros_like(x), np.zeros_like(x)
         v[:n] = self.chart.near[n:]
         x[self.chart.places[:half]] = numbers[:half]
         v[self.chart.places[:half]] = numbers[half:]
         if len(self.inverse) == 0:
             return replace(lowered, x=x, v=v)
-        model = lowered.dual if lifted else lowered.real
-        if lifted:  # linear: once for the derivative
+        model = lowered.complex_model if complex_state else lowered.real
+        if complex_state:  # linear: once for the derivative
             x[self.dependent] -= self.inverse @ residual(lowered, model, x, still, still)[n:]
         for _ in range(2):  # once for the value, once for its derivative
             v[self.dependent] -= self.inverse @ constraint_rates(lowered, model, x, v, still)[0]
@@ -218,7 +218,7 @@ class MotionSegment:
             None if one is None else (one.names, one.places.tolist(), one.near.tolist())
             for one in (self.chart, self.ends)
         ]
-        return fingerprint(self._frame.lowered, self.times, self.model.fingerprint, self.begin, charts)
+        return fingerprint(self._shared.lowered, self.times, self.model.fingerprint, self.begin, charts)
 
     def evaluate(self, vectors: np.ndarray) -> Responses:
         """Responses of a batch; ``vectors`` (batch, parameters), values (batch, samples, channels)."""
@@ -249,22 +249,22 @@ class MotionSegment:
             return central_differences(self, vector)
         self.model.prepare_derivatives()
         with in_complex_numbers(strict=True):
-            lowered, tilted = self._placed(vector)
-            active = [column for column, own in enumerate(tilted) if self._changes(own)]
+            lowered, perturbed = self._placed(vector)
+            active = [column for column, own in enumerate(perturbed) if self._changes(own)]
             (run,) = self.model.solver.integrate(
-                [lowered], [tilted[column] for column in active], self._problem, self.times[-1]
+                [lowered], [perturbed[column] for column in active], self._problem, self.times[-1]
             )
         if run.reason:
             raise SolveError(run.reason)
         states = run.states
         values = self._read(lowered, lowered.real, states.x, states.v, states.a)
         jacobian = np.empty((*values.shape, len(vector)))
-        for column, own in enumerate(tilted):
+        for column, own in enumerate(perturbed):
             moved = [part.astype(complex) for part in states[:3]]
             if column in active:
                 row = active.index(column)
                 moved = [part + 1j * STEP * slope[row] for part, slope in zip(moved, run.derivatives[:3], strict=True)]
-            response = self._read(own, own.dual, *moved)
+            response = self._read(own, own.complex_model, *moved)
             jacobian[:, :, column] = np.imag(response) / (STEP * self.parameters.scale[column])
         return values, jacobian
 
@@ -277,12 +277,12 @@ class MotionSegment:
         return replace(self, times=self.times[:samples])
 
     @property
-    def _frame(self) -> Any:
-        return self.model.frame
+    def _shared(self) -> Any:
+        return self.model.shared
 
     @cached_property
     def _problem(self) -> Problem:
-        return make_problem(self._frame.lowered, self.times)
+        return make_problem(self._shared.lowered, self.times)
 
     def _lower(self, vector: np.ndarray) -> Lowered:
         own = vector[: len(self.model.parameters)]
@@ -297,27 +297,27 @@ class MotionSegment:
         own, numbers = vector[:number], vector[number:]
         if self.chart is None:
             lowered = self.model.lowered_at(own, self.begin, closed=True)
-            return lowered, [self.model.tilted_at(own, column, self.begin, closed=True) for column in range(number)]
+            return lowered, [self.model.perturbed_at(own, column, self.begin, closed=True) for column in range(number)]
         placed, moved = self.model.placed(own, self.begin)
         completion = Completion.at(placed, self.chart, numbers)
-        lowered, tilted = completion.applied(placed, numbers), []
+        lowered, perturbed = completion.applied(placed, numbers), []
         for one in moved:
             still = not (one.is_complex or one.callbacks)
-            tilted.append(replace(one, x=lowered.x, v=lowered.v) if still else completion.applied(one, numbers))
+            perturbed.append(replace(one, x=lowered.x, v=lowered.v) if still else completion.applied(one, numbers))
         for column in range(len(numbers)):
             shifted = numbers.astype(complex)
             shifted[column] += 1j * STEP * self.parameters.scale[number + column]
-            tilted.append(completion.applied(placed, shifted))
-        return lowered, tilted
+            perturbed.append(completion.applied(placed, shifted))
+        return lowered, perturbed
 
-    def _changes(self, tilted: Lowered) -> bool:
+    def _changes(self, perturbed: Lowered) -> bool:
         """Whether the motion may depend on what was moved: initial angles do not matter to a later segment."""
-        arrays = (tilted.x, tilted.v, tilted.signal_data, tilted.knots, *tilted.data.values())
-        return bool(tilted.callbacks) or any(np.iscomplexobj(one) and np.any(np.imag(one)) for one in arrays)
+        arrays = (perturbed.x, perturbed.v, perturbed.signal_data, perturbed.knots, *perturbed.data.values())
+        return bool(perturbed.callbacks) or any(np.iscomplexobj(one) and np.any(np.imag(one)) for one in arrays)
 
     def _read(self, lowered: Lowered, model: Any, x: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
         """Channels of the model and numbers of the state, (samples, channels)."""
-        values = self._frame.observer.read(lowered, model, x, v, a, self.times)
+        values = self._shared.observer.read(lowered, model, x, v, a, self.times)
         if self.ends is None:
             return values
         n = lowered.structure.n

@@ -6,7 +6,7 @@ import numpy as np
 
 from dalembert.multibody.components.planar.body import Body
 from dalembert.multibody.evaluate import constraint_jacobian, constraint_rates, residual
-from dalembert.multibody.kernels.dual import STEP
+from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.model import Model
 from dalembert.multibody.lowering import Lowered
 

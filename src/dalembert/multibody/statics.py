@@ -15,7 +15,7 @@ from dalembert.multibody.complex_steps import Along, check_forces
 from dalembert.multibody.drawing import Drawing, draw
 from dalembert.multibody.equilibrium_start import resting_place
 from dalembert.multibody.evaluate import tangent
-from dalembert.multibody.kernels.motion import Motion
+from dalembert.multibody.kernels.motion import MotionState
 from dalembert.multibody.lowering import Lowered, lower
 from dalembert.multibody.observe import Observer, observer
 from dalembert.multibody.scales import scales
@@ -164,7 +164,7 @@ def modes(state: System | Equilibrium, count: int | None = None) -> Modes:
 def _check_tangents(lowered: Lowered, x: np.ndarray) -> None:
     """Raise where stiffness or damping of a force would be wrong."""
     at_rest = np.zeros((1, len(x)))
-    along = Along(Observer((), ()), np.zeros(1), Motion(x[None], at_rest, at_rest, at_rest))
+    along = Along(Observer((), ()), np.zeros(1), MotionState(x[None], at_rest, at_rest, at_rest))
     check_forces(lowered, along, scales(lowered), SAFE)
 
 

@@ -24,7 +24,7 @@ from dalembert.multibody.fingerprint import fingerprint
 from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.problem import Problem
 from dalembert.multibody.integrators.run import Run, make_problem
-from dalembert.multibody.kernels.dual import STEP
+from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.long_runs import check_pace, check_steps
 from dalembert.multibody.lowering import Lowered, lower
 from dalembert.multibody.observe import Observer, observer
@@ -145,7 +145,7 @@ class TimeResponse:
     def _fingerprint(self) -> str:
         differences = [self.derivative] * (self.derivative != COMPLEX_STEP)
         asked = self.parameters.identity, self.channel_names, self.solver, *differences
-        return fingerprint(self._frame.lowered, self.times, *asked)
+        return fingerprint(self._shared.lowered, self.times, *asked)
 
     def evaluate(self, vectors: np.ndarray) -> Responses:
         """Responses of a batch over all cores; ``vectors`` (batch, parameters), values (batch, samples, channels).
@@ -155,7 +155,7 @@ class TimeResponse:
         vectors = self.parameters.batch(vectors)
         values = np.full((len(vectors), len(self.times), len(self.channel_names)), np.nan)
         failures: list[str | None] = [None] * len(vectors)
-        frame = self._frame
+        shared = self._shared
 
         def work(rows: np.ndarray) -> None:
             samples: list[tuple[int, Lowered]] = []
@@ -169,7 +169,7 @@ class TimeResponse:
                 failures[row] = result.reason
                 if result.reason is None:
                     states = result.states
-                    values[row] = frame.observer.read(lowered, lowered.real, states.x, states.v, states.a, self.times)
+                    values[row] = shared.observer.read(lowered, lowered.real, states.x, states.v, states.a, self.times)
 
         parts = _parts(len(vectors), self.workers)
         with in_complex_numbers(strict=False):
@@ -194,24 +194,26 @@ class TimeResponse:
         vector = self.parameters.real_vector(vector)
         if self.derivative != COMPLEX_STEP:
             return central_differences(self, vector)
-        frame = self._frame
-        self._prepare(frame.lowered, frame.observer, derivatives=True)
+        shared = self._shared
+        self._prepare(shared.lowered, shared.observer, derivatives=True)
         with in_complex_numbers(strict=True):
             lowered = self._lower(vector)
-            tilted = [self._tilt(vector, column) for column in range(len(vector))]
-            (result,) = self.solver.integrate([lowered], tilted, frame.problem, self.times[-1])
+            perturbed = [self._perturb(vector, column) for column in range(len(vector))]
+            (result,) = self.solver.integrate([lowered], perturbed, shared.problem, self.times[-1])
         if result.reason:
             raise SolveError(result.reason)
-        for name, own in zip(self.parameters.names, tilted, strict=True):
+        for name, own in zip(self.parameters.names, perturbed, strict=True):
             for error in (*lowered.failures.inexact, *own.failures.inexact):
                 raise inexact(name, error) from error
         self._check(vector, lowered, result)
         states, slopes = result.states, result.derivatives
-        values = frame.observer.read(lowered, lowered.real, states.x, states.v, states.a, self.times)
+        values = shared.observer.read(lowered, lowered.real, states.x, states.v, states.a, self.times)
         jacobian = np.empty((*values.shape, len(vector)))
-        for column, own in enumerate(tilted):
-            lifted = [real + 1j * STEP * slope[column] for real, slope in zip(states[:3], slopes[:3], strict=True)]
-            response = frame.observer.read(own, own.dual, *lifted, times=self.times)
+        for column, own in enumerate(perturbed):
+            complex_state = [
+                real + 1j * STEP * slope[column] for real, slope in zip(states[:3], slopes[:3], strict=True)
+            ]
+            response = shared.observer.read(own, own.complex_model, *complex_state, times=self.times)
             jacobian[:, :, column] = np.imag(response) / (STEP * self.parameters.scale[column])
         return values, jacobian
 
@@ -222,7 +224,7 @@ class TimeResponse:
         assembled at the first guesses can be identified from a start where it can.
         """
         own = copy(self)
-        for name in ("_observer", "_frame", "_fingerprint"):
+        for name in ("_observer", "_shared", "_fingerprint"):
             vars(own).pop(name, None)
         vars(own)["built_at"] = self.parameters.real_vector({name: values[name] for name in self.parameters.names})
         return own
@@ -405,8 +407,8 @@ class TimeResponse:
         if not self._compared.vectors:
             self.check_derivatives(vector)
         if not self._compared.functions:
-            at = Along(self._frame.observer, self.times, run.states, self.begin)
-            check_forces(lowered, at, self._frame.problem.scale)
+            at = Along(self._shared.observer, self.times, run.states, self.begin)
+            check_forces(lowered, at, self._shared.problem.scale)
             check_closures(self.builder, self.parameters, vector, at)
             self._compared.functions = True
 
@@ -422,7 +424,7 @@ class TimeResponse:
         return observer(system, lower(system, self.begin), self.channel_names)
 
     @cached_property
-    def _frame(self) -> "_Frame":
+    def _shared(self) -> "_Shared":
         system = self._first_system
         placed = lower(system, self.begin)
         self._prepare(placed, self._observer, derivatives=False)
@@ -432,7 +434,7 @@ class TimeResponse:
             refuse_redundancy(lowered)
         refuse_kinks(lowered, float(self.times[-1]))
         check_pace(lowered, self.solver.suiting(lowered, float(self.times[-1])), float(self.times[-1]))
-        return _Frame(lowered, make_problem(lowered, self.times), observer(system, lowered, self.channel_names))
+        return _Shared(lowered, make_problem(lowered, self.times), observer(system, lowered, self.channel_names))
 
     def _prepare(self, lowered: Lowered, observer: Observer, derivatives: bool) -> None:
         """Compile, or load, what the method needs."""
@@ -443,29 +445,29 @@ class TimeResponse:
     def _runs(self, samples: Sequence[Lowered]) -> list[Run]:
         if not samples:
             return []
-        return self.solver.integrate(samples, (), self._frame.problem, self.times[-1], logged=False)
+        return self.solver.integrate(samples, (), self._shared.problem, self.times[-1], logged=False)
 
     @property
-    def frame(self) -> "_Frame":
+    def shared(self) -> "_Shared":
         """What all samples share."""
-        return self._frame
+        return self._shared
 
     def prepare_derivatives(self) -> None:
         """Compile, or load, what sensitivities need."""
-        self._prepare(self._frame.lowered, self._frame.observer, derivatives=True)
+        self._prepare(self._shared.lowered, self._shared.observer, derivatives=True)
 
     def placed(self, vector: np.ndarray, begin: float) -> tuple[Lowered, tuple[Lowered, ...]]:
         """Arrays of the mechanism as placed, and those moved along each parameter; kept for the last vector.
 
         Segments of one motion share them, unless signals depend on when they begin.
         """
-        moment = begin if len(self._frame.lowered.structure.signals) > 1 else 0.0
+        moment = begin if len(self._shared.lowered.structure.signals) > 1 else 0.0
         key = vector.tobytes(), moment
         kept = vars(self).get("_placed")
         if kept is None or kept[0] != key:
             lowered = self.lowered_at(vector, moment, closed=False)
-            tilted = tuple(self.tilted_at(vector, column, moment, closed=False) for column in range(len(vector)))
-            kept = vars(self)["_placed"] = key, (lowered, tilted)
+            perturbed = tuple(self.perturbed_at(vector, column, moment, closed=False) for column in range(len(vector)))
+            kept = vars(self)["_placed"] = key, (lowered, perturbed)
         return kept[1]
 
     def lowered_at(self, vector: np.ndarray, begin: float, *, closed: bool) -> Lowered:
@@ -473,15 +475,15 @@ class TimeResponse:
         system = self.system(vector)
         return self._fit(assembled(system, begin=begin) if closed else lower(system, begin))
 
-    def tilted_at(self, vector: np.ndarray, column: int, begin: float, *, closed: bool) -> Lowered:
+    def perturbed_at(self, vector: np.ndarray, column: int, begin: float, *, closed: bool) -> Lowered:
         """The arrays of :meth:`lowered_at`, moved by a complex step of the scale of one parameter."""
-        tilted = vector.astype(complex)
-        tilted[column] += 1j * STEP * self.parameters.scale[column]
+        perturbed = vector.astype(complex)
+        perturbed[column] += 1j * STEP * self.parameters.scale[column]
         given: dict[str, complex] = dict(self.parameters.mapping(vector))
-        given[self.parameters.names[column]] = complex(tilted[column])
+        given[self.parameters.names[column]] = complex(perturbed[column])
         try:
             system = built(self.builder, given, System)
-            return self._fit(assembled(system, tilted=True, begin=begin) if closed else lower(system, begin))
+            return self._fit(assembled(system, perturbed=True, begin=begin) if closed else lower(system, begin))
         except (TypeError, ModelError, np.exceptions.ComplexWarning) as error:
             error = error.__cause__ if isinstance(error, ModelError) else error
             if not isinstance(error, TypeError | np.exceptions.ComplexWarning):
@@ -492,19 +494,19 @@ class TimeResponse:
         """Arrays of one sample, in the structure of the first."""
         return self.lowered_at(vector, self.begin, closed=True)
 
-    def _tilt(self, vector: np.ndarray, column: int) -> Lowered:
+    def _perturb(self, vector: np.ndarray, column: int) -> Lowered:
         """Arrays of the model along one parameter, moved by a complex step of its scale."""
-        return self.tilted_at(vector, column, self.begin, closed=True)
+        return self.perturbed_at(vector, column, self.begin, closed=True)
 
     def _fit(self, lowered: Lowered) -> Lowered:
-        structure = self._frame.lowered.structure
+        structure = self._shared.lowered.structure
         if not structure.same(lowered.structure):
             raise restructured()
         return replace(lowered, structure=structure)
 
 
 @dataclass(frozen=True)
-class _Frame:
+class _Shared:
     """What all samples share, from the system where it is built first."""
 
     lowered: Lowered

@@ -19,7 +19,7 @@ from dalembert.multibody.drawing import Drawing, draw
 from dalembert.multibody.evaluate import energies, energy_kernels, violations
 from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.run import Run
-from dalembert.multibody.kernels.motion import Motion
+from dalembert.multibody.kernels.motion import MotionState
 from dalembert.multibody.lowering import Lowered
 from dalembert.multibody.observe import beside, channel_names, observer
 from dalembert.multibody.skipped_samples import skipped_samples
@@ -57,9 +57,9 @@ class Trajectory:
         return self.run.times[self.rows]
 
     @property
-    def states(self) -> Motion:
+    def states(self) -> MotionState:
         """Unknowns, velocities and accelerations at the output times, (samples, N + 1) each."""
-        return Motion(*(array[self.rows] for array in self.run.states))
+        return MotionState(*(array[self.rows] for array in self.run.states))
 
     @cached_property
     def findings(self) -> tuple[Finding, ...]:

@@ -121,7 +121,7 @@ def slider_crank(crank_length: float, rod_length: complex) -> mb.System:
 def test_large_derivatives_of_the_start_are_rounded_in_proportion(rod: float, lack: float) -> None:
     """The rod is nearly upright: its angle changes by thousands of rad while a length changes by its size."""
     crank = rod * (1.0 - lack)
-    lowered = assembled(slider_crank(crank, rod + 1e-30j * rod), tilted=True)
+    lowered = assembled(slider_crank(crank, rod + 1e-30j * rod), perturbed=True)
     slope = np.imag(lowered.x[lowered.structure.first["rod"] + 2]) / 1e-30
     assert slope == pytest.approx(1.0 / np.sqrt((rod / crank) ** 2 - 1.0), rel=1e-6)
 
@@ -134,4 +134,4 @@ def test_a_joint_that_no_derivative_closes_is_told() -> None:
     system.add(mb.RevoluteJoint("right", system.ground.point(1.0, 0.0), bar.end))
     sentence = r"^joint '(left|right)' is closed, but not for other values of a parameter, so there is no derivative"
     with pytest.raises(ModelError, match=sentence):
-        assembled(system, tilted=True)
+        assembled(system, perturbed=True)

@@ -82,9 +82,11 @@ def test_a_velocity_against_the_joints_is_refused_with_the_possible_one() -> Non
 def test_zero_is_a_stated_velocity() -> None:
     system = mb.System()
     mass = system.add(mb.PointMass("mass", 1.0, (1.0, 0.0), velocity=(0.0, 0.0)))
-    system.add(mb.PrescribedMotion("lift", system.ground.point(0.0, 0.0), mass.centre, "y", mb.Polynomial([0.0, 3.0])))
+    system.add(
+        mb.PrescribedMotion("perturb", system.ground.point(0.0, 0.0), mass.centre, "y", mb.Polynomial([0.0, 3.0]))
+    )
     with pytest.raises(
-        ModelError, match=r"joint 'lift' by 3 .*mass\.velocity is \(0, 0\) m/s \(nearest possible: \(0, 3\)\)"
+        ModelError, match=r"joint 'perturb' by 3 .*mass\.velocity is \(0, 0\) m/s \(nearest possible: \(0, 3\)\)"
     ):
         mb.simulate(system, 1e-3)
     free = mb.PointMass("mass", 1.0, (1.0, 0.0))

@@ -7,7 +7,7 @@ import pytest
 
 import mechanisms
 from dalembert.multibody.kernels.constraints import forces_of, rates_of
-from dalembert.multibody.kernels.dual import STEP
+from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.kernels.model import Model
 from dalembert.multibody.kernels.records import Inputs

@@ -8,9 +8,9 @@ from dalembert.multibody import evaluate
 from dalembert.multibody.assemble import assembled
 from dalembert.multibody.integrators import partitioning
 from dalembert.multibody.integrators.run import make_problem
-from dalembert.multibody.kernels.dual import STEP
+from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.model import Call, addresses
-from dalembert.multibody.kernels.motion import Motion, resting
+from dalembert.multibody.kernels.motion import MotionState, resting
 from dalembert.multibody.lowering import Lowered
 
 
@@ -39,22 +39,22 @@ def dense(lowered: Lowered):
 
 def calls_of(lowered: Lowered) -> tuple[Call, Call, np.ndarray]:
     """Calls in real and in complex numbers, and complex work."""
-    lifted = np.zeros((7, lowered.structure.size + 1), complex)
-    return lowered.real.need("rates").call(), lowered.dual.need("rates").call(), lifted
+    complex_state = np.zeros((7, lowered.structure.size + 1), complex)
+    return lowered.real.need("rates").call(), lowered.complex_model.need("rates").call(), complex_state
 
 
-def chosen(lowered: Lowered, problem, state: Motion, directions: int = 0):
+def chosen(lowered: Lowered, problem, state: MotionState, directions: int = 0):
     """Independent coordinates at a state; the functions run in plain Python."""
-    call = lowered.dual.call()
+    call = lowered.complex_model.call()
     partition = partitioning.room(problem, directions)
-    lowered.dual.evaluate(call, 0.0, 0.0)
-    partitioning.linearise(problem, lowered.dual.address, state, call.address, partition)
+    lowered.complex_model.evaluate(call, 0.0, 0.0)
+    partitioning.linearise(problem, lowered.complex_model.address, state, call.address, partition)
     partitioning.choose(problem, partition)
     assert partitioning.invert(problem, partition)
     return partition
 
 
-def start(lowered: Lowered) -> Motion:
+def start(lowered: Lowered) -> MotionState:
     state = resting(lowered.structure.size + 1)
     state.x[:], state.v[:] = np.real(lowered.x), np.real(lowered.v)
     return state
@@ -75,7 +75,7 @@ def test_as_many_coordinates_depend_as_constraints_are_independent(bars: int, ra
 @pytest.mark.parametrize("bars", [2, 3])
 def test_dependent_entries_satisfy_the_constraints_at_all_levels(bars: int) -> None:
     lowered = assembled(four_bar(bars=bars))
-    problem, (call, dual_call, lifted) = dense(lowered), calls_of(lowered)
+    problem, (call, complex_call, complex_state) = dense(lowered), calls_of(lowered)
     state = start(lowered)
     partition = chosen(lowered, problem, state)
     own = partition.columns[partition.rank[0] :]
@@ -84,8 +84,8 @@ def test_dependent_entries_satisfy_the_constraints_at_all_levels(bars: int) -> N
     state.a[own] = 5.0
     given = [values[own].copy() for values in state[:3]]
     assert partitioning.settle(
-        problem, lowered.real.address, lowered.dual.address, addresses([]), 0.0, 0.0, partitioning.ACCELERATION, state,
-        resting(0, len(state.x)), call.address, dual_call.address, lifted, partition,
+        problem, lowered.real.address, lowered.complex_model.address, addresses([]), 0.0, 0.0, partitioning.ACCELERATION, state,
+        resting(0, len(state.x)), call.address, complex_call.address, complex_state, partition,
     )  # fmt: skip
     zero = np.zeros(1)
     assert np.max(evaluate.violations(lowered, state.x[None], state.v[None], state.a[None], zero, zero)) < 1e-13
@@ -96,26 +96,26 @@ def test_dependent_entries_satisfy_the_constraints_at_all_levels(bars: int) -> N
 def test_derivatives_of_the_dependent_entries() -> None:
     """Along the coupler's length and along the independent entries, against central differences."""
 
-    def settled(length: complex, shift: float, tilted: bool = False) -> tuple[Motion, Motion]:
+    def settled(length: complex, shift: float, perturbed: bool = False) -> tuple[MotionState, MotionState]:
         lowered = assembled(four_bar(length.real))
-        problem, (call, dual_call, lifted) = dense(lowered), calls_of(lowered)
+        problem, (call, complex_call, complex_state) = dense(lowered), calls_of(lowered)
         state = start(lowered)
-        partition = chosen(lowered, problem, start(assembled(four_bar(2.0))), int(tilted))
+        partition = chosen(lowered, problem, start(assembled(four_bar(2.0))), int(perturbed))
         own = partition.columns[partition.rank[0] :]
-        along = [assembled(four_bar(length), tilted=True)] if tilted else []
+        along = [assembled(four_bar(length), perturbed=True)] if perturbed else []
         dstates = resting(len(along), len(state.x))
         for values, given in zip(state[:3], (1.1 + shift, -2.0 + shift, 5.0 + shift), strict=True):
             values[own] = given
         for values in dstates[:3]:
             values[:, own] = 1.0
         assert partitioning.settle(
-            problem, lowered.real.address, lowered.dual.address,
-            addresses(own.dual.need("rates") for own in along), 0.0, 0.0, partitioning.ACCELERATION,
-            state, dstates, call.address, dual_call.address, lifted, partition,
+            problem, lowered.real.address, lowered.complex_model.address,
+            addresses(own.complex_model.need("rates") for own in along), 0.0, 0.0, partitioning.ACCELERATION,
+            state, dstates, call.address, complex_call.address, complex_state, partition,
         )  # fmt: skip
         return state, dstates
 
-    _, slopes = settled(2.0 + 1j * STEP, 0.0, tilted=True)
+    _, slopes = settled(2.0 + 1j * STEP, 0.0, perturbed=True)
     gap = 1e-6
     (after, _), (before, _) = settled(2.0 + gap, gap), settled(2.0 - gap, -gap)
     for slope, high, low in zip(slopes[:3], after, before, strict=False):

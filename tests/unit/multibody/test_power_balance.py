@@ -9,7 +9,7 @@ import pytest
 
 import mechanisms
 from dalembert.multibody.evaluate import constraint_rates, energies, residual
-from dalembert.multibody.kernels.dual import STEP
+from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.lowering import Lowered, lower
 
 TIME = 0.37
@@ -34,11 +34,11 @@ def test_forces_do_what_energies_lose(piece: str, seed: int) -> None:
     moved = x + 0j
     moved[:n] += 1j * STEP * v[:n]
     times = np.array([TIME])
-    lifted = energies(lowered.dual, moved[None], (v + 1j * STEP * a)[None], times, times)[0]
+    complex_state = energies(lowered.complex_model, moved[None], (v + 1j * STEP * a)[None], times, times)[0]
     power = energies(lowered.real, x[None], v[None], times, times)[0, 2]
     rate, _ = constraint_rates(lowered, lowered.real, x, v, a, TIME)
     terms = residual(lowered, lowered.real, x, v, a, TIME)[:n] * v[:n]
-    given = (lifted[0] + lifted[1]).imag / STEP - power + x[n:-1] @ rate
+    given = (complex_state[0] + complex_state[1]).imag / STEP - power + x[n:-1] @ rate
     assert np.sum(terms) == pytest.approx(given, abs=1e-12 * np.sum(np.abs(terms)))
 
 

@@ -101,7 +101,7 @@ def test_it_takes_no_more_iterations_and_matrices_than_the_full_system(joint: bo
 def test_the_reduced_tangent_is_the_slope_of_the_projected_residual() -> None:
     """Along finite increments, so with the change of the projection; by differences of both kernels."""
     lowered = lower(swing(joint=True))
-    model, own = lowered.dual.reduced(), lowered.structure.reduction
+    model, own = lowered.complex_model.reduced(), lowered.structure.reduction
     chance = np.random.default_rng(3)
     x, v, a = chance.normal(size=(3, len(lowered.x)))
     x[-1] = v[-1] = a[-1] = 0.0

@@ -5,7 +5,7 @@ import pytest
 
 import mechanisms
 from dalembert.multibody.evaluate import residual, tangent
-from dalembert.multibody.kernels.dual import STEP
+from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.lowering import Lowered, lower
 
 TIME = 0.37
@@ -39,7 +39,7 @@ def test_it_is_the_complex_step_of_the_residual(everything: Lowered) -> None:
     matrix = tangent(everything, x, v, BY, t=TIME).toarray()
     for column in range(everything.structure.size):
         dx, dv, da = 1j * STEP * directions(everything, column)
-        exact = residual(everything, everything.dual, x + dx, v + dv, da, TIME).imag / STEP
+        exact = residual(everything, everything.complex_model, x + dx, v + dv, da, TIME).imag / STEP
         np.testing.assert_allclose(matrix[:, column], exact, rtol=0, atol=1e-12 * np.abs(exact).max())
 
 

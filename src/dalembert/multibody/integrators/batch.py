@@ -8,9 +8,9 @@ import numpy as np
 
 from dalembert.multibody.integrators.problem import Log, Problem
 from dalembert.multibody.integrators.run import Run
-from dalembert.multibody.kernels.dual import STEP
+from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.model import addresses
-from dalembert.multibody.kernels.motion import Motion, resting, row
+from dalembert.multibody.kernels.motion import MotionState, resting, row
 from dalembert.multibody.lowering import Lowered
 
 _ROUNDING = 1e-9  # of differences of times, relative to the motion's end
@@ -21,7 +21,7 @@ class Sample(NamedTuple):
 
     lowered: Lowered
     edges: np.ndarray
-    start: Motion
+    start: MotionState
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,9 +39,9 @@ class Batch:
         s.
     logged : bool
         Keep what happened at each step.
-    states : Motion of arrays (samples, N + 1)
+    states : MotionState of arrays (samples, N + 1)
         At the start; integrators may overwrite them.
-    dstates : Motion of arrays (directions, N + 1)
+    dstates : MotionState of arrays (directions, N + 1)
         Derivatives of the states at the start; integrators may overwrite them.
     """
 
@@ -50,8 +50,8 @@ class Batch:
     problem: Problem
     end: float
     logged: bool
-    states: Motion
-    dstates: Motion
+    states: MotionState
+    dstates: MotionState
 
     def __iter__(self) -> Iterator[Sample]:
         for number, lowered in enumerate(self.samples):
@@ -66,7 +66,7 @@ class Batch:
     @property
     def directions(self) -> np.ndarray:
         """Addresses of the complex models along the directions of differentiation, with kernels of rates."""
-        return addresses(entry.dual.need("rates") for entry in self.perturbed)
+        return addresses(entry.complex_model.need("rates") for entry in self.perturbed)
 
     def derivatives(self) -> Any:
         """Return zeros for the derivatives at the output times: arrays (directions, times, N + 1)."""
@@ -77,7 +77,7 @@ class Batch:
         room = room if self.logged else 0
         return Log(np.zeros(4, dtype=np.int64), np.zeros(room, dtype=np.int64), np.zeros(room))
 
-    def result(self, reason: str | None, states: Motion, derivatives: Motion, log: Log) -> Run:
+    def result(self, reason: str | None, states: MotionState, derivatives: MotionState, log: Log) -> Run:
         """Return what a run left, with the part of the log that it filled."""
         taken = min(int(log.counts[0]), len(log.ends))
         iterations, ends = log.iterations[:taken].copy(), log.ends[:taken].copy()
@@ -122,7 +122,7 @@ def cut(samples: Sequence[Lowered], problem: Problem, end: float) -> Problem:
     return problem._replace(edges=edges, stretches=np.array([len(given) - 1 for given in stretches]))
 
 
-def _starts(samples: Sequence[Lowered], perturbed: Sequence[Lowered]) -> tuple[Motion, Motion]:
+def _starts(samples: Sequence[Lowered], perturbed: Sequence[Lowered]) -> tuple[MotionState, MotionState]:
     """States of the samples at time 0, (samples, N + 1), and their derivatives along the directions."""
     width = samples[0].structure.size + 1
     states, dstates = resting(len(samples), width), resting(len(perturbed), width)

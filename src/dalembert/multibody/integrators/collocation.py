@@ -21,7 +21,7 @@ from dalembert.multibody.integrators.partitioning import settle_along
 from dalembert.multibody.integrators.problem import DONE, SINGULAR, Log, Problem
 from dalembert.multibody.integrators.run import Run, explain
 from dalembert.multibody.kernels.linear import DENSE_KERNELS
-from dalembert.multibody.kernels.motion import Histories, Motions, resting
+from dalembert.multibody.kernels.motion import Histories, MotionStates, resting
 from dalembert.multibody.structure import Structure
 from dalembert.optimize import Firefly, LeastSquares, Minimiser, ResponseSensitivity, Squares, Swarm
 from dalembert.settings import expect, expect_at_least
@@ -147,25 +147,26 @@ class Collocation(Integrator):
     def _run(self, batch: Batch, problem: Problem, sample: Sample) -> Run:
         lowered, schedule = sample.lowered, self.schedule(sample.edges, problem.times)
         rule = make_rule(self.degree, self.gauss_points)
-        model, dual = lowered.real.need("rates"), lowered.dual.need("rates")
-        calls = model.call(), dual.call()
+        model, complex_model = lowered.real.need("rates"), lowered.complex_model.need("rates")
+        calls = model.call(), complex_model.call()
         linear = not any(kind.takes_reactions for kind in lowered.data)
         walk = prepare(problem, rule, *calls, len(batch.perturbed), linear)
         for own, given in zip((*walk.old, *walk.dold), (*sample.start, *batch.dstates), strict=True):
             own[:] = given
         along = batch.directions
-        directions = np.append(np.full(len(walk.c), dual.address), along)
+        directions = np.append(np.full(len(walk.c), complex_model.address), along)
         out, dout, log = resting(*batch.shape), batch.derivatives(), batch.log(len(schedule.begins))
         work = descent(problem, walk)
         if isinstance(self.minimiser, GaussNewton):
             status, time, worst = march(
-                problem, rule, self.minimiser.iterations, model.address, dual.address, directions, along, schedule,
-                walk, out, dout, log, work,
+                problem, rule, self.minimiser.iterations, model.address, complex_model.address, directions, along,
+                schedule, walk, out, dout, log, work,
             )  # fmt: skip
         else:
             search = Search(
-                self.minimiser, self.seed, problem, rule, model.address, dual.address, directions, schedule, walk
-            )
+                self.minimiser, self.seed, problem, rule, model.address, complex_model.address, directions, schedule,
+                walk,
+            )  # fmt: skip
             status, time, worst = _search(search, along, out, dout, log, work)
         reason = None
         if status != DONE:
@@ -174,21 +175,21 @@ class Collocation(Integrator):
 
 
 def _search(
-    search: Search, along: np.ndarray, out: Motions, dout: Histories, log: Log, room: Descent
+    search: Search, along: np.ndarray, out: MotionStates, dout: Histories, log: Log, room: Descent
 ) -> tuple[int, float, int]:
     """All steps by a minimiser of the package: status, time reached, the coordinate to blame."""
-    problem, rule, model, dual = search.problem, search.rule, search.model, search.dual
+    problem, rule, model, complex_model = search.problem, search.rule, search.model, search.complex_model
     schedule, walk = search.schedule, search.walk
     for number in range(len(schedule.begins)):
         step, taken, worst = step_of(schedule, number), 0, 0
-        status = begin(problem, rule, model, dual, along, step, walk)
+        status = begin(problem, rule, model, complex_model, along, step, walk)
         if status == DONE:
             status, taken, worst = search(number)
         if status == DONE and len(walk.dc):
-            regular = respond(problem, rule, model, dual, search.directions, step, walk, room)
+            regular = respond(problem, rule, model, complex_model, search.directions, step, walk, room)
             status = DONE if regular else SINGULAR
         if status == DONE:
-            status = finish(problem, rule, model, dual, along, step, walk, out, dout)
+            status = finish(problem, rule, model, complex_model, along, step, walk, out, dout)
         if status != DONE:
             return status, step.begin, worst
         log.counts[:2] += 1, taken

@@ -11,7 +11,7 @@ from dalembert.multibody.integrators.collocation_rule import Rule
 from dalembert.multibody.integrators.collocation_step import Schedule, Step, Walk, begin, finish, step_of
 from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR, Log, Problem
 from dalembert.multibody.kernels.linear import Factors, factorise, resized, solve, storage
-from dalembert.multibody.kernels.motion import Histories, Motions
+from dalembert.multibody.kernels.motion import Histories, MotionStates
 
 _ROUNDING = 1e-15  # change of a coordinate over the step, against its scale, that is none
 _COARSE = 1e-6  # the same, after the last iteration, that is too much
@@ -67,8 +67,8 @@ def _square(n, rule, gaps, slopes, unknowns, count, matrix, lead, right):
 
 @kernel
 def descend(
-    problem: Problem, rule: Rule, iterations: int, model: Address, dual: Address, directions: Integers, step: Step,
-    walk: Walk, room: Descent,
+    problem: Problem, rule: Rule, iterations: int, model: Address, complex_model: Address, directions: Integers,
+    step: Step, walk: Walk, room: Descent,
 ) -> tuple[int, int, int]:  # fmt: skip
     """Gauss and Newton's iterations: status, how many they were, and the coordinate that moved most."""
     n, own, unknowns = problem.n, walk.partition, len(walk.c)
@@ -78,7 +78,7 @@ def descend(
     largest, worst = 0.0, 0
     for iteration in range(1, iterations + 1):
         for s in range(len(rule.nodes)):
-            if not measure(problem, rule, model, dual, directions, step, walk, False, s):
+            if not measure(problem, rule, model, complex_model, directions, step, walk, False, s):
                 return NEWTON_FAILED, iteration, worst
         _square(n, rule, walk.gaps, walk.slopes, unknowns, unknowns, normal.matrix, layout.lead, right)
         if not factorise(layout, normal):
@@ -98,7 +98,7 @@ def descend(
 
 @kernel
 def respond(
-    problem: Problem, rule: Rule, model: Address, dual: Address, directions: Integers, step: Step, walk: Walk,
+    problem: Problem, rule: Rule, model: Address, complex_model: Address, directions: Integers, step: Step, walk: Walk,
     room: Descent,
 ) -> bool:  # fmt: skip
     """Derivatives of the minimum along the directions, by the derivative of its gradient.
@@ -110,7 +110,7 @@ def respond(
     n, own, unknowns, count = problem.n, walk.partition, len(walk.c), walk.slopes.shape[1]
     layout, normal, right, change = resized(problem.exact_layout, unknowns), room.normal, room.right, room.change
     for s in range(len(rule.nodes)):
-        if not measure(problem, rule, model, dual, directions, step, walk, True, s):
+        if not measure(problem, rule, model, complex_model, directions, step, walk, True, s):
             return False
     _square(n, rule, walk.gaps, walk.slopes, unknowns, count, normal.matrix, layout.lead, right)
     if len(rule.nodes) > len(rule.powers):
@@ -126,7 +126,7 @@ def respond(
             for side in range(2):
                 walk.c[k] = here + (2 * side - 1) * push
                 for s in range(len(rule.nodes)):
-                    if not measure(problem, rule, model, dual, directions, step, walk, True, s):
+                    if not measure(problem, rule, model, complex_model, directions, step, walk, True, s):
                         return False
                     for j in range(count):
                         product = 0.0
@@ -152,25 +152,27 @@ _respond_at = respond.at
 
 @kernel
 def march(
-    problem: Problem, rule: Rule, most: int, model: Address, dual: Address, directions: Integers, tilted: Integers,
-    schedule: Schedule, walk: Walk, out: Motions, dout: Histories, log: Log, room: Descent,
+    problem: Problem, rule: Rule, most: int, model: Address, complex_model: Address, directions: Integers,
+    perturbed: Integers, schedule: Schedule, walk: Walk, out: MotionStates, dout: Histories, log: Log, room: Descent,
 ) -> tuple[int, float, int]:  # fmt: skip
     """All steps by at most so many iterations: status, time reached, the coordinate that moved most."""
     for number in range(len(schedule.begins)):
         step, taken, worst = step_of(schedule, number), 0, 0
         for _ in range(2):  # from extrapolated accelerations; where that fails, from those at the step's beginning
-            status = begin(problem, rule, model, dual, tilted, step, walk)
+            status = begin(problem, rule, model, complex_model, perturbed, step, walk)
             if status == DONE:
-                status, iterations, worst = descend(problem, rule, most, model, dual, directions, step, walk, room)
+                status, iterations, worst = descend(
+                    problem, rule, most, model, complex_model, directions, step, walk, room
+                )
                 taken += iterations
             if status == DONE:
                 break
             walk.chosen[1] = 0.0
         if status == DONE and len(walk.dc) > 0:
-            if not _respond_at(room.respond, problem, rule, model, dual, directions, step, walk, room):
+            if not _respond_at(room.respond, problem, rule, model, complex_model, directions, step, walk, room):
                 status = SINGULAR
         if status == DONE:
-            status = finish(problem, rule, model, dual, tilted, step, walk, out, dout)
+            status = finish(problem, rule, model, complex_model, perturbed, step, walk, out, dout)
         if status != DONE:
             return status, step.begin, worst
         log.counts[0] += 1

@@ -9,29 +9,28 @@ from dalembert.kernels.kernel import inner, kernel
 from dalembert.kernels.words import Address, Integers
 from dalembert.multibody.integrators.collocation_rule import Rule
 from dalembert.multibody.integrators.collocation_step import Step, Walk, place
-from dalembert.multibody.integrators.lifting import lift
 from dalembert.multibody.integrators.partitioning import ACCELERATION, settle
 from dalembert.multibody.integrators.problem import Problem
 from dalembert.multibody.kernels.assembly import constraint_rates, residual, set_signals, tangent
-from dalembert.multibody.kernels.dual import STEP
+from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.linear import factorise, solve
-from dalembert.multibody.kernels.motion import row, subtract
+from dalembert.multibody.kernels.motion import perturb, row, subtract
 
 
 @inner
-def _drive(problem, model, dual, t, within, state, linear, constraints, c):
+def _drive(problem, model, complex_model, t, within, state, linear, constraints, c):
     """Accelerations and multipliers by the equations of motion; whether the matrix is regular.
 
     As `accelerate` does, for a state that `settle` has left, whose constraint Jacobian it takes: one tangent is enough
     where no force depends on the multipliers.
     """
     n, given, answer, rate = problem.n, c.vectors[0], c.vectors[1], c.vectors[2]
-    set_signals(dual, t, within, c.dual_work)
+    set_signals(complex_model, t, within, c.complex_work)
     for iteration in range(2 if linear else 6):
         if iteration == 0 or not linear:
             tangent(
-                dual, problem.exact_slots, n, state.x, state.v, state.a, (0.0, 0.0, 1.0), (1.0, 0.0), c.dual_work,
-                c.exact.matrix,
+                complex_model, problem.exact_slots, n, state.x, state.v, state.a, (0.0, 0.0, 1.0), (1.0, 0.0),
+                c.complex_work, c.exact.matrix,
             )  # fmt: skip
             for i in range(len(constraints)):
                 c.exact.matrix[i] += constraints[i]
@@ -47,22 +46,27 @@ def _drive(problem, model, dual, t, within, state, linear, constraints, c):
 @inner
 def _drive_along(problem, directions, t, within, state, dstates, c):
     """Derivatives of what `_drive` has found, by the matrix that it left."""
-    n, last, lifted, given, answer = problem.n, len(state.x) - 1, c.lifted, c.vectors[0], c.vectors[1]
+    n, last, complex_state, given, answer = problem.n, len(state.x) - 1, c.complex_state, c.vectors[0], c.vectors[1]
     for d in range(len(dstates.x)):
         along, dstate = directions[d], row(dstates, d)
-        set_signals(along, t, within, c.dual_work)
+        set_signals(along, t, within, c.complex_work)
         for _ in range(2):
-            lift(n, state, dstate, lifted)
-            residual(along, n, lifted[0], lifted[1], lifted[2], c.dual_work, 1.0, lifted[3])
-            constraint_rates(along, n, lifted[0], lifted[1], lifted[2], c.dual_work, lifted[4], lifted[3])
+            perturb(n, state, dstate, complex_state)
+            residual(
+                along, n, complex_state[0], complex_state[1], complex_state[2], c.complex_work, 1.0, complex_state[3]
+            )
+            constraint_rates(
+                along, n, complex_state[0], complex_state[1], complex_state[2], c.complex_work, complex_state[4],
+                complex_state[3],
+            )  # fmt: skip
             for i in range(last):
-                given[i] = lifted[3, i].imag / STEP
+                given[i] = complex_state[3, i].imag / STEP
             solve(problem.exact_layout, c.exact, given, answer)
             subtract(n, answer, dstate)
 
 
 @inner
-def _tilt(columns, h, s, shape, unknowns, dolds, dstates):
+def _perturb(columns, h, s, shape, unknowns, dolds, dstates):
     """Derivatives of a Gauss point's independent entries, by the unknown accelerations, then along the directions."""
     for d in range(len(dstates.x)):
         dstate = row(dstates, d)
@@ -80,28 +84,29 @@ def _tilt(columns, h, s, shape, unknowns, dolds, dstates):
 
 @kernel
 def measure(
-    problem: Problem, rule: Rule, model: Address, dual: Address, directions: Integers, step: Step, walk: Walk,
-    tilts: bool, s: int,
+    problem: Problem, rule: Rule, model: Address, complex_model: Address, directions: Integers, step: Step, walk: Walk,
+    perturbs: bool, s: int,
 ) -> bool:  # fmt: skip
-    """What remains at a Gauss point, and its derivatives by c and, where it ``tilts``, along the directions.
+    """What remains at a Gauss point, and its derivatives by c and, where it ``perturbs``, along the directions.
 
-    ``directions`` are the untilted model for each unknown, then the tilted ones.
+    ``directions`` are the unperturbed model for each unknown, then the perturbed ones.
     """
     n, own, c, within, h = problem.n, walk.partition, walk.consistency, step.within, step.end - step.begin
     t, shape, state = step.begin + rule.nodes[s] * h, rule.shapes[s], row(walk.points, s)
-    dstates = walk.dall if tilts else walk.dpoint
+    dstates = walk.dall if perturbs else walk.dpoint
     columns = own.columns[own.rank[0] : problem.n]
     place(columns, h, rule.nodes[s], shape, walk.old, walk.c, state)
-    _tilt(columns, h, rule.nodes[s], shape, len(walk.c), walk.dold, dstates)
+    _perturb(columns, h, rule.nodes[s], shape, len(walk.c), walk.dold, dstates)
     if not settle(
-        problem, model, dual, directions, t, within, ACCELERATION, state, dstates, c.work, c.dual_work, c.lifted, own
-    ):
+        problem, model, complex_model, directions, t, within, ACCELERATION, state, dstates, c.work, c.complex_work,
+        c.complex_state, own,
+    ):  # fmt: skip
         return False
     for i in range(n):
         walk.gaps[s, i] = state.a[i]
         for d in range(len(dstates.x)):
             walk.slopes[s, d, i] = dstates.a[d, i]
-    if not _drive(problem, model, dual, t, within, state, walk.linear, own.matrix, c):
+    if not _drive(problem, model, complex_model, t, within, state, walk.linear, own.matrix, c):
         return False
     _drive_along(problem, directions, t, within, state, dstates, c)
     for i in range(n):

@@ -23,7 +23,7 @@ class Search:
     """Minimises what remains in the steps of one run.
 
     The box lies around the prediction: twice what remains there of each independent coordinate's acceleration.
-    ``model`` and ``dual`` are addresses, ``directions`` an array of addresses.
+    ``model`` and ``complex_model`` are addresses, ``directions`` an array of addresses.
     """
 
     minimiser: Squares | Firefly | Swarm | Minimiser
@@ -31,7 +31,7 @@ class Search:
     problem: Problem
     rule: Rule
     model: int
-    dual: int
+    complex_model: int
     directions: np.ndarray
     schedule: Schedule
     walk: Walk
@@ -83,7 +83,9 @@ class Search:
 
     def _measured(self, step: Step) -> Callable[[int], bool]:
         """A function that measures what remains at a Gauss point, and its derivatives by the unknown accelerations."""
-        return measure.given(self.problem, self.rule, self.model, self.dual, self.directions, step, self.walk, False)
+        return measure.given(
+            self.problem, self.rule, self.model, self.complex_model, self.directions, step, self.walk, False
+        )
 
     def _squares(self, step: Step, middle: np.ndarray, half: np.ndarray) -> tuple:
         """What remains and its derivatives, in the coordinates of the box."""

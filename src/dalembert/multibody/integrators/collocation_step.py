@@ -21,7 +21,7 @@ from dalembert.multibody.integrators.partitioning import (
 from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR, Problem
 from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.model import Call
-from dalembert.multibody.kernels.motion import Histories, Motion, Motions, copy, resting, row
+from dalembert.multibody.kernels.motion import Histories, MotionState, MotionStates, copy, resting, row
 
 _GROWN = 4.0  # dependence, against that of the first choice, at which other coordinates are chosen
 
@@ -66,15 +66,15 @@ class Walk(NamedTuple):
     ``linear``: whether the equations of motion are linear in the multipliers.
     """
 
-    old: Motion
-    new: Motion
-    dold: Motions
-    dnew: Motions
+    old: MotionState
+    new: MotionState
+    dold: MotionStates
+    dnew: MotionStates
     c: Reals
     dc: Reals2
-    points: Motions
-    dpoint: Motions
-    dall: Motions
+    points: MotionStates
+    dpoint: MotionStates
+    dall: MotionStates
     gaps: Reals2
     slopes: Reals3
     shape: Reals2
@@ -84,7 +84,7 @@ class Walk(NamedTuple):
     consistency: Consistency
 
 
-def prepare(problem: Problem, rule: Rule, call: Call, dual_call: Call, directions: int, linear: bool) -> Walk:
+def prepare(problem: Problem, rule: Rule, call: Call, complex_call: Call, directions: int, linear: bool) -> Walk:
     """Room for a run along that many directions, whose calls the caller keeps alive; ``linear`` as in `Walk`."""
     width = problem.exact_layout.size + 1
     count, points = len(rule.powers), len(rule.nodes)
@@ -95,7 +95,7 @@ def prepare(problem: Problem, rule: Rule, call: Call, dual_call: Call, direction
         np.zeros(unknowns), np.zeros((directions, unknowns)),
         resting(points, width), resting(unknowns, width), resting(both, width),
         np.zeros((points, width)), np.zeros((points, both, width)), np.zeros((3, count)), np.zeros(2), linear,
-        room(problem, both), consistency(problem, call.address, dual_call.address, directions),
+        room(problem, both), consistency(problem, call.address, complex_call.address, directions),
     )  # fmt: skip
 
 
@@ -170,16 +170,18 @@ def _shape(powers, s, shape):
 
 
 @kernel
-def begin(problem: Problem, rule: Rule, model: Address, dual: Address, tilted: Integers, step: Step, walk: Walk) -> int:
+def begin(
+    problem: Problem, rule: Rule, model: Address, complex_model: Address, perturbed: Integers, step: Step, walk: Walk
+) -> int:
     """Begin a step: accelerations at a jump of the loads, independent coordinates, a prediction."""
     t, within = step.begin, step.within
     if step.opens:
         walk.chosen[1] = 0.0
-        if not accelerate(problem, model, dual, tilted, t, within, walk.old, walk.dold, walk.consistency):
+        if not accelerate(problem, model, complex_model, perturbed, t, within, walk.old, walk.dold, walk.consistency):
             return SINGULAR
-    old, own, work = walk.old, walk.partition, walk.consistency.dual_work
-    set_signals(dual, t, within, work)
-    linearise(problem, dual, old, work, own)
+    old, own, work = walk.old, walk.partition, walk.consistency.complex_work
+    set_signals(complex_model, t, within, work)
+    linearise(problem, complex_model, old, work, own)
     if not _choose(problem, own, walk.chosen):
         return SINGULAR
     _predict(rule.ahead, own.columns[own.rank[0] : problem.n], old.a, walk.chosen, walk.shape[0], walk.c)
@@ -190,7 +192,7 @@ def begin(problem: Problem, rule: Rule, model: Address, dual: Address, tilted: I
 
 
 @inner
-def _reach(problem, rule, model, dual, tilted, step, walk, share):
+def _reach(problem, rule, model, complex_model, perturbed, step, walk, share):
     """The state at a fraction of a step, consistent at all levels, with its derivatives, into ``walk.new``."""
     own, c, h, shape, old, new, dnews = (
         walk.partition, walk.consistency, step.end - step.begin, walk.shape, walk.old, walk.new, walk.dnew
@@ -199,15 +201,16 @@ def _reach(problem, rule, model, dual, tilted, step, walk, share):
     _shape(rule.powers, share, shape)
     _guess(problem.n, share * h, old, new)
     place(columns, h, share, shape, old, walk.c, new)
-    for d in range(len(tilted)):
+    for d in range(len(perturbed)):
         dold, dnew = row(walk.dold, d), row(dnews, d)
         copy(dold, dnew)
         place(columns, h, share, shape, dold, walk.dc[d], dnew)
     if not settle(
-        problem, model, dual, tilted, t, step.within, VELOCITY, new, dnews, c.work, c.dual_work, c.lifted, own
-    ):
+        problem, model, complex_model, perturbed, t, step.within, VELOCITY, new, dnews, c.work, c.complex_work,
+        c.complex_state, own,
+    ):  # fmt: skip
         return NEWTON_FAILED
-    return DONE if accelerate(problem, model, dual, tilted, t, step.within, new, dnews, c) else SINGULAR
+    return DONE if accelerate(problem, model, complex_model, perturbed, t, step.within, new, dnews, c) else SINGULAR
 
 
 @inner
@@ -220,8 +223,8 @@ def _record(state, dstates, out, dout, due):
 
 @kernel
 def finish(
-    problem: Problem, rule: Rule, model: Address, dual: Address, tilted: Integers, step: Step, walk: Walk, out: Motions,
-    dout: Histories,
+    problem: Problem, rule: Rule, model: Address, complex_model: Address, perturbed: Integers, step: Step, walk: Walk,
+    out: MotionStates, dout: Histories,
 ) -> int:  # fmt: skip
     """End a step with the accelerations that were found: the states at its output times, and the next state."""
     ended = False
@@ -229,13 +232,13 @@ def finish(
         share = (problem.times[due] - step.begin) / (step.end - step.begin) if due < step.last else 1.0
         if share > 0.0 and not ended:
             ended = share > 1.0 - 1e-9
-            status = _reach(problem, rule, model, dual, tilted, step, walk, 1.0 if ended else share)
+            status = _reach(problem, rule, model, complex_model, perturbed, step, walk, 1.0 if ended else share)
             if status != DONE:
                 return status
         state, dstates = (walk.new, walk.dnew) if share > 0.0 else (walk.old, walk.dold)
         if due < step.last:
             _record(state, dstates, out, dout, due)
     copy(walk.new, walk.old)
-    for d in range(len(tilted)):
+    for d in range(len(perturbed)):
         copy(row(walk.dnew, d), row(walk.dold, d))
     return DONE

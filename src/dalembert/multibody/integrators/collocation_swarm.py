@@ -16,7 +16,7 @@ from dalembert.multibody.integrators.partitioning import ACCELERATION, POSITION,
 from dalembert.multibody.integrators.problem import Problem
 from dalembert.multibody.kernels.assembly import constraint_forces, constraint_rates, residual, set_signals
 from dalembert.multibody.kernels.linear import Factors, resized, solve
-from dalembert.multibody.kernels.motion import Motion, Motions, copy, resting, row
+from dalembert.multibody.kernels.motion import MotionState, MotionStates, copy, resting, row
 
 _MOST_ITERATIONS = 20
 _CLOSED = 1e-13  # correction to come, against the size of what it corrects, that is none: far below what remains
@@ -31,11 +31,11 @@ class Kept(NamedTuple):
     """
 
     middle: Reals
-    points: Motions
-    slopes: Motions
+    points: MotionStates
+    slopes: MotionStates
     dependent: Reals2
     exact: Reals2
-    trial: Motion
+    trial: MotionState
     vectors: Reals2
 
 

@@ -26,7 +26,7 @@ from dalembert.multibody.integrators.partitioning import (
 from dalembert.multibody.integrators.problem import DIVERGED, DONE, NEWTON_FAILED, SINGULAR, Problem
 from dalembert.multibody.integrators.projection import project, project_along
 from dalembert.multibody.kernels.assembly import set_signals
-from dalembert.multibody.kernels.motion import Motion, Motions
+from dalembert.multibody.kernels.motion import MotionState, MotionStates
 
 
 class Completion(NamedTuple):
@@ -39,11 +39,11 @@ class Completion(NamedTuple):
     project_along: Address
 
 
-def completion(problem: Problem, terms: Terms, work: int, dual_work: int, directions: int) -> Completion:
+def completion(problem: Problem, terms: Terms, work: int, complex_work: int, directions: int) -> Completion:
     """Work for a model, with derivatives if there are any directions."""
     parted, projected = terms.way == PARTITIONED, terms.way == PROJECTED
     return Completion(
-        make_tools(problem, terms, work, dual_work, directions),
+        make_tools(problem, terms, work, complex_work, directions),
         partition.address if parted else 0,
         settle.address if parted else 0,
         project.address if projected else 0,
@@ -60,15 +60,16 @@ def kernels(way: int, derivatives: bool) -> list[Compiled]:
 
 @kernel
 def partition(
-    problem: Problem, terms: Terms, dual: Address, t: float, within: float, state: Motion, work: Address, own: Partition
-) -> bool:
+    problem: Problem, terms: Terms, complex_model: Address, t: float, within: float, state: MotionState, work: Address,
+    own: Partition,
+) -> bool:  # fmt: skip
     """Choose the independent coordinates if that is needed: at first, or where the present ones have become bad.
 
     Whether there are now other dependent ones; never without constraints. ``work``: address of a call in complex
     numbers.
     """
-    set_signals(dual, t, within, work)
-    linearise(problem, dual, state, work, own)
+    set_signals(complex_model, t, within, work)
+    linearise(problem, complex_model, state, work, own)
     if own.rank[0] > 0 and invert(problem, own) and dependence(problem, own) <= terms.limit:
         return False
     choose(problem, own)
@@ -85,8 +86,8 @@ def _finite(n, state):
 
 @kernel
 def complete(
-    problem: Problem, terms: Terms, model: Address, dual: Address, directions: Integers, state: Motion,
-    dstates: Motions, c: Completion, t: float, within: float, projected: bool,
+    problem: Problem, terms: Terms, model: Address, complex_model: Address, directions: Integers, state: MotionState,
+    dstates: MotionStates, c: Completion, t: float, within: float, projected: bool,
 ) -> int:  # fmt: skip
     """Bring a state to the constraints as its stabilisation has it, then find what it demands: status.
 
@@ -97,16 +98,19 @@ def complete(
         return DIVERGED
     if terms.way == PARTITIONED:
         if not _settle_at(
-            c.settle, problem, model, dual, directions, t, within, VELOCITY, state, dstates, tools.work,
-            tools.dual_work, tools.lifted, tools.partition,
+            c.settle, problem, model, complex_model, directions, t, within, VELOCITY, state, dstates, tools.work,
+            tools.complex_work, tools.complex_state, tools.partition,
         ):  # fmt: skip
             return NEWTON_FAILED
     if projected:
         if not _project_at(
-            c.project, problem, terms, model, dual, directions, t, within, state, dstates, tools, c.project_along
-        ):
+            c.project, problem, terms, model, complex_model, directions, t, within, state, dstates, tools,
+            c.project_along,
+        ):  # fmt: skip
             return NEWTON_FAILED
-    return DONE if demand(problem, terms, model, dual, directions, t, within, state, dstates, tools) else SINGULAR
+    return (
+        DONE if demand(problem, terms, model, complex_model, directions, t, within, state, dstates, tools) else SINGULAR
+    )
 
 
 _settle_at, _project_at = settle.at, project.at

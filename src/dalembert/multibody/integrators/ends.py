@@ -6,7 +6,7 @@ import numpy as np
 
 from dalembert.kernels.kernel import inner
 from dalembert.kernels.words import Integers, Reals
-from dalembert.multibody.kernels.motion import Histories, Motion, Motions, resting, row, rows
+from dalembert.multibody.kernels.motion import Histories, MotionState, MotionStates, resting, row, rows
 
 _SHORT = 0.3  # of the step: a step before it that is shorter gives no support to the polynomial
 
@@ -18,18 +18,22 @@ class Ends(NamedTuple):
     """
 
     times: Reals
-    states: Motions
+    states: MotionStates
     derivatives: Histories
     settled: Integers
     known: Integers
 
 
-def ends(count: int, like: Motion) -> Ends:
+def ends(count: int, like: MotionState) -> Ends:
     """Room for ``count`` ends, with derivatives as ``like`` (directions, N + 1)."""
     directions, width = like.x.shape
     states, derivatives = resting(count, width), resting(directions, count, width)
     return Ends(
-        np.zeros(count), Motions(*states), Histories(*derivatives), np.zeros(count, np.int64), np.zeros(1, np.int64)
+        np.zeros(count),
+        MotionStates(*states),
+        Histories(*derivatives),
+        np.zeros(count, np.int64),
+        np.zeros(1, np.int64),
     )
 
 

@@ -19,9 +19,9 @@ from dalembert.multibody.integrators.midpoint_step import Along, Step
 from dalembert.multibody.integrators.problem import Problem
 from dalembert.multibody.integrators.settling import weigh_along
 from dalembert.multibody.kernels.assembly import energies
-from dalembert.multibody.kernels.dual import STEP, reciprocal
+from dalembert.multibody.kernels.elementary import STEP, reciprocal
 from dalembert.multibody.kernels.model import Model
-from dalembert.multibody.kernels.motion import Motion
+from dalembert.multibody.kernels.motion import MotionState
 from dalembert.multibody.lowering import Lowered
 
 _ROUNDING = 1e-15  # of the energies' sizes
@@ -55,10 +55,10 @@ class Balance(NamedTuple):
     weighed: Reals2
     force: Reals
     totals: Reals
-    lifted_motions: Complexes2
-    lifted_weighed: Complexes2
-    lifted_force: Complexes
-    lifted_totals: Complexes
+    complex_motions: Complexes2
+    complex_weighed: Complexes2
+    complex_force: Complexes
+    complex_totals: Complexes
     converge: Address
     converge_along: Address
 
@@ -77,22 +77,22 @@ def no_balance(width: int) -> Balance:
 
 
 def _balance(rigid: Rigid, count: int, width: int, real: int, along: int) -> Balance:
-    motions, lifted = np.zeros((2, count, width)), np.zeros((2, count, width), complex)
+    motions, complex_state = np.zeros((2, count, width)), np.zeros((2, count, width), complex)
     return Balance(
-        rigid, motions[0], motions[1], np.zeros(width), np.zeros(3), lifted[0], lifted[1], np.zeros(width, complex),
-        np.zeros(3, complex), real, along,
+        rigid, motions[0], motions[1], np.zeros(width), np.zeros(3), complex_state[0], complex_state[1],
+        np.zeros(width, complex), np.zeros(3, complex), real, along,
     )  # fmt: skip
 
 
 def first_energies(
-    lowered: Lowered, tilted: Sequence[Lowered], start: Motion, dstarts: Motion, within: float
+    lowered: Lowered, perturbed: Sequence[Lowered], start: MotionState, dstarts: MotionState, within: float
 ) -> tuple[float, np.ndarray]:
     """Energy in J at the start (N + 1,), and its derivatives (directions,); ``within`` the first smooth stretch."""
     energy = _energy_at_start(lowered.real, start.x, start.v, within).real
-    derivatives = np.zeros(len(tilted))
-    for d, entry in enumerate(tilted):
+    derivatives = np.zeros(len(perturbed))
+    for d, entry in enumerate(perturbed):
         x, v = start.x + 1j * STEP * dstarts.x[d], start.v + 1j * STEP * dstarts.v[d]
-        derivatives[d] = _energy_at_start(entry.dual, x, v, within).imag / STEP
+        derivatives[d] = _energy_at_start(entry.complex_model, x, v, within).imag / STEP
     return energy, derivatives
 
 
@@ -200,40 +200,40 @@ def converge(
 
 
 @inner
-def _direct_along(tilted, n, shift, at, middle, buffers, e):
+def _direct_along(perturbed, n, shift, at, middle, buffers, e):
     """The direction of the force in complex numbers."""
-    motions, weighed, force = e.lifted_motions, e.lifted_weighed, e.lifted_force
+    motions, weighed, force = e.complex_motions, e.complex_weighed, e.complex_force
     _fill_motions(n, e.rigid, shift, at[midpoint.XM], motions)
     for j in range(len(weighed)):
-        weigh_along(tilted, n, at[midpoint.XM], motions[j], middle, buffers, weighed[j])
-    weigh_along(tilted, n, at[midpoint.XM], at[midpoint.VM], middle, buffers, force)
+        weigh_along(perturbed, n, at[midpoint.XM], motions[j], middle, buffers, weighed[j])
+    weigh_along(perturbed, n, at[midpoint.XM], at[midpoint.VM], middle, buffers, force)
     _remove(n, motions, weighed, force)
 
 
 @kernel
 def converge_along(
-    problem: Problem, pattern: Pattern, matrices: Matrices, tilted: Address, d: int, strength: float, h: float,
+    problem: Problem, pattern: Pattern, matrices: Matrices, perturbed: Address, d: int, strength: float, h: float,
     dgoal: float, step: Step, along: Along, balance: Balance,
 ) -> float:  # fmt: skip
     """Derivative of the step along direction ``d``; the derivative of the work in it."""
-    n, s, ds, at, push = problem.n, step.rows, along.rows, along.lifted, along.push
+    n, s, ds, at, push = problem.n, step.rows, along.rows, along.complex_state, along.push
     middle, end, buffers = along.middle, along.end, along.vectors[4:]
-    shift, force, totals = balance.rigid.shifts[d], balance.lifted_force, balance.lifted_totals
+    shift, force, totals = balance.rigid.shifts[d], balance.complex_force, balance.complex_totals
     slope, dgain, before = 0.0, 0.0, 1e300
     for attempt in range(2 * _MOST):
         power = 0.0
         if strength != 0.0:
-            midpoint.lift_step(s, ds, at)
-            _direct_along(tilted, n, shift, at, middle, buffers, balance)
+            midpoint.perturb_step(s, ds, at)
+            _direct_along(perturbed, n, shift, at, middle, buffers, balance)
             for k in range(n):
                 push[k] = (complex(strength, STEP * slope) * force[k]).imag / STEP
                 power += s[midpoint.VM, k] * force[k].real
         else:
             for k in range(n):
                 push[k] = 0.0
-        midpoint.converge_along(problem, pattern, matrices, tilted, h, step, along)
-        midpoint.lift_step(s, ds, at)
-        energy, gain = _energy(tilted, h, at, middle, end, totals)
+        midpoint.converge_along(problem, pattern, matrices, perturbed, h, step, along)
+        midpoint.perturb_step(s, ds, at)
+        energy, gain = _energy(perturbed, h, at, middle, end, totals)
         dgain = gain.imag / STEP
         excess = energy.imag / STEP - (dgoal + dgain)
         size = (abs(totals[0].imag) + abs(totals[1].imag)) / STEP + abs(dgoal)

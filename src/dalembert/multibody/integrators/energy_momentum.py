@@ -18,7 +18,7 @@ from dalembert.multibody.integrators.energy_balance import (
 from dalembert.multibody.integrators.symmetries import rigid_motions
 from dalembert.multibody.integrators.variational import Variational
 from dalembert.multibody.kernels.histories import energy_history
-from dalembert.multibody.kernels.motion import Motion
+from dalembert.multibody.kernels.motion import MotionState
 from dalembert.multibody.lowering import Lowered
 from dalembert.multibody.structure import Structure
 
@@ -62,10 +62,10 @@ class EnergyMomentum(Variational):
         return [*own, *(kind.kernel("energy", dtype) for dtype in arithmetics for kind in kinds)]
 
     def _balance(
-        self, lowered: Lowered, tilted: Sequence[Lowered], start: Motion, dstarts: Motion, within: float
+        self, lowered: Lowered, perturbed: Sequence[Lowered], start: MotionState, dstarts: MotionState, within: float
     ) -> tuple[float, np.ndarray, Balance]:
         """Energy at the start with its derivatives, and the force that keeps it."""
-        for model in (lowered.real, *(entry.dual for entry in tilted)):
+        for model in (lowered.real, *(entry.complex_model for entry in perturbed)):
             model.need("energy")
-        energies = first_energies(lowered, tilted, start, dstarts, within)
-        return *energies, balance_room(rigid_motions(lowered, tilted), len(start.x))
+        energies = first_energies(lowered, perturbed, start, dstarts, within)
+        return *energies, balance_room(rigid_motions(lowered, perturbed), len(start.x))

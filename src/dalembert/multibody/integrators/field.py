@@ -9,7 +9,7 @@ import numpy as np
 from dalembert.multibody.integrators.completion import complete, completion, partition
 from dalembert.multibody.integrators.index1 import PARTITIONED, PROJECTED, Terms
 from dalembert.multibody.integrators.problem import DONE, Problem
-from dalembert.multibody.kernels.motion import Motion, resting
+from dalembert.multibody.kernels.motion import MotionState, resting
 from dalembert.multibody.lowering import Lowered
 
 
@@ -17,7 +17,7 @@ class _Along(NamedTuple):
     """Directions, derivatives of the state along them, and `complete` of time, stretch, and whether to project."""
 
     directions: np.ndarray
-    dstates: Motion
+    dstates: MotionState
     complete: Callable[[float, float, bool], int]
 
 
@@ -33,32 +33,26 @@ class Field:
     lowered : Lowered
     directions : array of addresses
         Complex models.
-    state, dstates : Motion
+    state, dstates : MotionState
         At the start; overwritten.
     implicit : bool
         Whether the `jacobian` is needed.
     """
 
     def __init__(
-        self,
-        problem: Problem,
-        terms: Terms,
-        lowered: Lowered,
-        directions: np.ndarray,
-        state: Motion,
-        dstates: Motion,
-        implicit: bool,
-    ) -> None:
+        self, problem: Problem, terms: Terms, lowered: Lowered, directions: np.ndarray, state: MotionState,
+        dstates: MotionState, implicit: bool,
+    ) -> None:  # fmt: skip
         self.problem, self.terms, self.lowered = problem, terms, lowered
         self.n, self.width, self.count = problem.n, len(state.x), len(dstates.x)
         self.moves = terms.way == PROJECTED and self.width - 1 > self.n
         self.within = 0.0
         self.evaluations = 0
         self._state, self._dstates = state, dstates
-        self._calls = lowered.real.need("rates").call(), lowered.dual.call()
+        self._calls = lowered.real.need("rates").call(), lowered.complex_model.call()
         works = self._calls[0].address, self._calls[1].address
         self._completion = completion(problem, terms, *works, self.count + implicit)
-        self._tilted = self._along(directions, dstates)
+        self._perturbed = self._along(directions, dstates)
 
     def __call__(self, t: float, y: np.ndarray) -> np.ndarray:
         """Rates, not numbers where there are none: a solver then takes a shorter step."""
@@ -98,18 +92,19 @@ class Field:
 
     def complete(self, t: float, *, projected: bool) -> int:
         """Bring the state to the constraints, then find what it demands: status."""
-        return self._complete(self._tilted, t, projected=projected and self.moves)
+        return self._complete(self._perturbed, t, projected=projected and self.moves)
 
     def choose(self, t: float) -> bool:
         """Choose independent coordinates if they are parted and that is needed; whether it was done."""
         if self.terms.way != PARTITIONED:
             return False
-        dual, tools = self.lowered.dual.address, self._completion.tools
+        complex_model, tools = self.lowered.complex_model.address, self._completion.tools
         return partition(
-            self.problem, self.terms, dual, float(t), self.within, self._state, tools.dual_work, tools.partition
-        )
+            self.problem, self.terms, complex_model, float(t), self.within, self._state, tools.complex_work,
+            tools.partition,
+        )  # fmt: skip
 
-    def record(self, out: Motion, dout: Motion, due: int) -> None:
+    def record(self, out: MotionState, dout: MotionState, due: int) -> None:
         """Write the present state as that of an output time."""
         for target, values in zip(out, self._state, strict=True):
             target[due] = values
@@ -124,11 +119,11 @@ class Field:
     @cached_property
     def _units(self) -> _Along:
         """Coordinates and velocities, one after the other, as directions."""
-        directions = np.full(2 * self.n, self.lowered.upright.need("rates").address)
+        directions = np.full(2 * self.n, self.lowered.unperturbed.need("rates").address)
         return self._along(directions, resting(2 * self.n, self.width))
 
-    def _along(self, directions: np.ndarray, dstates: Motion) -> _Along:
-        models = self.lowered.real.address, self.lowered.dual.address
+    def _along(self, directions: np.ndarray, dstates: MotionState) -> _Along:
+        models = self.lowered.real.address, self.lowered.complex_model.address
         own = complete.given(self.problem, self.terms, *models, directions, self._state, dstates, self._completion)
         return _Along(directions, dstates, own)
 

@@ -14,15 +14,15 @@ from dalembert.multibody.integrators.batch import Batch, restarts
 from dalembert.multibody.integrators.consistent import Consistency, accelerate, accelerate_along, consistency
 from dalembert.multibody.integrators.derivatives import Differentiation, differentiate, differentiation
 from dalembert.multibody.integrators.integrator import Integrator
-from dalembert.multibody.integrators.newton import Newton, converge, learn, newton
+from dalembert.multibody.integrators.newton import Newton, converge, keep_slope, newton
 from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR, TOO_MANY_STEPS, Log, Problem
 from dalembert.multibody.integrators.run import Run, explain
 from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.model import Call, addresses
 from dalembert.multibody.kernels.motion import (
     Histories,
-    Motion,
-    Motions,
+    MotionState,
+    MotionStates,
     clear,
     coefficients,
     copy,
@@ -118,8 +118,11 @@ class GeneralizedAlpha(Integrator):
         out, dout = resting(len(samples), *batch.shape), batch.derivatives()
         log = batch.log(self._most_logged(samples[0], batch.end))
         ends = np.zeros((len(samples), 3))
-        models = [entry.real.need("rates").reduced() for entry in samples], [entry.dual.reduced() for entry in samples]
-        directions = addresses(entry.dual.need("rates").reduced() for entry in perturbed)
+        models = (
+            [entry.real.need("rates").reduced() for entry in samples],
+            [entry.complex_model.reduced() for entry in samples],
+        )
+        directions = addresses(entry.complex_model.need("rates").reduced() for entry in perturbed)
         calls = models[0][0].call(), models[1][0].call()
         integrate(
             problem, restarts(samples, problem), self._settings(), addresses(models[0]), addresses(models[1]),
@@ -169,28 +172,29 @@ class Workspace(NamedTuple):
     ``differentiate``: address of the kernel for the derivatives of a step, 0 if there are none.
     """
 
-    old: Motion
-    new: Motion
-    dolds: Motions
+    old: MotionState
+    new: MotionState
+    dolds: MotionStates
     newton: Newton
     consistency: Consistency
     differentiation: Differentiation
     differentiate: Address
 
 
-def _workspace(problem: Problem, call: Call, dual_call: Call, directions: int) -> Workspace:
-    width, work, dual_work = len(problem.scale), call.address, dual_call.address
+def _workspace(problem: Problem, call: Call, complex_call: Call, directions: int) -> Workspace:
+    width, work, complex_work = len(problem.scale), call.address, complex_call.address
     along = differentiate.address if directions else 0
     return Workspace(
-        resting(width), resting(width), resting(directions, width), newton(problem, work, dual_work),
-        consistency(problem, work, dual_work, directions), differentiation(problem, dual_work), along,
+        resting(width), resting(width), resting(directions, width), newton(problem, work, complex_work),
+        consistency(problem, work, complex_work, directions), differentiation(problem, complex_work), along,
     )  # fmt: skip
 
 
 @kernel
 def integrate(
-    problem: Problem, opens: Integers2, settings: Settings, models: Integers, duals: Integers, directions: Integers,
-    states: Motions, dstates: Motions, out: Histories, dout: Histories, log: Log, ends: Reals2, room: Workspace,
+    problem: Problem, opens: Integers2, settings: Settings, models: Integers, complex_models: Integers,
+    directions: Integers, states: MotionStates, dstates: MotionStates, out: Histories, dout: Histories, log: Log,
+    ends: Reals2, room: Workspace,
 ) -> None:  # fmt: skip
     """Run a stack of samples from ``problem.edges[sample, 0]`` to the last edge; fill the states at the output times.
 
@@ -199,13 +203,13 @@ def integrate(
     problem, settings : Problem, Settings
     opens : array (samples, -)
         Whether each stretch starts anew; else the motion goes on, and held tables have their mean where it begins.
-    models, duals : array of addresses, shape (samples,)
+    models, complex_models : array of addresses, shape (samples,)
         Models in real and in complex numbers.
     directions : array of addresses
         Complex models, one a direction of differentiation; empty if there is more than one sample.
-    states : Motions
+    states : MotionStates
         At the start, (samples, N + 1); overwritten.
-    dstates : Motions
+    dstates : MotionStates
         Derivatives at the start, (directions, N + 1); overwritten.
     out, dout : Histories
         Arrays (samples, times, N + 1) and (directions, times, N + 1); ``w`` is not used.
@@ -219,13 +223,13 @@ def integrate(
             log.counts[i] = 0
         edges = problem.edges[sample, : problem.stretches[sample] + 1]
         ends[sample, 0], ends[sample, 1], ends[sample, 2] = _integrate(
-            problem, edges, opens[sample], settings, models[sample], duals[sample], directions, row(states, sample),
-            dstates, rows(out, sample), dout, log, room,
+            problem, edges, opens[sample], settings, models[sample], complex_models[sample], directions,
+            row(states, sample), dstates, rows(out, sample), dout, log, room,
         )  # fmt: skip
 
 
 @inner
-def _integrate(problem, edges, opens, settings, model, dual, directions, state, dstates, out, dout, log, room):
+def _integrate(problem, edges, opens, settings, model, complex_model, directions, state, dstates, out, dout, log, room):
     """Run one sample: status, time reached, and the unknown that moved most."""
     n, width = problem.n, len(state.x)
     old, new, dolds, own = room.old, room.new, room.dolds, room.newton
@@ -241,7 +245,7 @@ def _integrate(problem, edges, opens, settings, model, dual, directions, state, 
         if fresh:
             clear(own.slope)
         if fresh and (stretch > 0 or settings.consistent):
-            if not accelerate(problem, model, dual, directions, begin, within, new, dstates, room.consistency):
+            if not accelerate(problem, model, complex_model, directions, begin, within, new, dstates, room.consistency):
                 return SINGULAR, begin, 0
         if stretch == 0:
             while due < len(problem.times) and problem.times[due] <= begin:
@@ -267,7 +271,7 @@ def _integrate(problem, edges, opens, settings, model, dual, directions, state, 
             side = within if ends or target < end else end
             set_signals(model, target, side, own.work)
             status, detail = converge(
-                problem, model, dual, c, target, side, settings.newton_tolerance, old, new, own, log
+                problem, model, complex_model, c, target, side, settings.newton_tolerance, old, new, own, log
             )
             error = 0.0
             if status == DONE and settings.adaptive:
@@ -291,14 +295,16 @@ def _integrate(problem, edges, opens, settings, model, dual, directions, state, 
                 log.iterations[log.counts[0]] = detail
                 log.ends[log.counts[0]] = target
             log.counts[0] += 1
-            learn(n, c, old, new, own.slope)
+            keep_slope(n, c, old, new, own.slope)
             if differentiated and not _differentiate_at(
-                room.differentiate, problem, dual, directions, c, target, side, new, dolds, dstates,
+                room.differentiate, problem, complex_model, directions, c, target, side, new, dolds, dstates,
                 room.differentiation,
             ):  # fmt: skip
                 return SINGULAR, target, 0
             if problem.projected and width - 1 > n:
-                if not accelerate(problem, model, dual, directions, target, side, new, dstates, room.consistency):
+                if not accelerate(
+                    problem, model, complex_model, directions, target, side, new, dstates, room.consistency
+                ):
                     return SINGULAR, target, 0
             while due < len(problem.times) and problem.times[due] <= target + 1e-9 * length:
                 share = min(1.0, (problem.times[due] - t) / length)

@@ -13,15 +13,14 @@ from dalembert.multibody.integrators.least_squares import (
     surplus_room,
     turn_range,
 )
-from dalembert.multibody.integrators.lifting import lift
 from dalembert.multibody.integrators.partitioning import Partition, room
 from dalembert.multibody.integrators.problem import Problem
 from dalembert.multibody.integrators.settling import balanced
 from dalembert.multibody.kernels.assembly import constraint_rates, residual, set_signals, tangent
-from dalembert.multibody.kernels.dual import STEP
+from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.linear import Factors, factorise, storage
 from dalembert.multibody.kernels.linear import solve as solve_linear
-from dalembert.multibody.kernels.motion import Motion, Motions, resting, row, subtract
+from dalembert.multibody.kernels.motion import MotionState, MotionStates, perturb, resting, row, subtract
 
 AS_THEY_COME, PROJECTED, PARTITIONED = range(3)  # what is done about positions and velocities off the constraints
 _MOST_ITERATIONS = 12
@@ -45,32 +44,33 @@ class Terms(NamedTuple):
 class Tools(NamedTuple):
     """Work of the index-1 methods, made once a run.
 
-    ``work``, ``dual_work``: calls in real and in complex numbers. ``partition`` is that of the coordinates; ``surplus``
+    ``work``, ``complex_work``: calls in real and in complex numbers. ``partition`` is that of the coordinates;
+    ``surplus``
     serves redundant constraints, ``base`` and ``change`` projections. ``along``: address of the kernel for derivatives,
     0 if there are none.
     """
 
     work: Address
-    dual_work: Address
+    complex_work: Address
     exact: Factors
-    lifted: Complexes2
+    complex_state: Complexes2
     gap: Reals
     answer: Reals
     second: Reals
     still: Reals
     partition: Partition
     surplus: Surplus
-    base: Motion
-    change: Motion
+    base: MotionState
+    change: MotionState
     along: Address
 
 
-def make_tools(problem: Problem, terms: Terms, work: int, dual_work: int, directions: int) -> Tools:
+def make_tools(problem: Problem, terms: Terms, work: int, complex_work: int, directions: int) -> Tools:
     """Work for a model, with derivatives if there are any directions."""
     width = problem.exact_layout.size + 1
     vector = np.zeros((4, width))
     return Tools(
-        work, dual_work, storage(problem.exact_layout), np.zeros((7, width), np.complex128), vector[0], vector[1],
+        work, complex_work, storage(problem.exact_layout), np.zeros((7, width), np.complex128), vector[0], vector[1],
         vector[2], vector[3], room(problem, directions if terms.way == PARTITIONED else 0),
         surplus_room(problem, terms.redundant, directions), resting(width), resting(width),
         demand_along.address if directions else 0,
@@ -78,15 +78,17 @@ def make_tools(problem: Problem, terms: Terms, work: int, dual_work: int, direct
 
 
 @inner
-def factorise_motion(problem, terms, dual, state, tools):
+def factorise_motion(problem, terms, complex_model, state, tools):
     """Factorise the matrix of motion beside that of the constraints; whether it is regular.
 
-    It is taken in the time that the signals in ``tools.dual_work`` hold.
+    It is taken in the time that the signals in ``tools.complex_work`` hold.
     """
     slots, n, matrix = problem.exact_slots, problem.n, tools.exact.matrix
     constraints = tools.surplus.partition.matrix
-    tangent(dual, slots, n, state.x, state.v, state.a, (1.0, 0.0, 0.0), (0.0, 1.0), tools.dual_work, constraints)
-    tangent(dual, slots, n, state.x, state.v, state.a, (0.0, 0.0, 1.0), (1.0, 0.0), tools.dual_work, matrix)
+    tangent(
+        complex_model, slots, n, state.x, state.v, state.a, (1.0, 0.0, 0.0), (0.0, 1.0), tools.complex_work, constraints
+    )
+    tangent(complex_model, slots, n, state.x, state.v, state.a, (0.0, 0.0, 1.0), (1.0, 0.0), tools.complex_work, matrix)
     for i in range(len(constraints)):
         matrix[i] += constraints[i]
     if terms.redundant:
@@ -122,8 +124,8 @@ def _rests(problem, model, state, tools):
 
 @kernel
 def demand(
-    problem: Problem, terms: Terms, model: Address, dual: Address, directions: Integers, t: float, within: float,
-    state: Motion, dstates: Motions, tools: Tools,
+    problem: Problem, terms: Terms, model: Address, complex_model: Address, directions: Integers, t: float,
+    within: float, state: MotionState, dstates: MotionStates, tools: Tools,
 ) -> bool:  # fmt: skip
     """Fill accelerations and multipliers of a state by the equations of index 1, and their derivatives; whether it can.
 
@@ -132,10 +134,10 @@ def demand(
     """
     n, last, nonlinear = problem.n, len(state.x) - 1, terms.nonlinear
     set_signals(model, t, within, tools.work)
-    set_signals(dual, t, within, tools.dual_work)
+    set_signals(complex_model, t, within, tools.complex_work)
     moved = 1.0
     for iteration in range(_MOST_ITERATIONS if nonlinear else 2):  # linear: once more for rounding
-        if (iteration == 0 or nonlinear) and not factorise_motion(problem, terms, dual, state, tools):
+        if (iteration == 0 or nonlinear) and not factorise_motion(problem, terms, complex_model, state, tools):
             return False
         if iteration == 0 and terms.redundant:
             keep_in_range(problem, tools.surplus, state)
@@ -159,19 +161,24 @@ def demand(
 
 @kernel
 def demand_along(
-    problem: Problem, terms: Terms, directions: Integers, t: float, within: float, state: Motion, dstates: Motions,
-    tools: Tools,
+    problem: Problem, terms: Terms, directions: Integers, t: float, within: float, state: MotionState,
+    dstates: MotionStates, tools: Tools,
 ) -> None:  # fmt: skip
     """Derivatives of the accelerations and multipliers that a state demands, along all directions."""
-    n, last, lifted = problem.n, len(state.x) - 1, tools.lifted
-    r, drate, dsecond = lifted[3], lifted[4], lifted[5]
+    n, last, complex_state = problem.n, len(state.x) - 1, tools.complex_state
+    r, drate, dsecond = complex_state[3], complex_state[4], complex_state[5]
     for d in range(len(dstates.x)):
-        tilted, dstate = directions[d], row(dstates, d)
-        set_signals(tilted, t, within, tools.dual_work)
+        perturbed, dstate = directions[d], row(dstates, d)
+        set_signals(perturbed, t, within, tools.complex_work)
         if terms.redundant:
-            _turn_at(tools.surplus.turn, problem, tilted, state, dstate, tools.dual_work, lifted, tools.surplus)
-        lift(n, state, dstate, lifted)
-        _fill_gap(tilted, n, terms, lifted[0], lifted[1], lifted[2], tools.dual_work, r, drate, dsecond)
+            _turn_at(
+                tools.surplus.turn, problem, perturbed, state, dstate, tools.complex_work, complex_state, tools.surplus
+            )
+        perturb(n, state, dstate, complex_state)
+        _fill_gap(
+            perturbed, n, terms, complex_state[0], complex_state[1], complex_state[2], tools.complex_work, r, drate,
+            dsecond,
+        )  # fmt: skip
         for i in range(last):
             tools.gap[i] = r[i].imag / STEP
         solve_linear(problem.exact_layout, tools.exact, tools.gap, tools.answer)

@@ -11,13 +11,12 @@ import numpy as np
 
 from dalembert.kernels.kernel import inlined, inner, kernel
 from dalembert.kernels.words import Address, Complexes2, Reals, Reals2
-from dalembert.multibody.integrators.lifting import lift
 from dalembert.multibody.integrators.partitioning import Partition, choose, invert, room
 from dalembert.multibody.integrators.problem import Problem
 from dalembert.multibody.kernels.assembly import constraint_rates
-from dalembert.multibody.kernels.dual import STEP
+from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.linear import Factors, factorise, resized, solve, storage
-from dalembert.multibody.kernels.motion import Motion, clear
+from dalembert.multibody.kernels.motion import MotionState, clear, perturb
 
 
 class Surplus(NamedTuple):
@@ -182,8 +181,8 @@ def invert_on_range(problem: Problem, surplus: Surplus, matrix: Reals) -> bool:
 
 @kernel
 def turn_range(
-    problem: Problem, tilted: Address, state: Motion, dstate: Motion, dual_work: Address, lifted: Complexes2,
-    surplus: Surplus,
+    problem: Problem, perturbed: Address, state: MotionState, dstate: MotionState, complex_work: Address,
+    complex_state: Complexes2, surplus: Surplus,
 ) -> None:  # fmt: skip
     """Give the multipliers' derivative the part across the range that keeps the multipliers in it.
 
@@ -199,15 +198,18 @@ def turn_range(
         partition.gap[i] = state.x[n + own] / (scale[own] * scale[own])
     solve(resized(problem.exact_layout, rank), partition.dependent, partition.gap, partition.change)
     for part in range(2):  # the rates are linear in the velocities, but for the motion that is prescribed
-        lift(n, state, dstate, lifted)
-        for i in range(lifted.shape[1]):
-            lifted[1, i] = 0.0
+        perturb(n, state, dstate, complex_state)
+        for i in range(complex_state.shape[1]):
+            complex_state[1, i] = 0.0
         if part == 0:
             for i in range(rank):
-                lifted[1, partition.columns[i]] = partition.change[i]
-        constraint_rates(tilted, n, lifted[0], lifted[1], lifted[2], dual_work, lifted[3], lifted[4])
+                complex_state[1, partition.columns[i]] = partition.change[i]
+        constraint_rates(
+            perturbed, n, complex_state[0], complex_state[1], complex_state[2], complex_work, complex_state[3],
+            complex_state[4],
+        )  # fmt: skip
         for i in range(m):
-            across[part, i] = scale[i] * scale[i] * lifted[3, n + i].imag / STEP
+            across[part, i] = scale[i] * scale[i] * complex_state[3, n + i].imag / STEP
     turned, kept = across[0], across[2]
     _add(-1.0, across[1], turned)
     _project(surplus, turned, kept)

@@ -19,7 +19,7 @@ from dalembert.multibody.kernels.linear import (
     solve,
     storage,
 )
-from dalembert.multibody.kernels.motion import Motion, clear
+from dalembert.multibody.kernels.motion import MotionState, clear
 from dalembert.multibody.structure import Structure
 
 
@@ -100,10 +100,13 @@ def room(pattern: Pattern, pairs: int) -> Matrices:
 
 @kernel
 def weigh_masses(
-    pattern: Pattern, matrices: Matrices, dual: Address, n: int, state: Motion, dual_work: Address
+    pattern: Pattern, matrices: Matrices, complex_model: Address, n: int, state: MotionState, complex_work: Address
 ) -> None:
-    """Evaluate the masses, which do not change in a motion; the signals in ``dual_work`` hold the time."""
-    tangent(dual, pattern.slots, n, state.x, state.v, state.a, (0.0, 0.0, 1.0), (1.0, 0.0), dual_work, matrices.mass)
+    """Evaluate the masses, which do not change in a motion; the signals in ``complex_work`` hold the time."""
+    tangent(
+        complex_model, pattern.slots, n, state.x, state.v, state.a, (0.0, 0.0, 1.0), (1.0, 0.0), complex_work,
+        matrices.mass,
+    )  # fmt: skip
     count = 0
     for e in range(len(matrices.mass)):
         if matrices.mass[e] != 0.0 and pattern.rows[e] < n and pattern.columns[e] < n:
@@ -114,16 +117,16 @@ def weigh_masses(
 
 @kernel
 def renew(
-    problem: Problem, pattern: Pattern, matrices: Matrices, dual: Address, damped: bool, t: float, within: float,
-    state: Motion, dual_work: Address,
+    problem: Problem, pattern: Pattern, matrices: Matrices, complex_model: Address, damped: bool, t: float,
+    within: float, state: MotionState, complex_work: Address,
 ) -> bool:  # fmt: skip
     """Evaluate stiffness (and damping, if ``damped``), and factorise [M, J^T; J, 0]; whether it is regular."""
     n = problem.n
-    set_signals(dual, t, within, dual_work)
+    set_signals(complex_model, t, within, complex_work)
     x, v, a = state.x, state.v, state.a
-    tangent(dual, pattern.slots, n, x, v, a, (1.0, 0.0, 0.0), (1.0, 1.0), dual_work, matrices.stiffness)
+    tangent(complex_model, pattern.slots, n, x, v, a, (1.0, 0.0, 0.0), (1.0, 1.0), complex_work, matrices.stiffness)
     if damped:
-        tangent(dual, pattern.slots, n, x, v, a, (0.0, 1.0, 0.0), (1.0, 0.0), dual_work, matrices.damping)
+        tangent(complex_model, pattern.slots, n, x, v, a, (0.0, 1.0, 0.0), (1.0, 0.0), complex_work, matrices.damping)
     matrix, rows, columns, places = matrices.rigid.matrix, pattern.rows, pattern.columns, pattern.single
     mass, stiffness = matrices.mass, matrices.stiffness
     clear(matrix)

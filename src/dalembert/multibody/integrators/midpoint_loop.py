@@ -19,7 +19,7 @@ from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULA
 from dalembert.multibody.integrators.settling import VELOCITIES, settle, settle_along
 from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.model import Call
-from dalembert.multibody.kernels.motion import Histories, Motion, Motions, copy, resting, row
+from dalembert.multibody.kernels.motion import Histories, MotionState, MotionStates, copy, resting, row
 
 _AGED = 0.05  # contraction at which the next step begins with new matrices
 _ENDS = 2  # of steps, between which outputs are interpolated
@@ -45,8 +45,8 @@ class Derivatives(NamedTuple):
     along: Along
     slopes: Reals3
     energies: Reals
-    old: Motion
-    lifted: Complexes2
+    old: MotionState
+    complex_state: Complexes2
     differentiate: Address
     record: Address
 
@@ -54,8 +54,8 @@ class Derivatives(NamedTuple):
 class Spare(NamedTuple):
     """Work of the loop: states, what a step missed (2, N + 1), moves onto the constraints, weights of the ends."""
 
-    between: Motion
-    dbetween: Motion
+    between: MotionState
+    dbetween: MotionState
     slope: Reals2
     moved: Reals2
     weights: Reals3
@@ -74,21 +74,21 @@ class Workspace(NamedTuple):
 
 
 def workspace(
-    problem: Problem, pattern: Pattern, calls: Sequence[Call], dual_calls: Sequence[Call], balance: Balance,
-    denergies: np.ndarray, dstates: Motion,
+    problem: Problem, pattern: Pattern, calls: Sequence[Call], complex_calls: Sequence[Call], balance: Balance,
+    denergies: np.ndarray, dstates: MotionState,
 ) -> Workspace:  # fmt: skip
     """Room for one sample; two calls in real numbers, and two in complex ones, for the middle and the end of a step."""
     directions, width = dstates.x.shape
-    works, dual_works = [call.address for call in calls], [call.address for call in dual_calls]
+    works, complex_works = [call.address for call in calls], [call.address for call in complex_calls]
     kernels = (differentiate.address, record_along.address) if directions else (0, 0)
     derivatives = Derivatives(
-        midpoint.along_room(width, *dual_works), np.zeros((directions, 2, width)), denergies, resting(width),
+        midpoint.along_room(width, *complex_works), np.zeros((directions, 2, width)), denergies, resting(width),
         np.zeros((10, width), complex), *kernels,
     )  # fmt: skip
     spare = Spare(resting(width), resting(width), np.zeros((2, width)), np.zeros((6, width)), np.zeros((4, _ENDS, 3)))
     return Workspace(
-        room(pattern, 0), consistency(problem, works[0], dual_works[0], directions), midpoint.step_room(width, *works),
-        balance, spare, ends(_ENDS, dstates), derivatives,
+        room(pattern, 0), consistency(problem, works[0], complex_works[0], directions),
+        midpoint.step_room(width, *works), balance, spare, ends(_ENDS, dstates), derivatives,
     )  # fmt: skip
 
 
@@ -104,28 +104,30 @@ def _read(n, s, new):
 @kernel
 def differentiate(
     problem: Problem, pattern: Pattern, matrices: Matrices, directions: Integers, step: Step, balance: Balance,
-    strength: float, h: float, t: float, target: float, within: float, new: Motion, dnews: Motions, moved: Reals2,
-    room: Derivatives,
+    strength: float, h: float, t: float, target: float, within: float, new: MotionState, dnews: MotionStates,
+    moved: Reals2, room: Derivatives,
 ) -> None:  # fmt: skip
     """Derivatives of a step along all directions."""
-    n, along, dold, slopes, energies, lifted = problem.n, room.along, room.old, room.slopes, room.energies, room.lifted
+    n, along, dold, slopes, energies, complex_state = (
+        problem.n, room.along, room.old, room.slopes, room.energies, room.complex_state,
+    )  # fmt: skip
     middle, end, ds = along.middle, along.end, along.rows
     for d in range(len(directions)):
-        tilted, dnew = directions[d], row(dnews, d)
+        perturbed, dnew = directions[d], row(dnews, d)
         copy(dnew, dold)
-        set_signals(tilted, t + 0.5 * h, within, middle)
-        set_signals(tilted, target, within, end)
+        set_signals(perturbed, t + 0.5 * h, within, middle)
+        set_signals(perturbed, target, within, end)
         midpoint.begin(n, h, dold, slopes[d], ds)
         if balance.converge_along == 0:
-            midpoint.converge_along(problem, pattern, matrices, tilted, h, step, along)
+            midpoint.converge_along(problem, pattern, matrices, perturbed, h, step, along)
         else:
             energies[d] += _balance_along_at(
-                balance.converge_along, problem, pattern, matrices, tilted, d, strength, h, energies[d], step,
+                balance.converge_along, problem, pattern, matrices, perturbed, d, strength, h, energies[d], step,
                 along, balance,
             )  # fmt: skip
-        midpoint.learn(n, dold, ds, slopes[d])
+        midpoint.keep_missed(n, dold, ds, slopes[d])
         _read(n, ds, dnew)
-        settle_along(problem, pattern, matrices, tilted, new, dnew, moved, end, lifted, VELOCITIES)
+        settle_along(problem, pattern, matrices, perturbed, new, dnew, moved, end, complex_state, VELOCITIES)
 
 
 _balance_at, _balance_along_at = balancing.converge.at, balancing.converge_along.at
@@ -142,8 +144,8 @@ def _clear(array):
 
 @kernel
 def integrate(
-    problem: Problem, pattern: Pattern, edges: Reals, settings: Settings, model: Address, dual: Address,
-    directions: Integers, new: Motion, dnews: Motions, out: Motions, dout: Histories, log: Log,
+    problem: Problem, pattern: Pattern, edges: Reals, settings: Settings, model: Address, complex_model: Address,
+    directions: Integers, new: MotionState, dnews: MotionStates, out: MotionStates, dout: Histories, log: Log,
     matrices: Matrices, consistent: Consistency, step: Step, balance: Balance, spare: Spare, last: Ends,
     derivatives: Derivatives,
 ) -> tuple[int, float, int]:  # fmt: skip
@@ -154,7 +156,7 @@ def integrate(
     times, N + 1) are filled at ``problem.times``.
     """
     n, times, scale, counts, s = problem.n, problem.times, problem.scale, log.counts, step.rows
-    between, slope, moved, slopes, dual_work = (
+    between, slope, moved, slopes, complex_work = (
         spare.between, spare.slope, spare.moved, derivatives.slopes, derivatives.along.middle,
     )  # fmt: skip
     energy, due = settings.energy, 0
@@ -163,11 +165,11 @@ def integrate(
     for stretch in range(len(edges) - 1):
         t, end = edges[stretch], edges[stretch + 1]
         within = 0.5 * (t + end)
-        if not accelerate(problem, model, dual, directions, t, within, new, dnews, consistent):
+        if not accelerate(problem, model, complex_model, directions, t, within, new, dnews, consistent):
             return SINGULAR, t, 0
         if stretch == 0:
-            set_signals(dual, t, within, dual_work)  # those of a direction would count as masses
-            weigh_masses(pattern, matrices, dual, n, new, dual_work)
+            set_signals(complex_model, t, within, complex_work)  # those of a direction would count as masses
+            weigh_masses(pattern, matrices, complex_model, n, new, complex_work)
         steps = max(1, int(np.ceil((end - t) / settings.step - 1e-6)))
         begin, nominal, number, level = t, (end - t) / steps, 0, 0
         stale, fresh, made = True, True, 0.0
@@ -181,8 +183,8 @@ def integrate(
                 append(t, new, dnews, True, last)
             while due < len(times) and times[due] <= t + 1e-9 * h:
                 written = record(
-                    problem, pattern, matrices, False, model, dual, directions, last, within, out, dout, due, between,
-                    spare.dbetween, spare.weights, moved, step.middle, dual_work, derivatives.lifted,
+                    problem, pattern, matrices, False, model, complex_model, directions, last, within, out, dout, due,
+                    between, spare.dbetween, spare.weights, moved, step.middle, complex_work, derivatives.complex_state,
                     derivatives.record,
                 )  # fmt: skip
                 if not written:
@@ -191,7 +193,7 @@ def integrate(
             if number == steps:
                 break
             if stale:
-                if not renew(problem, pattern, matrices, dual, settings.damped, t, within, new, dual_work):
+                if not renew(problem, pattern, matrices, complex_model, settings.damped, t, within, new, complex_work):
                     return SINGULAR, t, 0
                 stale, fresh, made = False, True, 0.0
             goal = end if number == steps - 1 else begin + nominal * (number + 1)
@@ -229,7 +231,7 @@ def integrate(
                 else:
                     level += 1
                 continue
-            midpoint.learn(n, new, s, slope)
+            midpoint.keep_missed(n, new, s, slope)
             copy(between, new)
             energy += gain
             for k in range(n):

@@ -20,7 +20,7 @@ from dalembert.multibody.integrators.matrices import Matrices, Pattern, add_prod
 from dalembert.multibody.integrators.problem import Problem
 from dalembert.multibody.integrators.settling import weigh_along
 from dalembert.multibody.kernels.assembly import constraint_forces, constraint_rates, residual
-from dalembert.multibody.kernels.dual import STEP
+from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.linear import solve
 from dalembert.multibody.kernels.motion import clear
 
@@ -52,7 +52,7 @@ class Along(NamedTuple):
     end: Address
     rows: Reals2
     push: Reals
-    lifted: Complexes2
+    complex_state: Complexes2
     vectors: Complexes2
 
 
@@ -63,8 +63,8 @@ def step_room(width: int, middle: int, end: int) -> Step:
 
 def along_room(width: int, middle: int, end: int) -> Along:
     """Room for the derivative of a step; the calls are those of complex numbers."""
-    lifted, vectors = np.zeros((ROWS, width), complex), np.zeros((7, width), complex)
-    return Along(middle, end, np.zeros((ROWS, width)), np.zeros(width), lifted, vectors)
+    complex_state, vectors = np.zeros((ROWS, width), complex), np.zeros((7, width), complex)
+    return Along(middle, end, np.zeros((ROWS, width)), np.zeros(width), complex_state, vectors)
 
 
 @inner
@@ -94,7 +94,7 @@ def begin(n, h, start, slope, s):
 
 
 @inner
-def learn(n, start, s, slope):
+def keep_missed(n, start, s, slope):
     """What accelerations and multipliers of a start missed in its step."""
     for k in range(len(start.x)):
         if k < n:
@@ -202,7 +202,7 @@ def converge(
 
 
 @inner
-def lift_step(s, ds, at):
+def perturb_step(s, ds, at):
     """The step plus the imaginary step along a direction."""
     for i in range(ROWS):
         for k in range(s.shape[1]):
@@ -211,10 +211,10 @@ def lift_step(s, ds, at):
 
 @kernel
 def converge_along(
-    problem: Problem, pattern: Pattern, matrices: Matrices, tilted: Address, h: float, step: Step, along: Along
+    problem: Problem, pattern: Pattern, matrices: Matrices, perturbed: Address, h: float, step: Step, along: Along
 ) -> None:
     """Derivative of a converged step along a direction, by the same iteration on imaginary parts."""
-    s, b, ds, at, vectors, push = step.rows, step.vectors, along.rows, along.lifted, along.vectors, along.push
+    s, b, ds, at, vectors, push = step.rows, step.vectors, along.rows, along.complex_state, along.vectors, along.push
     n, size, scale, mass, middle, end = problem.n, s.shape[1] - 1, problem.scale, matrices.mass, along.middle, along.end
     f, gap, rate, first, other, heavier = b[0], b[1], b[2], b[4], b[5], b[6]
     r, c, u, w = vectors[0], vectors[1], vectors[2], vectors[3]
@@ -222,13 +222,13 @@ def converge_along(
     for k in range(size + 1):
         at[0, k] = s[XM, k]
         u[k] = s[B, k] - s[A, k] if k < n else 0.0
-    weigh_along(tilted, n, at[0], u, middle, vectors[4:], w)
+    weigh_along(perturbed, n, at[0], u, middle, vectors[4:], w)
     for k in range(n):
         heavier[k] = w[k].imag / STEP
     before = 0.0
     for _ in range(4 * _MOST_ITERATIONS):
-        lift_step(s, ds, at)
-        _balance(tilted, n, at, middle, end, r, c, u, w)
+        perturb_step(s, ds, at)
+        _balance(perturbed, n, at, middle, end, r, c, u, w)
         for k in range(size + 1):
             f[k], gap[k], rate[k] = r[k].imag / STEP, c[k].imag / STEP, u[k].imag / STEP
             if k < n:

@@ -34,7 +34,7 @@ class Newton(NamedTuple):
 
     factors: Factors
     work: Address
-    dual_work: Address
+    complex_work: Address
     r: Reals
     delta: Reals
     change: Reals
@@ -42,21 +42,21 @@ class Newton(NamedTuple):
     slope: Reals
 
 
-def newton(problem: Problem, work: int, dual_work: int) -> Newton:
+def newton(problem: Problem, work: int, complex_work: int) -> Newton:
     """Room for the iteration."""
     layout, width = problem.reduced.layout, len(problem.scale)
     r, delta = np.zeros((2, layout.size + 1))
     change = delta if problem.reduced.increments == problem.n else np.zeros(width)
-    return Newton(storage(layout), work, dual_work, r, delta, change, np.zeros(2), np.zeros(width))
+    return Newton(storage(layout), work, complex_work, r, delta, change, np.zeros(2), np.zeros(width))
 
 
 @inner
-def _renew(problem, dual, c, t, within, new, newton):
-    set_signals(dual, t, within, newton.dual_work)
+def _renew(problem, complex_model, c, t, within, new, newton):
+    set_signals(complex_model, t, within, newton.complex_work)
     own = problem.reduced
     reduced_tangent(
-        dual, own.slots, own.increments, own.layout.size, new.x, new.v, new.a, (c.dq, c.dv, 1.0), (1.0, 1.0 / c.dq),
-        newton.dual_work, newton.factors.matrix,
+        complex_model, own.slots, own.increments, own.layout.size, new.x, new.v, new.a, (c.dq, c.dv, 1.0),
+        (1.0, 1.0 / c.dq), newton.complex_work, newton.factors.matrix,
     )  # fmt: skip
     newton.memory[0] = c.step if factorise(own.layout, newton.factors) else 0.0
     return newton.memory[0] != 0.0
@@ -76,7 +76,7 @@ def _predict(n, c, model, old, newton, new):
 
 
 @inlined
-def learn(n, c, old, new, slope):
+def keep_slope(n, c, old, new, slope):
     """Change of accelerations and multipliers over a step."""
     for i in range(n):
         slope[i] = (new.a[i] - old.a[i]) / c.step
@@ -100,14 +100,14 @@ def _correct(n, c, scale, change, old, new):
 
 
 @inlined
-def converge(problem, model, dual, c, t, within, tolerance, old, new, newton, log):
+def converge(problem, model, complex_model, c, t, within, tolerance, old, new, newton, log):
     """Newton iteration on new accelerations and multipliers: status, and iterations or the unknown that moved most."""
     n, own, memory = problem.n, problem.reduced, newton.memory
     _predict(n, c, model, old, newton, new)
     fresh = not (0.8 * memory[0] < c.step < 1.25 * memory[0]) or memory[1] > _AGED
     if fresh:
         log.counts[2] += 1
-        if not _renew(problem, dual, c, t, within, new, newton):
+        if not _renew(problem, complex_model, c, t, within, new, newton):
             return SINGULAR, 0
         memory[1] = _AGED
     before, norm, worst = 0.0, 1.0, 0
@@ -130,7 +130,7 @@ def converge(problem, model, dual, c, t, within, tolerance, old, new, newton, lo
             if fresh and rate > 2.0:
                 break
             log.counts[2] += 1
-            if not _renew(problem, dual, c, t, within, new, newton):
+            if not _renew(problem, complex_model, c, t, within, new, newton):
                 return SINGULAR, worst
             fresh = True
         before = norm

@@ -19,7 +19,7 @@ from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.problem import DONE, TOO_MANY_STEPS
 from dalembert.multibody.integrators.run import Run, explain
 from dalembert.multibody.integrators.stabilisation import Projection, Stabilisation, posed
-from dalembert.multibody.kernels.motion import Motion, resting
+from dalembert.multibody.kernels.motion import MotionState, resting
 from dalembert.multibody.singular_positions import named
 from dalembert.multibody.structure import Structure
 from dalembert.settings import expect, expect_positive
@@ -130,7 +130,7 @@ class OdeSolver(Integrator):
         return Run(reason, times, out, dout, counts, np.zeros(len(ends), dtype=np.int64), np.array(ends))
 
     def _stretch(
-        self, own: Field, begin: float, end: float, out: Motion, dout: Motion, due: int, ends: list[float]
+        self, own: Field, begin: float, end: float, out: MotionState, dout: MotionState, due: int, ends: list[float]
     ) -> tuple[str | None, int]:
         """One smooth stretch: why it ended early, and the number of the next output."""
         times, solver, short = own.problem.times, self._solver(own, begin, end), 0

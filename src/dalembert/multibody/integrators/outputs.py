@@ -7,20 +7,20 @@ from dalembert.multibody.integrators.matrices import Matrices, Pattern, renew
 from dalembert.multibody.integrators.problem import Problem
 from dalembert.multibody.integrators.settling import COORDINATES, settle, settle_along
 from dalembert.multibody.kernels.assembly import set_signals
-from dalembert.multibody.kernels.motion import Histories, Motion, Motions, copy, row, rows
+from dalembert.multibody.kernels.motion import Histories, MotionState, MotionStates, copy, row, rows
 
 
 @kernel
 def record(
-    problem: Problem, pattern: Pattern, matrices: Matrices, far: bool, model: Address, dual: Address,
-    directions: Integers, ends: Ends, within: float, out: Motions, dout: Histories, due: int, state: Motion,
-    dstate: Motion, weights: Reals3, moved: Reals2, work: Address, dual_work: Address, lifted: Complexes2,
-    along: Address,
+    problem: Problem, pattern: Pattern, matrices: Matrices, far: bool, model: Address, complex_model: Address,
+    directions: Integers, ends: Ends, within: float, out: MotionStates, dout: Histories, due: int, state: MotionState,
+    dstate: MotionState, weights: Reals3, moved: Reals2, work: Address, complex_work: Address,
+    complex_state: Complexes2, along: Address,
 ) -> bool:  # fmt: skip
     """Write the state at an output time in the last step or at its end: on the constraints, with its accelerations.
 
     Matrices that are from ``far`` are renewed between the ends. ``weights`` (4, ends, 3) is room, and so are ``moved``
-    and ``lifted``, see `settle_along`. ``along`` is the address of `record_along`, 0 if there are no directions.
+    and ``complex_state``, see `settle_along`. ``along`` is the address of `record_along`, 0 if there are no directions.
     """
     n, newest, oldest = problem.n, len(ends.times) - 1, len(ends.times) - 1
     share, t = 1.0, problem.times[due]
@@ -33,7 +33,7 @@ def record(
         oldest = support(ends)
         weigh_ends(ends, oldest, t, weights)
         interpolate_ends(n, oldest, weights, ends.states, state)
-        if far and not renew(problem, pattern, matrices, dual, False, t, within, state, dual_work):
+        if far and not renew(problem, pattern, matrices, complex_model, False, t, within, state, complex_work):
             return False
         set_signals(model, t, within, work)
         if not settle(problem, pattern, matrices, model, state, moved, work, COORDINATES):
@@ -42,7 +42,7 @@ def record(
     if len(directions) > 0:
         _record_along_at(
             along, problem, pattern, matrices, directions, ends, whole, oldest, within, dout, due, state, dstate,
-            weights, moved, dual_work, lifted,
+            weights, moved, complex_work, complex_state,
         )  # fmt: skip
     return True
 
@@ -50,8 +50,8 @@ def record(
 @kernel
 def record_along(
     problem: Problem, pattern: Pattern, matrices: Matrices, directions: Integers, ends: Ends, whole: bool, oldest: int,
-    within: float, dout: Histories, due: int, state: Motion, dstate: Motion, weights: Reals3, moved: Reals2,
-    dual_work: Address, lifted: Complexes2,
+    within: float, dout: Histories, due: int, state: MotionState, dstate: MotionState, weights: Reals3, moved: Reals2,
+    complex_work: Address, complex_state: Complexes2,
 ) -> None:  # fmt: skip
     """Write the derivatives of the state at an output time along all directions.
 
@@ -64,10 +64,11 @@ def record_along(
             copy(row(derivatives, len(ends.times) - 1), dstate)
         else:
             interpolate_ends(problem.n, oldest, weights, derivatives, dstate)
-            set_signals(directions[d], t, within, dual_work)
+            set_signals(directions[d], t, within, complex_work)
             settle_along(
-                problem, pattern, matrices, directions[d], state, dstate, moved, dual_work, lifted, COORDINATES
-            )
+                problem, pattern, matrices, directions[d], state, dstate, moved, complex_work, complex_state,
+                COORDINATES,
+            )  # fmt: skip
         _write(dstate, row(rows(dout, d), due))
 
 

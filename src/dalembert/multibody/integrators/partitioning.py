@@ -6,12 +6,11 @@ import numpy as np
 
 from dalembert.kernels.kernel import inner, kernel
 from dalembert.kernels.words import Address, Complexes2, Integers, Reals, Reals2
-from dalembert.multibody.integrators.lifting import lift
 from dalembert.multibody.integrators.problem import Problem
 from dalembert.multibody.kernels.assembly import constraint_rates, residual, set_signals, tangent
-from dalembert.multibody.kernels.dual import STEP
+from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.linear import DENSE, Factors, factorise, resized, solve, storage
-from dalembert.multibody.kernels.motion import Motion, Motions, row
+from dalembert.multibody.kernels.motion import MotionState, MotionStates, perturb, row
 
 POSITION, VELOCITY, ACCELERATION = 1, 2, 3  # how many levels are made to satisfy the constraints
 _DEPENDENT = 1e-9  # pivot, against the first one, of a constraint that follows from the others
@@ -52,11 +51,11 @@ def room(problem: Problem, directions: int) -> Partition:
 
 
 @inner
-def linearise(problem, dual, state, dual_work, partition):
-    """The constraint Jacobian of a state; the signals in ``dual_work`` hold the time."""
+def linearise(problem, complex_model, state, complex_work, partition):
+    """The constraint Jacobian of a state; the signals in ``complex_work`` hold the time."""
     tangent(
-        dual, problem.exact_slots, problem.n, state.x, state.v, state.a, (1.0, 0.0, 0.0), (0.0, 1.0), dual_work,
-        partition.matrix,
+        complex_model, problem.exact_slots, problem.n, state.x, state.v, state.a, (1.0, 0.0, 0.0), (0.0, 1.0),
+        complex_work, partition.matrix,
     )  # fmt: skip
 
 
@@ -168,10 +167,10 @@ def _shift(problem, partition, level, state):
 
 
 @inner
-def _close(problem, model, dual, state, work, dual_work, partition):
+def _close(problem, model, complex_model, state, work, complex_work, partition):
     """Newton's iteration on the dependent coordinates; whether it arrived."""
     for _ in range(_MOST_ITERATIONS):
-        linearise(problem, dual, state, dual_work, partition)
+        linearise(problem, complex_model, state, complex_work, partition)
         if not invert(problem, partition):
             return False
         fill_gap(model, problem.n, POSITION, state.x, state.v, state.a, work, partition.second, partition.gap)
@@ -185,18 +184,19 @@ def _close(problem, model, dual, state, work, dual_work, partition):
 
 @kernel
 def settle(
-    problem: Problem, model: Address, dual: Address, directions: Integers, t: float, within: float, levels: int,
-    state: Motion, dstates: Motions, work: Address, dual_work: Address, lifted: Complexes2, partition: Partition,
+    problem: Problem, model: Address, complex_model: Address, directions: Integers, t: float, within: float,
+    levels: int, state: MotionState, dstates: MotionStates, work: Address, complex_work: Address,
+    complex_state: Complexes2, partition: Partition,
 ) -> bool:  # fmt: skip
     """Make the dependent entries of a state satisfy the constraints, and those of its derivatives along directions.
 
     The independent entries stay as they are. ``levels``: `POSITION`, `VELOCITY` or `ACCELERATION`, each with those
-    before it. ``lifted``: complex work (5, N + 1). Whether the constraints could be satisfied.
+    before it. ``complex_state``: complex work (5, N + 1). Whether the constraints could be satisfied.
     """
     n = problem.n
     set_signals(model, t, within, work)
-    set_signals(dual, t, within, dual_work)
-    if not _close(problem, model, dual, state, work, dual_work, partition):
+    set_signals(complex_model, t, within, complex_work)
+    if not _close(problem, model, complex_model, state, work, complex_work, partition):
         return False
     for level in range(POSITION, levels + 1):
         for _ in range(1 if level == POSITION else 2):  # linear from the velocities on; once more for rounding
@@ -204,27 +204,31 @@ def settle(
             _shift(problem, partition, level, state)
     if len(dstates.x) > 0:
         _settle_along_at(
-            partition.along, problem, directions, t, within, levels, state, dstates, dual_work, lifted, partition
-        )
+            partition.along, problem, directions, t, within, levels, state, dstates, complex_work, complex_state,
+            partition,
+        )  # fmt: skip
     return True
 
 
 @kernel
 def settle_along(
-    problem: Problem, directions: Integers, t: float, within: float, levels: int, state: Motion, dstates: Motions,
-    dual_work: Address, lifted: Complexes2, partition: Partition,
+    problem: Problem, directions: Integers, t: float, within: float, levels: int, state: MotionState,
+    dstates: MotionStates, complex_work: Address, complex_state: Complexes2, partition: Partition,
 ) -> None:  # fmt: skip
     """Derivatives of the dependent entries of a settled state, one direction for each of ``dstates``."""
     n = problem.n
     for d in range(len(dstates.x)):
-        tilted, dstate = directions[d], row(dstates, d)
-        set_signals(tilted, t, within, dual_work)
+        perturbed, dstate = directions[d], row(dstates, d)
+        set_signals(perturbed, t, within, complex_work)
         for level in range(POSITION, levels + 1):
             for _ in range(2):
-                lift(n, state, dstate, lifted)
-                fill_gap(tilted, n, level, lifted[0], lifted[1], lifted[2], dual_work, lifted[3], lifted[4])
+                perturb(n, state, dstate, complex_state)
+                fill_gap(
+                    perturbed, n, level, complex_state[0], complex_state[1], complex_state[2], complex_work,
+                    complex_state[3], complex_state[4],
+                )  # fmt: skip
                 for i in range(n, len(state.x) - 1):
-                    partition.second[i] = lifted[3, i].imag / STEP
+                    partition.second[i] = complex_state[3, i].imag / STEP
                 _shift(problem, partition, level, dstate)
 
 

@@ -6,9 +6,9 @@ from dalembert.multibody.integrators.index1 import Terms, Tools, factorise_motio
 from dalembert.multibody.integrators.partitioning import POSITION, VELOCITY, fill_gap
 from dalembert.multibody.integrators.problem import Problem
 from dalembert.multibody.kernels.assembly import residual, set_signals
-from dalembert.multibody.kernels.dual import STEP
+from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.linear import solve
-from dalembert.multibody.kernels.motion import Motion, Motions, row
+from dalembert.multibody.kernels.motion import MotionState, MotionStates, row
 
 _MOST_ITERATIONS = 15
 # Corrections that stop to shrink are rounding, which a nearly singular position magnifies up to this size.
@@ -35,19 +35,19 @@ def _move(problem, level, tools, state, change):
 
 
 @inlined
-def _clear_forces(n, lifted):
+def _clear_forces(n, complex_state):
     """A complex state at rest without multipliers: x from row 0, v and a nothing."""
-    for i in range(lifted.shape[1]):
-        lifted[1, i] = 0.0
-        lifted[2, i] = 0.0
+    for i in range(complex_state.shape[1]):
+        complex_state[1, i] = 0.0
+        complex_state[2, i] = 0.0
         if i >= n:
-            lifted[0, i] = 0.0
+            complex_state[0, i] = 0.0
 
 
 @kernel
 def project_along(
-    problem: Problem, level: int, directions: Integers, t: float, within: float, state: Motion, dstates: Motions,
-    tools: Tools,
+    problem: Problem, level: int, directions: Integers, t: float, within: float, state: MotionState,
+    dstates: MotionStates, tools: Tools,
 ) -> None:  # fmt: skip
     """Derivatives of the projection of coordinates or of velocities (``level``), along all directions."""
     for d in range(len(dstates.x)):
@@ -62,44 +62,51 @@ def _follow(problem, level, model, t, within, state, dstate, tools, change):
     equations are those of the projection in complex numbers: M w + J^T m = 0 in the coordinates before, and the
     constraints after.
     """
-    n, last, lifted = problem.n, len(state.x) - 1, tools.lifted
+    n, last, complex_state = problem.n, len(state.x) - 1, tools.complex_state
     base, gap, answer = tools.base, tools.gap, tools.answer
-    set_signals(model, t, within, tools.dual_work)
+    set_signals(model, t, within, tools.complex_work)
     # The derivatives of w and m stand in the last rows; the coordinates before, whose derivative does not change, too.
     for i in range(last + 1):
-        lifted[5, i] = 0.0
-        lifted[6, i] = complex(base.x[i], STEP * dstate.x[i]) if i < n else 0.0
+        complex_state[5, i] = 0.0
+        complex_state[6, i] = complex(base.x[i], STEP * dstate.x[i]) if i < n else 0.0
     for _ in range(3):  # the matrix is that of the coordinates before
         for i in range(last + 1):
-            lifted[0, i] = lifted[6, i] if i < n else complex(change.x[i], lifted[5, i].imag)
-            lifted[1, i] = 0.0
-            lifted[2, i] = complex(change.a[i], lifted[5, i].imag) if i < n else 0.0
-        residual(model, n, lifted[0], lifted[1], lifted[2], tools.dual_work, 1.0, lifted[3])
-        _clear_forces(n, lifted)
-        residual(model, n, lifted[0], lifted[1], lifted[2], tools.dual_work, 1.0, lifted[4])
+            complex_state[0, i] = complex_state[6, i] if i < n else complex(change.x[i], complex_state[5, i].imag)
+            complex_state[1, i] = 0.0
+            complex_state[2, i] = complex(change.a[i], complex_state[5, i].imag) if i < n else 0.0
+        residual(
+            model, n, complex_state[0], complex_state[1], complex_state[2], tools.complex_work, 1.0, complex_state[3]
+        )
+        _clear_forces(n, complex_state)
+        residual(
+            model, n, complex_state[0], complex_state[1], complex_state[2], tools.complex_work, 1.0, complex_state[4]
+        )
         for i in range(n):
-            gap[i] = (lifted[3, i].imag - lifted[4, i].imag) / STEP
+            gap[i] = (complex_state[3, i].imag - complex_state[4, i].imag) / STEP
         for i in range(n):
-            shift = lifted[5, i].imag
-            lifted[0, i] = complex(state.x[i], STEP * dstate.x[i] - (shift if level == POSITION else 0.0))
-            lifted[1, i] = complex(state.v[i], STEP * dstate.v[i] - (shift if level == VELOCITY else 0.0))
-        fill_gap(model, n, level, lifted[0], lifted[1], lifted[2], tools.dual_work, lifted[3], lifted[4])
+            shift = complex_state[5, i].imag
+            complex_state[0, i] = complex(state.x[i], STEP * dstate.x[i] - (shift if level == POSITION else 0.0))
+            complex_state[1, i] = complex(state.v[i], STEP * dstate.v[i] - (shift if level == VELOCITY else 0.0))
+        fill_gap(
+            model, n, level, complex_state[0], complex_state[1], complex_state[2], tools.complex_work, complex_state[3],
+            complex_state[4],
+        )  # fmt: skip
         for i in range(n, last):
-            gap[i] = -lifted[3, i].imag / STEP
+            gap[i] = -complex_state[3, i].imag / STEP
         solve(problem.exact_layout, tools.exact, gap, answer)
         for i in range(last):
-            lifted[5, i] = complex(0.0, lifted[5, i].imag - STEP * answer[i])
+            complex_state[5, i] = complex(0.0, complex_state[5, i].imag - STEP * answer[i])
     for i in range(n):
         if level == POSITION:
-            dstate.x[i] -= lifted[5, i].imag / STEP
+            dstate.x[i] -= complex_state[5, i].imag / STEP
         else:
-            dstate.v[i] -= lifted[5, i].imag / STEP
+            dstate.v[i] -= complex_state[5, i].imag / STEP
 
 
 @kernel
 def project(
-    problem: Problem, terms: Terms, model: Address, dual: Address, directions: Integers, t: float, within: float,
-    state: Motion, dstates: Motions, tools: Tools, along: Address,
+    problem: Problem, terms: Terms, model: Address, complex_model: Address, directions: Integers, t: float,
+    within: float, state: MotionState, dstates: MotionStates, tools: Tools, along: Address,
 ) -> bool:  # fmt: skip
     """Move coordinates, then velocities, onto the constraints, with their derivatives; whether that was possible.
 
@@ -110,11 +117,11 @@ def project(
     n, last, base, change = problem.n, len(state.x) - 1, tools.base, tools.change
     set_signals(model, t, within, tools.work)
     for level in (POSITION, VELOCITY):
-        set_signals(dual, t, within, tools.dual_work)
+        set_signals(complex_model, t, within, tools.complex_work)
         for i in range(last + 1):  # at rest and unloaded: the forces of friction are none
             base.x[i] = state.x[i] if i < n else 0.0
             change.x[i], change.a[i] = 0.0, 0.0
-        if not factorise_motion(problem, terms, dual, base, tools):
+        if not factorise_motion(problem, terms, complex_model, base, tools):
             return False
         before = 1e300
         for _ in range(_MOST_ITERATIONS):

@@ -13,33 +13,41 @@ from dalembert.multibody.integrators.radau_newton import (
     take_coordinates,
     take_velocities,
 )
-from dalembert.multibody.integrators.radau_stages import Buffers, Stages, begin, integrate_stages, listen, read
+from dalembert.multibody.integrators.radau_stages import (
+    Buffers,
+    Stages,
+    begin,
+    integrate_stages,
+    read,
+    set_stage_signals,
+)
 from dalembert.multibody.integrators.settling import VELOCITIES, settle_along, weigh_along
 from dalembert.multibody.kernels.assembly import constraint_rates, residual, set_signals
-from dalembert.multibody.kernels.dual import STEP
-from dalembert.multibody.kernels.motion import Motion, Motions, copy, row, rows
+from dalembert.multibody.kernels.elementary import STEP
+from dalembert.multibody.kernels.motion import MotionState, MotionStates, copy, row, rows
 
 
 @kernel
 def differentiate(
     problem: Problem, method: Coefficients, pattern: Pattern, matrices: Matrices, directions: Integers, t: float,
-    target: float, within: float, s: Stages, dold: Motion, dnews: Motions, ds: Stages, b: Buffers, dual_works: Integers,
+    target: float, within: float, s: Stages, dold: MotionState, dnews: MotionStates, ds: Stages, b: Buffers,
+    complex_works: Integers,
 ) -> None:  # fmt: skip
     """Derivatives of a step along all directions."""
     h = target - t
     for d in range(len(directions)):
         dnew = row(dnews, d)
         copy(dnew, dold)
-        listen(method, directions[d], t, h, target, within, dual_works)
-        _converge_along(problem, method, pattern, matrices, directions[d], dual_works, h, s, dold, ds, b)
+        set_stage_signals(method, directions[d], t, h, target, within, complex_works)
+        _converge_along(problem, method, pattern, matrices, directions[d], complex_works, h, s, dold, ds, b)
         read(problem.n, ds, dnew)
 
 
 @inner
-def _converge_along(problem, method, pattern, matrices, tilted, works, h, s, dstart, ds, b):
+def _converge_along(problem, method, pattern, matrices, perturbed, works, h, s, dstart, ds, b):
     """Derivatives ``ds`` of the converged stages along a direction, by the same iteration on imaginary parts."""
     n, size, count = problem.n, len(dstart.x) - 1, len(method.c)
-    at = b.lifted
+    at = b.complex_state
     begin(n, h, method, dstart, ds)
     integrate_stages(n, h, method, dstart, ds)
     before = 0.0
@@ -52,8 +60,8 @@ def _converge_along(problem, method, pattern, matrices, tilted, works, h, s, dst
                 at[3, k] = complex(s.u[i, k] - s.v[i, k], STEP * (ds.u[i, k] - ds.v[i, k]))
                 if k >= n:
                     at[3, k] = complex(s.m[i, k], STEP * ds.m[i, k])
-            residual(tilted, n, at[0], at[1], at[2], works[i], 1.0, at[4])
-            weigh_along(tilted, n, at[0], at[3], works[i], at[7:], at[5])
+            residual(perturbed, n, at[0], at[1], at[2], works[i], 1.0, at[4])
+            weigh_along(perturbed, n, at[0], at[3], works[i], at[7:], at[5])
             for k in range(size + 1):
                 b.motion[i, k], b.weighed[i, k] = at[4, k].imag / STEP, at[5, k].imag / STEP
         correct_coordinates(n, size, method, pattern, matrices, h, b)
@@ -62,7 +70,7 @@ def _converge_along(problem, method, pattern, matrices, tilted, works, h, s, dst
             for k in range(size + 1):
                 at[0, k] = complex(s.x[i, k], STEP * ds.x[i, k])
                 at[1, k] = complex(s.v[i, k], STEP * ds.v[i, k])
-            constraint_rates(tilted, n, at[0], at[1], at[2], works[i], at[4], at[5])
+            constraint_rates(perturbed, n, at[0], at[1], at[2], works[i], at[4], at[5])
             for k in range(size + 1):
                 b.rate[i, k] = at[4, k].imag / STEP
         take_velocities(n, size, method, pattern, matrices, h, dstart, b, ds)
@@ -76,10 +84,12 @@ def _converge_along(problem, method, pattern, matrices, tilted, works, h, s, dst
 @kernel
 def settle_end_along(
     problem: Problem, pattern: Pattern, matrices: Matrices, directions: Integers, within: float, last: Ends, j: int,
-    moved: Reals2, dual_work: Address, lifted: Complexes2,
+    moved: Reals2, complex_work: Address, complex_state: Complexes2,
 ) -> None:  # fmt: skip
     """Settle the derivatives of end ``j`` along all directions."""
     for d in range(len(directions)):
-        set_signals(directions[d], last.times[j], within, dual_work)
+        set_signals(directions[d], last.times[j], within, complex_work)
         state, dstate = row(last.states, j), row(rows(last.derivatives, d), j)
-        settle_along(problem, pattern, matrices, directions[d], state, dstate, moved, dual_work, lifted, VELOCITIES)
+        settle_along(
+            problem, pattern, matrices, directions[d], state, dstate, moved, complex_work, complex_state, VELOCITIES
+        )

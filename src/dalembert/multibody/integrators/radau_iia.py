@@ -108,14 +108,14 @@ class RadauIIA(Integrator):
         first = batch.samples[0]
         pattern, method = pattern_of(first.structure), coefficients(self.stages)
         fixed = self.step_ends(batch.end, first.jumps)
-        calls = [[model.call() for _ in range(1 + self.stages)] for model in (first.real, first.dual)]
+        calls = [[model.call() for _ in range(1 + self.stages)] for model in (first.real, first.complex_model)]
         spare = workspace(problem, method, pattern, batch.dstates, *calls)
         run = integrate.given(problem, method, pattern, directions, batch.dstates, dout, *spare)
         runs = []
         for lowered, edges, start in batch:
             log, states = batch.log(_ROOM if fixed is None else max(_ROOM, len(fixed))), resting(*batch.shape)
-            model, dual = lowered.real.need("rates").address, lowered.dual.address
-            status, time, unknown, least = run(edges, self._settings(lowered), model, dual, start, states, log)
+            model, complex_model = lowered.real.need("rates").address, lowered.complex_model.address
+            status, time, unknown, least = run(edges, self._settings(lowered), model, complex_model, start, states, log)
             reason = None if status == DONE else self._explain(lowered, status, time, unknown, least, spare.new.x)
             runs.append(batch.result(reason, states, dout, log))
         return runs

@@ -15,7 +15,7 @@ from dalembert.multibody.integrators.radau_step import attempt, speed_of
 from dalembert.multibody.integrators.radau_workspace import Along, Outputs, Settings, Step
 from dalembert.multibody.integrators.settling import VELOCITIES, settle
 from dalembert.multibody.kernels.assembly import set_signals
-from dalembert.multibody.kernels.motion import Histories, Motion, Motions, clear, copy, row
+from dalembert.multibody.kernels.motion import Histories, MotionState, MotionStates, clear, copy, row
 
 _AGED = 0.003  # contraction at which the next step begins with new matrices, and outputs have their own
 _SHORTEST = 0.2  # of a step: the one after it (Hairer and Wanner 1996, IV.8); what is foreseen may vanish in the time
@@ -31,8 +31,8 @@ def _first_step(n, scale, span, tolerance, order, state):
 
 @inner
 def _settle_ends(
-    problem, pattern, matrices, apart, far, model, dual, directions, damped, within, last, moved, work, dual_work,
-    lifted, along,
+    problem, pattern, matrices, apart, far, model, complex_model, directions, damped, within, last, moved, work,
+    complex_work, complex_state, along,
 ):  # fmt: skip
     """Settle the ends that outputs of the last step need; whether that went well.
 
@@ -45,13 +45,15 @@ def _settle_ends(
         t, state, own = last.times[j], row(last.states, j), matrices
         if far or j < newest:
             own = apart
-            if not renew(problem, pattern, own, dual, damped, t, within, state, dual_work):
+            if not renew(problem, pattern, own, complex_model, damped, t, within, state, complex_work):
                 return False
         set_signals(model, t, within, work)
         if not settle(problem, pattern, own, model, state, moved, work, VELOCITIES):
             return False
         if len(directions) > 0:
-            _settle_end_along_at(along, problem, pattern, own, directions, within, last, j, moved, dual_work, lifted)
+            _settle_end_along_at(
+                along, problem, pattern, own, directions, within, last, j, moved, complex_work, complex_state
+            )
         last.settled[j] = True
     return True
 
@@ -61,9 +63,10 @@ _settle_end_along_at, _differentiate_at = settle_end_along.at, differentiate.at
 
 @kernel
 def integrate(
-    problem: Problem, method: Coefficients, pattern: Pattern, directions: Integers, dstates: Motions, dout: Histories,
-    new: Motion, matrices: Matrices, step: Step, outputs: Outputs, along: Along, consistency: Consistency,
-    edges: Reals, settings: Settings, model: Address, dual: Address, start: Motion, out: Motions, log: Log,
+    problem: Problem, method: Coefficients, pattern: Pattern, directions: Integers, dstates: MotionStates,
+    dout: Histories, new: MotionState, matrices: Matrices, step: Step, outputs: Outputs, along: Along,
+    consistency: Consistency, edges: Reals, settings: Settings, model: Address, complex_model: Address,
+    start: MotionState, out: MotionStates, log: Log,
 ) -> tuple[int, float, int, float]:  # fmt: skip
     """Run one sample between ``edges`` (s): status, time reached, unknown that moved most, smallest error of a step.
 
@@ -76,8 +79,14 @@ def integrate(
     """
     n, scale, times, counts = problem.n, problem.scale, problem.times, log.counts
     adaptive, order = settings.step == 0.0, len(method.c) + 1.0  # of the estimated error of a step
-    moved, dual_work = step.moved, step.dual_work
-    last, apart, shares, lifted, work = outputs.last, outputs.apart, outputs.shares, outputs.lifted, outputs.work
+    moved, complex_work = step.moved, step.complex_work
+    last, apart, shares, complex_state, work = (
+        outputs.last,
+        outputs.apart,
+        outputs.shares,
+        outputs.complex_state,
+        outputs.work,
+    )
     copy(start, new)
     clear(matrices.damping)  # is not evaluated where there is none
     clear(apart.damping)
@@ -86,11 +95,11 @@ def integrate(
     for stretch in range(len(edges) - 1):
         t, end = edges[stretch], edges[stretch + 1]
         within = 0.5 * (t + end)
-        if not accelerate(problem, model, dual, directions, t, within, new, dstates, consistency):
+        if not accelerate(problem, model, complex_model, directions, t, within, new, dstates, consistency):
             return SINGULAR, t, 0, 0.0
         if stretch == 0:
-            set_signals(dual, t, within, dual_work)  # those of a direction would count as masses
-            weigh_masses(pattern, matrices, dual, n, new, dual_work)
+            set_signals(complex_model, t, within, complex_work)  # those of a direction would count as masses
+            weigh_masses(pattern, matrices, complex_model, n, new, complex_work)
             length = _first_step(n, scale, end - t, settings.tolerance, order, new)
         steps = 1 if adaptive else max(1, int(np.ceil((end - t) / settings.step - 1e-6)))
         begin, nominal, number, level = t, (end - t) / steps, 0, 0
@@ -104,12 +113,13 @@ def integrate(
             arrived, settled, ready = False, False, False
             while due < len(times) and times[due] <= t + 1e-9 * taken:
                 ready = ready or _settle_ends(
-                    problem, pattern, matrices, apart, far, model, dual, directions, settings.damped, within, last,
-                    moved, work, dual_work, lifted, along.settle_end,
+                    problem, pattern, matrices, apart, far, model, complex_model, directions, settings.damped, within,
+                    last, moved, work, complex_work, complex_state, along.settle_end,
                 )  # fmt: skip
                 if not ready or not record(
-                    problem, pattern, apart if far else matrices, far, model, dual, directions, last, within, out,
-                    dout, due, outputs.between, outputs.dbetween, shares, moved, work, dual_work, lifted, along.record,
+                    problem, pattern, apart if far else matrices, far, model, complex_model, directions, last, within,
+                    out, dout, due, outputs.between, outputs.dbetween, shares, moved, work, complex_work, complex_state,
+                    along.record,
                 ):  # fmt: skip
                     return NEWTON_FAILED, times[due], 0, 0.0
                 due += 1
@@ -122,8 +132,8 @@ def integrate(
             target = goal if reached else t + length
             h = target - t
             status, made, error, own, iterations, rate, worst = attempt(
-                problem, method, pattern, model, dual, settings, t, target, within, before, earlier, stale, made,
-                speed, new, matrices, step,
+                problem, method, pattern, model, complex_model, settings, t, target, within, before, earlier, stale,
+                made, speed, new, matrices, step,
             )  # fmt: skip
             counts[1] += iterations
             if status == SINGULAR:

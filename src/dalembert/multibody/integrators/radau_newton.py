@@ -51,48 +51,50 @@ def _scaled(pair, h):
 @inner
 def correct_coordinates(n, size, method, pattern, matrices, h, b):
     """Corrections of the stages' coordinates, multipliers and rates by the residuals ``motion`` and ``weighed``."""
-    given, answer, place, pace, pull, pairs = b.given, b.answer, b.place, b.pace, b.pull, method.pairs
-    combine(method.back, 1.0, b.motion, size, place)
-    combine(method.back, 1.0, b.weighed, n, pace)
+    given, answer, change_x, change_u, change_a, pairs = (
+        b.given, b.answer, b.change_x, b.change_u, b.change_a, method.pairs,
+    )  # fmt: skip
+    combine(method.back, 1.0, b.motion, size, change_x)
+    combine(method.back, 1.0, b.weighed, n, change_u)
     real = method.real / h
     square = real * real
     for k in range(size):  # what the velocities lack in weight acts as an inertial force
-        given[k] = place[0, k] + real * pace[0, k] if k < n else square * place[0, k]
+        given[k] = change_x[0, k] + real * change_u[0, k] if k < n else square * change_x[0, k]
     solve(pattern.layout, matrices.real, given, answer)
     for k in range(size):
         if k < n:
-            place[0, k], pace[0, k], pull[0, k] = answer[k] / square, answer[k] / real, answer[k]
+            change_x[0, k], change_u[0, k], change_a[0, k] = answer[k] / square, answer[k] / real, answer[k]
         else:
-            place[0, k] = answer[k]
+            change_x[0, k] = answer[k]
     for p in range(len(pairs)):
         pair, i, j = _scaled(pairs[p], h), 2 * p + 1, 2 * p + 2
         double, back = product(pair, pair), inverse(pair)
         for k in range(size):
-            z = complex(place[i, k], place[j, k])
-            z = z + product(pair, complex(pace[i, k], pace[j, k])) if k < n else product(double, z)
+            z = complex(change_x[i, k], change_x[j, k])
+            z = z + product(pair, complex(change_u[i, k], change_u[j, k])) if k < n else product(double, z)
             given[k], given[size + k] = z.real, z.imag
         solve_complex(pattern, matrices, p, given, answer)
         for k in range(size):
             z = complex(answer[k], answer[size + k])
             if k < n:
-                pull[i, k], pull[j, k] = z.real, z.imag
+                change_a[i, k], change_a[j, k] = z.real, z.imag
                 z = product(back, z)
-                pace[i, k], pace[j, k] = z.real, z.imag
+                change_u[i, k], change_u[j, k] = z.real, z.imag
                 z = product(back, z)
-            place[i, k], place[j, k] = z.real, z.imag
+            change_x[i, k], change_x[j, k] = z.real, z.imag
 
 
 @inner
 def take_coordinates(n, size, h, method, start, b, s):
     """Take the corrections off the stages; ``moved`` becomes that of the coordinates."""
-    place, pace, moved, x, u, a = b.place, b.pace, b.moved, s.x, s.u, s.a
-    combine(method.t, 1.0, place, size, moved)
-    combine(method.t, 1.0, pace, n, place)
-    combine(method.t, 1.0, b.pull, n, pace)
+    change_x, change_u, moved, x, u, a = b.change_x, b.change_u, b.moved, s.x, s.u, s.a
+    combine(method.t, 1.0, change_x, size, moved)
+    combine(method.t, 1.0, change_u, n, change_x)
+    combine(method.t, 1.0, b.change_a, n, change_u)
     for i in range(len(x)):
         for k in range(n):
-            u[i, k] -= place[i, k]
-            a[i, k] -= pace[i, k]
+            u[i, k] -= change_x[i, k]
+            a[i, k] -= change_u[i, k]
         for k in range(n, size):
             x[i, k] -= moved[i, k]
     integrate_stages(n, h, method, start, s)
@@ -101,24 +103,24 @@ def take_coordinates(n, size, h, method, start, b, s):
 @inner
 def take_velocities(n, size, method, pattern, matrices, h, start, b, s):
     """Move the stages' velocities onto the constraints; ``moved`` becomes the size of the whole correction."""
-    given, answer, place, pace, moved = b.given, b.answer, b.place, b.pace, b.moved
+    given, answer, change_x, change_u, moved = b.given, b.answer, b.change_x, b.change_u, b.moved
     weighed, rate, x, a, m = b.weighed, b.rate, s.x, s.a, s.m
     for i in range(len(x)):
         for k in range(size):
             given[k] = -weighed[i, k] if k < n else rate[i, k]
         solve(pattern.layout, matrices.rigid, given, answer)
         for k in range(size):
-            place[i, k] = answer[k]
+            change_x[i, k] = answer[k]
             if k < n:
                 moved[i, k] = abs(moved[i, k]) + h * abs(answer[k])
             else:
                 m[i, k] += answer[k]
-    combine(method.inverse, 1.0 / h, place, size, pace)
+    combine(method.inverse, 1.0 / h, change_x, size, change_u)
     for i in range(len(x)):
         for k in range(n):
-            a[i, k] -= pace[i, k]
+            a[i, k] -= change_u[i, k]
         for k in range(n, size):
-            x[i, k] -= pace[i, k]
+            x[i, k] -= change_u[i, k]
     integrate_velocities(n, h, method, start, s)
 
 
@@ -147,7 +149,7 @@ def converge(
     """
     size, count = len(start.x) - 1, len(method.c)
     before, norm, rate, worst = 0.0, 1.0, 1.0, 0
-    closed, seen, converged, error, pace = 0.0, False, False, 0.0, 0.0
+    closed, seen, converged, error, rate_error = 0.0, False, False, 0.0, 0.0
     for k in range(n):
         closed = max(closed, _CLOSED * scale[k])
     given, motion, x, v, a, u, m = b.given, b.motion, s.x, s.v, s.a, s.u, s.m
@@ -182,13 +184,13 @@ def converge(
         visible = not lost and not done and not seen and norm <= _VISIBLE * limit * min(1.0, h * speed)
         if visible or (converged and limit > 0.0):
             seen = True
-            error, pace = estimate(n, scale, method, pattern, matrices, damped, h, start, s, b)
-        if visible and max(error, pace / speed) > 1.1 * limit:
+            error, rate_error = estimate(n, scale, method, pattern, matrices, damped, h, start, s, b)
+        if visible and max(error, rate_error / speed) > 1.1 * limit:
             converged = ended = True
         if ended:
             break
         before = norm
-    return converged, iteration, rate, worst, error, pace
+    return converged, iteration, rate, worst, error, rate_error
 
 
 @inner
@@ -218,7 +220,7 @@ def estimate(n, scale, method, pattern, matrices, damped, h, start, s, b):
     if damped:
         add_product(n, pattern, matrices.damping, q, 1.0 / real, given)
     solve(pattern.layout, matrices.real, given, answer)
-    error, pace = 0.0, 0.0
+    error, rate_error = 0.0, 0.0
     for k in range(n):
         error = max(error, abs(answer[k]) / scale[k])
         v[k] = real * (answer[k] - q[k])
@@ -226,5 +228,5 @@ def estimate(n, scale, method, pattern, matrices, damped, h, start, s, b):
     add_inertia(pattern, matrices, v, given)
     solve(pattern.layout, matrices.rigid, given, answer)
     for k in range(n):
-        pace = max(pace, abs(answer[k]) / scale[k])
-    return error, pace
+        rate_error = max(rate_error, abs(answer[k]) / scale[k])
+    return error, rate_error

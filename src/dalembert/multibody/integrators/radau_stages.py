@@ -30,20 +30,20 @@ class Stages(NamedTuple):
 class Buffers(NamedTuple):
     """Residuals ``motion``, ``weighed`` and ``rate`` (stages, N + 1), corrections, some vectors.
 
-    ``place``, ``pace`` and ``pull`` are the corrections of coordinates (and multipliers), of their rates and of the
-    rates of the velocities, and before them the same along the eigenvectors of A.
+    ``change_x``, ``change_u`` and ``change_a`` are the corrections of coordinates (and multipliers), of their rates and
+    of the rates of the velocities, and before them the same along the eigenvectors of A.
     """
 
     motion: Reals2
     weighed: Reals2
     rate: Reals2
-    place: Reals2
-    pace: Reals2
-    pull: Reals2
+    change_x: Reals2
+    change_u: Reals2
+    change_a: Reals2
     moved: Reals2
     given: Reals
     answer: Reals
-    lifted: Complexes2
+    complex_state: Complexes2
 
 
 def stages(count: int, width: int) -> Stages:
@@ -53,14 +53,14 @@ def stages(count: int, width: int) -> Stages:
 
 def buffers(count: int, width: int) -> Buffers:
     """Room for a step; the vectors are as long as a complex system."""
-    motion, weighed, rate, place, pace, pull, moved = np.zeros((7, count, width))
+    motion, weighed, rate, change_x, change_u, change_a, moved = np.zeros((7, count, width))
     given, answer = np.zeros((2, 2 * width))
-    lifted = np.zeros((10, width), complex)
-    return Buffers(motion, weighed, rate, place, pace, pull, moved, given, answer, lifted)
+    complex_state = np.zeros((10, width), complex)
+    return Buffers(motion, weighed, rate, change_x, change_u, change_a, moved, given, answer, complex_state)
 
 
 @inner
-def listen(method, model, t, h, target, within, works):
+def set_stage_signals(method, model, t, h, target, within, works):
     """Evaluate the signals at the stages, in the calls ``works`` of which."""
     for i in range(len(method.c)):
         time = target if i == len(method.c) - 1 else t + method.c[i] * h
@@ -93,7 +93,7 @@ def begin(n, h, method, start, s):
 
 
 @inner
-def go_back(past, s):
+def recall(past, s):
     """Stages of the step before, as the prediction kept them."""
     from_x, from_u, from_a, x, u, a = past.x, past.u, past.a, s.x, s.u, s.a
     for i in range(len(x)):
@@ -102,7 +102,7 @@ def go_back(past, s):
 
 
 @inner
-def _extrapolate(c, h, before, earlier, more, nodes, weights):
+def _extrapolation(c, h, before, earlier, more, nodes, weights):
     """Weights (stages, stages + more) of the stages before, and of the last ``more`` of those earlier."""
     count = len(c)
     for j in range(count):
@@ -119,7 +119,7 @@ def _extrapolate(c, h, before, earlier, more, nodes, weights):
 
 
 @inner
-def go_on(n, h, method, before, earlier, past, s, b, weights):
+def extrapolate(n, h, method, before, earlier, past, s, b, weights):
     """Stages by the polynomial through those of the step before, and of the one earlier (0: without) in ``past``.
 
     They took ``before`` and ``earlier`` seconds; ``weights`` (stages + 1, 2 stages) is room. The stages before are then
@@ -127,24 +127,24 @@ def go_on(n, h, method, before, earlier, past, s, b, weights):
     """
     count = len(method.c)
     more = 0 if earlier == 0.0 else method.more
-    _extrapolate(method.c, h, before, earlier, more, weights[count], weights)
+    _extrapolation(method.c, h, before, earlier, more, weights[count], weights)
     x, u, a, m, early_x, early_u, early_a = s.x, s.u, s.a, s.m, past.x, past.u, past.a
-    place, pace, pull = b.place, b.pace, b.pull
+    change_x, change_u, change_a = b.change_x, b.change_u, b.change_a
     for i in range(count):
         for k in range(x.shape[1]):
-            m[i, k] = place[i, k] = pace[i, k] = pull[i, k] = 0.0
+            m[i, k] = change_x[i, k] = change_u[i, k] = change_a[i, k] = 0.0
         for j in range(count + more):
             weight, recent = weights[i, j], j < count
             own_x, own_u = x[j] if recent else early_x[j - more], u[j] if recent else early_u[j - more]
             own_a = a[j] if recent else early_a[j - more]
             for k in range(x.shape[1]):
-                place[i, k] += weight * own_x[k]
-                pace[i, k] += weight * own_u[k]
-                pull[i, k] += weight * own_a[k]
-    go_back(s, past)
+                change_x[i, k] += weight * own_x[k]
+                change_u[i, k] += weight * own_u[k]
+                change_a[i, k] += weight * own_a[k]
+    recall(s, past)
     for i in range(count):
         for k in range(x.shape[1]):
-            x[i, k], u[i, k], a[i, k] = place[i, k], pace[i, k], pull[i, k]
+            x[i, k], u[i, k], a[i, k] = change_x[i, k], change_u[i, k], change_a[i, k]
 
 
 @inner

@@ -9,7 +9,7 @@ from dalembert.multibody.integrators.radau_coefficients import Coefficients
 from dalembert.multibody.integrators.radau_newton import converge, factorise
 from dalembert.multibody.integrators.radau_workspace import Settings, Step
 from dalembert.multibody.integrators.settling import accelerate_roughly
-from dalembert.multibody.kernels.motion import Motion
+from dalembert.multibody.kernels.motion import MotionState
 
 _NEAR = 1.25  # ratio of a step to the one that the kept systems were factorised for
 _FAR = 1.5  # ratio of a step to the one before, from which the latter alone predicts
@@ -26,9 +26,9 @@ def speed_of(n, scale, v):
 
 @kernel
 def attempt(
-    problem: Problem, method: Coefficients, pattern: Pattern, model: Address, dual: Address, settings: Settings,
-    t: float, target: float, within: float, before: float, earlier: float, stale: bool, made: float, speed: float,
-    new: Motion, matrices: Matrices, room: Step,
+    problem: Problem, method: Coefficients, pattern: Pattern, model: Address, complex_model: Address,
+    settings: Settings, t: float, target: float, within: float, before: float, earlier: float, stale: bool, made: float,
+    speed: float, new: MotionState, matrices: Matrices, room: Step,
 ) -> tuple[int, float, float, float, int, float, int]:  # fmt: skip
     """A step from ``new``, which moves if the step is good.
 
@@ -38,31 +38,33 @@ def attempt(
     n, scale, h = problem.n, problem.scale, target - t
     s, past, b, weights, works = room.s, room.past, room.b, room.weights, room.works
     if before > 0.0:
-        stages.go_on(n, h, method, before, earlier if h <= _FAR * before else 0.0, past, s, b, weights)
+        stages.extrapolate(n, h, method, before, earlier if h <= _FAR * before else 0.0, past, s, b, weights)
     else:
         stages.begin(n, h, method, new, s)
     stages.integrate_stages(n, h, method, new, s)
     if stale:
         m = len(method.c) // 2
-        middle, place = t + method.c[m] * h, Motion(s.x[m], s.v[m], s.a[m], s.a[m])
-        if not renew(problem, pattern, matrices, dual, settings.damped, middle, within, place, room.dual_work):
+        middle, place = t + method.c[m] * h, MotionState(s.x[m], s.v[m], s.a[m], s.a[m])
+        if not renew(
+            problem, pattern, matrices, complex_model, settings.damped, middle, within, place, room.complex_work
+        ):
             return SINGULAR, made, 0.0, speed, 0, 1.0, 0
     if stale or not (made <= _NEAR * h and h <= _NEAR * made):
         made = h
         if not factorise(n, method, pattern, matrices, h):
             return SINGULAR, made, 0.0, speed, 0, 1.0, 0
-    stages.listen(method, model, t, h, target, within, works)
-    converged, iterations, rate, worst, gap, pace = converge(
+    stages.set_stage_signals(method, model, t, h, target, within, works)
+    converged, iterations, rate, worst, gap, rate_error = converge(
         n, scale, method, pattern, matrices, model, settings.damped, works, h, new, s, b,
         settings.newton_tolerance, speed, settings.tolerance if settings.step == 0.0 else 0.0,
     )  # fmt: skip
     error, end = 0.0, len(method.c) - 1
     if converged and settings.step == 0.0:
         speed = max(speed, speed_of(n, scale, s.v[end]))
-        error = max(gap, pace / speed) / settings.tolerance
+        error = max(gap, rate_error / speed) / settings.tolerance
     if converged and error <= 1.0:
         stages.read(n, s, new)
         accelerate_roughly(problem, pattern, matrices, model, new, works[end], room.moved[2:])
     else:
-        stages.go_back(past, s)
+        stages.recall(past, s)
     return DONE if converged else NEWTON_FAILED, made, error, speed, iterations, rate, worst

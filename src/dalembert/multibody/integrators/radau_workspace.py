@@ -14,7 +14,7 @@ from dalembert.multibody.integrators.radau_coefficients import Coefficients
 from dalembert.multibody.integrators.radau_derivatives import differentiate, settle_end_along
 from dalembert.multibody.integrators.radau_stages import Buffers, Stages, buffers, stages
 from dalembert.multibody.kernels.model import Call
-from dalembert.multibody.kernels.motion import Motion, resting
+from dalembert.multibody.kernels.motion import MotionState, resting
 
 _ENDS = 4  # of steps, through which outputs are interpolated
 
@@ -41,13 +41,13 @@ class Step(NamedTuple):
     weights: Reals2
     moved: Reals2
     works: Integers
-    dual_work: Address
+    complex_work: Address
 
 
 class Along(NamedTuple):
     """For derivatives: a state, stages, calls of the stages, and the addresses of kernels, 0 without directions."""
 
-    dold: Motion
+    dold: MotionState
     ds: Stages
     works: Integers
     differentiate: Address
@@ -60,17 +60,17 @@ class Outputs(NamedTuple):
 
     last: Ends
     apart: Matrices
-    between: Motion
-    dbetween: Motion
+    between: MotionState
+    dbetween: MotionState
     shares: Reals3
-    lifted: Complexes2
+    complex_state: Complexes2
     work: Address
 
 
 class Workspace(NamedTuple):
     """Work of a run: the state, its step, outputs, derivatives, consistent accelerations."""
 
-    new: Motion
+    new: MotionState
     matrices: Matrices
     step: Step
     outputs: Outputs
@@ -79,27 +79,28 @@ class Workspace(NamedTuple):
 
 
 def workspace(
-    problem: Problem, method: Coefficients, pattern: Pattern, dstates: Motion, calls: list[Call], dual_calls: list[Call]
-) -> Workspace:
+    problem: Problem, method: Coefficients, pattern: Pattern, dstates: MotionState, calls: list[Call],
+    complex_calls: list[Call],
+) -> Workspace:  # fmt: skip
     """Room for a run; ``calls`` in real and in complex numbers: one a stage, and one more before them."""
     directions, width = dstates.x.shape
     count, differs = len(method.c), directions > 0
-    works, dual_works = (np.array([call.address for call in own]) for own in (calls, dual_calls))
-    work, dual_work = int(works[0]), int(dual_works[0])
+    works, complex_works = (np.array([call.address for call in own]) for own in (calls, complex_calls))
+    work, complex_work = int(works[0]), int(complex_works[0])
     matrices, apart = room(pattern, len(method.pairs)), room(pattern, 0)
     apart = apart._replace(heavy=matrices.heavy, mass=matrices.mass)  # which do not change in a motion
     step = Step(
         stages(count, width), stages(count, width), buffers(count, width),
-        np.zeros((count + 1, 2 * count)), np.zeros((6, width)), works[1:], dual_work,
+        np.zeros((count + 1, 2 * count)), np.zeros((6, width)), works[1:], complex_work,
     )  # fmt: skip
     outputs = Outputs(
         ends(_ENDS, dstates), apart, resting(width), resting(width), np.zeros((4, _ENDS, 3)),
         np.zeros((10, width), complex), work,
     )  # fmt: skip
     along = Along(
-        resting(width), stages(count, width), dual_works[1:], *(
+        resting(width), stages(count, width), complex_works[1:], *(
             kernel.address if differs else 0 for kernel in (differentiate, settle_end_along, record_along)
         ),
     )  # fmt: skip
-    consistent = consistency(problem, work, dual_work, directions)
+    consistent = consistency(problem, work, complex_work, directions)
     return Workspace(resting(width), matrices, step, outputs, along, consistent)

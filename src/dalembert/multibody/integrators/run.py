@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dalembert.multibody.integrators.problem import DIVERGED, SINGULAR, TOO_MANY_STEPS, Problem, Reduced
-from dalembert.multibody.kernels.motion import Motion
+from dalembert.multibody.kernels.motion import MotionState
 from dalembert.multibody.lowering import Lowered
 from dalembert.multibody.scales import scales
 
@@ -19,8 +19,8 @@ class Run:
     reason : str or None
         Why the run ended early.
     times : array (samples,)
-    states : Motion of arrays (samples, N + 1)
-    derivatives : Motion of arrays (directions, samples, N + 1)
+    states : MotionState of arrays (samples, N + 1)
+    derivatives : MotionState of arrays (directions, samples, N + 1)
     counts : array (4,)
         Steps, Newton iterations, factorisations, rejected steps.
     iterations, ends : array
@@ -29,8 +29,8 @@ class Run:
 
     reason: str | None
     times: np.ndarray
-    states: Motion
-    derivatives: Motion
+    states: MotionState
+    derivatives: MotionState
     counts: np.ndarray
     iterations: np.ndarray
     ends: np.ndarray

@@ -17,7 +17,7 @@ from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.problem import DIVERGED, DONE, SINGULAR, Log, Problem
 from dalembert.multibody.integrators.run import Run, explain
 from dalembert.multibody.integrators.stabilisation import Projection, Stabilisation, posed
-from dalembert.multibody.kernels.motion import Histories, Motion, Motions, copy, interpolate, resting, row
+from dalembert.multibody.kernels.motion import Histories, MotionState, MotionStates, copy, interpolate, resting, row
 from dalembert.multibody.structure import Structure
 
 _UNBOUNDED = 1e8  # m or rad: no mechanism, but a step that is too long
@@ -66,7 +66,7 @@ class RungeKutta4(Integrator):
         """Runs of samples in one compiled loop that leaves the interpreter's lock free."""
         samples, directions = batch.samples, batch.directions
         problem, terms = posed(self.stabilisation, samples, batch.problem, self.step)
-        works = samples[0].real.call(), samples[0].dual.call()
+        works = samples[0].real.call(), samples[0].complex_model.call()
         own = completion(problem, terms, works[0].address, works[1].address, len(directions))
         room = _workspace(batch.shape[1], len(directions), own)
         _fill(room.stage.dstates, batch.dstates)
@@ -78,13 +78,13 @@ class RungeKutta4(Integrator):
             room.completion.tools.partition.rank[0] = 0  # independent coordinates are chosen anew
             out = resting(1 + len(directions), *batch.shape)
             counts = np.zeros(4, dtype=np.int64)
-            models = lowered.real.need("rates").address, lowered.dual.address
+            models = lowered.real.need("rates").address, lowered.complex_model.address
             status, time = integrate(problem, edges, float(self.step), terms, *models, directions, out, counts, room)
             if status == SINGULAR and not np.max(np.abs(room.stage.state.x)) < _UNBOUNDED:
                 status = DIVERGED
             reason = None if status == DONE else explain(lowered, status, time, 0, f"the step is {self.step:g} s")
             counts[1] = 0
-            parts = Motion(*(values[0] for values in out)), Motion(*(values[1:] for values in out))
+            parts = MotionState(*(values[0] for values in out)), MotionState(*(values[1:] for values in out))
             runs.append(batch.result(reason, *parts, Log(counts, np.zeros(len(ends), dtype=np.int64), ends)))
         return runs
 
@@ -92,9 +92,9 @@ class RungeKutta4(Integrator):
 class Stage(NamedTuple):
     """A state and its derivatives: one after the other in a stack (1 + directions, N + 1), and apart, in its memory."""
 
-    stack: Motions
-    state: Motion
-    dstates: Motions
+    stack: MotionStates
+    state: MotionState
+    dstates: MotionStates
 
 
 class Workspace(NamedTuple):
@@ -105,18 +105,18 @@ class Workspace(NamedTuple):
 
     stage: Stage
     between: Stage
-    old: Motions
-    total: Motions
+    old: MotionStates
+    total: MotionStates
     completion: Completion
 
 
 def _workspace(width: int, directions: int, own: Completion) -> Workspace:
     stages, shape = [], (1 + directions, width)
     for _ in range(2):
-        stack = Motions(*resting(*shape))
-        parts = Motion(*(values[0] for values in stack)), Motions(*(values[1:] for values in stack))
+        stack = MotionStates(*resting(*shape))
+        parts = MotionState(*(values[0] for values in stack)), MotionStates(*(values[1:] for values in stack))
         stages.append(Stage(stack, *parts))
-    return Workspace(stages[0], stages[1], Motions(*resting(*shape)), Motions(*resting(*shape)), own)
+    return Workspace(stages[0], stages[1], MotionStates(*resting(*shape)), MotionStates(*resting(*shape)), own)
 
 
 def _fill(target: NamedTuple, source: NamedTuple) -> None:
@@ -166,8 +166,8 @@ _partition_at = partition.at
 
 @kernel
 def integrate(
-    problem: Problem, edges: Reals, step: float, terms: Terms, model: Address, dual: Address, directions: Integers,
-    out: Histories, counts: Integers, room: Workspace,
+    problem: Problem, edges: Reals, step: float, terms: Terms, model: Address, complex_model: Address,
+    directions: Integers, out: Histories, counts: Integers, room: Workspace,
 ) -> tuple[int, float]:  # fmt: skip
     """Run one sample: status and time reached.
 
@@ -178,7 +178,7 @@ def integrate(
         Of the smooth stretches, s.
     step : float
     terms : Terms
-    model, dual : address
+    model, complex_model : address
         Models in real and in complex numbers.
     directions : array of addresses
         Complex models, one a direction of differentiation.
@@ -198,10 +198,11 @@ def integrate(
         within = 0.5 * (begin + end)
         if terms.way == PARTITIONED:
             _partition_at(
-                own.partition, problem, terms, dual, begin, within, stage.state, tools.dual_work, tools.partition
-            )
+                own.partition, problem, terms, complex_model, begin, within, stage.state, tools.complex_work,
+                tools.partition,
+            )  # fmt: skip
         status = complete(
-            problem, terms, model, dual, directions, stage.state, stage.dstates, own, begin, within, False
+            problem, terms, model, complex_model, directions, stage.state, stage.dstates, own, begin, within, False
         )
         if status != DONE:
             return status, begin
@@ -222,20 +223,13 @@ def integrate(
                 if last:
                     _take(n, room.total, stage.stack)
                     if terms.way == PARTITIONED and _partition_at(
-                        own.partition,
-                        problem,
-                        terms,
-                        dual,
-                        target,
-                        within,
-                        stage.state,
-                        tools.dual_work,
+                        own.partition, problem, terms, complex_model, target, within, stage.state, tools.complex_work,
                         tools.partition,
-                    ):
+                    ):  # fmt: skip
                         counts[1] += 1
                 now = target if last else t + share * h
                 status = complete(
-                    problem, terms, model, dual, directions, stage.state, stage.dstates, own, now, within,
+                    problem, terms, model, complex_model, directions, stage.state, stage.dstates, own, now, within,
                     last and projects,
                 )  # fmt: skip
                 if status != DONE:
@@ -246,7 +240,7 @@ def integrate(
                 _interpolate(n, h, share, room.old, stage.stack, between.stack)
                 if share < 1.0 - 1e-9:
                     status = complete(
-                        problem, terms, model, dual, directions, between.state, between.dstates, own,
+                        problem, terms, model, complex_model, directions, between.state, between.dstates, own,
                         problem.times[due], within, projects,
                     )  # fmt: skip
                     if status != DONE:

@@ -7,13 +7,12 @@ for derivatives, too: they are iterated after the state, with the same factorisa
 
 from dalembert.kernels.kernel import inner, kernel
 from dalembert.kernels.words import Address, Complexes2, Reals2
-from dalembert.multibody.integrators.lifting import lift
 from dalembert.multibody.integrators.matrices import Matrices, Pattern, add_inertia
 from dalembert.multibody.integrators.problem import Problem
 from dalembert.multibody.kernels.assembly import constraint_forces, constraint_rates, residual
-from dalembert.multibody.kernels.dual import STEP
+from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.linear import solve
-from dalembert.multibody.kernels.motion import Motion
+from dalembert.multibody.kernels.motion import MotionState, perturb
 
 COORDINATES, VELOCITIES, ACCELERATIONS = range(3)  # levels from which a state is settled
 _MOST_ITERATIONS = 25
@@ -116,8 +115,8 @@ def balanced(model, n, state, work, f, unheld, at, still):
 
 @kernel
 def settle(
-    problem: Problem, pattern: Pattern, matrices: Matrices, model: Address, state: Motion, moved: Reals2, work: Address,
-    first: int,
+    problem: Problem, pattern: Pattern, matrices: Matrices, model: Address, state: MotionState, moved: Reals2,
+    work: Address, first: int,
 ) -> bool:  # fmt: skip
     """Accelerations and multipliers of a state; if ``first`` says so, coordinates and velocities are moved before.
 
@@ -172,30 +171,30 @@ def accelerate_roughly(problem, pattern, matrices, model, state, work, room):
 
 @kernel
 def settle_along(
-    problem: Problem, pattern: Pattern, matrices: Matrices, tilted: Address, state: Motion, dstate: Motion,
-    moved: Reals2, work: Address, lifted: Complexes2, first: int,
+    problem: Problem, pattern: Pattern, matrices: Matrices, perturbed: Address, state: MotionState, dstate: MotionState,
+    moved: Reals2, work: Address, complex_state: Complexes2, first: int,
 ) -> None:  # fmt: skip
     """Derivative of a settled state along a direction, from that of the state before; signals in ``work``.
 
-    ``moved`` (6, N + 1) are the moves as `settle` left them, and room; so is ``lifted`` (10, N + 1).
+    ``moved`` (6, N + 1) are the moves as `settle` left them, and room; so is ``complex_state`` (10, N + 1).
     """
     n, last = problem.n, len(state.x) - 1
     dmoved, answer, imaginary = moved[2:4], moved[4], moved[5]
-    shift, f, rate, second = lifted[3], lifted[4], lifted[5], lifted[6]
+    shift, f, rate, second = complex_state[3], complex_state[4], complex_state[5], complex_state[6]
     for i in range(last + 1):
         dmoved[0, i] = dmoved[1, i] = 0.0
     for level in range(first if last > n else ACCELERATIONS, 3):
         before = 0.0
         for iteration in range(_MOST_ITERATIONS):
-            lift(n, state, dstate, lifted)
+            perturb(n, state, dstate, complex_state)
             if level < 2:
                 for i in range(last + 1):
                     shift[i] = complex(moved[level, i], STEP * dmoved[level, i])
-                weigh_along(tilted, n, lifted[0], shift, work, lifted[7:], f)
+                weigh_along(perturbed, n, complex_state[0], shift, work, complex_state[7:], f)
             else:
-                residual(tilted, n, lifted[0], lifted[1], lifted[2], work, 1.0, f)
+                residual(perturbed, n, complex_state[0], complex_state[1], complex_state[2], work, 1.0, f)
             if level > 0:
-                constraint_rates(tilted, n, lifted[0], lifted[1], lifted[2], work, rate, second)
+                constraint_rates(perturbed, n, complex_state[0], complex_state[1], complex_state[2], work, rate, second)
                 for i in range(n, last):
                     f[i] = rate[i] if level == 1 else second[i]
             for i in range(last + 1):

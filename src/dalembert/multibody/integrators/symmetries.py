@@ -9,7 +9,7 @@ from dalembert.multibody.integrators.energy_balance import Rigid
 from dalembert.multibody.lowering import Lowered
 
 
-def rigid_motions(lowered: Lowered, tilted: Sequence[Lowered]) -> Rigid:
+def rigid_motions(lowered: Lowered, perturbed: Sequence[Lowered]) -> Rigid:
     """The free translations and the free rotation of a mechanism, by its gravity and what holds it to the ground.
 
     Without any hold, those are the translations across gravity, and without gravity the rotation, too. Pins, rods and
@@ -26,7 +26,7 @@ def rigid_motions(lowered: Lowered, tilted: Sequence[Lowered]) -> Rigid:
     free = [not held and len(points) == 0 and not np.any(gravity[:, axis]) for axis in range(2)]
     turns = not held and not np.any(gravity) and not np.any(np.ptp(np.real(points), axis=0) if len(points) else 0.0)
     shifts = []
-    for entry in (lowered, *tilted):
+    for entry in (lowered, *perturbed):
         rows = []
         for axis in np.flatnonzero(free):
             rows.append(np.zeros(len(kinds), dtype=complex))
@@ -38,7 +38,7 @@ def rigid_motions(lowered: Lowered, tilted: Sequence[Lowered]) -> Rigid:
             rows[-1][positions[::2]], rows[-1][positions[1::2]] = y, -x
         shifts.append(np.array(rows).reshape(len(rows), len(kinds)))
     spin = np.array([0.0] * sum(free) + [1.0] * turns)
-    along = np.array(shifts[1:], dtype=complex).reshape(len(tilted), *shifts[0].shape)
+    along = np.array(shifts[1:], dtype=complex).reshape(len(perturbed), *shifts[0].shape)
     return Rigid(partner, sign, spin, np.ascontiguousarray(shifts[0].real), along)
 
 

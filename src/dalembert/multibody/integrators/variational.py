@@ -17,7 +17,7 @@ from dalembert.multibody.integrators.midpoint_loop import Settings, differentiat
 from dalembert.multibody.integrators.outputs import record_along
 from dalembert.multibody.integrators.problem import DONE
 from dalembert.multibody.integrators.run import Run, cut_down, explain
-from dalembert.multibody.kernels.motion import Motion, resting
+from dalembert.multibody.kernels.motion import MotionState, resting
 from dalembert.multibody.lowering import Lowered
 from dalembert.multibody.structure import Structure
 from dalembert.settings import expect, expect_positive
@@ -78,22 +78,22 @@ class Variational(Integrator):
             states, middle = resting(*batch.shape), 0.5 * (edges[0] + edges[1])
             energy, denergies, balance = self._balance(lowered, batch.perturbed, start, batch.dstates, middle)
             settings = Settings(float(self.step), float(self.newton_tolerance), lowered.dissipates, energy)
-            real, dual = lowered.real.need("rates"), lowered.dual
-            calls, dual_calls = [real.call(), real.call()], [dual.call(), dual.call()]
+            real, complex_model = lowered.real.need("rates"), lowered.complex_model
+            calls, complex_calls = [real.call(), real.call()], [complex_model.call(), complex_model.call()]
             status, time, unknown = integrate(
-                batch.problem, pattern, edges, settings, real.address, dual.address, directions, start, batch.dstates,
-                states, dout, log,
-                *workspace(batch.problem, pattern, calls, dual_calls, balance, denergies, batch.dstates),
+                batch.problem, pattern, edges, settings, real.address, complex_model.address, directions, start,
+                batch.dstates, states, dout, log,
+                *workspace(batch.problem, pattern, calls, complex_calls, balance, denergies, batch.dstates),
             )  # fmt: skip
             reason = None if status == DONE else self._explain(lowered, status, time, unknown)
             runs.append(batch.result(reason, states, dout, log))
         return runs
 
     def _balance(
-        self, lowered: Lowered, tilted: Sequence[Lowered], start: Motion, dstarts: Motion, within: float
+        self, lowered: Lowered, perturbed: Sequence[Lowered], start: MotionState, dstarts: MotionState, within: float
     ) -> tuple[float, np.ndarray, Balance]:
         """Energy at the start with its derivatives, and what keeps it: here nothing does."""
-        return 0.0, np.zeros(len(tilted)), no_balance(len(start.x))
+        return 0.0, np.zeros(len(perturbed)), no_balance(len(start.x))
 
     def _explain(self, lowered: Lowered, status: int, time: float, unknown: int) -> str:
         return explain(lowered, status, time, unknown, cut_down(self.step))

@@ -68,22 +68,22 @@ def _add_tangents(blocks, count, slots, by, rows, work, matrix):
 
 
 @inner
-def tangent(dual, slots, n, x, v, a, by, rows, work, matrix):
+def tangent(complex_model, slots, n, x, v, a, by, rows, work, matrix):
     """Fill the flat ``matrix`` with the residual's derivative along ``by[0] dq + by[1] dv + by[2] da``, and dlambda.
 
-    Rows of the equations of motion are multiplied by ``rows[0]``, those of the constraints by ``rows[1]``. ``dual`` is
-    the model in complex numbers, ``slots`` where each block finds the positions of its entries.
+    Rows of the equations of motion are multiplied by ``rows[0]``, those of the constraints by ``rows[1]``.
+    ``complex_model`` is the model in complex numbers, ``slots`` where each block finds the positions of its entries.
     """
     _place(work, x, v, a)
-    _add_tangents(model_at(dual).blocks, model_at(dual).block_count, slots, by, rows, work, matrix)
+    _add_tangents(model_at(complex_model).blocks, model_at(complex_model).block_count, slots, by, rows, work, matrix)
 
 
 @inner
-def reduced_tangent(dual, slots, increments, last_row, x, v, a, by, rows, work, matrix):
+def reduced_tangent(complex_model, slots, increments, last_row, x, v, a, by, rows, work, matrix):
     """The tangent of the reduced system, along increments of dq, dv and da, and of multipliers."""
     own = _place(work, x, v, a)
     own.increments, own.last_row = increments, last_row
-    _add_tangents(model_at(dual).reduced, model_at(dual).reduced_count, slots, by, rows, work, matrix)
+    _add_tangents(model_at(complex_model).reduced, model_at(complex_model).reduced_count, slots, by, rows, work, matrix)
 
 
 @inner

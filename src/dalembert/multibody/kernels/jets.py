@@ -18,7 +18,7 @@ from numba.extending import lower_builtin, lower_cast, models, overload, registe
 
 from dalembert.kernels.kernel import inlined
 from dalembert.kernels.views import intrinsic
-from dalembert.multibody.kernels import dual
+from dalembert.multibody.kernels import elementary
 
 infer_global: Any = _infer_global  # a decorator, unlike its type stub says
 _FIELDS = ("value", "first", "second")
@@ -49,10 +49,10 @@ class Jet:
         return Jet(u.value * v.value, u.first * v.value + u.value * v.first, second)
 
     def __truediv__(self, other: Any) -> "Jet":
-        return self * dual.reciprocal(_jet(other))
+        return self * elementary.reciprocal(_jet(other))
 
     def __rtruediv__(self, other: Any) -> "Jet":
-        return _jet(other) * dual.reciprocal(self)
+        return _jet(other) * elementary.reciprocal(self)
 
     def function(self, value: Any, slope: Any, curvature: Any) -> "Jet":
         """A function of the jet, by its value and derivatives there."""
@@ -61,7 +61,7 @@ class Jet:
     @property
     def real(self) -> Any:
         """Real part of the number, for decisions."""
-        return dual.real(self.value)
+        return elementary.real(self.value)
 
     __radd__, __rmul__ = __add__, __mul__
 
@@ -305,7 +305,7 @@ def _negate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
 @overload(operator.truediv)
 def _divide(u, v):
     if isinstance(u, JetType) or isinstance(v, JetType):
-        return lambda u, v: u * dual.reciprocal(v)
+        return lambda u, v: u * elementary.reciprocal(v)
     return None
 
 
@@ -316,69 +316,69 @@ def _is_jet(kind: types.Type) -> bool:
     return isinstance(kind, JetType)
 
 
-@overload(dual.real)
+@overload(elementary.real)
 def _real(x):
-    return (lambda x: dual.real(parts(x)[0])) if _is_jet(x) else None
+    return (lambda x: elementary.real(parts(x)[0])) if _is_jet(x) else None
 
 
-@overload(dual.reciprocal)
+@overload(elementary.reciprocal)
 def _reciprocal(x):
     if not _is_jet(x):
         return None
 
     def reciprocal(x):
         u, first, second = parts(x)
-        r = dual.reciprocal(u)
+        r = elementary.reciprocal(u)
         square = r * r
         return jet(r, -first * square, (2.0 * first * first * r - second) * square)
 
     return reciprocal
 
 
-@overload(dual.sin_cos)
+@overload(elementary.sin_cos)
 def _sin_cos(x):
     if not _is_jet(x):
         return None
 
     def sin_cos(x):
         u, first, second = parts(x)
-        s, c = dual.sin_cos(u)
+        s, c = elementary.sin_cos(u)
         square = first * first
         return jet(s, c * first, c * second - s * square), jet(c, -s * first, -s * second - c * square)
 
     return sin_cos
 
 
-@overload(dual.root)
+@overload(elementary.root)
 def _root(x):
     if not _is_jet(x):
         return None
 
     def root(x):
         u, first, second = parts(x)
-        r = dual.root(u)
-        half = 0.5 * dual.reciprocal(r)
+        r = elementary.root(u)
+        half = 0.5 * elementary.reciprocal(r)
         rate = first * half
         return jet(r, rate, (second - 2.0 * rate * rate) * half)
 
     return root
 
 
-@overload(dual.tanh)
+@overload(elementary.tanh)
 def _tanh(x):
     if not _is_jet(x):
         return None
 
     def tanh(x):
         u, first, second = parts(x)
-        t = dual.tanh(u)
+        t = elementary.tanh(u)
         slope = 1.0 - t * t
         return jet(t, slope * first, slope * (second - 2.0 * t * first * first))
 
     return tanh
 
 
-@overload(dual.angle_of)
+@overload(elementary.angle_of)
 def _angle_of(x, y):
     if not _is_jet(x):
         return None
@@ -386,10 +386,10 @@ def _angle_of(x, y):
     def angle_of(x, y):
         u, du, ddu = parts(x)
         w, dw, ddw = parts(y)
-        inverse = dual.reciprocal(u * u + w * w)
+        inverse = elementary.reciprocal(u * u + w * w)
         rate = (u * dw - w * du) * inverse
         second = (u * ddw - w * ddu - 2.0 * rate * (u * du + w * dw)) * inverse
-        return jet(dual.angle_of(u, w), rate, second)
+        return jet(elementary.angle_of(u, w), rate, second)
 
     return angle_of
 

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 from dalembert.kernels.kernel import BlockKernel, inlined
 from dalembert.kernels.views import complexes, complexes2, integers, integers2, local, reals, reals2, records
-from dalembert.multibody.kernels.dual import STEP
+from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.records import TANGENT, Inputs, block_at, call_at
 
 if TYPE_CHECKING:

@@ -6,9 +6,10 @@ import numpy as np
 
 from dalembert.kernels.kernel import inlined, inner
 from dalembert.kernels.words import Reals, Reals2, Reals3
+from dalembert.multibody.kernels.elementary import STEP
 
 
-class Motion(NamedTuple):
+class MotionState(NamedTuple):
     """A state: unknowns x (N + 1: coordinates, multipliers, zero), velocities, accelerations, algorithmic ones.
 
     The same four arrays hold a state's derivative along one direction of the parameters.
@@ -20,7 +21,7 @@ class Motion(NamedTuple):
     w: Reals
 
 
-class Motions(NamedTuple):
+class MotionStates(NamedTuple):
     """A stack of states: arrays (states, N + 1)."""
 
     x: Reals2
@@ -51,8 +52,8 @@ class Coefficients(NamedTuple):
 
 
 def resting(*shape: int) -> Any:
-    """States of zeros: a `Motion`, or with more axes what serves as `Motions` or as `Histories`."""
-    return Motion(np.zeros(shape), np.zeros(shape), np.zeros(shape), np.zeros(shape))
+    """States of zeros: a `MotionState`, or with more axes what serves as `MotionStates` or as `Histories`."""
+    return MotionState(np.zeros(shape), np.zeros(shape), np.zeros(shape), np.zeros(shape))
 
 
 @inner
@@ -69,16 +70,26 @@ def copy(source, target):
         target.x[i], target.v[i], target.a[i], target.w[i] = source.x[i], source.v[i], source.a[i], source.w[i]
 
 
+@inner
+def perturb(n, state, direction, target):
+    """Complex state: the real one plus the imaginary step along a direction."""
+    for i in range(len(state.x)):
+        target[0, i] = complex(state.x[i], STEP * direction.x[i])
+    for i in range(n):
+        target[1, i] = complex(state.v[i], STEP * direction.v[i])
+        target[2, i] = complex(state.a[i], STEP * direction.a[i])
+
+
 @inlined
 def row(stack, d):
     """State ``d`` of a stack of states."""
-    return Motion(stack.x[d], stack.v[d], stack.a[d], stack.w[d])
+    return MotionState(stack.x[d], stack.v[d], stack.a[d], stack.w[d])
 
 
 @inlined
 def rows(stack, d):
     """Stack ``d`` of a stack of stacks."""
-    return Motions(stack.x[d], stack.v[d], stack.a[d], stack.w[d])
+    return MotionStates(stack.x[d], stack.v[d], stack.a[d], stack.w[d])
 
 
 @inner

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from dalembert.kernels.kernel import BlockKernel
 from dalembert.kernels.views import complexes, complexes2, integers, integers2, local, reals, reals2, records
 from dalembert.multibody.kernels.charts import projecting, spreading
-from dalembert.multibody.kernels.dual import STEP
+from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.loops import arithmetic, made
 from dalembert.multibody.kernels.records import TANGENT, Inputs, block_at, call_at
 

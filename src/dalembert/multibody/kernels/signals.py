@@ -6,7 +6,7 @@ Signal 0 is the time itself. The first entry of `data` is the time of the signal
 
 from dalembert.kernels.kernel import BlockKernel, inner
 from dalembert.kernels.views import call_with, complexes, complexes2, integers, integers2, reals, reals2, stack
-from dalembert.multibody.kernels.dual import sin_cos
+from dalembert.multibody.kernels.elementary import sin_cos
 from dalembert.multibody.kernels.records import call_at, model_at
 
 TIME, CONSTANT, STEP, HARMONIC, POLYNOMIAL, PIECEWISE, HELD, CUSTOM = range(8)

@@ -19,7 +19,7 @@ from dalembert.multibody.components.planar.pairs import (
     twist_pair,
 )
 from dalembert.multibody.components.points import Side, require_direction
-from dalembert.multibody.kernels.dual import wrapped
+from dalembert.multibody.kernels.elementary import wrapped
 from dalembert.multibody.kernels.kind import Kind
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ import numpy as np
 from dalembert.kernels.kernel import inlined, inner
 from dalembert.multibody.components.planar import hermite
 from dalembert.multibody.components.planar.line_bending import curvature, spread_stiffness
-from dalembert.multibody.kernels.dual import reciprocal, root
+from dalembert.multibody.kernels.elementary import reciprocal, root
 from dalembert.multibody.kernels.kind import Kind
 
 WIDTH = 8

@@ -19,7 +19,7 @@ from dalembert.multibody.components.planar.section_inertia import (
     mass_matrix,
     undamped,
 )
-from dalembert.multibody.kernels.dual import reciprocal
+from dalembert.multibody.kernels.elementary import reciprocal
 from dalembert.multibody.kernels.kind import Kind
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(3)

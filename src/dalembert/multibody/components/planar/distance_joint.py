@@ -13,7 +13,7 @@ from dalembert.multibody.components.fields import Number, number, require
 from dalembert.multibody.components.planar import pairs
 from dalembert.multibody.components.planar.joint import OUTPUTS, Joint, observe_joint
 from dalembert.multibody.components.planar.pairs import push_pair, separation
-from dalembert.multibody.kernels.dual import root
+from dalembert.multibody.kernels.elementary import root
 from dalembert.multibody.kernels.kind import Kind
 
 if TYPE_CHECKING:

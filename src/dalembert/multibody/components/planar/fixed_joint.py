@@ -9,7 +9,7 @@ from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.planar import pairs
 from dalembert.multibody.components.planar.joint import OUTPUTS, Joint, observe_joint
 from dalembert.multibody.components.planar.pairs import push_pair, relative_angle, separation, twist_pair
-from dalembert.multibody.kernels.dual import sin_cos
+from dalembert.multibody.kernels.elementary import sin_cos
 from dalembert.multibody.kernels.kind import Kind
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 from dalembert.errors import InputError
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number, require, require_not_negative
-from dalembert.multibody.kernels.dual import exponential, logarithm, tanh
+from dalembert.multibody.kernels.elementary import exponential, logarithm, tanh
 
 #: Viscous coefficient, constant Coulomb force or torque, what it grows by with the reaction (friction coefficient
 #: times pin radius, or friction coefficient), the rate at which tanh(rate / slip) turns its sign, and how much larger

@@ -5,7 +5,7 @@ With t = r' and c = r'', kappa = (t x c)/|t|^2. Both are sums of an element's ve
 
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.planar import hermite
-from dalembert.multibody.kernels.dual import reciprocal
+from dalembert.multibody.kernels.elementary import reciprocal
 
 
 @inlined

@@ -13,7 +13,7 @@ NODE    x, y, gx, gy               phi: angle of the frame against the gradient 
 """
 
 from dalembert.kernels.kernel import inlined
-from dalembert.multibody.kernels.dual import angle_of, reciprocal, root, sin_cos
+from dalembert.multibody.kernels.elementary import angle_of, reciprocal, root, sin_cos
 
 GROUND, RIGID, MASS, NODE = range(4)
 

@@ -19,7 +19,7 @@ from dalembert.multibody.components.planar.pairs import (
 )
 from dalembert.multibody.components.points import Side, require_direction
 from dalembert.multibody.components.signals import Course
-from dalembert.multibody.kernels.dual import exponential, logarithm, root, tanh
+from dalembert.multibody.kernels.elementary import exponential, logarithm, root, tanh
 from dalembert.multibody.kernels.kind import Kind
 
 if TYPE_CHECKING:

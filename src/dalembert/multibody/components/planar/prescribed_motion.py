@@ -11,7 +11,7 @@ from dalembert.multibody.components.planar import pairs
 from dalembert.multibody.components.planar.joint import OUTPUTS, Joint, observe_joint
 from dalembert.multibody.components.planar.pairs import push_pair, relative_angle, separation, twist_pair
 from dalembert.multibody.components.signals import Course, Step, Table, as_signal
-from dalembert.multibody.kernels.dual import wrapped
+from dalembert.multibody.kernels.elementary import wrapped
 from dalembert.multibody.kernels.jets import signal
 from dalembert.multibody.kernels.kind import Kind
 

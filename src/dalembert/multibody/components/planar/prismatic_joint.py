@@ -17,7 +17,7 @@ from dalembert.multibody.components.planar.pairs import (
     separation_rate,
     twist_pair,
 )
-from dalembert.multibody.kernels.dual import root, sin_cos
+from dalembert.multibody.kernels.elementary import root, sin_cos
 from dalembert.multibody.kernels.kind import Kind
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from dalembert.multibody.components.planar import friction, pairs
 from dalembert.multibody.components.planar.joint import OUTPUTS, Joint, observe_joint
 from dalembert.multibody.components.planar.markers import GROUND, RIGID
 from dalembert.multibody.components.planar.pairs import push_pair, relative_spin, separation, twist_pair
-from dalembert.multibody.kernels.dual import root
+from dalembert.multibody.kernels.elementary import root
 from dalembert.multibody.kernels.kind import Kind
 
 if TYPE_CHECKING:

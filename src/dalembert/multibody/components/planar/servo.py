@@ -11,7 +11,7 @@ from dalembert.multibody.components.fields import Number, number, require, requi
 from dalembert.multibody.components.planar.motor_law import Drive, clipped, drive_kind
 from dalembert.multibody.components.planar.pairs import relative_angle, relative_spin
 from dalembert.multibody.components.signals import Course
-from dalembert.multibody.kernels.dual import wrapped
+from dalembert.multibody.kernels.elementary import wrapped
 
 if TYPE_CHECKING:
     from dalembert.multibody.lowering import Lowering

@@ -11,7 +11,7 @@ from dalembert.multibody.components.planar.load import Load
 from dalembert.multibody.components.planar.pairs import push_pair, separation, separation_rate
 from dalembert.multibody.components.planar.spring_law import spring_kind, tension
 from dalembert.multibody.components.points import Side
-from dalembert.multibody.kernels.dual import root
+from dalembert.multibody.kernels.elementary import root
 
 if TYPE_CHECKING:
     from dalembert.multibody.lowering import Lowering

@@ -30,7 +30,7 @@ from dalembert.multibody.components.planar.section_inertia import (
     mass_matrix,
     undamped,
 )
-from dalembert.multibody.kernels.dual import reciprocal
+from dalembert.multibody.kernels.elementary import reciprocal
 from dalembert.multibody.kernels.kind import Kind
 
 LINE, SLOPE, SECTION = (0, 2, 8), (2, 8), (4, 10)  # slots of r1, r1_x and r2_x; of the slopes; of the section vectors

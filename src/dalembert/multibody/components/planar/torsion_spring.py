@@ -11,7 +11,7 @@ from dalembert.multibody.components.planar.load import Load
 from dalembert.multibody.components.planar.pairs import relative_angle, relative_spin, twist_pair
 from dalembert.multibody.components.planar.spring_law import spring_kind, tension
 from dalembert.multibody.components.points import Side, require_direction
-from dalembert.multibody.kernels.dual import wrapped
+from dalembert.multibody.kernels.elementary import wrapped
 
 if TYPE_CHECKING:
     from dalembert.multibody.lowering import Lowering

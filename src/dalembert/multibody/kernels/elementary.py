@@ -113,11 +113,11 @@ def _sin_cos(x):
     if not _is_complex(x):
         return lambda x: (math.sin(x), math.cos(x))
 
-    def dual(x):
+    def complex_function(x):
         s, c = math.sin(x.real), math.cos(x.real)
         return complex(s, c * x.imag), complex(c, -s * x.imag)
 
-    return dual
+    return complex_function
 
 
 @overload(root)
@@ -127,11 +127,11 @@ def _root(x):
     if not _is_complex(x):
         return lambda x: math.sqrt(x)
 
-    def dual(x):
+    def complex_function(x):
         s = math.sqrt(x.real)
         return complex(s, 0.5 * x.imag / s)
 
-    return dual
+    return complex_function
 
 
 @overload(tanh)
@@ -141,11 +141,11 @@ def _tanh(x):
     if not _is_complex(x):
         return lambda x: math.tanh(x)
 
-    def dual(x):
+    def complex_function(x):
         s = math.tanh(x.real)
         return complex(s, (1.0 - s * s) * x.imag)
 
-    return dual
+    return complex_function
 
 
 @overload(exponential)
@@ -155,11 +155,11 @@ def _exponential(x):
     if not _is_complex(x):
         return lambda x: math.exp(x)
 
-    def dual(x):
+    def complex_function(x):
         e = math.exp(x.real)
         return complex(e, e * x.imag)
 
-    return dual
+    return complex_function
 
 
 @overload(logarithm)
@@ -169,10 +169,10 @@ def _logarithm(x):
     if not _is_complex(x):
         return lambda x: math.log(x)
 
-    def dual(x):
+    def complex_function(x):
         return complex(math.log(x.real), x.imag / x.real)
 
-    return dual
+    return complex_function
 
 
 @overload(angle_of)
@@ -182,11 +182,11 @@ def _angle_of(x, y):
     if not _is_complex(x):
         return lambda x, y: math.atan2(y, x)
 
-    def dual(x, y):
+    def complex_function(x, y):
         square = x.real * x.real + y.real * y.real
         return complex(math.atan2(y.real, x.real), (x.real * y.imag - y.real * x.imag) / square)
 
-    return dual
+    return complex_function
 
 
 @overload(reciprocal)
@@ -196,11 +196,11 @@ def _reciprocal(x):
     if not _is_complex(x):
         return lambda x: 1.0 / x
 
-    def dual(x):
+    def complex_function(x):
         inverse = 1.0 / x.real
         return complex(inverse, -x.imag * inverse * inverse)
 
-    return dual
+    return complex_function
 
 
 @inner

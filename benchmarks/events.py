@@ -5,7 +5,14 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks import timing
-from dalembert import Elastic, FrictionContact, HarmonicBalance, HarmonicForce, VibrationSystem, frequency_response
+from dalembert import (
+    ElasticSlider,
+    FrictionContact,
+    HarmonicBalance,
+    HarmonicForce,
+    VibrationSystem,
+    frequency_response,
+)
 from dalembert.structure import lumped
 from dalembert.study import load
 
@@ -19,11 +26,11 @@ def slider(masses: int) -> tuple[VibrationSystem, np.ndarray, str]:
     """One mass, or two, with an elastic slider, frequencies in Hz, and the mass that is observed."""
     if masses == 1:
         own = VibrationSystem(lumped({"m1": 1.0}, [("m1", None, 1.0, 0.04)]))
-        law, friction = Elastic(0.8), 0.5
+        law, friction = ElasticSlider(0.8), 0.5
     else:
         springs = [("m1", None, 1.0, 0.02), ("m1", "m2", 1.0, 0.02), ("m2", None, 0.5, 0.01)]
         own = VibrationSystem(lumped({"m1": 1.0, "m2": 1.0}, springs))
-        law, friction = Elastic(1.5), 0.3
+        law, friction = ElasticSlider(1.5), 0.3
     own.add(HarmonicForce("m1", 1.0))
     own.add(FrictionContact("slider", f"m{masses}", friction=friction, preload=2.0, law=law))
     return own, np.linspace(0.5, 1.6, 100) / (2 * np.pi), f"m{masses}"

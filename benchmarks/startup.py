@@ -44,7 +44,7 @@ _FRICTION = (
     + """
 system = da.VibrationSystem(da.lumped({"m": 1.0}, [("m", None, 1.0, 0.04)]))
 system.add(da.HarmonicForce("m", 1.0))
-system.add(da.FrictionContact("damper", "m", friction=0.5, preload=2.0, law=da.Elastic(0.8)))
+system.add(da.FrictionContact("damper", "m", friction=0.5, preload=2.0, law=da.ElasticSlider(0.8)))
 da.frequency_response(system, np.array([0.17, 0.18]), da.HarmonicBalance(harmonics=3))
 """
 )

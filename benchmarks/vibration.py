@@ -7,7 +7,14 @@ import numpy as np
 
 from benchmarks import timing
 from benchmarks.peers import pyharm_models
-from dalembert import Elastic, FrictionContact, HarmonicBalance, HarmonicForce, VibrationSystem, frequency_response
+from dalembert import (
+    ElasticSlider,
+    FrictionContact,
+    HarmonicBalance,
+    HarmonicForce,
+    VibrationSystem,
+    frequency_response,
+)
 from dalembert.structure import Dofs, Structure, lumped
 from dalembert.vibration.balance.equations import equations
 from dalembert.vibration.threads import one_thread
@@ -33,7 +40,7 @@ def system(slider: pyharm_models.Slider) -> VibrationSystem:
     dofs = Dofs(tuple(f"m{number}.x" for number in range(len(slider.mass))))
     own = VibrationSystem(Structure(slider.mass, slider.stiffness, dofs, slider.damping))
     own.add(HarmonicForce(dofs.names[slider.forced], 1.0))
-    law = Elastic(slider.contact)
+    law = ElasticSlider(slider.contact)
     own.add(FrictionContact("slider", f"m{slider.rubbing}", friction=slider.friction, preload=slider.load, law=law))
     return own
 
@@ -47,7 +54,7 @@ def chain(contacts: int) -> VibrationSystem:
     loads = np.random.default_rng(0).uniform(0.5, 1.5, contacts)
     for number, (name, load) in enumerate(zip(names, loads, strict=True)):
         own.add(HarmonicForce(name, 1.0, phase=0.5 * number / contacts))
-        own.add(FrictionContact(f"slider {number}", name, friction=0.3, preload=float(load), law=Elastic(0.8)))
+        own.add(FrictionContact(f"slider {number}", name, friction=0.3, preload=float(load), law=ElasticSlider(0.8)))
     return own
 
 

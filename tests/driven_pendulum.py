@@ -37,7 +37,7 @@ def model(times: np.ndarray, driving: np.ndarray, kind: str, step: float) -> da.
         system = da.System()
         bar = system.add(da.RigidBar("bar", 0.5, 0.4, angle=-np.pi / 2))
         system.add(da.RevoluteJoint("pin", system.ground, bar.start, viscous=friction))
-        system.add(da.Torque("motor", bar.start, da.Table(times, driving, kind, scale=constant, delay=delay)))
+        system.add(da.Torque("motor", bar.start, da.signals.Table(times, driving, kind, scale=constant, delay=delay)))
         return system
 
     return da.TimeResponse(build, BOX, ["bar.start.angle"], TIMES, da.GeneralizedAlpha(step=step))

@@ -19,7 +19,7 @@ from dalembert.structure import (
     solid,
 )
 from dalembert.vibration import (
-    Elastic,
+    ElasticSlider,
     FrequencyCurve,
     FrictionContact,
     HarmonicBalance,
@@ -57,7 +57,7 @@ def _row(masses: int) -> VibrationSystem:
     )
     system.add(HarmonicForce("m1", 1.0))
     for name in names[::2]:
-        system.add(FrictionContact(f"slider {name}", name, friction=0.3, preload=1.0, law=Elastic(1.0)))
+        system.add(FrictionContact(f"slider {name}", name, friction=0.3, preload=1.0, law=ElasticSlider(1.0)))
     return system
 
 
@@ -117,7 +117,7 @@ def strip() -> VibrationSystem:
     system.add(HarmonicForce(f"{feet[0]}.z", 2.0))
     system.add(HarmonicForce(f"{feet[0]}.x", 200.0))
     for number, foot in enumerate(feet, 1):
-        law = Elastic(1e4, 1e4)
+        law = ElasticSlider(1e4, 1e4)
         contact = FrictionContact(f"foot {number}", foot, normal="z", friction=1e-3, preload=2.0, law=law)
         system.add(contact)
     return system

@@ -16,7 +16,7 @@ from dalembert.structure import lumped
 from dalembert.vibration import (
     BilinearStop,
     CubicSpring,
-    Elastic,
+    ElasticSlider,
     FrequencyCurve,
     FrictionContact,
     Gap,
@@ -158,7 +158,7 @@ def _add_contact(
     if rigid:
         law, normal_stiffness = Rigid(penalty=stiffness, kind="displacement", gap=gap), stiffness
     else:
-        law = Elastic(stiffness, normal_stiffness if pressed else None, gap)
+        law = ElasticSlider(stiffness, normal_stiffness if pressed else None, gap)
     own.system.add(
         FrictionContact(
             f"contact {number}",

@@ -478,7 +478,7 @@ CASES: dict[str, Case] = {
         lambda: da.identify(
             Stepped(),
             exact(deviations=1e-3),
-            shooting=da.MultipleShooting({"size": da.State("x", 0.01, 4.0)}, segments=2),
+            shooting=da.MultipleShooting({"size": da.ShootingState("x", 0.01, 4.0)}, segments=2),
             starts=1,
         ),
         ("the response is that of 2 segments, which one simulation does not follow",),
@@ -487,7 +487,7 @@ CASES: dict[str, Case] = {
         lambda: da.identify(
             Stepped(method=growing_in_steps),
             Measurements.of(STEPPED_TIMES, {"x": growing_in_steps(2.8, 2.0, 0.0)}, 1.0),
-            shooting=da.MultipleShooting({"size": da.State("x", 0.01, 1e6)}, segments=4),
+            shooting=da.MultipleShooting({"size": da.ShootingState("x", 0.01, 1e6)}, segments=4),
             starts=1,
         ),
         ("a small change of the initial state grows",),
@@ -851,7 +851,7 @@ CASES: dict[str, Case] = {
         lambda: da.identify(
             DECAY,
             measured(DECAY, [2.0, 0.8], noise=0.01),
-            shooting=da.MultipleShooting({"size": da.State("x", 0.0, 5.0)}, 4),
+            shooting=da.MultipleShooting({"size": da.ShootingState("x", 0.0, 5.0)}, 4),
         ),
         ("The misfit equals the noise level of the data (estimated by local polynomials).",),
     ),
@@ -859,7 +859,7 @@ CASES: dict[str, Case] = {
         lambda: da.identify(
             DECAY,
             measured(DECAY, [2.0, 0.8], noise=0.01, deviations=0.01),
-            shooting=da.MultipleShooting({"size": da.State("x", 0.0, 5.0)}, 4),
+            shooting=da.MultipleShooting({"size": da.ShootingState("x", 0.0, 5.0)}, 4),
         ),
         (
             "The 4 segments meet within",

@@ -52,14 +52,14 @@ class Outcome(NamedTuple):
     moved: float
 
 
-def goal(draw: np.random.Generator) -> da.Table:
+def goal(draw: np.random.Generator) -> da.signals.Table:
     """Goal positions at 200 Hz: a sum of three sines about the lowest position."""
     times = np.append(0.0, TIMES)
     rates, phases = 2 * np.pi * draw.uniform([0.4, 1.0, 1.8], [0.6, 1.2, 2.0]), draw.uniform(0, 2 * np.pi, 3)
-    return da.Table(times, np.sin(rates * times[:, None] + phases) @ [0.5, 0.35, 0.2] - np.pi / 2, "linear")
+    return da.signals.Table(times, np.sin(rates * times[:, None] + phases) @ [0.5, 0.35, 0.2] - np.pi / 2, "linear")
 
 
-def model(gain: float, target: da.Table, begin: float, step: float = 5e-4) -> da.TimeResponse:
+def model(gain: float, target: da.signals.Table, begin: float, step: float = 5e-4) -> da.TimeResponse:
     """A pendulum of 1 kg on a servo."""
 
     def build(torque_constant, armature_inertia, efficiency, viscous, coulomb, stribeck, stribeck_rate):
@@ -69,7 +69,7 @@ def model(gain: float, target: da.Table, begin: float, step: float = 5e-4) -> da
         friction = {"viscous": viscous, "coulomb": coulomb, "stribeck": stribeck, "stribeck_rate": stribeck_rate}
         system.add(da.RevoluteJoint("pin", system.ground, pivot, **friction, slip_rate=0.1))
         motor = {"torque_constant": torque_constant, "armature_inertia": armature_inertia, "efficiency": efficiency}
-        motor |= {"resistance": 3.5, "voltage_limit": 15.0, "enabled": da.Step(1.0, -1.0, OFF)}
+        motor |= {"resistance": 3.5, "voltage_limit": 15.0, "enabled": da.signals.Step(1.0, -1.0, OFF)}
         system.add(da.Servo("servo", system.ground, pivot, **motor, goal=target, kp=gain))
         return system
 

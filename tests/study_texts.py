@@ -34,6 +34,6 @@ name = "slider"
 first = "m"
 friction = 0.5
 preload = "preload"
-law = { kind = "Elastic", tangential_stiffness = 0.8 }
+law = { kind = "ElasticSlider", tangential_stiffness = 0.8 }
 """
 """A mass on a spring, damped by friction of an uncertain preload."""

@@ -5,7 +5,7 @@ import numpy as np
 from dalembert.structure import Dofs, Structure, lumped
 from dalembert.vibration import (
     CubicSpring,
-    Elastic,
+    ElasticSlider,
     FrictionContact,
     Gap,
     HarmonicForce,
@@ -19,14 +19,14 @@ def one_mass() -> VibrationSystem:
     """One degree of freedom with a slider to the ground."""
     system = VibrationSystem(lumped({"m": 1.0}, [("m", None, 1.0, 0.04)]))
     system.add(HarmonicForce("m", 1.0))
-    system.add(FrictionContact("slider", "m", friction=0.5, preload=2.0, law=Elastic(0.8)))
+    system.add(FrictionContact("slider", "m", friction=0.5, preload=2.0, law=ElasticSlider(0.8)))
     return system
 
 
-SPRING = Elastic(1.5)
+SPRING = ElasticSlider(1.5)
 
 
-def two_masses(law: Elastic | Rigid = SPRING) -> VibrationSystem:
+def two_masses(law: ElasticSlider | Rigid = SPRING) -> VibrationSystem:
     """Two degrees of freedom with a slider on the second."""
     springs = [("m1", None, 1.0, 0.02), ("m1", "m2", 1.0, 0.02), ("m2", None, 0.5, 0.01)]
     system = VibrationSystem(lumped({"m1": 1.0, "m2": 1.0}, springs))
@@ -40,8 +40,8 @@ def chain() -> VibrationSystem:
     places = [("m1", None), ("m1", "m2"), ("m2", "m3"), ("m3", None)]
     system = VibrationSystem(lumped(dict.fromkeys(("m1", "m2", "m3"), 1.0), [(*ends, 1.0, 0.02) for ends in places]))
     system.add(HarmonicForce("m2", 1.0))
-    system.add(FrictionContact("to ground", "m1", friction=1.0, preload=1.0, law=Elastic(20.0)))
-    system.add(FrictionContact("between", "m1", "m2", friction=1.0, preload=1.0, law=Elastic(20.0)))
+    system.add(FrictionContact("to ground", "m1", friction=1.0, preload=1.0, law=ElasticSlider(20.0)))
+    system.add(FrictionContact("between", "m1", "m2", friction=1.0, preload=1.0, law=ElasticSlider(20.0)))
     system.add(CubicSpring("cubic to ground", "m2", stiffness=1.0))
     system.add(CubicSpring("cubic between", "m2", "m3", stiffness=1.0))
     system.add(Gap("stop", "m3", stiffness=1.0, gap=0.25))
@@ -63,12 +63,12 @@ def pressed(size: float, normal: float = 0.1) -> VibrationSystem:
     system.add(StaticForce("m.z", 100.0))
     system.add(HarmonicForce("m.x", size))
     system.add(HarmonicForce("m.z", normal * size))
-    law = Elastic(5.0, normal_stiffness=21.0)
+    law = ElasticSlider(5.0, normal_stiffness=21.0)
     system.add(FrictionContact("foot", "m", normal="z", friction=0.85, law=law))
     return system
 
 
-def massless_foot(law: Elastic | Rigid) -> VibrationSystem:
+def massless_foot(law: ElasticSlider | Rigid) -> VibrationSystem:
     """The one mass again, with the slider's spring in the structure: a foot without mass rubs on the ground."""
     springs = [("m", None, 1.0, 0.04), ("m", "foot", 0.8, 0.0)]
     system = VibrationSystem(lumped({"m": 1.0, "foot": 0.0}, springs))
@@ -77,7 +77,7 @@ def massless_foot(law: Elastic | Rigid) -> VibrationSystem:
     return system
 
 
-def heavy_foot(law: Elastic | Rigid) -> VibrationSystem:
+def heavy_foot(law: ElasticSlider | Rigid) -> VibrationSystem:
     """Two masses, the second of which rubs on the ground, well damped."""
     springs = [("m1", None, 1.0, 0.1), ("m1", "m2", 1.0, 0.1), ("m2", None, 0.5, 0.05)]
     system = VibrationSystem(lumped({"m1": 1.0, "m2": 1.0}, springs))

@@ -1,7 +1,7 @@
 """Writes the index of built-in components and the stubs of public names: ``public_names.py [--check]``.
 
 It reads the sources and imports nothing: a module of components or integrators lists its public names in ``__all__``,
-and a class among them that derives from a body, joint, load, signal or integrator is a kind, public in `dalembert` too.
+and a class among them that derives from a body, joint, load or integrator is a kind, public in `dalembert` too.
 """
 
 import argparse
@@ -123,7 +123,10 @@ def generated(sources: Path) -> dict[Path, str]:
     bases = {name: base_of((module, name), modules, homes) for name, module in sorted(homes.items())}
     kinds = {base: [name for name, other in bases.items() if other == base] for base in BASES}
     own = listed(sources, PACKAGE) | homes
-    top = listed(sources, "dalembert") | {name: PACKAGE for names in kinds.values() for name in names}
+    shown = [
+        name for base, names in kinds.items() if base != "Signal" for name in names
+    ]  # `dalembert.signals` has those
+    top = listed(sources, "dalembert") | dict.fromkeys(shown, PACKAGE)
     package = sources / "dalembert"
     return {
         package / "component_index.py": index(homes, kinds),

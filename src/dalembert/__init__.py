@@ -27,6 +27,7 @@ _MODULES = (
     "study",
     "uncertainty",
     "vibration",
+    "signals",
 )
 
 _NAMES = {
@@ -50,8 +51,8 @@ _NAMES = {
         read_uff
     """,
     "inverse": """
-        BandFit Designs Experiment Fit GlobalSurrogate MultipleShooting Nested ParameterSet Prediction Profiles State
-        design identifiability identify identify_bands identify_set predict profile
+        BandFit Designs Experiment Fit GlobalSurrogate MultipleShooting Nested ParameterSet Prediction Profiles
+        ShootingState design identifiability identify identify_bands identify_set predict profile
     """,
     "multibody": """
         System Point TimeResponse Trajectory WorkPrecision simulate equilibrium modes work_precision
@@ -63,7 +64,7 @@ _NAMES = {
         Chebyshev LatinHypercube MonteCarlo Optimise Scan Taylor Vertex
     """,
     "vibration": """
-        VibrationSystem HarmonicForce StaticForce FrictionContact Elastic Iwan Rigid
+        VibrationSystem HarmonicForce StaticForce FrictionContact ElasticSlider Iwan Rigid
         CubicSpring Gap BilinearStop BoucWen FourParameterIwan LawElement UserElement UserLaw law
         HarmonicBalance FrequencyCurve FrequencyResponse frequency_response
         Backbone ResonanceTrack backbone floquet_multipliers track_resonance
@@ -73,7 +74,9 @@ _NAMES = {
     """,
 }
 _HOMES = {name: f"{__name__}.{module}" for module, names in _NAMES.items() for name in names.split()}
-_HOMES |= {name: f"{__name__}.multibody" for names in KINDS.values() for name in names}
+_HOMES |= {
+    name: f"{__name__}.multibody" for base, names in KINDS.items() if base != "Signal" for name in names
+}  # signals are in `dalembert.signals`
 
 __getattr__, _names = lazy_names(__name__, _HOMES, _MODULES)
 

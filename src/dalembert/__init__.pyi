@@ -11,6 +11,7 @@ from dalembert import multibody as multibody
 from dalembert import optimize as optimize
 from dalembert import parameters as parameters
 from dalembert import report as report
+from dalembert import signals as signals
 from dalembert import structure as structure
 from dalembert import study as study
 from dalembert import surrogate as surrogate
@@ -64,7 +65,7 @@ from dalembert.inverse import Nested as Nested
 from dalembert.inverse import ParameterSet as ParameterSet
 from dalembert.inverse import Prediction as Prediction
 from dalembert.inverse import Profiles as Profiles
-from dalembert.inverse import State as State
+from dalembert.inverse import ShootingState as ShootingState
 from dalembert.inverse import design as design
 from dalembert.inverse import identifiability as identifiability
 from dalembert.inverse import identify as identify
@@ -79,8 +80,6 @@ from dalembert.multibody import Automatic as Automatic
 from dalembert.multibody import Baumgarte as Baumgarte
 from dalembert.multibody import Bushing as Bushing
 from dalembert.multibody import Collocation as Collocation
-from dalembert.multibody import Constant as Constant
-from dalembert.multibody import Custom as Custom
 from dalembert.multibody import DistanceJoint as DistanceJoint
 from dalembert.multibody import EnergyMomentum as EnergyMomentum
 from dalembert.multibody import FixedJoint as FixedJoint
@@ -88,13 +87,11 @@ from dalembert.multibody import Force as Force
 from dalembert.multibody import GaussNewton as GaussNewton
 from dalembert.multibody import GearJoint as GearJoint
 from dalembert.multibody import GeneralizedAlpha as GeneralizedAlpha
-from dalembert.multibody import Harmonic as Harmonic
 from dalembert.multibody import Motor as Motor
 from dalembert.multibody import OdeSolver as OdeSolver
 from dalembert.multibody import Partitioning as Partitioning
 from dalembert.multibody import Point as Point
 from dalembert.multibody import PointMass as PointMass
-from dalembert.multibody import Polynomial as Polynomial
 from dalembert.multibody import PrescribedMotion as PrescribedMotion
 from dalembert.multibody import PrismaticJoint as PrismaticJoint
 from dalembert.multibody import Projection as Projection
@@ -106,9 +103,7 @@ from dalembert.multibody import RigidBody as RigidBody
 from dalembert.multibody import RungeKutta4 as RungeKutta4
 from dalembert.multibody import Servo as Servo
 from dalembert.multibody import Spring as Spring
-from dalembert.multibody import Step as Step
 from dalembert.multibody import System as System
-from dalembert.multibody import Table as Table
 from dalembert.multibody import TimeResponse as TimeResponse
 from dalembert.multibody import Torque as Torque
 from dalembert.multibody import TorsionSpring as TorsionSpring
@@ -177,7 +172,7 @@ from dalembert.vibration import BoucWen as BoucWen
 from dalembert.vibration import CubicSpring as CubicSpring
 from dalembert.vibration import CurveFamily as CurveFamily
 from dalembert.vibration import Deformation as Deformation
-from dalembert.vibration import Elastic as Elastic
+from dalembert.vibration import ElasticSlider as ElasticSlider
 from dalembert.vibration import FourParameterIwan as FourParameterIwan
 from dalembert.vibration import FrequencyCurve as FrequencyCurve
 from dalembert.vibration import FrequencyResponse as FrequencyResponse

@@ -29,7 +29,7 @@ def angle(itself: np.ndarray) -> np.ndarray:
     system = da.System()
     bar = system.add(da.RigidBar("bar", 0.5, 0.4, angle=-np.pi / 2))
     system.add(da.RevoluteJoint("pin", system.ground, bar.start, viscous=FRICTION))
-    system.add(da.Torque("motor", bar.start, da.Table(FINE, itself, "cubic", scale=CONSTANT, delay=DELAY)))
+    system.add(da.Torque("motor", bar.start, da.signals.Table(FINE, itself, "cubic", scale=CONSTANT, delay=DELAY)))
     motion = da.simulate(system, TIMES[-1], da.GeneralizedAlpha(step=5e-4), TIMES)
     return motion.channels(["bar.start.angle"])[:, 0]
 

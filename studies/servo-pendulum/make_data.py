@@ -28,7 +28,10 @@ def angle(gain: float, target: np.ndarray, on: np.ndarray) -> np.ndarray:
     friction = {"viscous": 0.03, "coulomb": 0.06, "stribeck": 0.05, "stribeck_rate": 0.8, "slip_rate": 0.1}
     system.add(da.RevoluteJoint("pin", system.ground, pivot, **friction))
     motor = {"torque_constant": 1.6, "armature_inertia": 0.004, "efficiency": 0.8, "resistance": 3.5, "kp": gain}
-    signals = {"goal": da.Table(TIMES, np.deg2rad(target), "linear"), "enabled": da.Table(TIMES, on, "held")}
+    signals = {
+        "goal": da.signals.Table(TIMES, np.deg2rad(target), "linear"),
+        "enabled": da.signals.Table(TIMES, on, "held"),
+    }
     system.add(da.Servo("servo", system.ground, pivot, **motor, **signals, voltage_limit=15.0))
     motion = da.simulate(system, TIMES[-1], da.GeneralizedAlpha(step=1e-4), TIMES)
     return np.rad2deg(motion.channels(["bar.pivot.angle"])[:, 0])

@@ -7,7 +7,7 @@ import dalembert as da
 from dalembert.errors import StorageError
 from dalembert.forward import Checkpoint, Recorded
 from dalembert.structure import lumped
-from dalembert.vibration import Elastic, FrictionContact, HarmonicForce, VibrationSystem, frequency_responses
+from dalembert.vibration import ElasticSlider, FrictionContact, HarmonicForce, VibrationSystem, frequency_responses
 
 TIMES = np.linspace(0.0, 1.0, 11)
 VALUES = np.exp(-0.7 * TIMES) + 0.01 * np.sin(20 * TIMES)
@@ -44,7 +44,7 @@ def family(checkpoint):
     def damped(preload):
         system = VibrationSystem(lumped({"m": 1.0}, [("m", None, 1.0, 0.04)]))
         system.add(HarmonicForce("m", 1.0))
-        system.add(FrictionContact("damper", "m", friction=0.5, preload=preload, law=Elastic(0.8)))
+        system.add(FrictionContact("damper", "m", friction=0.5, preload=preload, law=ElasticSlider(0.8)))
         return system
 
     return frequency_responses(damped, "preload", [0.0, 1.0], np.linspace(0.12, 0.25, 5), checkpoint=checkpoint)

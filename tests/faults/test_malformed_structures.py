@@ -28,7 +28,7 @@ from dalembert.structure import (
 from dalembert.vibration import (
     BilinearStop,
     CubicSpring,
-    Elastic,
+    ElasticSlider,
     FrequencyCurve,
     FrequencyResponse,
     FrictionContact,
@@ -87,7 +87,7 @@ def user(function, dofs=("m",)) -> FrequencyCurve:
 
 
 def damped(preload) -> VibrationSystem:
-    return system(FORCE, contact(preload=preload, law=Elastic(1.0)))
+    return system(FORCE, contact(preload=preload, law=ElasticSlider(1.0)))
 
 
 NAN, INF = math.nan, math.inf
@@ -170,10 +170,13 @@ CASES: dict[str, tuple[Callable[[], object], str]] = {
     "no force": (lambda: run(contact()), "frequency_response: no force acts on the system"),
     # contacts
     "a contact with itself": (lambda: contact(second="m"), "contact 'c' is between the node 'm' and itself"),
-    "a function as a law": (lambda: contact(law=lambda u: u), "law is a function; expected Elastic, Iwan or Rigid"),
+    "a function as a law": (
+        lambda: contact(law=lambda u: u),
+        "law is a function; expected ElasticSlider, Iwan or Rigid",
+    ),
     "a law by name": (
         lambda: contact(law="elastic"),
-        "contact 'c': law is 'elastic'; expected Elastic(...), Iwan(...)",
+        "contact 'c': law is 'elastic'; expected ElasticSlider(...), Iwan(...)",
     ),
     "a law's class": (lambda: contact(law=Rigid), "contact 'c': law is the class Rigid; expected"),
     "friction as text": (lambda: contact(friction="0.5"), "FrictionContact 'c': friction is '0.5'; expected a number"),
@@ -190,10 +193,10 @@ CASES: dict[str, tuple[Callable[[], object], str]] = {
     "a normal vector": (lambda: contact(normal=(0, 0, 1)), "FrictionContact 'c': normal is (0, 0, 1); expected a text"),
     "a node by number": (lambda: contact(first=0), "FrictionContact 'c': first is 0; expected a text"),
     "a law's stiffness as text": (
-        lambda: Elastic("1"),
-        "Elastic: tangential_stiffness is '1'; expected a number in N/m",
+        lambda: ElasticSlider("1"),
+        "ElasticSlider: tangential_stiffness is '1'; expected a number in N/m",
     ),
-    "a gap of NaN": (lambda: Elastic(1.0, gap=NAN), "Elastic: gap is nan; expected a finite number in m"),
+    "a gap of NaN": (lambda: ElasticSlider(1.0, gap=NAN), "ElasticSlider: gap is nan; expected a finite number in m"),
     "a cell alone": (lambda: Iwan(1.0, 1.0), "Iwan: stiffnesses is 1.0; expected a list"),
     "a negative share": (lambda: Iwan((1.0, 1.0), (2.0, -1.0)), "Iwan: a share is -1; expected a number that is not"),
     "a penalty as text": (lambda: Rigid("1"), "Rigid: penalty is '1'; expected a number in N/m"),

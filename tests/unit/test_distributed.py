@@ -179,7 +179,7 @@ def damped(preload: float) -> da.VibrationSystem:
         raise RuntimeError("no seven")
     system = da.VibrationSystem(lumped({"m": 1.0}, [("m", None, 1.0, 0.04)]))
     system.add(da.HarmonicForce("m", 1.0))
-    system.add(da.FrictionContact("damper", "m", friction=0.5, preload=preload, law=da.Elastic(0.8)))
+    system.add(da.FrictionContact("damper", "m", friction=0.5, preload=preload, law=da.ElasticSlider(0.8)))
     return system
 
 

@@ -102,7 +102,7 @@ def test_shots_go_there_with_the_same_bits(client):
 
     model = PythonModel(swing, {"rate": (1.0, 9.0), "place": (-1.0, 1.0), "speed": (-9.0, 9.0)}, ["x", "v"], TIMES)
     data = da.Measurements.of(TIMES, {"x": 0.5 + 0.4 * np.cos(6.3 * TIMES)}, deviations=1e-3)  # explained by none
-    states = {"place": da.State("x", -1.5, 1.5), "speed": da.State("v", -10.0, 10.0)}
+    states = {"place": da.ShootingState("x", -1.5, 1.5), "speed": da.ShootingState("v", -10.0, 10.0)}
     shooting = da.MultipleShooting(states, segments=4)
     one, other = (da.identify(model, data, shooting=shooting, executor=executor) for executor in (None, client))
     assert len(one.starts) == 3

@@ -13,10 +13,10 @@ SEEDS = 5  # of the noise, and of where the search starts within the bounds
 BOUNDS = {"angle1": (1.5, 2.5), "angle2": (1.0, 2.0), "rate1": (-1.0, 1.0), "rate2": (-1.0, 1.0), "drag": (0.0, 0.2)}
 SHOOTING = da.MultipleShooting(
     {
-        "angle1": da.State("OA.end.angle", -15, 15),
-        "angle2": da.State("AB.end.angle", -40, 40),
-        "rate1": da.State("OA.end.rate", -15, 15, rate_of="OA.end.angle"),
-        "rate2": da.State("AB.end.rate", -15, 15, rate_of="AB.end.angle"),
+        "angle1": da.ShootingState("OA.end.angle", -15, 15),
+        "angle2": da.ShootingState("AB.end.angle", -40, 40),
+        "rate1": da.ShootingState("OA.end.rate", -15, 15, rate_of="OA.end.angle"),
+        "rate2": da.ShootingState("AB.end.rate", -15, 15, rate_of="AB.end.angle"),
     },
     segments=8,
 )

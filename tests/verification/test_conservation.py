@@ -163,7 +163,7 @@ def test_energy_and_constraints(
 def test_work_of_loads_dampers_and_friction_balances_the_energy(record_evidence) -> None:
     system = two_links(viscous=0.3)
     upper, lower = system.bodies
-    system.add(da.Torque("motor", upper.centre, da.Harmonic(5.0, 3.0)))
+    system.add(da.Torque("motor", upper.centre, da.signals.Harmonic(5.0, 3.0)))
     system.add(da.Spring("spring", system.ground.point(2.0, 0.0), lower.centre, 20.0, damping=1.0, free_length=1.0))
     drifts = []
     for step in (2e-3, 1e-3):

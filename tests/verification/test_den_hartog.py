@@ -6,7 +6,7 @@ from scipy.optimize import brentq
 
 from dalembert.structure import lumped
 from dalembert.vibration import (
-    Elastic,
+    ElasticSlider,
     FrequencyCurve,
     FrictionContact,
     HarmonicBalance,
@@ -23,7 +23,7 @@ GRID = [(friction, ratio) for friction in (0.1, 0.3, 0.5, 0.7, 0.75) for ratio i
 PERIODS = 300
 
 
-def block(friction: float, law: Elastic | Rigid, damper: float = 0.0) -> VibrationSystem:
+def block(friction: float, law: ElasticSlider | Rigid, damper: float = 0.0) -> VibrationSystem:
     """Mass 1 kg, spring 1 N/m, force 1 N, limit of friction ``friction`` N."""
     system = VibrationSystem(lumped({"m": 1.0}, [("m", None, 1.0, damper)]))
     system.add(HarmonicForce("m", 1.0))
@@ -31,7 +31,7 @@ def block(friction: float, law: Elastic | Rigid, damper: float = 0.0) -> Vibrati
     return system
 
 
-def response(friction: float, ratio: float, law: Elastic | Rigid, harmonics: int = 9) -> FrequencyCurve:
+def response(friction: float, ratio: float, law: ElasticSlider | Rigid, harmonics: int = 9) -> FrequencyCurve:
     return frequency_response(block(friction, law), np.array([ratio]) / (2 * np.pi), HarmonicBalance(harmonics))
 
 
@@ -112,7 +112,7 @@ def test_the_velocity_kind_is_accepted_with_more_harmonics(record_evidence) -> N
 
 @pytest.mark.parametrize("ratio", [0.6, 0.8, 1.3])
 def test_the_elastic_slider_is_that_of_fine_integration_in_time(record_evidence, ratio: float) -> None:
-    system = block(0.5, Elastic(10.0), damper=0.02)
+    system = block(0.5, ElasticSlider(10.0), damper=0.02)
     curve = frequency_response(system, np.array([ratio]) / (2 * np.pi), HarmonicBalance(25))
     motion = steady_state(system, ratio / (2 * np.pi), Newmark(16384), way="shooting")
     record_evidence(

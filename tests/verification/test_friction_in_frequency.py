@@ -8,7 +8,7 @@ from scipy.integrate import solve_ivp
 
 from dalembert.structure import lumped
 from dalembert.vibration import (
-    Elastic,
+    ElasticSlider,
     FrictionContact,
     HarmonicBalance,
     HarmonicForce,
@@ -177,7 +177,7 @@ def test_the_elastic_law_tends_to_the_rigid_one(record_evidence) -> None:
     """With the contact's stiffness as the penalty, the difference falls as the inverse of the stiffness."""
     stiffnesses = (15.0, 150.0, 1500.0)
     differences = [
-        abs(largest(two_masses(Elastic(k)), 0.88, 5, "m2") - largest(two_masses(Rigid(k)), 0.88, 5, "m2"))
+        abs(largest(two_masses(ElasticSlider(k)), 0.88, 5, "m2") - largest(two_masses(Rigid(k)), 0.88, 5, "m2"))
         for k in stiffnesses
     ]
     record_evidence(

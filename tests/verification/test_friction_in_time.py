@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from dalembert.vibration import (
-    Elastic,
+    ElasticSlider,
     HarmonicBalance,
     Newmark,
     Rigid,
@@ -142,7 +142,7 @@ def test_the_elastic_law_in_time_tends_to_the_rigid_one(record_evidence, stickin
     motion, _ = sticking
     errors, stiffnesses = [], (500.0, 1500.0, 5000.0)
     for stiffness in stiffnesses:
-        system = heavy_foot(Elastic(stiffness))
+        system = heavy_foot(ElasticSlider(stiffness))
         own = steady_state(system, OMEGA / TURN, Newmark(4 * INSTANTS, 0.8))
         assert own.converged
         errors.append(off(own.displacements[::4], motion))

@@ -366,7 +366,7 @@ def test_a_geared_rotor_whirls_at_constant_speed(record_evidence) -> None:
     speed, c, e = -250.0, 200.0, ROTOR["eccentricity"]
     system = geared_rotor(**ROTOR | {"c": c}, speed=speed)
     motor = system.bodies[0].centre
-    system.add(da.PrescribedMotion("drive", system.ground, motor, "angle", da.Polynomial([0.0, speed])))
+    system.add(da.PrescribedMotion("drive", system.ground, motor, "angle", da.signals.Polynomial([0.0, speed])))
     omega = ROTOR["ratio"] * speed
     times = 2.0 + np.arange(40) / 40 * 2 * np.pi / omega  # what is free has decayed by exp(-c t/2m) = 4e-18
     motion = da.simulate(system, times[-1], solver=PRECISE, times=np.array([0.0, *times]))

@@ -11,7 +11,7 @@ from scipy.special import ellipk
 from dalembert.structure import Dofs, Structure, lumped
 from dalembert.vibration import (
     CubicSpring,
-    Elastic,
+    ElasticSlider,
     FrequencyCurve,
     FrictionContact,
     HarmonicBalance,
@@ -230,8 +230,8 @@ def test_a_rigid_contact_of_a_massless_foot_is_as_stable_as_the_elastic_one(reco
     )  # fmt: skip
 
 
-@pytest.mark.parametrize("law", [Elastic(1.5), Rigid()], ids=["elastic", "rigid"])
-def test_a_structure_that_only_friction_makes_nonlinear_is_stable_everywhere(law: Elastic | Rigid) -> None:
+@pytest.mark.parametrize("law", [ElasticSlider(1.5), Rigid()], ids=["elastic", "rigid"])
+def test_a_structure_that_only_friction_makes_nonlinear_is_stable_everywhere(law: ElasticSlider | Rigid) -> None:
     """Friction takes energy from any disturbance: two motions of one system under one force come no farther apart."""
     curve = frequency_response(two_masses(law), np.linspace(0.08, 0.35, 28), HarmonicBalance(7), stability=True)
     assert curve.converged.all()
@@ -321,7 +321,7 @@ def hardening(force: float) -> VibrationSystem:
 def rubbing(preload: float) -> VibrationSystem:
     system = VibrationSystem(lumped({"m": 1.0}, [("m", None, 1.0, 0.04)]))
     system.add(HarmonicForce("m", 1.0))
-    system.add(FrictionContact("slider", "m", friction=0.5, preload=preload, law=Elastic(0.8)))
+    system.add(FrictionContact("slider", "m", friction=0.5, preload=preload, law=ElasticSlider(0.8)))
     return system
 
 

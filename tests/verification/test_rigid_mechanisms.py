@@ -95,7 +95,7 @@ def test_slider_crank(reference, record_evidence) -> None:
     system.add(da.RevoluteJoint("A", crank.end, rod.start))
     system.add(da.RevoluteJoint("B", rod.end, slider.centre))
     system.add(da.PrismaticJoint("guide", system.ground, slider.centre))
-    system.add(da.Torque("motor", crank.centre, da.Step(model["torque"], 0.0, model["torque_end"])))
+    system.add(da.Torque("motor", crank.centre, da.signals.Step(model["torque"], 0.0, model["torque_end"])))
     trajectory = da.simulate(system, 3.0, solver=fine(2e-5), times=np.array([0.0, *values["times"]]))
     record_evidence(
         "slider-crank, crank angle at 1, 2 and 3 s",

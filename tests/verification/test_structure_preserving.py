@@ -213,7 +213,7 @@ def test_the_momentum_across_gravity_stays_in_free_fall(record_evidence) -> None
 def test_work_of_loads_dampers_and_friction_balances_the_energy(record_evidence, arm) -> None:
     """The work is a trapezoidal sum over the steps; the integrator's own is that of their middles."""
     upper, lower = arm.bodies
-    arm.add(da.Torque("motor", upper.centre, da.Harmonic(5.0, 3.0)))
+    arm.add(da.Torque("motor", upper.centre, da.signals.Harmonic(5.0, 3.0)))
     arm.add(da.Spring("spring", arm.ground.point(2.0, 0.0), lower.centre, 20.0, damping=1.0, free_length=1.0))
     gaps = []
     for step in (4e-3, 2e-3, 1e-3):

@@ -33,7 +33,7 @@ from dalembert.inverse.identify import identify
 from dalembert.inverse.least_squares.estimate import Identifiability
 from dalembert.inverse.sets import ParameterSet, identify_set
 from dalembert.inverse.shooting.nodes import Nodes
-from dalembert.inverse.shooting.segments import State
+from dalembert.inverse.shooting.segments import ShootingState
 from dalembert.inverse.shooting.shooting import MultipleShooting
 
 __all__ = [
@@ -60,9 +60,9 @@ __all__ = [
     "Profiles",
     "Sampled",
     "Screened",
+    "ShootingState",
     "StartBegan",
     "StartEnd",
-    "State",
     "Step",
     "Validation",
     "as_record",

@@ -2,7 +2,7 @@
 
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.laws.bouc_wen import BoucWen
-from dalembert.vibration.laws.contacts import Elastic, FrictionContact, Iwan, Rigid
+from dalembert.vibration.laws.contacts import ElasticSlider, FrictionContact, Iwan, Rigid
 from dalembert.vibration.laws.cubic_spring import CubicSpring
 from dalembert.vibration.laws.element import LawElement
 from dalembert.vibration.laws.four_parameter_iwan import FourParameterIwan
@@ -34,7 +34,7 @@ __all__ = [
     "CubicSpring",
     "CurveFamily",
     "Deformation",
-    "Elastic",
+    "ElasticSlider",
     "Envelope",
     "FollowedPoint",
     "FourParameterIwan",

@@ -30,7 +30,7 @@ def arm(length=3.0, damping=0.0, kick=0.0):
     lower = system.add(da.RigidBar("lower", length, 2.0, angle=-np.pi / 6, start=upper.end))
     system.add(da.RevoluteJoint("O", system.ground, upper.start))
     system.add(da.RevoluteJoint("A", upper.end, lower.start, viscous=damping))
-    system.add(da.Torque("motor", upper.centre, da.Step(kick, 0.2)))
+    system.add(da.Torque("motor", upper.centre, da.signals.Step(kick, 0.2)))
     return system
 
 
@@ -190,7 +190,7 @@ def test_a_motion_that_is_prescribed_altogether_has_nothing_to_minimise():
     for axis in ("x", "y"):
         system.add(
             da.PrescribedMotion(
-                axis, system.ground, mass.centre, coordinate=axis, motion=da.Polynomial([0.0, 0.0, 2.0])
+                axis, system.ground, mass.centre, coordinate=axis, motion=da.signals.Polynomial([0.0, 0.0, 2.0])
             )
         )
     for minimiser in (da.GaussNewton(), da.Firefly()):

@@ -27,7 +27,7 @@ def arm(safe: Callable = lambda x: x, stiff: Callable = lambda x: x, course: Cal
         bar = system.add(da.RigidBar("bar", safe(length), 1.0, angle=0.3))
         system.add(da.RevoluteJoint("pin", system.ground, bar.start, viscous=0.1))
         system.add(da.Spring("coil", system.ground.point(0.0, 1.0), bar.end, stiff(stiffness)))
-        system.add(da.Force("push", bar.end, x=da.Harmonic(course(length), 3.0)))
+        system.add(da.Force("push", bar.end, x=da.signals.Harmonic(course(length), 3.0)))
         return system
 
     return build
@@ -172,7 +172,7 @@ def captured(force: Callable = lambda x: x, course: Callable = lambda x: x, comp
         bar = system.add(da.RigidBar("bar", 1.0, 1.0, angle=0.3, angular_velocity=1.0))
         system.add(da.RevoluteJoint("pin", system.ground, bar.start))
         system.add(da.UserForce("drag", bar.end, njit(push) if compiled else push))
-        system.add(da.Force("push", bar.end, x=da.Custom(lambda t: course(size) * np.sin(3 * t))))
+        system.add(da.Force("push", bar.end, x=da.signals.Custom(lambda t: course(size) * np.sin(3 * t))))
         return system
 
     return da.TimeResponse(build, {"size": (0.5, 1.5)}, ["bar.end.x"], TIMES, da.GeneralizedAlpha(step=5e-3))

@@ -38,7 +38,7 @@ def four_bar(length, drag, angle):
 def driven(length, drag, angle):
     system = double_pendulum(length, drag, angle)
     (upper, _) = system.bodies
-    table = da.Table(np.linspace(0.0, 0.8, 9), [0.0, 3.0, -2.0, 4.0, 5.0, -3.0, 2.0, 6.0, 1.0])
+    table = da.signals.Table(np.linspace(0.0, 0.8, 9), [0.0, 3.0, -2.0, 4.0, 5.0, -3.0, 2.0, 6.0, 1.0])
     system.add(da.Torque("motor", upper.centre, table))
     return system
 
@@ -49,7 +49,7 @@ def cranked(length, drag, angle):
     upper = system.add(da.RigidBar("upper", length=length, mass=1.0, angle=angle))
     lower = system.add(da.RigidBar("lower", start=upper.end, length=0.5, mass=1.0, angle=0.5))
     system.add(da.RevoluteJoint("shoulder", system.ground, upper.start))
-    system.add(da.PrescribedMotion("turn", system.ground, upper.start, "angle", da.Polynomial([0.0, 4.0, 3.0])))
+    system.add(da.PrescribedMotion("turn", system.ground, upper.start, "angle", da.signals.Polynomial([0.0, 4.0, 3.0])))
     system.add(da.RevoluteJoint("elbow", upper.end, lower.start, viscous=drag))
     return system
 

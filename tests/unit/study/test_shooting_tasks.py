@@ -102,7 +102,7 @@ def test_a_study_shoots_and_reports_where_its_segments_meet(write, tmp_path):
         ),
         (
             DATA + "[identify]\n" + SHOOTING.replace("upper = 2.0", "upper = -3.0"),
-            "State 'x': bounds are (-2, -3); expected lower < upper",
+            "ShootingState 'x': bounds are (-2, -3); expected lower < upper",
         ),
     ],
 )

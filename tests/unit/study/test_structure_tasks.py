@@ -13,7 +13,7 @@ from dalembert.study import load, plan, report_run, run_study
 from dalembert.study.runner import takes
 from dalembert.vibration import (
     Deformation,
-    Elastic,
+    ElasticSlider,
     FrequencyCurve,
     FrictionContact,
     HarmonicBalance,
@@ -59,7 +59,7 @@ name = "slider"
 first = "m2"
 friction = "mu"
 preload = "preload"
-law = { kind = "Elastic", tangential_stiffness = "1.5 N/m" }
+law = { kind = "ElasticSlider", tangential_stiffness = "1.5 N/m" }
 [harmonic_balance]
 harmonics = 5
 samples = 256
@@ -104,7 +104,7 @@ def two_masses(mu: float = 0.3, preload: float = 2.0) -> VibrationSystem:
     springs = [("m1", None, 1.0, 0.02), ("m1", "m2", 1.0, 0.02), ("m2", None, 0.5, 0.01)]
     system = VibrationSystem(lumped({"m1": 1.0, "m2": 1.0}, springs))
     system.add(HarmonicForce("m1", 1.0))
-    system.add(FrictionContact("slider", "m2", friction=mu, preload=preload, law=Elastic(1.5)))
+    system.add(FrictionContact("slider", "m2", friction=mu, preload=preload, law=ElasticSlider(1.5)))
     return system
 
 
@@ -211,7 +211,7 @@ def test_hysteretic_damping_carries_a_curve_and_not_its_stability(write, tmp_pat
     springs = [("m1", None, 1.0, 0.02, 0.03), ("m1", "m2", 1.0, 0.02), ("m2", None, 0.5, 0.01)]
     system = VibrationSystem(lumped({"m1": 1.0, "m2": 1.0}, springs))
     system.add(HarmonicForce("m1", 1.0))
-    system.add(FrictionContact("slider", "m2", friction=0.3, preload=2.0, law=Elastic(1.5)))
+    system.add(FrictionContact("slider", "m2", friction=0.3, preload=2.0, law=ElasticSlider(1.5)))
     theirs = frequency_response(system, np.linspace(0.12, 0.16, 5), HarmonicBalance(5, samples=256))
     np.testing.assert_array_equal(FrequencyCurve.load(folder.result).response, theirs.response)
     for key, line in (

@@ -13,7 +13,7 @@ from dalembert.study import load, run_study
 from dalembert.study.events import read_events
 from dalembert.study.template import begin
 from dalembert.vibration import (
-    Elastic,
+    ElasticSlider,
     FrequencyCurve,
     FrequencyResponse,
     FrictionContact,
@@ -41,7 +41,7 @@ PLACES = np.array([0.1, 0.15])
 def damped(preload: float) -> VibrationSystem:
     system = VibrationSystem(lumped({"m": 1.0}, [("m", None, 1.0, 0.04)]))
     system.add(HarmonicForce("m", 1.0))
-    system.add(FrictionContact("slider", "m", friction=0.5, preload=preload, law=Elastic(0.8)))
+    system.add(FrictionContact("slider", "m", friction=0.5, preload=preload, law=ElasticSlider(0.8)))
     return system
 
 

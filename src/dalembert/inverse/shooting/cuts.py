@@ -10,7 +10,7 @@ import numpy as np
 from dalembert.data import derivative
 from dalembert.forward import StateChart, begun_later, restarted
 from dalembert.inverse.problem.problem import Problem
-from dalembert.inverse.shooting.segments import Piece, Segments, State
+from dalembert.inverse.shooting.segments import Piece, Segments, ShootingState
 from dalembert.inverse.shooting.tracks import Track
 from dalembert.parameters import Parameter, Parameters
 
@@ -89,11 +89,11 @@ class Named:
 
     Parameters
     ----------
-    states : mapping of str to State
+    states : mapping of str to ShootingState
         By the model's parameters.
     """
 
-    states: Mapping[str, State]
+    states: Mapping[str, ShootingState]
 
     @property
     def first(self) -> tuple[str, ...]:
@@ -180,7 +180,9 @@ def guess(values: np.ndarray, cuts: Sequence[Cut]) -> np.ndarray:
     return np.concatenate([values, *(node.values for cut in cuts for node in cut.nodes)])
 
 
-def named_cut(track: Track, states: Mapping[str, State], count: int, values: np.ndarray) -> tuple[Cut, np.ndarray]:
+def named_cut(
+    track: Track, states: Mapping[str, ShootingState], count: int, values: np.ndarray
+) -> tuple[Cut, np.ndarray]:
     """Return a motion in ``count`` even segments, and its parameters (parameters,) with the measured initial state.
 
     States begin at measured values, at rates of change of measured ones, or where the segment before ends.
@@ -210,7 +212,7 @@ def named_cut(track: Track, states: Mapping[str, State], count: int, values: np.
     return Cut(track, way, tuple(nodes)), values
 
 
-def _seen(track: Track, states: Mapping[str, State], values: np.ndarray) -> dict[str, np.ndarray]:
+def _seen(track: Track, states: Mapping[str, ShootingState], values: np.ndarray) -> dict[str, np.ndarray]:
     """Each state as far as it was measured, or differentiated from what was: (samples,), NaN where it was not.
 
     Wrapping channels are without jumps, and by whole turns near the initial state.

@@ -32,8 +32,8 @@ def check_segments(problem: Problem, shooting: MultipleShooting) -> None:
             if restartable(track.model) is None:
                 raise InputError(
                     f"shooting: {track.where}the model cannot begin at a later state; leave out "
-                    "sensors and an unknown start, or name its states: MultipleShooting({parameter: State(channel, "
-                    "lower, upper)})"
+                    "sensors and an unknown start, or name its states: MultipleShooting({parameter: "
+                    "ShootingState(channel, lower, upper)})"
                 )
             continue
         _check_named(track, shooting)

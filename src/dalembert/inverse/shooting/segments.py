@@ -11,7 +11,7 @@ from dalembert.parameters import Parameters
 
 
 @dataclass(frozen=True)
-class State:
+class ShootingState:
     """A parameter of the initial state, as it is later in the motion.
 
     Parameters
@@ -32,7 +32,7 @@ class State:
     def __post_init__(self) -> None:
         if not self.lower < self.upper:
             raise InputError(
-                f"State {self.channel!r}: bounds are ({self.lower:g}, {self.upper:g}); expected lower < upper"
+                f"ShootingState {self.channel!r}: bounds are ({self.lower:g}, {self.upper:g}); expected lower < upper"
             )
 
 

@@ -17,7 +17,7 @@ from dalembert.inverse.shooting.continuity import Chain, Found
 from dalembert.inverse.shooting.cuts import Cut, guess, named_cut, segments
 from dalembert.inverse.shooting.natural_cuts import coarser, natural_cuts
 from dalembert.inverse.shooting.nodes import Nodes
-from dalembert.inverse.shooting.segments import State
+from dalembert.inverse.shooting.segments import ShootingState
 from dalembert.inverse.shooting.tracks import tracks
 from dalembert.inverse.starts.spread import spread_points
 from dalembert.optimize import Squares
@@ -36,7 +36,7 @@ class MultipleShooting:
 
     Parameters
     ----------
-    states : mapping of str to State, optional
+    states : mapping of str to ShootingState, optional
         All parameters of the initial state, and the channels of the model that are the state later. A model that can
         begin at a later state, such as :class:`~dalembert.multibody.TimeResponse`, does not need them: its segments
         begin at independent coordinates and rates, which the jacobian of the constraints shows, and the joints make
@@ -90,13 +90,13 @@ class MultipleShooting:
     ...     times,
     ... )
     >>> data = Measurements.of(times, {"x": np.cos(6.3 * times)}, deviations=1e-3)
-    >>> states = {"place": State("x", -1.5, 1.5), "speed": State("v", -10.0, 10.0)}
+    >>> states = {"place": ShootingState("x", -1.5, 1.5), "speed": ShootingState("v", -10.0, 10.0)}
     >>> fit = identify(swing, data, shooting=MultipleShooting(states, segments=8), start=[4.0, 0.0, 0.0])
     >>> round(fit.values[0], 6), fit.nodes.segments
     (np.float64(6.3), 1)
     """
 
-    states: Mapping[str, State] | None = None
+    states: Mapping[str, ShootingState] | None = None
     segments: int | None = None
 
     def __post_init__(self) -> None:

@@ -8,7 +8,7 @@ from dalembert.study.intervals import Number
 from dalembert.study.table import StudyTable, checked
 
 if TYPE_CHECKING:
-    from dalembert.inverse import MultipleShooting, State
+    from dalembert.inverse import MultipleShooting, ShootingState
 
 
 class StateTable(StudyTable):
@@ -19,11 +19,11 @@ class StateTable(StudyTable):
     upper: Number = Field(description="bound that it keeps throughout the motion")
     rate_of: str | None = Field(None, description="measured channel whose rate of change it is, to begin with")
 
-    def state(self) -> "State":
+    def state(self) -> "ShootingState":
         """The state."""
-        from dalembert.inverse import State
+        from dalembert.inverse import ShootingState
 
-        return State(self.channel, self.lower, self.upper, self.rate_of)
+        return ShootingState(self.channel, self.lower, self.upper, self.rate_of)
 
 
 class ShootingTable(StudyTable):

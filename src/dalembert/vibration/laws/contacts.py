@@ -28,7 +28,7 @@ def require_positive(what: str, unit: str, value: Number | None) -> None:
 
 
 @dataclass(frozen=True)
-class Elastic(Checked):
+class ElasticSlider(Checked):
     """Contact with springs in series with the slider (Jenkins), and in the normal direction.
 
     Parameters
@@ -112,7 +112,7 @@ class Rigid(Checked):
         require_positive("Rigid: the penalty", "N/m", self.penalty)
 
 
-Law = Elastic | Iwan | Rigid
+Law = ElasticSlider | Iwan | Rigid
 
 
 @dataclass(frozen=True)
@@ -137,7 +137,7 @@ class FrictionContact(Checked):
         Coefficient of friction, not negative.
     preload : float
         Normal load without any motion, N, not negative. Where static forces press the contact, 0.
-    law : Elastic, Iwan or Rigid
+    law : ElasticSlider, Iwan or Rigid
 
     Raises
     ------
@@ -199,10 +199,10 @@ def _require_law(where: str, law: object) -> None:
         return
     if callable(law) and not isinstance(law, type):
         raise InputError(
-            f"{where}: law is a function; expected Elastic, Iwan or Rigid. Functions can be laws without internal "
-            "state only (UserElement); a law with internal state, such as friction, cannot be a function"
+            f"{where}: law is a function; expected ElasticSlider, Iwan or Rigid. Functions can be laws without "
+            "internal state only (UserElement); a law with internal state, such as friction, cannot be a function"
         )
-    raise InputError(f"{where}: law is {shown(law)}; expected Elastic(...), Iwan(...) or Rigid(...)")
+    raise InputError(f"{where}: law is {shown(law)}; expected ElasticSlider(...), Iwan(...) or Rigid(...)")
 
 
 def _directions(where: str, given: object) -> tuple[str, ...]:

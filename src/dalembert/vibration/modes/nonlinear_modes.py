@@ -82,9 +82,9 @@ def backbone(
 
     >>> import numpy as np
     >>> from dalembert.structure import lumped
-    >>> from dalembert.vibration import Elastic, FrictionContact, VibrationSystem
+    >>> from dalembert.vibration import ElasticSlider, FrictionContact, VibrationSystem
     >>> system = VibrationSystem(lumped({"m": 1.0}, [("m", None, 1.0, 0.0)]))
-    >>> slider = FrictionContact("slider", "m", friction=0.5, preload=2.0, law=Elastic(tangential_stiffness=0.8))
+    >>> slider = FrictionContact("slider", "m", friction=0.5, preload=2.0, law=ElasticSlider(tangential_stiffness=0.8))
     >>> added = system.add(slider)
     >>> found = backbone(system, np.array([1.0, 10.0, 1000.0]))
     >>> (2 * np.pi * found.frequencies).round(3).tolist(), found.damping.round(3).tolist()

@@ -116,10 +116,10 @@ def frequency_response(
     --------
     >>> import numpy as np
     >>> from dalembert.structure import lumped
-    >>> from dalembert.vibration import Elastic, FrictionContact, HarmonicForce, VibrationSystem
+    >>> from dalembert.vibration import ElasticSlider, FrictionContact, HarmonicForce, VibrationSystem
     >>> system = VibrationSystem(lumped({"m": 1.0}, [("m", None, 1.0, 0.04)]))
     >>> force = system.add(HarmonicForce("m", 1.0))
-    >>> law = Elastic(tangential_stiffness=0.8)
+    >>> law = ElasticSlider(tangential_stiffness=0.8)
     >>> damper = system.add(FrictionContact("damper", "m", friction=0.5, preload=2.0, law=law))
     >>> curve = frequency_response(system, np.array([1.12]) / (2 * np.pi), HarmonicBalance(harmonics=5))
     >>> curve.amplitude("m").round(3).tolist()

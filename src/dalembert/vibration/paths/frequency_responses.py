@@ -84,11 +84,11 @@ def frequency_responses(
     --------
     >>> import numpy as np
     >>> from dalembert.structure import lumped
-    >>> from dalembert.vibration import Elastic, FrictionContact, HarmonicForce, VibrationSystem
+    >>> from dalembert.vibration import ElasticSlider, FrictionContact, HarmonicForce, VibrationSystem
     >>> def damped(preload):
     ...     system = VibrationSystem(lumped({"m": 1.0}, [("m", None, 1.0, 0.04)]))
     ...     system.add(HarmonicForce("m", 1.0))
-    ...     system.add(FrictionContact("damper", "m", friction=0.5, preload=preload, law=Elastic(0.8)))
+    ...     system.add(FrictionContact("damper", "m", friction=0.5, preload=preload, law=ElasticSlider(0.8)))
     ...     return system
     >>> family = frequency_responses(damped, "preload", [0.0, 1.0, 2.0, 10.0], np.linspace(0.12, 0.25, 40))
     >>> family.best("m"), family.reduction("m").round(2).tolist()

@@ -94,11 +94,11 @@ def track_resonance(
 
     >>> import numpy as np
     >>> from dalembert.structure import lumped
-    >>> from dalembert.vibration import Elastic, FrictionContact, HarmonicForce, VibrationSystem
+    >>> from dalembert.vibration import ElasticSlider, FrictionContact, HarmonicForce, VibrationSystem
     >>> def oscillator(preload):
     ...     system = VibrationSystem(lumped({"m": 1.0}, [("m", None, 1.0, 0.04)]))
     ...     system.add(HarmonicForce("m", 1.0))
-    ...     law = Elastic(tangential_stiffness=0.8)
+    ...     law = ElasticSlider(tangential_stiffness=0.8)
     ...     system.add(FrictionContact("damper", "m", friction=0.5, preload=preload, law=law))
     ...     return system
     >>> method = HarmonicBalance(3, samples=128)

@@ -12,7 +12,7 @@ from dalembert.errors import InputError, ModelError
 from dalembert.structure import Structure
 from dalembert.vibration.balance.coordinates import Coordinates, coordinates
 from dalembert.vibration.balance.fourier import Fourier
-from dalembert.vibration.laws.contacts import Elastic, FrictionContact, Iwan, Number, Rigid
+from dalembert.vibration.laws.contacts import ElasticSlider, FrictionContact, Iwan, Number, Rigid
 from dalembert.vibration.laws.element import LawBlock, LawElement
 from dalembert.vibration.laws.law import Law
 from dalembert.vibration.laws.user_element import UserElement
@@ -272,7 +272,7 @@ def _kind(law: object) -> str:
 def _numbers(element: FrictionContact, own: list[int], rows: _Rows) -> list[list]:
     """Numbers of the cells of a contact."""
     law = element.law
-    if isinstance(law, Elastic):
+    if isinstance(law, ElasticSlider):
         normal = law.normal_stiffness if law.normal_stiffness is not None else 0.0
         return [[law.tangential_stiffness, normal, law.gap, element.friction, element.preload]]
     if isinstance(law, Iwan):

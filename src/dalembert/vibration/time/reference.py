@@ -77,10 +77,10 @@ def steady_state(
     Examples
     --------
     >>> from dalembert.structure import lumped
-    >>> from dalembert.vibration import Elastic, FrictionContact, HarmonicForce, VibrationSystem
+    >>> from dalembert.vibration import ElasticSlider, FrictionContact, HarmonicForce, VibrationSystem
     >>> system = VibrationSystem(lumped({"m": 1.0}, [("m", None, 1.0, 0.04)]))
     >>> force = system.add(HarmonicForce("m", 1.0))
-    >>> damper = system.add(FrictionContact("damper", "m", friction=0.5, preload=2.0, law=Elastic(0.8)))
+    >>> damper = system.add(FrictionContact("damper", "m", friction=0.5, preload=2.0, law=ElasticSlider(0.8)))
     >>> motion = steady_state(system, 1.12 / (2 * np.pi), Newmark(steps_per_period=1024), way="shooting")
     >>> round(motion.amplitude("m"), 3)
     3.625

@@ -5,7 +5,7 @@ import pytest
 
 from dalembert.data import Measurements
 from dalembert.forward import Checkpoint, PythonModel, Recorded, Sensor, Sensors
-from dalembert.inverse import Experiment, Fit, MultipleShooting, State, identify
+from dalembert.inverse import Experiment, Fit, MultipleShooting, ShootingState, identify
 from dalembert.parameters import Parameter
 from stepped_models import STEPPED_BOX, TIMES, TRUTH, Stepped, decay_in_steps, exact, failing, marked, quick_in_steps
 
@@ -135,7 +135,7 @@ def test_a_checkpoint_answers_for_the_finer_model_too(tmp_path):
 
 
 def test_segments_that_merged_are_one_run():
-    states = {"size": State("x", 0.01, 4.0)}
+    states = {"size": ShootingState("x", 0.01, 4.0)}
     shooting = MultipleShooting(states, segments=2)
     fit = identify(Stepped(0.05), exact(deviations=1e-3), shooting=shooting, starts=1)
     assert fit.nodes.segments == 1

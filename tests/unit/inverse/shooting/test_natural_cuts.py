@@ -17,7 +17,7 @@ RNG = np.random.default_rng(7)
 EVEN = np.linspace(0.0, 4.0, 201)
 UNEVEN = np.concatenate([[0.0], np.sort(RNG.uniform(0.01, 3.99, 199)), [4.0]])
 SOLVER = da.RungeKutta4(step=4e-3)
-DRIVE = da.Table(np.linspace(0.0, 4.0, 41), 0.4 * np.random.default_rng(1).standard_normal(41))
+DRIVE = da.signals.Table(np.linspace(0.0, 4.0, 41), 0.4 * np.random.default_rng(1).standard_normal(41))
 
 
 def driven(length, friction, angle, rate):

@@ -7,7 +7,7 @@ from conclusions import codes, only
 from dalembert.data import Measurements
 from dalembert.errors import InputError
 from dalembert.forward import PythonModel
-from dalembert.inverse import Experiment, Fit, MultipleShooting, State, identify, predict, profile
+from dalembert.inverse import Experiment, Fit, MultipleShooting, ShootingState, identify, predict, profile
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.problem import pose
 from dalembert.inverse.shooting.continuity import Chain
@@ -27,7 +27,7 @@ def swing(place, speed, stiffness):
 
 
 SWING = PythonModel(swing, {"place": (-2.0, 2.0), "speed": (-3.0, 3.0), "stiffness": (2.0, 30.0)}, ["x", "v"], TIMES)
-STATES = {"place": State("x", -2.0, 2.0), "speed": State("v", -9.0, 9.0)}
+STATES = {"place": ShootingState("x", -2.0, 2.0), "speed": ShootingState("v", -9.0, 9.0)}
 TRUE = np.array([1.0, -0.5, 9.0])
 
 
@@ -142,7 +142,7 @@ def test_the_first_guess_is_measured_or_follows_from_the_segment_before():
     found = first_guess(0.0, STATES, [0.0, -0.5, 9.0])
     np.testing.assert_allclose(found[[0, 3, 5, 7]], exact[[0, 10, 20, 30], 0])
     np.testing.assert_allclose(found[4], exact[10, 1])  # the true parameters lead there from the true beginning
-    rate = {**STATES, "speed": State("v", -9.0, 9.0, rate_of="x")}
+    rate = {**STATES, "speed": ShootingState("v", -9.0, 9.0, rate_of="x")}
     found = first_guess(0.0, rate, [0.0, 3.0, 20.0])
     np.testing.assert_allclose(found[[1, 4, 6]], np.clip(exact[[0, 10, 20], 1], -9, 9), atol=0.3)
 
@@ -153,7 +153,7 @@ def test_wrapping_angles_are_taken_near_the_initial_state():
     model = PythonModel(turning, {"place": (0.0, 9.0), "speed": (-3.0, 3.0)}, ["x", "v"], TIMES)
     exact = turning(7.0, 2.0)[:, 0]
     wrapped = Measurements.of(TIMES, {"x": (exact + np.pi) % turn - np.pi}, deviations=0.01, wraps=["x"])
-    states = {"place": State("x", -30.0, 30.0), "speed": State("v", -9.0, 9.0)}
+    states = {"place": ShootingState("x", -30.0, 30.0), "speed": ShootingState("v", -9.0, 9.0)}
     fit = identify(model, wrapped, shooting=MultipleShooting(states, 4), start=[6.5, 1.0])
     np.testing.assert_allclose(fit.values, [7.0, 2.0], atol=1e-8)
 
@@ -197,19 +197,19 @@ def test_simulations_of_all_fits_are_counted_as_runs_over_all_samples():
         (
             {"states": None},
             "shooting: the model cannot begin at a later state; leave out sensors and an unknown start, or name "
-            "its states: MultipleShooting({parameter: State(channel, lower, upper)})",
+            "its states: MultipleShooting({parameter: ShootingState(channel, lower, upper)})",
         ),
         (
-            {"states": {"plac": State("x", -2, 2)}},
+            {"states": {"plac": ShootingState("x", -2, 2)}},
             "shooting, states: unknown parameter 'plac'; did you mean 'place'?",
         ),
-        ({"states": {"place": State("y", -2, 2)}}, "shooting, state 'place': unknown channel 'y'; known: v, x"),
+        ({"states": {"place": ShootingState("y", -2, 2)}}, "shooting, state 'place': unknown channel 'y'; known: v, x"),
         (
-            {"states": STATES | {"speed": State("v", -9, 9, rate_of="v")}},
+            {"states": STATES | {"speed": ShootingState("v", -9, 9, rate_of="v")}},
             "shooting, state 'speed', rate_of: unknown channel 'v'; known: x",
         ),
         (
-            {"states": {"place": State("v", -2, 2), "speed": STATES["speed"]}},
+            {"states": {"place": ShootingState("v", -2, 2), "speed": STATES["speed"]}},
             "shooting, state 'place': the motion begins with 'v' at 0.5 where the parameter is 1; expected the same; "
             "name the channel that begins with the parameter, and give bodies velocities that go together",
         ),
@@ -237,8 +237,8 @@ def test_what_cannot_be_cut_is_told(change, sentence):
 
 
 def test_bounds_of_a_state_in_order():
-    with pytest.raises(InputError, match=says("State 'x': bounds are (2, -2); expected lower < upper")):
-        State("x", 2, -2)
+    with pytest.raises(InputError, match=says("ShootingState 'x': bounds are (2, -2); expected lower < upper")):
+        ShootingState("x", 2, -2)
 
 
 def test_experiments_are_cut_each_for_itself():
@@ -316,7 +316,7 @@ def test_what_no_single_run_can_follow_is_fitted_in_segments_and_says_so():
     noise = 0.001
     exact = doubling(0.3, SHIFT)[:, 0]
     data = Measurements.of(steps, {"x": exact + noise * np.random.default_rng(0).standard_normal(101)}, noise)
-    shooting = MultipleShooting({"start": State("x", 0.0, 1.0)}, segments=40)
+    shooting = MultipleShooting({"start": ShootingState("x", 0.0, 1.0)}, segments=40)
     fit = identify(model, data, shooting=shooting, starts=1, start=[0.4, 3.7])
     assert fit.success
     assert fit.nodes.segments > 1

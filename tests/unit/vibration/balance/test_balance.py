@@ -9,7 +9,7 @@ from dalembert.structure import Dofs, Structure
 from dalembert.vibration import (
     BilinearStop,
     CubicSpring,
-    Elastic,
+    ElasticSlider,
     FrictionContact,
     Gap,
     HarmonicBalance,
@@ -55,7 +55,7 @@ def springs(to: VibrationSystem) -> None:
     to.add(UserElement("user", ["a.x", "b.y"], lambda u: np.stack([u[0] * u[1] ** 2, u[0] ** 2 * u[1]])))
 
 
-def contact(law: Elastic | Iwan | Rigid, second: str | None = None, **options: object) -> Fill:
+def contact(law: ElasticSlider | Iwan | Rigid, second: str | None = None, **options: object) -> Fill:
     def fill(to: VibrationSystem) -> None:
         to.add(FrictionContact("first", "a", second, friction=0.4, preload=0.3, law=law, **options))  # type: ignore[arg-type]
 
@@ -73,8 +73,8 @@ def both(*fills: Fill) -> Fill:
 SPATIAL = {"tangential": ("x", "y"), "normal": "-z"}
 CASES = {
     "springs": springs,
-    "elastic": contact(Elastic(3.0)),
-    "elastic-spatial": contact(Elastic(3.0, 4.0, 0.02), "b", **SPATIAL),
+    "elastic": contact(ElasticSlider(3.0)),
+    "elastic-spatial": contact(ElasticSlider(3.0, 4.0, 0.02), "b", **SPATIAL),
     "iwan": contact(Iwan((1.0, 4.0), (0.4, 0.6), 2.0), tangential=("y",), normal="z"),
     "rigid": contact(Rigid()),
     "rigid-velocity": contact(Rigid(kind="velocity")),
@@ -107,7 +107,7 @@ def test_the_jacobian_is_that_of_the_complex_step(name: str, size: float) -> Non
 
 
 def test_the_condensed_structure_and_its_slope_are_those_of_the_whole_one() -> None:
-    problem = equations(system(contact(Elastic(3.0, 4.0), "b", **SPATIAL)), HarmonicBalance(harmonics=2))
+    problem = equations(system(contact(ElasticSlider(3.0, 4.0), "b", **SPATIAL)), HarmonicBalance(harmonics=2))
     lowered, own = problem.lowered, structure()
     rows = lowered.matrix.toarray()
     omega = 1.3
@@ -127,7 +127,7 @@ def test_the_condensed_structure_and_its_slope_are_those_of_the_whole_one() -> N
 def mixed(to: VibrationSystem) -> None:
     """Elastic and rigid contacts and springs, each on coordinates of its own."""
     to.add(FrictionContact("first", "a", friction=0.4, preload=0.3, law=Rigid(), **SPATIAL))  # type: ignore[arg-type]
-    to.add(FrictionContact("second", "b", friction=0.4, preload=0.3, law=Elastic(3.0)))
+    to.add(FrictionContact("second", "b", friction=0.4, preload=0.3, law=ElasticSlider(3.0)))
     to.add(CubicSpring("cubic", "b.y", stiffness=3.0))
     to.add(UserElement("user", ["c.x", "c.y"], lambda u: np.stack([u[0] * u[1] ** 2, u[0] ** 2 * u[1]])))
 

@@ -7,7 +7,7 @@ import pytest
 
 from dalembert.structure import Dofs, Structure, lumped
 from dalembert.vibration import (
-    Elastic,
+    ElasticSlider,
     FrictionContact,
     Gap,
     HarmonicBalance,
@@ -41,7 +41,7 @@ def in_plane() -> VibrationSystem:
     system.add(HarmonicForce("m.x", 2.0))
     system.add(HarmonicForce("m.y", 2.0, 1.2))
     system.add(HarmonicForce("m.z", 2.0, 0.4))
-    law = Elastic(2.0, normal_stiffness=20.0)
+    law = ElasticSlider(2.0, normal_stiffness=20.0)
     system.add(FrictionContact("foot", "m", tangential=("x", "y"), normal="z", friction=0.4, law=law))
     return system
 

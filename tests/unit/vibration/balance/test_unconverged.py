@@ -12,7 +12,7 @@ from dalembert.findings import Finding
 from dalembert.structure import lumped
 from dalembert.vibration import (
     CubicSpring,
-    Elastic,
+    ElasticSlider,
     FrictionContact,
     HarmonicBalance,
     HarmonicForce,
@@ -69,14 +69,14 @@ def test_a_law_that_is_finite_where_the_motion_is_may_have_an_end() -> None:
 
 
 def test_a_slider_that_cannot_limit_an_undamped_resonance_is_the_cause() -> None:
-    slider = FrictionContact("slider", "m", friction=0.1, preload=0.1, law=Elastic(1.0))
+    slider = FrictionContact("slider", "m", friction=0.1, preload=0.1, law=ElasticSlider(1.0))
     finding = only_finding(system(slider))
     assert finding.code == "undamped-resonance"
     assert "At 1 Hz the structure resonates without damping" in finding.message
 
 
 def test_with_damping_it_is_not() -> None:
-    slider = FrictionContact("slider", "m", friction=0.1, preload=0.1, law=Elastic(1.0))
+    slider = FrictionContact("slider", "m", friction=0.1, preload=0.1, law=ElasticSlider(1.0))
     assert frequency_response(system(slider, damping=0.01), np.array([0.9, 1.0]), HarmonicBalance(3)).converged.all()
 
 

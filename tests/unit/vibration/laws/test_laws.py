@@ -12,7 +12,7 @@ from dalembert.vibration import (
     BilinearStop,
     BoucWen,
     CubicSpring,
-    Elastic,
+    ElasticSlider,
     FourParameterIwan,
     FrequencyResponse,
     FrictionContact,
@@ -132,7 +132,7 @@ def test_stops_by_samples_come_to_their_sums_with_events(name: str) -> None:
 
 def test_a_slider_as_a_general_law_is_the_built_in_one() -> None:
     series = Fourier((0, 1, 3), 128)
-    contact = FrictionContact("slider", "a", friction=0.5, preload=0.6, law=Elastic(2.0))
+    contact = FrictionContact("slider", "a", friction=0.5, preload=0.6, law=ElasticSlider(2.0))
     (own,) = lower(system(contact)).real.blocks
     sums = LawSums("slider", slide, own.numbers, 1, False, series)
     problem = equations(system(contact), HarmonicBalance(harmonics=1, events=False))

@@ -8,7 +8,7 @@ from dalembert.structure import lumped
 from dalembert.vibration import (
     CubicSpring,
     CurveFamily,
-    Elastic,
+    ElasticSlider,
     FrictionContact,
     HarmonicBalance,
     HarmonicForce,
@@ -25,7 +25,7 @@ METHOD = HarmonicBalance(3, samples=128)
 def damped(preload: float) -> VibrationSystem:
     system = VibrationSystem(lumped({"m": 1.0}, [("m", None, 1.0, 0.04)]))
     system.add(HarmonicForce("m", 1.0))
-    system.add(FrictionContact("damper", "m", friction=0.5, preload=preload, law=Elastic(0.8)))
+    system.add(FrictionContact("damper", "m", friction=0.5, preload=preload, law=ElasticSlider(0.8)))
     return system
 
 

@@ -11,7 +11,7 @@ from dalembert.errors import InputError
 from dalembert.structure import lumped
 from dalembert.vibration import (
     CubicSpring,
-    Elastic,
+    ElasticSlider,
     FrequencyResponse,
     FrictionContact,
     Gap,
@@ -31,7 +31,7 @@ FREQUENCIES = np.array([0.6, 0.75]) / (2 * np.pi)
 CHANNELS = ["m1 peak", "m2 rms", "m3 harmonic 2"]
 
 
-def builder(law: Callable[[complex], Elastic | Iwan | Rigid]) -> Callable[..., VibrationSystem]:
+def builder(law: Callable[[complex], ElasticSlider | Iwan | Rigid]) -> Callable[..., VibrationSystem]:
     def build(friction, preload, contact, mass, force, phase, spring, damper, cubic, gap) -> VibrationSystem:
         springs = [("m1", None, 1, 0.02), ("m1", "m2", spring, damper), ("m2", None, 0.5, 0.01), ("m2", "m3", 0.7, 0.0)]
         system = VibrationSystem(lumped({"m1": 1.0, "m2": mass, "m3": 1.0}, springs))
@@ -46,14 +46,14 @@ def builder(law: Callable[[complex], Elastic | Iwan | Rigid]) -> Callable[..., V
     return build
 
 
-def model(law: Callable[[complex], Elastic | Iwan | Rigid], **options: object) -> FrequencyResponse:
+def model(law: Callable[[complex], ElasticSlider | Iwan | Rigid], **options: object) -> FrequencyResponse:
     bounds = {name: (0.5 * value, 1.5 * value) for name, value in NOMINAL.items()}
     method = HarmonicBalance(harmonics=5, samples=256)
     return FrequencyResponse(builder(law), bounds, CHANNELS, FREQUENCIES, method, **options)  # type: ignore[arg-type]
 
 
 LAWS = {
-    "elastic": Elastic,
+    "elastic": ElasticSlider,
     "iwan": lambda k: Iwan((k, 2 * k), (0.4, 0.6)),
     "rigid": lambda k: Rigid(),
     "rigid-given-penalty": lambda k: Rigid(penalty=k),
@@ -73,7 +73,7 @@ def test_the_jacobian_is_that_of_differences_for_every_number(name: str) -> None
 
 
 def test_a_batch_gives_the_bits_of_its_samples_and_marks_those_that_fail() -> None:
-    own, vector = model(Elastic, workers=3), np.array(list(NOMINAL.values()))
+    own, vector = model(ElasticSlider, workers=3), np.array(list(NOMINAL.values()))
     batch = np.stack([vector, 1.1 * vector, vector])
     batch[1, 1] = -1.0
     responses = own.evaluate(batch)
@@ -84,7 +84,7 @@ def test_a_batch_gives_the_bits_of_its_samples_and_marks_those_that_fail() -> No
 
 
 def test_a_point_that_is_not_found_says_where() -> None:
-    own = replaced(model(Elastic), HarmonicBalance(harmonics=5, samples=256, iterations=1, halvings=0))
+    own = replaced(model(ElasticSlider), HarmonicBalance(harmonics=5, samples=256, iterations=1, halvings=0))
     (failure,) = own.evaluate(np.array([list(NOMINAL.values())])).failures
     assert failure is not None
     assert failure.startswith("at 0.095493 Hz the harmonics were not found: after ")
@@ -98,13 +98,13 @@ def replaced(own: FrequencyResponse, method: HarmonicBalance) -> FrequencyRespon
 
 
 def test_the_first_samples_are_those_of_the_whole() -> None:
-    own, vectors = model(Elastic), np.array([list(NOMINAL.values())])
+    own, vectors = model(ElasticSlider), np.array([list(NOMINAL.values())])
     np.testing.assert_array_equal(own.first(1).evaluate(vectors).values, own.evaluate(vectors).values[:, :1])
 
 
 def test_the_fingerprint_knows_the_law_and_not_the_workers() -> None:
-    own = model(Elastic)
-    assert own.fingerprint == model(Elastic, workers=2).fingerprint
+    own = model(ElasticSlider)
+    assert own.fingerprint == model(ElasticSlider, workers=2).fingerprint
     assert own.fingerprint != model(LAWS["rigid"]).fingerprint
     assert own.fingerprint != replaced(own, replace(own.method, harmonics=3)).fingerprint
 
@@ -126,7 +126,7 @@ def test_an_unknown_kind_of_amplitude_is_told() -> None:
         "0, 1, 2, 3, 4, 5"
     )
     own = FrequencyResponse(
-        builder(Elastic), model(Elastic).parameters, ["m1 size"], FREQUENCIES, model(Elastic).method
+        builder(ElasticSlider), model(ElasticSlider).parameters, ["m1 size"], FREQUENCIES, model(ElasticSlider).method
     )
     assert own.evaluate(np.array([list(NOMINAL.values())])).failures == (sentence,)
 
@@ -140,14 +140,14 @@ def test_an_unknown_kind_of_amplitude_is_told() -> None:
 )
 def test_what_makes_no_response_is_told(channels: list[str], frequencies: list[float], sentence: str) -> None:
     with pytest.raises(InputError, match=says(sentence)):
-        FrequencyResponse(builder(Elastic), {"a": (0.0, 1.0)}, channels, np.array(frequencies))
+        FrequencyResponse(builder(ElasticSlider), {"a": (0.0, 1.0)}, channels, np.array(frequencies))
 
 
 def test_friction_is_identified_from_a_response_curve() -> None:
     """The waist: what identifies mechanisms identifies friction."""
 
     def build(friction, contact) -> VibrationSystem:
-        return builder(Elastic)(**{**NOMINAL, "friction": friction, "contact": contact})
+        return builder(ElasticSlider)(**{**NOMINAL, "friction": friction, "contact": contact})
 
     frequencies = np.linspace(0.6, 1.0, 9) / (2 * np.pi)
     bounds = {"friction": (0.1, 0.6), "contact": (0.5, 3.0)}

@@ -12,7 +12,7 @@ from scipy.sparse import csc_array
 from dalembert.errors import InputError, ModelError
 from dalembert.structure import lumped
 from dalembert.vibration import (
-    Elastic,
+    ElasticSlider,
     FollowedPoint,
     FrequencyCurve,
     FrictionContact,
@@ -79,7 +79,7 @@ def test_odd_harmonics_are_enough_for_a_symmetric_system() -> None:
 
 
 def test_cells_side_by_side_with_one_stiffness_are_one_slider() -> None:
-    together = frequency_response(two_masses(Elastic(1.5)), FREQUENCIES, METHOD)
+    together = frequency_response(two_masses(ElasticSlider(1.5)), FREQUENCIES, METHOD)
     apart = frequency_response(two_masses(Iwan((0.6, 0.9), (0.4, 0.6))), FREQUENCIES, METHOD)  # type: ignore[arg-type]
     np.testing.assert_allclose(apart.amplitude("m2"), together.amplitude("m2"), rtol=1e-9)
 
@@ -221,11 +221,11 @@ def test_a_part_that_nothing_holds_moves_about_its_place(
             "for the normal, if any, each x, y or z",
         ),
         (
-            lambda: FrictionContact("foot", "a", friction=0.3, normal="z", law=Elastic(1.0)),
+            lambda: FrictionContact("foot", "a", friction=0.3, normal="z", law=ElasticSlider(1.0)),
             "contact 'foot' has a normal direction; give its law a normal_stiffness in N/m",
         ),
         (
-            lambda: FrictionContact("foot", "a", friction=0.3, law=Elastic(0.0)),
+            lambda: FrictionContact("foot", "a", friction=0.3, law=ElasticSlider(0.0)),
             "contact 'foot': the tangential stiffness is 0 N/m; expected a positive number",
         ),
         (

@@ -8,7 +8,7 @@ import pytest
 from dalembert.structure import lumped
 from dalembert.vibration import (
     CubicSpring,
-    Elastic,
+    ElasticSlider,
     FrequencyCurve,
     FrictionContact,
     HarmonicBalance,
@@ -24,14 +24,14 @@ from sliders_in_time import Sliders
 
 FREQUENCIES = np.array([0.5, 0.8, 1.2, 2.0, 3.0]) / (2 * np.pi)
 LAWS = {
-    "elastic": Elastic(1.0, 1.0),
-    "stiff": Elastic(100.0, 100.0),
+    "elastic": ElasticSlider(1.0, 1.0),
+    "stiff": ElasticSlider(100.0, 100.0),
     "rigid": Rigid(penalty=1.0),
     "rigid, velocity": Rigid(penalty=1.0, kind="velocity"),
 }
 
 
-def held_together(law: Elastic | Rigid, force: float, on: str = "a", preload: float = 2.0) -> VibrationSystem:
+def held_together(law: ElasticSlider | Rigid, force: float, on: str = "a", preload: float = 2.0) -> VibrationSystem:
     """Two masses: a slider alone holds the second."""
     system = VibrationSystem(lumped({"a": 1.0, "b": 1.0}, [("a", None, 1.0, 0.05)]))
     system.add(HarmonicForce(on, force))
@@ -39,7 +39,7 @@ def held_together(law: Elastic | Rigid, force: float, on: str = "a", preload: fl
     return system
 
 
-def on_the_ground(law: Elastic | Rigid, force: float, spring: float = 0.0) -> VibrationSystem:
+def on_the_ground(law: ElasticSlider | Rigid, force: float, spring: float = 0.0) -> VibrationSystem:
     """A block that its weight presses on the ground."""
     springs = [("A.x", None, spring, 0.02)] if spring else []
     system = VibrationSystem(lumped({"A.x": 1.0, "A.z": 1.0}, springs))
@@ -49,7 +49,7 @@ def on_the_ground(law: Elastic | Rigid, force: float, spring: float = 0.0) -> Vi
     return system
 
 
-def pushed(law: Elastic | Rigid) -> VibrationSystem:
+def pushed(law: ElasticSlider | Rigid) -> VibrationSystem:
     """A mass on a slider, with a static force of three times the limit of friction."""
     system = VibrationSystem(lumped({"a": 1.0}, []))
     system.add(StaticForce("a", 3.0))
@@ -124,7 +124,7 @@ def test_two_masses_that_nothing_holds_move_as_in_time(part: str) -> None:
     system.add(HarmonicForce("a", 1.0))
     reference = Sliders(structure.mass, structure.damping, structure.stiffness, np.array([1.0, 0.0]))
     if part == "slider":
-        system.add(FrictionContact("slider", "a", "b", friction=0.3, preload=1.0, law=Elastic(2.0)))
+        system.add(FrictionContact("slider", "a", "b", friction=0.3, preload=1.0, law=ElasticSlider(2.0)))
         reference = replace(reference, sliders=((way, 2.0, 0.3),))
     else:
         system.add(CubicSpring("cubic", "a", "b", stiffness=1.0))

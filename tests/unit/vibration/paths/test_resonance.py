@@ -10,7 +10,7 @@ from dalembert.forward import Checkpoint
 from dalembert.structure import lumped
 from dalembert.vibration import (
     CubicSpring,
-    Elastic,
+    ElasticSlider,
     FrictionContact,
     HarmonicBalance,
     HarmonicForce,
@@ -48,7 +48,9 @@ def test_a_track_is_kept_to_the_bit(tmp_path: Path) -> None:
 def rubbing(preload: float) -> VibrationSystem:
     system = VibrationSystem(lumped({"m": 1.0}, [("m", None, 1.0, 0.04)]))
     system.add(HarmonicForce("m", 1.0))
-    system.add(FrictionContact("slider", "m", friction=0.5, preload=preload, law=Elastic(tangential_stiffness=0.8)))
+    system.add(
+        FrictionContact("slider", "m", friction=0.5, preload=preload, law=ElasticSlider(tangential_stiffness=0.8))
+    )
     return system
 
 

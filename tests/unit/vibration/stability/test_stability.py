@@ -10,7 +10,7 @@ from dalembert.forward import Checkpoint
 from dalembert.structure import Dofs, Structure
 from dalembert.vibration import (
     CubicSpring,
-    Elastic,
+    ElasticSlider,
     FrequencyCurve,
     FrictionContact,
     HarmonicBalance,
@@ -120,7 +120,7 @@ def sharing() -> VibrationSystem:
     structure = Structure(np.ones((2, 2)), np.diag([1.0, 2.0]), Dofs(("a.x", "b.x")), damping=0.1 * np.eye(2))
     system = VibrationSystem(structure)
     system.add(HarmonicForce("a", 1.0))
-    system.add(FrictionContact("foot", "a", friction=0.3, preload=1.0, law=Elastic(1.0)))
+    system.add(FrictionContact("foot", "a", friction=0.3, preload=1.0, law=ElasticSlider(1.0)))
     return system
 
 

@@ -11,7 +11,7 @@ import dalembert as da
 from dalembert.structure import Modal, Structure, craig_bampton, lumped
 from dalembert.vibration import (
     CubicSpring,
-    Elastic,
+    ElasticSlider,
     FrequencyResponse,
     FrictionContact,
     Gap,
@@ -59,7 +59,7 @@ def builder(sparse: bool = False, **through: Callable) -> Callable[..., Vibratio
         system = VibrationSystem(structure)
         system.add(HarmonicForce("a", own["force"], 0.3 * own["phase"]))
         system.add(StaticForce("b", 0.1 * own["static"]))
-        law = Elastic(tangential_stiffness=own["tangential"])
+        law = ElasticSlider(tangential_stiffness=own["tangential"])
         system.add(FrictionContact("foot", "b", friction=0.3 * own["friction"], preload=0.5, law=law))
         system.add(CubicSpring("cubic", "a", stiffness=0.1 * own["cubic"]))
         system.add(Gap("stop", "b", stiffness=1.0, gap=0.3 * own["gap"]))

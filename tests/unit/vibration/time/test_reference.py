@@ -12,7 +12,7 @@ from dalembert.structure import Dofs, Structure, lumped
 from dalembert.vibration import (
     BilinearStop,
     CubicSpring,
-    Elastic,
+    ElasticSlider,
     FrictionContact,
     Gap,
     HarmonicBalance,
@@ -69,7 +69,7 @@ def test_shooting_finds_the_motion_of_a_long_run_in_fewer_periods(radius: float 
     np.testing.assert_array_equal(shot.states, long.states)
 
 
-def rubbing(law: Elastic | Iwan, *parts) -> VibrationSystem:
+def rubbing(law: ElasticSlider | Iwan, *parts) -> VibrationSystem:
     """A mass on three springs that rubs in a plane and lifts off, beside another one."""
     stiffness = np.diag([12.0, 16.0, 21.0, 3.0]) - np.diag([1.0, 0.0, 0.5], 1) - np.diag([1.0, 0.0, 0.5], -1)
     dofs = Dofs(("a.x", "a.y", "a.z", "b.x"))
@@ -82,7 +82,7 @@ def rubbing(law: Elastic | Iwan, *parts) -> VibrationSystem:
     return system
 
 
-PLANE = Elastic(8.0, normal_stiffness=15.0)
+PLANE = ElasticSlider(8.0, normal_stiffness=15.0)
 
 
 @pytest.mark.parametrize(
@@ -161,7 +161,7 @@ def test_stiff_contacts_in_two_directions_are_solved_in_every_step() -> None:
         for dof, size, phase in (("a.x", 6.0, 0.0), ("a.y", 2.0, 0.2), ("b.x", 1.0, 0.0)):
             system.add(HarmonicForce(dof, size, phase=phase))
         for foot in ("left", "right"):
-            law = Elastic(16.0 * stiffening)
+            law = ElasticSlider(16.0 * stiffening)
             system.add(FrictionContact(foot, "a", tangential=("x", "y"), friction=0.6, preload=4.0, law=law))
         motion = steady_state(system, 0.45, Newmark(1024, 0.5))
         assert motion.converged

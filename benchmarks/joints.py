@@ -20,7 +20,8 @@ from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.kernels.model import Blocks, Model
 from dalembert.multibody.kernels.records import RESIDUAL, TANGENT
 from dalembert.multibody.kernels.reduction import reduction
-from dalembert.multibody.lowering import Lowered, lower
+from dalembert.multibody.lowered import Lowered
+from dalembert.multibody.lowering import lower
 
 COUNT = 500  # joints that one call of a kernel loops over
 CALLS = 200  # of the kernel, for one reading of the clock

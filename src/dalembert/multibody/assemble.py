@@ -19,7 +19,8 @@ from dalembert.multibody.evaluate import constraint_jacobian, residual
 from dalembert.multibody.initial_velocities import initial_velocities
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.model import Model
-from dalembert.multibody.lowering import Lowered, lower
+from dalembert.multibody.lowered import Lowered
+from dalembert.multibody.lowering import lower
 from dalembert.multibody.rigid_motions import CLOSED, coordinates_of, modes_of, size_of, smallest, spread, unknowns
 from dalembert.multibody.scales import scales
 from dalembert.multibody.system import EQUILIBRIUM, System

@@ -21,7 +21,8 @@ from dalembert.multibody.components.signals import Custom
 from dalembert.multibody.evaluate import residual
 from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.kernels.motion import MotionState
-from dalembert.multibody.lowering import Lowered, lower
+from dalembert.multibody.lowered import Lowered
+from dalembert.multibody.lowering import lower
 from dalembert.multibody.observe import Observer
 from dalembert.multibody.system import System
 from dalembert.parameters import Parameters

@@ -7,7 +7,7 @@ import numpy as np
 from dalembert.multibody.components.planar import markers
 from dalembert.multibody.components.planar.pairs import INTEGERS
 from dalembert.multibody.kernels.kind import Kind
-from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.lowered import Lowered
 from dalembert.multibody.system import System
 
 

@@ -10,7 +10,7 @@ from scipy.sparse.linalg import lsqr, splu
 
 from dalembert.errors import ModelError, SolveError
 from dalembert.multibody.evaluate import residual, tangent
-from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.lowered import Lowered
 from dalembert.multibody.scales import scales
 
 _MOST_ITERATIONS = 30

@@ -10,7 +10,7 @@ from dalembert.multibody.kernels.histories import energy_history
 from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.kernels.model import Model
 from dalembert.multibody.kernels.records import RESIDUAL, TANGENT
-from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.lowered import Lowered
 
 
 def residual(

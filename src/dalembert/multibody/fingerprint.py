@@ -4,7 +4,7 @@ import hashlib
 
 import numpy as np
 
-from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.lowered import Lowered
 
 
 def fingerprint(lowered: Lowered, times: np.ndarray, *more: object) -> str:

@@ -13,7 +13,7 @@ from dalembert.multibody.carried_rates import carried_rates
 from dalembert.multibody.components.planar.body import Body
 from dalembert.multibody.evaluate import constraint_rates
 from dalembert.multibody.kernels.model import Model
-from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.lowered import Lowered
 from dalembert.multibody.rigid_motions import CLOSED, modes_of, size_of, smallest, spread
 
 _ROUNDING = 1e-9  # of the largest velocity: what stated velocities may leave of a constraint's rate

@@ -9,7 +9,7 @@ from dalembert.arguments import is_real
 from dalembert.errors import InputError, SolveError, shown
 from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.run import make_problem
-from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.lowered import Lowered
 
 MOST_STEPS = 1e8
 """Fixed steps of a simulation, minutes to hours of computing."""

@@ -5,14 +5,11 @@ an ensemble; what depends on numbers is in `Lowered`.
 """
 
 from collections.abc import Callable, Mapping, Sequence, ValuesView
-from dataclasses import dataclass, field, replace
-from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from dalembert.errors import InputError, ModelError, shown
-from dalembert.kernels.kernel import Compiled
 from dalembert.multibody.callbacks import Callback, Failures, force_callback, signal_callback
 from dalembert.multibody.carried_rates import carried_rates, stated
 from dalembert.multibody.components.fields import Number
@@ -22,8 +19,7 @@ from dalembert.multibody.components.points import Ground, GroundPoint, Place, Po
 from dalembert.multibody.components.signals import Course, Custom, Signal, as_signal
 from dalembert.multibody.kernels import signals as signal_kinds
 from dalembert.multibody.kernels.kind import Kind
-from dalembert.multibody.kernels.model import Blocks, Model, Signals
-from dalembert.multibody.kernels.signals import EVALUATE
+from dalembert.multibody.lowered import Lowered
 from dalembert.multibody.structure import Structure
 from dalembert.multibody.system import System
 
@@ -44,106 +40,6 @@ class Pair(NamedTuple):
     rest_angle: Number
     angles: tuple[Number, Number]
     relative: tuple[Number, Number]
-
-
-@dataclass(frozen=True)
-class Lowered:
-    """A system as arrays.
-
-    Parameters
-    ----------
-    structure : Structure
-    bodies : mapping of name to Body
-    data : mapping of kind to array (count, -)
-    signal_data, knots : array
-    callbacks : tuple of Callback
-    frames, rates : array, shape (bodies, 3)
-        Place (x, y) and angle of each body at first, and their stated rates, zero where none is.
-    stated : array of bool, shape (bodies, 3)
-        Which rates the bodies state.
-    x, v : array, shape (N + 1,)
-        First unknowns and velocities, as placed: joints may not be closed yet.
-    jumps : tuple of float
-        Times, s, at which loads jump; these and those of kinks are measured from the start of the motion.
-    changes : frozenset of float
-        Those of the jumps at which nothing but the values of held tables changes.
-    kinks : tuple of (time, joint)
-        Times, s, at which the velocity of a prescribed motion would jump.
-    failures : Failures
-        What functions of the user's raised.
-    parts : mapping of kind to tuple of str
-        Name of the component that each row belongs to.
-    """
-
-    structure: Structure
-    bodies: dict[str, Body]
-    data: dict[Kind, np.ndarray]
-    signal_data: np.ndarray
-    knots: np.ndarray
-    callbacks: tuple[Callback, ...]
-    frames: np.ndarray
-    rates: np.ndarray
-    stated: np.ndarray
-    x: np.ndarray
-    v: np.ndarray
-    jumps: tuple[float, ...]
-    changes: frozenset[float]
-    kinks: tuple[tuple[float, str], ...]
-    failures: Failures = field(compare=False, repr=False)
-    parts: dict[Kind, tuple[str, ...]] = field(compare=False, repr=False)
-
-    @property
-    def is_complex(self) -> bool:
-        return any(np.iscomplexobj(array) for array in (self.x, self.v, self.signal_data, *self.data.values()))
-
-    @property
-    def dissipates(self) -> bool:
-        """Whether a force of the model may depend on velocities."""
-        return any(kind.dissipative(data) for kind, data in self.data.items())
-
-    def kernels(self, derivatives: bool) -> list[Compiled]:
-        """Kernels of the components that every simulation needs, and those for derivatives along directions."""
-        roles = [("residual", float), ("residual", complex), ("rates", float)]
-        roles += [("rates", complex)] * derivatives
-        return [kind.kernel(*role) for role in roles for kind in self.data if kind.has(role[0])] + [*EVALUATE.values()]
-
-    def model(self, dtype: type) -> Model:
-        """The arrays in real or in complex numbers."""
-        numbers = {kind: np.ascontiguousarray(_cast(data, dtype)) for kind, data in self.data.items()}
-        address = "complex" if dtype is complex else "real"
-        callbacks = np.array([getattr(entry, address) for entry in self.callbacks], dtype=np.int64)
-        data = np.ascontiguousarray(_cast(self.signal_data, dtype))
-        return Model(
-            Blocks(self.structure.index, self.structure.meta, numbers),
-            Signals(self.structure.signals, self.knots, data),
-            callbacks,
-            self.structure.size,
-            self.structure.n,
-            dtype,
-            self.structure.reduction,
-        )
-
-    @cached_property
-    def real(self) -> Model:
-        """The model in real numbers."""
-        return self.model(float)
-
-    @cached_property
-    def complex_model(self) -> Model:
-        """The model in complex numbers."""
-        return self.model(complex)
-
-    @cached_property
-    def unperturbed(self) -> Model:
-        """The model in complex numbers without imaginary parts, for tangents."""
-        if not self.is_complex:
-            return self.complex_model
-        data = {kind: np.real(array) for kind, array in self.data.items()}
-        return replace(self, data=data, signal_data=np.real(self.signal_data)).complex_model
-
-
-def _cast(array: np.ndarray, dtype: type) -> np.ndarray:
-    return np.real(array).astype(float) if dtype is float else array.astype(complex)
 
 
 class _Numbers:

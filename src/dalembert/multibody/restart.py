@@ -17,7 +17,7 @@ from dalembert.multibody.fingerprint import fingerprint
 from dalembert.multibody.integrators.problem import Problem
 from dalembert.multibody.integrators.run import make_problem
 from dalembert.multibody.kernels.elementary import STEP
-from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.lowered import Lowered
 from dalembert.multibody.scales import scales
 from dalembert.parameters import Parameter, Parameters
 

@@ -8,7 +8,7 @@ from dalembert.multibody.components.planar.body import Body
 from dalembert.multibody.evaluate import constraint_jacobian, constraint_rates, residual
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.model import Model
-from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.lowered import Lowered
 
 CLOSED = 1e-13  # violation against the scale that counts as none
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.lowered import Lowered
 
 
 def scales(lowered: Lowered) -> np.ndarray:

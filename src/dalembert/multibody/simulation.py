@@ -15,7 +15,8 @@ from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha
 from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.run import make_problem
 from dalembert.multibody.long_runs import MOST_STEPS, check_pace, check_steps, works
-from dalembert.multibody.lowering import Lowered, lower
+from dalembert.multibody.lowered import Lowered
+from dalembert.multibody.lowering import lower
 from dalembert.multibody.system import System
 from dalembert.multibody.trajectory import Trajectory
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from dalembert.multibody.assemble import redundancy
 from dalembert.multibody.evaluate import constraint_jacobian
-from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.lowered import Lowered
 from dalembert.multibody.scales import scales
 
 SINGULAR_POSITION = "singular position"

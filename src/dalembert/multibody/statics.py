@@ -16,7 +16,8 @@ from dalembert.multibody.drawing import Drawing, draw
 from dalembert.multibody.equilibrium_start import resting_place
 from dalembert.multibody.evaluate import tangent
 from dalembert.multibody.kernels.motion import MotionState
-from dalembert.multibody.lowering import Lowered, lower
+from dalembert.multibody.lowered import Lowered
+from dalembert.multibody.lowering import lower
 from dalembert.multibody.observe import Observer, observer
 from dalembert.multibody.scales import scales
 from dalembert.multibody.system import System

@@ -26,7 +26,8 @@ from dalembert.multibody.integrators.problem import Problem
 from dalembert.multibody.integrators.run import Run, make_problem
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.long_runs import check_pace, check_steps
-from dalembert.multibody.lowering import Lowered, lower
+from dalembert.multibody.lowered import Lowered
+from dalembert.multibody.lowering import lower
 from dalembert.multibody.observe import Observer, observer
 from dalembert.multibody.restart import MotionSegment, chart
 from dalembert.multibody.simulation import begin_time, checked, integrator, simulate

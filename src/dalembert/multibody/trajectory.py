@@ -20,7 +20,7 @@ from dalembert.multibody.evaluate import energies, energy_kernels, violations
 from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.run import Run
 from dalembert.multibody.kernels.motion import MotionState
-from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.lowered import Lowered
 from dalembert.multibody.observe import beside, channel_names, observer
 from dalembert.multibody.skipped_samples import skipped_samples
 from dalembert.multibody.slip_rates import rubbing, slip_findings

@@ -11,7 +11,8 @@ from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.kernels.model import Model
 from dalembert.multibody.kernels.records import Inputs
-from dalembert.multibody.lowering import Lowered, lower
+from dalembert.multibody.lowered import Lowered
+from dalembert.multibody.lowering import lower
 
 TIME = 0.3
 

@@ -11,7 +11,7 @@ from dalembert.multibody.integrators.run import make_problem
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.model import Call, addresses
 from dalembert.multibody.kernels.motion import MotionState, resting
-from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.lowered import Lowered
 
 
 def four_bar(length: float = 2.0, bars: int = 2) -> mb.System:

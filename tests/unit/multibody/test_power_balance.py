@@ -10,7 +10,8 @@ import pytest
 import mechanisms
 from dalembert.multibody.evaluate import constraint_rates, energies, residual
 from dalembert.multibody.kernels.elementary import STEP
-from dalembert.multibody.lowering import Lowered, lower
+from dalembert.multibody.lowered import Lowered
+from dalembert.multibody.lowering import lower
 
 TIME = 0.37
 

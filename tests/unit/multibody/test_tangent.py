@@ -6,7 +6,8 @@ import pytest
 import mechanisms
 from dalembert.multibody.evaluate import residual, tangent
 from dalembert.multibody.kernels.elementary import STEP
-from dalembert.multibody.lowering import Lowered, lower
+from dalembert.multibody.lowered import Lowered
+from dalembert.multibody.lowering import lower
 
 TIME = 0.37
 BY = (0.7, 1.3, 0.4)

@@ -12,7 +12,7 @@ from dalembert.multibody.integrators.ode_solver import OdeSolver
 from dalembert.multibody.integrators.radau_iia import RadauIIA
 from dalembert.multibody.integrators.run import Run
 from dalembert.multibody.integrators.stabilisation import Partitioning
-from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.lowered import Lowered
 from dalembert.multibody.singular_positions import SINGULAR_POSITION
 from dalembert.settings import expect_positive
 

@@ -11,7 +11,7 @@ from dalembert.multibody.integrators.run import Run
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.model import addresses
 from dalembert.multibody.kernels.motion import MotionState, resting, row
-from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.lowered import Lowered
 
 _ROUNDING = 1e-9  # of differences of times, relative to the motion's end
 

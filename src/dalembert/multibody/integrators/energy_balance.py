@@ -22,7 +22,7 @@ from dalembert.multibody.kernels.assembly import energies
 from dalembert.multibody.kernels.elementary import STEP, reciprocal
 from dalembert.multibody.kernels.model import Model
 from dalembert.multibody.kernels.motion import MotionState
-from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.lowered import Lowered
 
 _ROUNDING = 1e-15  # of the energies' sizes
 _MOST = 12  # strengths that are tried

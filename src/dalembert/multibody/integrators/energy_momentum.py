@@ -19,7 +19,7 @@ from dalembert.multibody.integrators.symmetries import rigid_motions
 from dalembert.multibody.integrators.variational import Variational
 from dalembert.multibody.kernels.histories import energy_history
 from dalembert.multibody.kernels.motion import MotionState
-from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.lowered import Lowered
 from dalembert.multibody.structure import Structure
 
 

@@ -10,7 +10,7 @@ from dalembert.multibody.integrators.completion import complete, completion, par
 from dalembert.multibody.integrators.index1 import PARTITIONED, PROJECTED, Terms
 from dalembert.multibody.integrators.problem import DONE, Problem
 from dalembert.multibody.kernels.motion import MotionState, resting
-from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.lowered import Lowered
 
 
 class _Along(NamedTuple):

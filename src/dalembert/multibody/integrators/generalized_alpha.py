@@ -31,7 +31,7 @@ from dalembert.multibody.kernels.motion import (
     row,
     rows,
 )
-from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.lowered import Lowered
 from dalembert.multibody.structure import Structure
 
 STARTS = ("consistent", "zero")

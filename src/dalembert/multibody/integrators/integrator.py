@@ -14,7 +14,7 @@ from dalembert.kernels.kernel import Compiled
 from dalembert.multibody.integrators.batch import Batch, make_batch, smooth_stretches
 from dalembert.multibody.integrators.problem import Problem
 from dalembert.multibody.integrators.run import Run
-from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.lowered import Lowered
 from dalembert.multibody.structure import Structure
 
 

@@ -19,7 +19,7 @@ from dalembert.multibody.integrators.radau_loop import integrate
 from dalembert.multibody.integrators.radau_workspace import Settings, workspace
 from dalembert.multibody.integrators.run import Run, cut_down, explain
 from dalembert.multibody.kernels.motion import resting
-from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.lowered import Lowered
 from dalembert.multibody.singular_positions import named
 from dalembert.multibody.structure import Structure
 from dalembert.settings import expect, expect_positive

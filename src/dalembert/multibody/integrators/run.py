@@ -6,7 +6,7 @@ import numpy as np
 
 from dalembert.multibody.integrators.problem import DIVERGED, SINGULAR, TOO_MANY_STEPS, Problem, Reduced
 from dalembert.multibody.kernels.motion import MotionState
-from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.lowered import Lowered
 from dalembert.multibody.scales import scales
 
 

@@ -13,7 +13,7 @@ from dalembert.multibody.assemble import redundancy
 from dalembert.multibody.evaluate import constraint_jacobian
 from dalembert.multibody.integrators.index1 import AS_THEY_COME, PARTITIONED, PROJECTED, Terms
 from dalembert.multibody.integrators.problem import Problem
-from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.lowered import Lowered
 from dalembert.settings import expect
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from dalembert.multibody.components.planar.markers import GROUND
 from dalembert.multibody.integrators.energy_balance import Rigid
-from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.lowered import Lowered
 
 
 def rigid_motions(lowered: Lowered, perturbed: Sequence[Lowered]) -> Rigid:

@@ -18,7 +18,7 @@ from dalembert.multibody.integrators.outputs import record_along
 from dalembert.multibody.integrators.problem import DONE
 from dalembert.multibody.integrators.run import Run, cut_down, explain
 from dalembert.multibody.kernels.motion import MotionState, resting
-from dalembert.multibody.lowering import Lowered
+from dalembert.multibody.lowered import Lowered
 from dalembert.multibody.structure import Structure
 from dalembert.settings import expect, expect_positive
 

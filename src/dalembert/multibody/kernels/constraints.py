@@ -5,7 +5,8 @@ from typing import Any
 
 from dalembert.kernels.kernel import inlined, inner
 from dalembert.kernels.views import stack
-from dalembert.multibody.kernels.jets import in_time, jets
+from dalembert.multibody.kernels.jets import jets
+from dalembert.multibody.kernels.time_inputs import in_time
 
 
 def forces_of(constraint: Callable[..., Any], coordinates: int, multipliers: int) -> Callable[..., Any]:

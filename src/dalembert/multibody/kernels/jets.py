@@ -6,7 +6,7 @@ it gives a column of the constraint's Jacobian. Its numbers are real, or complex
 """
 
 import operator
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numba import types
@@ -16,7 +16,6 @@ from numba.core.typing.templates import AbstractTemplate
 from numba.core.typing.templates import infer_global as _infer_global
 from numba.extending import lower_builtin, lower_cast, models, overload, register_model
 
-from dalembert.kernels.kernel import inlined
 from dalembert.kernels.views import intrinsic
 from dalembert.multibody.kernels import elementary
 
@@ -392,33 +391,3 @@ def _angle_of(x, y):
         return jet(elementary.angle_of(u, w), rate, second)
 
     return angle_of
-
-
-# -- signals ---------------------------------------------------------------------------------------------------------
-
-
-class TimeInputs(NamedTuple):
-    """Inputs of a component whose signals are jets along time."""
-
-    signals: np.ndarray
-    callbacks: np.ndarray
-
-
-def signal(inputs: Any, number: int) -> Any:
-    """Value of a signal, with its rates where the function is differentiated by time."""
-    return Jet(*inputs.signals[number]) if isinstance(inputs, TimeInputs) else inputs.signals[number, 0]
-
-
-@overload(signal)
-def _signal(inputs, number):
-    if getattr(inputs, "instance_class", None) is TimeInputs:
-        return lambda inputs, number: jet(
-            inputs.signals[number, 0], inputs.signals[number, 1], inputs.signals[number, 2]
-        )
-    return lambda inputs, number: inputs.signals[number, 0]
-
-
-@inlined
-def in_time(inputs):
-    """Inputs whose signals are jets along time."""
-    return TimeInputs(inputs.signals, inputs.callbacks)

@@ -12,8 +12,8 @@ from dalembert.multibody.components.planar.joint import OUTPUTS, Joint, observe_
 from dalembert.multibody.components.planar.pairs import push_pair, relative_angle, separation, twist_pair
 from dalembert.multibody.components.signals import Course, Step, Table, as_signal
 from dalembert.multibody.kernels.elementary import wrapped
-from dalembert.multibody.kernels.jets import signal
 from dalembert.multibody.kernels.kind import Kind
+from dalembert.multibody.kernels.time_inputs import signal
 
 if TYPE_CHECKING:
     from dalembert.multibody.lowering import Lowering

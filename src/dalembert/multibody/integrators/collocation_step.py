@@ -142,7 +142,10 @@ def _guess(n, h, old, state):
 
 @inner
 def place(columns, h, s, shape, old, c, state):
-    """Independent entries (``columns``) of a state by the polynomial at the fraction s of the step."""
+    """Independent entries (``columns``) of a state by the polynomial at the fraction s of the step.
+
+    u'' = sum_k c_k l_k(s), u' and u its integrals from u'_0 and u_0 (`docs/theory/collocation.md`).
+    """
     independent = len(columns)
     for i in range(independent):
         own = columns[i]

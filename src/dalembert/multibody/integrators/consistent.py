@@ -1,4 +1,8 @@
-"""States that satisfy the equations of motion and the constraints at the levels of velocity and acceleration."""
+"""States that satisfy the equations of motion and the constraints at the levels of velocity and acceleration.
+
+Accelerations and multipliers solve M a + J^T l = Q together with Phi'' = 0: the system of `docs/theory/index-1.md`
+without feedback, for starts, jumps of loads, and projected velocities.
+"""
 
 from typing import NamedTuple
 

@@ -63,7 +63,12 @@ def differentiate(
     problem: Problem, complex_model: Address, directions: Integers, c: Coefficients, t: float, within: float,
     new: MotionState, dolds: MotionStates, dnews: MotionStates, room: Differentiation,
 ) -> bool:  # fmt: skip
-    """Derivatives of the converged step along all directions; whether the tangent is regular."""
+    """Derivatives of the converged step along all directions; whether the tangent is regular.
+
+    The derivative of the residual r = 0 is linear in those of accelerations and multipliers. So one solution with the
+    exact tangent of the step gives them, from the predicted ones: the right-hand side is Im r / STEP of the perturbed
+    state (`docs/theory/sensitivities.md`).
+    """
     n, own, complex_state, factors = problem.n, problem.reduced, room.complex_state, room.factors
     r, right, delta, change = room.r, room.right, room.delta, room.change
     set_signals(complex_model, t, within, room.complex_work)

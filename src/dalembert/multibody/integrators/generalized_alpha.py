@@ -274,7 +274,7 @@ def _integrate(problem, edges, opens, settings, model, complex_model, directions
                 problem, model, complex_model, c, target, side, settings.newton_tolerance, old, new, own, log
             )
             error = 0.0
-            if status == DONE and settings.adaptive:
+            if status == DONE and settings.adaptive:  # estimated local error: h^2 |beta - 1/6| |w_{n+1} - w_n|
                 for i in range(n):
                     gap = abs(c.beta - 1 / 6) * length * length * abs(new.w[i] - old.w[i])
                     error = max(error, gap / (settings.tolerance * problem.scale[i]))

@@ -1,4 +1,7 @@
-"""The equations of index 1: accelerations and multipliers that the state of a mechanism demands."""
+"""The equations of index 1: accelerations and multipliers that the state of a mechanism demands.
+
+[M, J^T; J, 0] [a; l] = [Q; -(J v)_q v - 2 J_t v - Phi_tt - 2 alpha Phi' - beta^2 Phi] (`docs/theory/index-1.md`).
+"""
 
 from typing import NamedTuple
 
@@ -98,7 +101,7 @@ def factorise_motion(problem, terms, complex_model, state, tools):
 
 @inner
 def _fill_gap(model, n, terms, x, v, a, work, gap, rate, second):
-    """What the equations of motion and the constraints at the level of acceleration leave."""
+    """Residuals: M a + J^T l - Q, and Phi'' + 2 alpha Phi' + beta^2 Phi for the constraints."""
     residual(model, n, x, v, a, work, 1.0, gap)
     constraint_rates(model, n, x, v, a, work, rate, second)
     for i in range(n, len(gap) - 1):

@@ -69,7 +69,11 @@ def along_room(width: int, middle: int, end: int) -> Along:
 
 @inner
 def place(n, h, s):
-    """Coordinates and velocities of a step by its accelerations, multipliers of its middle."""
+    """Coordinates and velocities of a step by its accelerations ``A`` and ``B``, multipliers of its middle.
+
+    v_m = v_0 + h A / 2, v_1 = v_m + h B / 2, q_1 = q_0 + h v_m, q_m = (q_0 + q_1) / 2, see
+    `docs/theory/structure-preserving.md`.
+    """
     for k in range(n):
         way = h * (s[V0, k] + 0.5 * h * s[A, k])
         s[VM, k] = s[V0, k] + 0.5 * h * s[A, k]
@@ -129,7 +133,11 @@ def _balance(model, n, at, middle, end, f, gap, rate, second):
 
 @inner
 def _correct(n, size, pattern, matrices, h, f, gap, rate, first, other, s):
-    """Take Newton's correction off a step, by the residuals; ``f`` and ``gap`` become what accelerations moved."""
+    """Take Newton's correction off a step, by the residuals; ``f`` and ``gap`` become what accelerations moved.
+
+    Two systems: [M + h/2 C + h^2/4 K, J^T; J, 0] for ``A``, and the same without C and K for ``B`` - ``A``: in the
+    difference of both equations the forces cancel.
+    """
     square = 2.0 / (h * h)
     for k in range(n, size):
         f[k] = square * gap[k]

@@ -1,7 +1,13 @@
 """Newton's iteration on the accelerations and multipliers of one step, with a factorisation that is kept over steps.
 
-It solves the reduced system for increments. What these change of the coordinates changes the accelerations, divided by
-the step's coefficient, so that the formulas of the step hold for all coordinates alike.
+The equations of motion and the constraints hold at the end of the step (index 3, `docs/theory/generalized-alpha.md`).
+The constraint rows are divided by ``dq`` = beta h^2 (1 - alpha_f) / (1 - alpha_m), so that the matrix
+
+    [M + dv C + dq K, J^T; J, 0]
+
+stays well conditioned as h approaches 0. The iteration solves the reduced system for increments. What these change of
+the coordinates changes the accelerations, divided by ``dq``, so that the formulas of the step hold for all coordinates
+alike.
 """
 
 from typing import NamedTuple

@@ -1,4 +1,8 @@
-"""Coordinates parted into independent ones and those that the constraints make follow (Wehage and Haug 1982)."""
+"""Coordinates parted into independent ones and those that the constraints make follow (Wehage and Haug 1982).
+
+With q = (u, d) and J = [J_u, J_d]: d from Phi(u, d, t) = 0 by Newton's iteration, d' from J_d d' = -J_u u' - Phi_t,
+and d'' from the second rate of the constraints alike (`docs/theory/index-1.md`).
+"""
 
 from typing import NamedTuple
 

@@ -1,4 +1,7 @@
-"""Coordinates and velocities moved onto the constraints by the smallest kinetic energy."""
+"""Coordinates and velocities moved onto the constraints by the smallest kinetic energy.
+
+q - w with M w + J^T m = 0 and Phi(q - w) = 0, by Newton's iteration; velocities alike (`docs/theory/index-1.md`).
+"""
 
 from dalembert.kernels.kernel import inlined, inner, kernel
 from dalembert.kernels.words import Address, Integers

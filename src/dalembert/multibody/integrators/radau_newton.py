@@ -50,7 +50,12 @@ def _scaled(pair, h):
 
 @inner
 def correct_coordinates(n, size, method, pattern, matrices, h, b):
-    """Corrections of the stages' coordinates, multipliers and rates by the residuals ``motion`` and ``weighed``."""
+    """Corrections of the stages' coordinates, multipliers and rates by the residuals ``motion`` and ``weighed``.
+
+    Along each eigenvector of D = A^-1 / h, with eigenvalue s: the system [M + C/s + K/s^2, J^T; J, 0]
+    (`docs/theory/radau.md`) for ``motion`` + s ``weighed``. Its solution is the correction of v' (``change_a``);
+    that of q' is 1/s times it, that of q 1/s^2 times it.
+    """
     given, answer, change_x, change_u, change_a, pairs = (
         b.given, b.answer, b.change_x, b.change_u, b.change_a, method.pairs,
     )  # fmt: skip
@@ -102,7 +107,10 @@ def take_coordinates(n, size, h, method, start, b, s):
 
 @inner
 def take_velocities(n, size, method, pattern, matrices, h, start, b, s):
-    """Move the stages' velocities onto the constraints; ``moved`` becomes the size of the whole correction."""
+    """Move the stages' velocities onto the constraints; ``moved`` becomes the size of the whole correction.
+
+    M w + J^T m = -(M (q' - v) + J^T mu), J w = J v + Phi_t at each stage: the same matrix without C and K.
+    """
     given, answer, change_x, change_u, moved = b.given, b.answer, b.change_x, b.change_u, b.moved
     weighed, rate, x, a, m = b.weighed, b.rate, s.x, s.a, s.m
     for i in range(len(x)):

@@ -149,7 +149,7 @@ def extrapolate(n, h, method, before, earlier, past, s, b, weights):
 
 @inner
 def integrate_velocities(n, h, method, start, s):
-    """Velocities of the stages by their rates."""
+    """Velocities of the stages by their rates: v_i = v_0 + h sum_j A_ij v'_j."""
     v, ahead = s.v, s.dv
     combine(method.a, h, s.a, n, ahead)
     for i in range(len(v)):
@@ -159,7 +159,7 @@ def integrate_velocities(n, h, method, start, s):
 
 @inner
 def integrate_stages(n, h, method, start, s):
-    """States of the stages by the rates."""
+    """States of the stages by the rates: q_i = q_0 + h sum_j A_ij q'_j, and velocities alike."""
     x, ahead = s.x, s.dx
     combine(method.a, h, s.u, n, ahead)
     for i in range(len(x)):

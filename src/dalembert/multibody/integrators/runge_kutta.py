@@ -217,6 +217,7 @@ def integrate(
             for d in range(len(stage.stack.x)):
                 copy(row(stage.stack, d), row(room.old, d))
             _take(n, stage.stack, room.total)
+            # y_{n+1} = y_n + h (k_1 + 2 k_2 + 2 k_3 + k_4) / 6 with y = (q, v) and the rates k of the four stages
             for share, weight in ((0.5, 1 / 6), (0.5, 1 / 3), (1.0, 1 / 3), (0.0, 1 / 6)):
                 last = share == 0.0  # the stage after it is the end of the step
                 _push(n, share * h, weight * h, room.old, stage.stack, room.total)

@@ -50,7 +50,7 @@ def residual_of(
 
 
 def rates_of(constraint: Callable[..., Any], multipliers: int) -> Callable[..., Any]:
-    """First and second time derivatives of constraints along a motion."""
+    """First and second time derivatives of constraints along a motion: jets of q(t) = x + v t + a t^2 / 2 through g."""
 
     @inner
     def rates(x, v, a, p, m, inputs, rate, second):

@@ -1,4 +1,7 @@
-"""States of motion, their difference formulas and their interpolation between steps."""
+"""States of motion, their difference formulas and their interpolation between steps.
+
+The formulas of a step of generalized-alpha are those of `docs/theory/generalized-alpha.md`.
+"""
 
 from typing import Any, NamedTuple
 
@@ -94,7 +97,10 @@ def rows(stack, d):
 
 @inner
 def coefficients(step, spectral_radius):
-    """Coefficients of generalized-alpha (Arnold and Bruels 2007) for a step and a spectral radius at infinity."""
+    """Coefficients of generalized-alpha (Arnold and Bruels 2007) for a step and a spectral radius at infinity.
+
+    ``dq`` = dq_{n+1} / d(acceleration) = beta h^2 (1 - alpha_f) / (1 - alpha_m), ``dv`` = gamma h times the same ratio.
+    """
     alpha_m = (2 * spectral_radius - 1) / (spectral_radius + 1)
     alpha_f = spectral_radius / (spectral_radius + 1)
     gamma = 0.5 + alpha_f - alpha_m
@@ -105,7 +111,11 @@ def coefficients(step, spectral_radius):
 
 @inner
 def advance(n, c, old, new):
-    """Algorithmic accelerations, velocities and coordinates of the new accelerations; linear in its states."""
+    """Algorithmic accelerations, velocities and coordinates of the new accelerations; linear in its states.
+
+    (1 - alpha_m) w_{n+1} + alpha_m w_n = (1 - alpha_f) a_{n+1} + alpha_f a_n,
+    q_{n+1} = q_n + h v_n + h^2 ((1/2 - beta) w_n + beta w_{n+1}), v_{n+1} = v_n + h ((1 - gamma) w_n + gamma w_{n+1}).
+    """
     h = c.step
     scale = 1.0 / (1.0 - c.alpha_m)
     own, past = (1.0 - c.alpha_f) * scale, c.alpha_f * scale

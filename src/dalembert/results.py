@@ -1,9 +1,8 @@
 """What the results of this package have in common: they can be kept, drawn and reported."""
 
 import json
-from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -12,12 +11,13 @@ from dalembert.files import read_dataset, write_contents
 from dalembert.findings import Finding, findings_of, stored_findings, unclassified
 from dalembert.hooks import hook
 from dalembert.parameters import Parameter
+from dalembert.stored_fields import Source, Store, restore, store
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
 
-class Result(ABC):
+class Result:
     """A result that can be written to a file, drawn, and reported."""
 
     FORMAT: ClassVar[str]
@@ -34,18 +34,31 @@ class Result(ABC):
         """Reasons to doubt the result: its findings that are more than notes."""
         return tuple(finding for finding in self.conclusions if finding.doubtful)
 
-    @abstractmethod
     def contents(self) -> Contents:
-        """Everything as labelled arrays, with units as attributes."""
+        """Everything as labelled arrays, with units as attributes, by the types of the fields."""
+        to = Store()
+        settings = store(self, to)
+        scalars = [name for name, value in settings.items() if isinstance(value, str | float | int)]
+        facts = {name: settings.pop(name) for name in scalars}
+        facts = {name: int(fact) if isinstance(fact, bool) else fact for name, fact in facts.items()}
+        attributes = {"format": self.FORMAT, **facts, "settings": json.dumps(settings, sort_keys=True)}
+        return Contents(to.variables, to.coordinates, attributes)
 
     def to_xarray(self) -> "Dataset":
         """Everything as an :class:`xarray.Dataset`, with units as attributes."""
         return self.contents().to_xarray()
 
     @classmethod
-    @abstractmethod
     def from_xarray(cls, dataset: "Dataset") -> Self:
         """The result that :meth:`to_xarray` turned into a dataset."""
+        settings = {**dataset.attrs, **told_of(dataset)}
+        source = Source(dataset, {str(name): variable.values for name, variable in dataset.variables.items()})
+        cls.upgrade(source.arrays, settings)
+        return restore(cls, source, settings)
+
+    @classmethod
+    def upgrade(cls, arrays: dict[str, Any], settings: dict[str, Any]) -> None:
+        """Rename arrays and settings of a file of a former version to those of this one."""
 
     def save(self, path: str | Path) -> None:
         """Write everything to a NetCDF-4 file, whole or not at all; :meth:`load` gives back the same bits."""
@@ -84,6 +97,17 @@ class EndedResult(Result):
     @property
     def conclusions(self) -> tuple[Finding, ...]:
         return (*self.outcome, *self.findings)
+
+    def contents(self) -> Contents:
+        found = super().contents()
+        return replace(found, attributes={**found.attributes, "status": self.status})
+
+    @classmethod
+    def upgrade(cls, arrays: dict[str, Any], settings: dict[str, Any]) -> None:
+        if "outcome" not in settings and "status" in settings:
+            settings["outcome"] = stored_findings(
+                [unclassified(settings["status"], success=bool(settings.get("success", True)))]
+            )
 
 
 def fixed_of(result: Any) -> tuple[Parameter, ...]:

@@ -2,7 +2,9 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
+import xarray as xr
 from inline_snapshot import snapshot
 
 from dalembert.inverse import BandFit, Fit, ParameterSet
@@ -52,3 +54,30 @@ def test_findings_that_were_stored_with_codes_keep_them():
     fit = Fit.load(FOLDER / "fit.nc")
     assert fit.findings == ()
     assert fit.identifiability().findings == ()
+
+
+def test_what_a_former_fit_has_beside_its_arrays_comes_back():
+    fit = Fit.load(FOLDER / "fit-of-experiments.nc")
+    assert fit.nodes is not None
+    assert (fit.nodes.segments, fit.nodes.experiments) == (1, ("a", "b", "c"))
+    assert fit.correlated is not None
+    assert [process.channel for process in fit.correlated.processes] == ["a.x", "b.x", "c.x"]
+    assert fit.integration is not None
+    assert (fit.integration.how, len(fit.integration.bias)) == ("at half the step", 4)
+    assert fit.halves is not None
+    assert (fit.halves.refitted, fit.halves.values.shape) == (False, (2, 4))
+    assert [part.name for part in fit.parts] == ["a", "b", "c"]
+    validation = Fit.load(FOLDER / "fit-with-validation.nc").validation
+    assert validation is not None
+    assert (validation.what, validation.explained[0].record) == ("the experiment 'b'", "b")
+
+
+@pytest.mark.parametrize("name", ["fit", "fit-of-experiments", "fit-with-validation"])
+def test_a_former_fit_is_stored_again_with_the_same_bits(name, tmp_path):
+    fit = Fit.load(FOLDER / f"{name}.nc")
+    fit.save(tmp_path / "again.nc")
+    with xr.open_dataset(FOLDER / f"{name}.nc") as former, xr.open_dataset(tmp_path / "again.nc") as now:
+        assert set(now.variables) == set(former.variables)
+        for variable in former.variables:
+            assert now[variable].dims == former[variable].dims
+            np.testing.assert_array_equal(now[variable].values, former[variable].values)

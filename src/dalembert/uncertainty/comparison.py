@@ -11,7 +11,7 @@ from dalembert.contents import Contents
 from dalembert.errors import ClusterError, DalembertError, InputError, StorageError
 from dalembert.findings import Finding
 from dalembert.forward import Executor, ForwardModel, on_cluster, takes_executor
-from dalembert.results import EndedResult, text_table
+from dalembert.results import EndedResult, stored_facts, text_table, told_of
 from dalembert.uncertainty.events import OnEvent
 from dalembert.uncertainty.found import Method
 from dalembert.uncertainty.methods import label, method_of
@@ -105,17 +105,27 @@ class Comparison(EndedResult):
         return "\n".join([*text_table([head, *rows]), "", *notes])
 
     def contents(self) -> Contents:
-        """All results as arrays over the dimension ``method``."""
-        from dalembert.uncertainty.storage import compared
-
-        return compared(self)
+        """All results as arrays over the dimension ``method``; what a method does not know is NaN."""
+        parts = [result.contents() for result in self.results]
+        own = [{"attributes": part.attributes, "variables": list(part.variables)} for part in parts]
+        variables = {}
+        for name, (over, like, *_) in {name: entry for part in parts for name, entry in part.variables.items()}.items():
+            missing = ((), np.full(np.shape(like), np.nan))
+            over = (over,) if isinstance(over, str) else over
+            variables[name] = ("method", *over), np.stack([part.variables.get(name, missing)[1] for part in parts])
+        coordinates = {**parts[0].coordinates, "method": ("method", [result.method for result in self.results])}
+        facts = stored_facts(self, ("reference",), results=own, refused=self.refused)
+        return Contents(variables, coordinates, facts)
 
     @classmethod
     def from_xarray(cls, dataset: Any) -> "Comparison":
         """The comparison that :meth:`to_xarray` turned into a dataset."""
-        from dalembert.uncertainty.storage import comparison_from
-
-        return comparison_from(dataset)
+        told = told_of(dataset)
+        results = tuple(
+            Propagation.from_xarray(dataset.isel(method=number)[own["variables"]].assign_attrs(own["attributes"]))
+            for number, own in enumerate(told["results"])
+        )
+        return cls(results, str(dataset.attrs["reference"]), tuple(map(tuple, told["refused"])))
 
 
 @takes_executor

@@ -2,16 +2,16 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
-from dalembert.contents import Contents
 from dalembert.data import Bands
 from dalembert.findings import Finding
-from dalembert.intervals import Box
+from dalembert.forward.stored_coordinate import StoredCoordinate
 from dalembert.parameters import Parameter
 from dalembert.results import EndedResult, fact_lines, fixed_lines, text_table
+from dalembert.stored_fields import Labels, OptionalTable, Over, StoredBox, Table
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,14 +57,18 @@ class Propagation(Bands, EndedResult):
 
     FORMAT: ClassVar[str] = "dalembert propagation 1"
 
-    units: tuple[str, ...]
-    box: Box
+    coordinate: StoredCoordinate
+    channels: Annotated[tuple[str, ...], Labels("channel")]
+    lower: Table
+    upper: Table
+    units: Annotated[tuple[str, ...], Labels("channel", name="unit")]
+    box: StoredBox
     method: str
     kind: str
     runs: int
-    error: np.ndarray | None
-    at_lower: np.ndarray | None
-    at_upper: np.ndarray | None
+    error: OptionalTable
+    at_lower: Annotated[np.ndarray | None, Over("sample", "channel", "parameter")]
+    at_upper: Annotated[np.ndarray | None, Over("sample", "channel", "parameter")]
     failures: tuple[str, ...]
     success: bool
     outcome: tuple[Finding, ...]
@@ -95,14 +99,8 @@ class Propagation(Bands, EndedResult):
             [*text_table(widths), "", *text_table(box), "", *facts, "", self.status, *map(str, self.findings)]
         )
 
-    def contents(self) -> Contents:
-        from dalembert.uncertainty.storage import contents_of
-
-        return contents_of(self)
-
     @classmethod
-    def from_xarray(cls, dataset: Any) -> "Propagation":
-        """The result that :meth:`to_xarray` turned into a dataset."""
-        from dalembert.uncertainty.storage import from_xarray
-
-        return from_xarray(dataset)
+    def upgrade(cls, arrays: dict[str, Any], settings: dict[str, Any]) -> None:
+        super().upgrade(arrays, settings)
+        if settings["kind"] == "enclosure":
+            settings["kind"] = "enclosure of the surrogate"

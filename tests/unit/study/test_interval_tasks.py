@@ -197,7 +197,7 @@ def test_a_set_holds_the_parameters_of_the_data(write):
     assert 0.49 - 2e-3 < values["height lower"] < 0.49 + 2e-3  # the sample at 0 tells it within the error
     assert values["rate lower"] < 1.0 < values["rate upper"]
     with xr.open_dataset(folder.result, engine="h5netcdf") as result:
-        inside = result["boxes"].values[result["is_inside"].values.astype(bool)]
+        inside = result["inside"].values
     corners = [decayed(rate, height) for box in inside for rate in box[:, 0] for height in box[:, 1]]
     assert np.all(np.abs(corners - decayed(1.0, 0.5)) <= 0.01 + 1e-6)
 

@@ -1,24 +1,21 @@
 """The result of a design: experiments, ranked by how well they identify the parameters."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import numpy as np
 
 from dalembert.contents import Contents
 from dalembert.errors import listed
 from dalembert.findings import Finding
-from dalembert.parameters import Parameter, Parameters
-from dalembert.results import EndedResult, facts_of, fixed_lines, stored_facts, text_table, told_of
+from dalembert.results import EndedResult, fixed_lines, text_table
+from dalembert.stored_fields import Over, StoredParameters
 
 if TYPE_CHECKING:
-    from xarray import Dataset
+    pass
 
 CRITERIA = {"D": "geometric mean of the standard deviations", "E": "largest standard deviation"}
-
-
-FACTS = ("criterion", "along", "unit", "simulations")
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,19 +49,19 @@ class Designs(EndedResult):
 
     FORMAT: ClassVar[str] = "dalembert designs 1"
 
-    parameters: Parameters
-    at: np.ndarray
+    parameters: StoredParameters
+    at: Annotated[np.ndarray, Over("parameter")]
     criterion: str
     noise: Mapping[str, float]
     along: str
     unit: str
     sensors: tuple[tuple[str, ...], ...]
-    horizons: np.ndarray
-    samples: np.ndarray
-    scores: np.ndarray
-    unseen: np.ndarray
-    deviations: np.ndarray
-    singular_values: np.ndarray
+    horizons: Annotated[np.ndarray, Over("design")]
+    samples: Annotated[np.ndarray, Over("design")]
+    scores: Annotated[np.ndarray, Over("design")]
+    unseen: Annotated[np.ndarray, Over("design")]
+    deviations: Annotated[np.ndarray, Over("design", "parameter")]
+    singular_values: Annotated[np.ndarray, Over("design", "combination")]
     simulations: int
     provenance: Mapping[str, Any]
 
@@ -135,40 +132,9 @@ class Designs(EndedResult):
         return "\n".join([*text_table(rows), *more, "", *fixed_lines(self), self.status])
 
     def contents(self) -> Contents:
-        """Everything as arrays over design and parameter."""
-        told = {
-            "parameters": [asdict(item) for item in self.parameters.declared],
-            "sensors": self.sensors,
-            "noise": dict(self.noise),
-            "provenance": self.provenance,
-        }
-        return Contents(
-            {
-                "at": ("parameter", self.at),
-                "horizons": ("design", self.horizons, {"units": self.unit}),
-                "samples": ("design", self.samples),
-                "scores": ("design", self.scores),
-                "unseen": ("design", self.unseen),
-                "deviations": (("design", "parameter"), self.deviations),
-                "singular_values": (("design", "combination"), self.singular_values),
-            },
-            {"parameter": ("parameter", list(self.parameters.names))},
-            stored_facts(self, FACTS, **told),
-        )
-
-    @classmethod
-    def from_xarray(cls, dataset: "Dataset") -> Self:
-        """The designs that :meth:`to_xarray` turned into a dataset."""
-        told = told_of(dataset)
-        a: dict[str, Any] = {str(name): variable.values for name, variable in dataset.data_vars.items()}
-        return cls(
-            parameters=Parameters(tuple(Parameter(**item) for item in told["parameters"])),
-            **facts_of(cls, dataset, FACTS),
-            noise=told["noise"],
-            sensors=tuple(tuple(chosen) for chosen in told["sensors"]),
-            provenance=told["provenance"],
-            **a,
-        )
+        found = super().contents()
+        horizons = ("design", self.horizons, {"units": self.unit})
+        return replace(found, variables={**found.variables, "horizons": horizons})
 
 
 def _counted(number: int, what: str) -> str:

@@ -1,24 +1,21 @@
 """The result of a prediction: a response and its bands."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import numpy as np
 
 from dalembert.contents import Contents
-from dalembert.data import Measurements
 from dalembert.errors import listed
 from dalembert.findings import Finding
-from dalembert.forward import Coordinate
-from dalembert.forward.stored_coordinate import coordinate_of, stored_coordinate
-from dalembert.results import EndedResult, facts_of, saved_findings, stored_facts, text_table, told_of
+from dalembert.forward.stored_coordinate import StoredCoordinate
+from dalembert.inverse.fit.stored_data import StoredMeasured
+from dalembert.results import EndedResult, text_table
+from dalembert.stored_fields import Labels, Over, Table
 
 if TYPE_CHECKING:
-    from xarray import Dataset
-
-
-FACTS = ("level", "quantile", "simulations")
+    pass
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,13 +47,13 @@ class Prediction(EndedResult):
 
     FORMAT: ClassVar[str] = "dalembert prediction 1"
 
-    coordinate: Coordinate
-    channels: tuple[str, ...]
+    coordinate: StoredCoordinate
+    channels: Annotated[tuple[str, ...], Labels("channel")]
     units: tuple[str, ...]
-    response: np.ndarray
-    deviations: np.ndarray
-    noise: np.ndarray
-    data: Measurements | None
+    response: Table
+    deviations: Table
+    noise: Annotated[np.ndarray, Over("channel")]
+    data: StoredMeasured
     level: float
     quantile: float
     known: bool
@@ -139,56 +136,6 @@ class Prediction(EndedResult):
         return "\n".join([*text_table(rows), "", self.status, *map(str, self.findings)])
 
     def contents(self) -> Contents:
-        """Everything as arrays over sample and channel."""
-        from dalembert.inverse.fit.stored_data import stored_data
-
-        variables: dict[str, Any] = {
-            "response": (("sample", "channel"), self.response),
-            "deviations": (("sample", "channel"), self.deviations),
-            "lower": (("sample", "channel"), self.lower),
-            "upper": (("sample", "channel"), self.upper),
-            "noise": ("channel", self.noise),
-        }
-        told: dict[str, Any] = {"units": self.units, "provenance": self.provenance, "known": self.known}
-        if self.data is not None:
-            given = stored_data(self.data)
-            names = {"sample": "measured_sample", "channel": "measured_channel"}
-            for name, (over, *rest) in given.items():
-                over = over if isinstance(over, tuple) else (over,)
-                variables[name] = (tuple(names[dimension] for dimension in over), *rest)
-            variables["measured_at"] = stored_coordinate(self.data.coordinate, "measured_sample")
-            told["measured"] = self.data.channels
-        return Contents(
-            variables,
-            {
-                "channel": ("channel", list(self.channels)),
-                "coordinate": stored_coordinate(self.coordinate),
-            },
-            stored_facts(self, FACTS, **told),
-        )
-
-    @classmethod
-    def from_xarray(cls, dataset: "Dataset") -> Self:
-        """The prediction that :meth:`to_xarray` turned into a dataset."""
-        from dalembert.inverse.fit.stored_data import data_of
-
-        told = told_of(dataset)
-        data = None
-        if "measured" in told:
-            own = dataset.drop_vars(["channel", "coordinate"]).drop_dims(["sample", "channel"])
-            own = own.rename({"measured_sample": "sample", "measured_channel": "channel"})
-            own = own.rename_vars({"measured_at": "coordinate"}).assign_coords(channel=told["measured"])
-            data = data_of(own)
-        return cls(
-            coordinate=coordinate_of(dataset["coordinate"]),
-            channels=tuple(map(str, dataset["channel"].values)),
-            units=tuple(told["units"]),
-            response=dataset["response"].values,
-            deviations=dataset["deviations"].values,
-            noise=dataset["noise"].values,
-            data=data,
-            **facts_of(cls, dataset, FACTS),
-            known=bool(told["known"]),
-            provenance=told["provenance"],
-            findings=saved_findings(dataset),
-        )
+        found, over = super().contents(), ("sample", "channel")
+        bands = {"lower": (over, self.lower), "upper": (over, self.upper)}
+        return replace(found, variables={**found.variables, **bands})

@@ -1,19 +1,18 @@
 """The result of a profile likelihood: how the misfit grows as one parameter after the other is held elsewhere."""
 
-from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import numpy as np
 
-from dalembert.contents import Contents
 from dalembert.errors import listed
 from dalembert.findings import Finding
-from dalembert.parameters import Parameter, Parameters
-from dalembert.results import EndedResult, facts_of, fixed_lines, saved_findings, stored_facts, text_table, told_of
+from dalembert.results import EndedResult, fixed_lines, text_table
+from dalembert.stored_fields import Over, Source, Store, StoredParameters
 
 if TYPE_CHECKING:
-    from xarray import Dataset
+    pass
 
 ASYMMETRIC = 1.5
 """Ratio of an interval's two sides from which its standard deviation does not describe it."""
@@ -56,7 +55,43 @@ class Profile:
     elsewhere: tuple[tuple[float, float], ...] = ()
 
 
-FACTS = ("level", "threshold", "variance", "simulations")
+class _Curves:
+    """Profiles as variables over ``profile`` and ``point``."""
+
+    def store(self, to: Store, settings: dict[str, Any], name: str, value: Sequence[Profile]) -> None:
+        to.variables.update(
+            {
+                "lower": ("profile", np.array([curve.lower for curve in value])),
+                "upper": ("profile", np.array([curve.upper for curve in value])),
+                "open": (("profile", "side"), np.array([curve.open for curve in value], dtype=np.int8)),
+                "count": ("profile", np.array([len(curve.values) for curve in value], dtype=np.int64)),
+                "along": ("point", np.concatenate([curve.values for curve in value])),
+                "excess": ("point", np.concatenate([curve.excess for curve in value])),
+                "points": (("point", "parameter"), np.concatenate([curve.points for curve in value])),
+            }
+        )
+        to.coordinates["profile"] = ("profile", [curve.name for curve in value])
+        settings |= {"broken": [c.broken for c in value], "elsewhere": [c.elsewhere for c in value]}
+
+    def load(self, source: Source, settings: Mapping[str, Any], name: str) -> tuple[Profile, ...]:
+        a = source.arrays
+        ends = np.cumsum(a["count"])[:-1]
+        along, excess, points = (np.split(a[part], ends) for part in ("along", "excess", "points"))
+        elsewhere = settings.get("elsewhere", [()] * len(along))
+        return tuple(
+            Profile(
+                name=str(parameter),
+                values=along[n],
+                excess=excess[n],
+                points=points[n],
+                lower=float(a["lower"][n]),
+                upper=float(a["upper"][n]),
+                open=(bool(a["open"][n, 0]), bool(a["open"][n, 1])),
+                broken=(settings["broken"][n][0], settings["broken"][n][1]),
+                elsewhere=tuple((lower, upper) for lower, upper in elsewhere[n]),
+            )
+            for n, parameter in enumerate(a["profile"])
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,10 +121,10 @@ class Profiles(EndedResult):
 
     FORMAT: ClassVar[str] = "dalembert profiles 1"
 
-    parameters: Parameters
-    values: np.ndarray
-    deviations: np.ndarray
-    curves: tuple[Profile, ...]
+    parameters: StoredParameters
+    values: Annotated[np.ndarray, Over("parameter")]
+    deviations: Annotated[np.ndarray, Over("parameter")]
+    curves: Annotated[tuple[Profile, ...], _Curves()]
     level: float
     threshold: float
     variance: float
@@ -195,63 +230,3 @@ class Profiles(EndedResult):
             item = self.parameters.items[k]
             rows.append((curve.name, f"{self.values[k]:.7g}", lower, upper, item.unit, f"{self.deviations[k]:.2g}"))
         return "\n".join([*text_table(rows), "", *fixed_lines(self), self.status, *map(str, self.findings)])
-
-    def contents(self) -> Contents:
-        """Everything as arrays over parameter, profile and point."""
-        told = {
-            "parameters": [asdict(item) for item in self.parameters.declared],
-            "known": self.known,
-            "broken": [curve.broken for curve in self.curves],
-            "elsewhere": [curve.elsewhere for curve in self.curves],
-            "provenance": self.provenance,
-        }
-        return Contents(
-            {
-                "values": ("parameter", self.values),
-                "deviations": ("parameter", self.deviations),
-                "lower": ("profile", np.array([curve.lower for curve in self.curves])),
-                "upper": ("profile", np.array([curve.upper for curve in self.curves])),
-                "open": (("profile", "side"), np.array([curve.open for curve in self.curves], dtype=np.int8)),
-                "count": ("profile", np.array([len(curve.values) for curve in self.curves], dtype=np.int64)),
-                "along": ("point", np.concatenate([curve.values for curve in self.curves])),
-                "excess": ("point", np.concatenate([curve.excess for curve in self.curves])),
-                "points": (("point", "parameter"), np.concatenate([curve.points for curve in self.curves])),
-            },
-            {
-                "parameter": ("parameter", list(self.parameters.names)),
-                "profile": ("profile", [curve.name for curve in self.curves]),
-            },
-            stored_facts(self, FACTS, **told),
-        )
-
-    @classmethod
-    def from_xarray(cls, dataset: "Dataset") -> Self:
-        """The profiles that :meth:`to_xarray` turned into a dataset."""
-        told = told_of(dataset)
-        a = {str(name): variable.values for name, variable in dataset.variables.items()}
-        ends = np.cumsum(a["count"])[:-1]
-        along, excess, points = (np.split(a[name], ends) for name in ("along", "excess", "points"))
-        curves = tuple(
-            Profile(
-                name=str(name),
-                values=along[n],
-                excess=excess[n],
-                points=points[n],
-                lower=float(a["lower"][n]),
-                upper=float(a["upper"][n]),
-                open=(bool(a["open"][n, 0]), bool(a["open"][n, 1])),
-                broken=(told["broken"][n][0], told["broken"][n][1]),
-                elsewhere=tuple((lower, upper) for lower, upper in told.get("elsewhere", [()] * (n + 1))[n]),
-            )
-            for n, name in enumerate(a["profile"])
-        )
-        return cls(
-            parameters=Parameters(tuple(Parameter(**item) for item in told["parameters"])),
-            values=a["values"],
-            deviations=a["deviations"],
-            curves=curves,
-            **facts_of(cls, dataset, FACTS),
-            known=bool(told["known"]),
-            provenance=told["provenance"],
-            findings=saved_findings(dataset),
-        )

@@ -2,19 +2,19 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
-from dalembert.contents import Contents
-from dalembert.data import Bands
 from dalembert.findings import Finding
-from dalembert.intervals import Box
 from dalembert.inverse.events import StartEnd, Step
+from dalembert.inverse.fit.stored_data import StoredBands
+from dalembert.inverse.fit.stored_search import History, Starts
 from dalembert.inverse.least_squares.estimate import Estimate, Identifiability
 from dalembert.inverse.least_squares.identifiable import unidentifiable
-from dalembert.parameters import Parameter, Parameters
+from dalembert.parameters import Parameter
 from dalembert.results import EndedResult, fact_lines, fixed_lines, text_table
+from dalembert.stored_fields import Labels, OptionalTable, Over, StoredBox, StoredParameters, Table
 
 ZERO = 1e-6
 """Lengths below this part of the bounds' width are zero."""
@@ -76,26 +76,26 @@ class BandFit(EndedResult):
 
     FORMAT: ClassVar[str] = "dalembert bandfit 1"
 
-    parameters: Parameters
+    parameters: StoredParameters
     intervals: tuple[str, ...]
-    box: Box
-    unknowns: tuple[str, ...]
-    middle_deviations: np.ndarray
-    radius_deviations: np.ndarray
-    correlation: np.ndarray
-    singular_values: np.ndarray
-    directions: np.ndarray
+    box: StoredBox
+    unknowns: Annotated[tuple[str, ...], Labels("unknown")]
+    middle_deviations: Annotated[np.ndarray, Over("parameter")]
+    radius_deviations: Annotated[np.ndarray, Over("parameter")]
+    correlation: Annotated[np.ndarray, Over("unknown", "unknown_")]
+    singular_values: Annotated[np.ndarray, Over("combination")]
+    directions: Annotated[np.ndarray, Over("combination", "unknown")]
     fitness: float
-    bands: Bands
-    weights: np.ndarray
-    lower: np.ndarray
-    upper: np.ndarray
-    error: np.ndarray
-    checked_lower: np.ndarray | None
-    checked_upper: np.ndarray | None
+    bands: StoredBands
+    weights: Table
+    lower: Table
+    upper: Table
+    error: Table
+    checked_lower: OptionalTable
+    checked_upper: OptionalTable
     checked_fitness: float | None
-    history: tuple[Step, ...]
-    starts: tuple[StartEnd, ...]
+    history: Annotated[tuple[Step, ...], History("unknown")]
+    starts: Annotated[tuple[StartEnd, ...], Starts("unknown")]
     success: bool
     outcome: tuple[Finding, ...]
     method: str
@@ -166,18 +166,6 @@ class BandFit(EndedResult):
         ]
         findings = map(str, (*self.identifiability().findings, *self.findings))
         return "\n".join([*text_table(rows), "", *facts, "", self.status, *findings])
-
-    def contents(self) -> Contents:
-        from dalembert.inverse.bands.storage import contents_of
-
-        return contents_of(self)
-
-    @classmethod
-    def from_xarray(cls, dataset: Any) -> "BandFit":
-        """The result that :meth:`to_xarray` turned into a dataset."""
-        from dalembert.inverse.bands.storage import from_xarray
-
-        return from_xarray(dataset)
 
 
 def _identifiability(fit: BandFit) -> Iterator[Finding]:

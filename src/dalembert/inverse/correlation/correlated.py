@@ -1,8 +1,11 @@
 """What is known of correlated residuals of a fit."""
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
+
+from dalembert.stored_fields import Over
 
 LONG = 0.3
 """Part of the motion's period from which a correlation time is that of the motion, which decorrelates in a quarter."""
@@ -78,6 +81,6 @@ class CorrelatedResiduals:
     """
 
     processes: tuple[NoiseProcess, ...]
-    deviations: np.ndarray
-    correlation: np.ndarray
-    noise: np.ndarray
+    deviations: Annotated[np.ndarray, Over("parameter", name="plain_deviations")]
+    correlation: Annotated[np.ndarray, Over("parameter", "parameter_", name="plain_correlation")]
+    noise: Annotated[np.ndarray, Over("combination", "combination_", name="noise_of_combinations")]

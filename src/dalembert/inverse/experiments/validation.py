@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Annotated
 
 import numpy as np
 
@@ -9,6 +10,7 @@ from dalembert.errors import InputError, unknown
 from dalembert.inverse.experiments.experiments import JointModel, Part
 from dalembert.inverse.experiments.explained import WORSE, Explained, explained, percentages
 from dalembert.inverse.problem.problem import Problem
+from dalembert.stored_fields import Over
 
 HeldOut = float | str | Sequence[str] | Mapping[str, float] | None
 """Share of the samples, names of experiments, or lengths of their first parts by name, in their coordinate's unit."""
@@ -33,7 +35,7 @@ class Validation:
     """
 
     what: str
-    weights: np.ndarray
+    weights: Annotated[np.ndarray, Over("sample", "channel", name="validation_weights")]
     misfit: float
     fitted: float
     explained: tuple[Explained, ...] = ()

@@ -1,15 +1,14 @@
 """The result of an identification."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any, ClassVar
+from dataclasses import dataclass, replace
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from scipy.special import ndtri, stdtrit  # quantiles; scipy.stats takes long to load
 
 from dalembert.arguments import is_number
 from dalembert.contents import Contents
-from dalembert.data import Measurements
 from dalembert.errors import InputError, shown
 from dalembert.findings import Finding
 from dalembert.inverse.correlation.correlated import CorrelatedResiduals
@@ -18,13 +17,16 @@ from dalembert.inverse.experiments.experiment_fit import ExperimentFit, experime
 from dalembert.inverse.experiments.experiments import Part
 from dalembert.inverse.experiments.validation import Validation
 from dalembert.inverse.fit.integration import IntegrationBias
+from dalembert.inverse.fit.stored_data import StoredData
+from dalembert.inverse.fit.stored_parts import StoredParts
+from dalembert.inverse.fit.stored_search import History, Starts
 from dalembert.inverse.least_squares.estimate import Estimate, Identifiability
 from dalembert.inverse.least_squares.identifiable import identifiability_findings
 from dalembert.inverse.misfit.halves import Halves
 from dalembert.inverse.problem.prior import priors
 from dalembert.inverse.shooting.nodes import Nodes
-from dalembert.parameters import Parameters
 from dalembert.results import EndedResult, fact_lines, fixed_lines, text_table
+from dalembert.stored_fields import Over, StoredParameters, Table
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,24 +82,24 @@ class Fit(EndedResult):
 
     FORMAT: ClassVar[str] = "dalembert fit 1"
 
-    parameters: Parameters
-    values: np.ndarray
-    deviations: np.ndarray
-    correlation: np.ndarray
-    singular_values: np.ndarray
-    directions: np.ndarray
+    parameters: StoredParameters
+    values: Annotated[np.ndarray, Over("parameter")]
+    deviations: Annotated[np.ndarray, Over("parameter")]
+    correlation: Annotated[np.ndarray, Over("parameter", "parameter_")]
+    singular_values: Annotated[np.ndarray, Over("combination")]
+    directions: Annotated[np.ndarray, Over("combination", "parameter")]
     fitness: float
-    response: np.ndarray
-    data: Measurements
-    weights: np.ndarray
-    history: tuple[Step, ...]
-    starts: tuple[StartEnd, ...]
+    response: Table
+    data: StoredData
+    weights: Table
+    history: Annotated[tuple[Step, ...], History("parameter")]
+    starts: Annotated[tuple[StartEnd, ...], Starts("parameter")]
     success: bool
     outcome: tuple[Finding, ...]
     method: str
     simulations: int
     provenance: Mapping[str, Any]
-    parts: tuple[Part, ...] = ()
+    parts: Annotated[tuple[Part, ...], StoredParts()] = ()
     validation: Validation | None = None
     nodes: Nodes | None = None
     findings: tuple[Finding, ...] = ()
@@ -216,16 +218,18 @@ class Fit(EndedResult):
         return "\n".join([*text_table(rows), "", *facts, "", *_experiments_table(self), *_halves_table(self), *texts])
 
     def contents(self) -> Contents:
-        from dalembert.inverse.fit.storage import contents_of
-
-        return contents_of(self)
+        found = super().contents()
+        return replace(found, variables={**found.variables, "residuals": (("sample", "channel"), self.residuals)})
 
     @classmethod
-    def from_xarray(cls, dataset: Any) -> "Fit":
-        """The result that :meth:`to_xarray` turned into a dataset."""
-        from dalembert.inverse.fit.storage import from_xarray
-
-        return from_xarray(dataset)
+    def upgrade(cls, arrays: dict[str, Any], settings: dict[str, Any]) -> None:
+        super().upgrade(arrays, settings)
+        if isinstance(processes := settings.get("correlated"), list):
+            settings["correlated"] = {"processes": processes}
+        if isinstance(how := settings.get("integration"), str):
+            settings["integration"] = {"how": how}
+        if settings.get("halves_refitted") is not None:
+            settings["halves"] = {"refitted": settings["halves_refitted"]}
 
 
 def check_level(level: float, where: str) -> None:

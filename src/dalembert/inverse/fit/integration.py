@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from dalembert.inverse.least_squares.estimate import UNSEEN
 from dalembert.inverse.problem.prior import prior_residual
 from dalembert.inverse.problem.problem import Linearisation, Problem
 from dalembert.inverse.shooting.nodes import Nodes
+from dalembert.stored_fields import Over
 
 CHAOTIC = 1e3
 """Growth of a small change of the state from which on the bias is not linear in the error of the response."""
@@ -47,10 +49,10 @@ class IntegrationBias:
     """
 
     how: str
-    bias: np.ndarray
-    fitness: float
-    corrected: float
-    remainder: float
+    bias: Annotated[np.ndarray, Over("parameter", name="integration_bias")]
+    fitness: Annotated[float, Over(name="integration_fitness")]
+    corrected: Annotated[float, Over(name="integration_corrected")]
+    remainder: Annotated[float, Over(name="integration_remainder")]
 
     @property
     def failed(self) -> bool:

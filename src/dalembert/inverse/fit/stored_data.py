@@ -1,17 +1,70 @@
-"""Measurements as variables of a dataset, and back."""
+"""Measurements and bands as variables of a dataset, and back."""
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Annotated, Any
 
-from dalembert.data import Measurements
+from dalembert.data import Bands, Measurements
 from dalembert.forward.stored_coordinate import coordinate_of, stored_coordinate
+from dalembert.stored_fields import Source, Store
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
 
-def stored_data(data: Measurements) -> dict[str, Any]:
-    """Variables over ``sample`` and ``channel``."""
-    variables: dict[str, Any] = {"data": (("sample", "channel"), data.values, {"missing": data.missing})}
+class _Data:
+    """Measurements as variables over ``sample`` and ``channel``."""
+
+    def store(self, to: Store, settings: dict[str, Any], name: str, value: Measurements) -> None:
+        to.variables.update(_variables(value))
+        to.coordinates["channel"] = ("channel", list(value.channels))
+        to.coordinates["coordinate"] = stored_coordinate(value.coordinate)
+
+    def load(self, source: Source, settings: Mapping[str, Any], name: str) -> Measurements:
+        return _measurements(source.dataset)
+
+
+class _Measured:
+    """Measurements whose samples and channels differ from those of the result; None as nothing."""
+
+    def store(self, to: Store, settings: dict[str, Any], name: str, value: Measurements | None) -> None:
+        if value is None:
+            return
+        for variable, (over, *rest) in _variables(value).items():
+            over = over if isinstance(over, tuple) else (over,)
+            to.variables[variable] = (tuple(f"measured_{dimension}" for dimension in over), *rest)
+        to.variables["measured_at"] = stored_coordinate(value.coordinate, "measured_sample")
+        settings["measured"] = value.channels
+
+    def load(self, source: Source, settings: Mapping[str, Any], name: str) -> Measurements | None:
+        if "measured" not in settings:
+            return None
+        own = source.dataset.drop_vars(["channel", "coordinate"]).drop_dims(["sample", "channel"])
+        own = own.rename({"measured_sample": "sample", "measured_channel": "channel"})
+        own = own.rename_vars({"measured_at": "coordinate"}).assign_coords(channel=settings["measured"])
+        return _measurements(own)
+
+
+class _Bands:
+    """Bands as variables over ``sample`` and ``channel``."""
+
+    def store(self, to: Store, settings: dict[str, Any], name: str, value: Bands) -> None:
+        over = ("sample", "channel")
+        to.variables.update({"given_lower": (over, value.lower), "given_upper": (over, value.upper)})
+        to.coordinates["channel"] = ("channel", list(value.channels))
+        to.coordinates["coordinate"] = stored_coordinate(value.coordinate)
+
+    def load(self, source: Source, settings: Mapping[str, Any], name: str) -> Bands:
+        along, names = coordinate_of(source.dataset["coordinate"]), tuple(map(str, source.arrays["channel"]))
+        return Bands(along, names, source.arrays["given_lower"], source.arrays["given_upper"])
+
+
+StoredData = Annotated[Measurements, _Data()]
+StoredMeasured = Annotated[Measurements | None, _Measured()]
+StoredBands = Annotated[Bands, _Bands()]
+
+
+def _variables(data: Measurements) -> dict[str, tuple]:
+    variables: dict[str, tuple] = {"data": (("sample", "channel"), data.values, {"missing": data.missing})}
     if data.deviations is not None:
         variables["data_deviations"] = ("channel", data.deviations)
     if data.wraps:
@@ -21,13 +74,7 @@ def stored_data(data: Measurements) -> dict[str, Any]:
     return variables
 
 
-def data_labels(data: Measurements) -> dict[str, Any]:
-    """Coordinates ``channel`` and ``coordinate``."""
-    return {"channel": ("channel", list(data.channels)), "coordinate": stored_coordinate(data.coordinate)}
-
-
-def data_of(dataset: "Dataset") -> Measurements:
-    """The measurements that are in a dataset."""
+def _measurements(dataset: "Dataset") -> Measurements:
     channels = tuple(map(str, dataset["channel"].values))
     wraps = dataset["data_wraps"].values.astype(bool) if "data_wraps" in dataset else [False] * len(channels)
     return Measurements(

@@ -7,38 +7,35 @@ import numpy as np
 
 from dalembert.forward import Coordinate
 from dalembert.inverse.experiments.experiments import Part
+from dalembert.stored_fields import Source, Store
 
 
-def stored_parts(parts: Sequence[Part], rows: int) -> dict[str, Any]:
+class StoredParts:
     """What each experiment's samples lie along, over ``experiment`` and ``sample``; NaN where it has none in a row."""
-    if not parts:
-        return {}
-    along = np.full((len(parts), rows), np.nan)
-    for own, part in zip(along, parts, strict=True):
-        own[part.rows] = part.coordinate.values
-    return {"experiment_coordinate": (("experiment", "sample"), along)}
 
+    def store(self, to: Store, settings: dict[str, Any], name: str, value: Sequence[Part]) -> None:
+        settings[name] = [
+            {
+                "name": part.name,
+                "coordinate": [part.coordinate.name, part.coordinate.unit],
+                "channels": list(part.channels),
+                "columns": part.columns.tolist(),
+            }
+            for part in value
+        ]
+        if value:
+            along = np.full((len(value), len(to.coordinates["coordinate"][1])), np.nan)
+            for own, part in zip(along, value, strict=True):
+                own[part.rows] = part.coordinate.values
+            to.variables["experiment_coordinate"] = (("experiment", "sample"), along)
 
-def told_parts(parts: Sequence[Part]) -> list[dict[str, Any]]:
-    """What of the parts is no array, for JSON."""
-    return [
-        {
-            "name": part.name,
-            "coordinate": [part.coordinate.name, part.coordinate.unit],
-            "channels": list(part.channels),
-            "columns": part.columns.tolist(),
-        }
-        for part in parts
-    ]
-
-
-def parts_of(arrays: Mapping[str, np.ndarray], told: Sequence[Mapping[str, Any]]) -> tuple[Part, ...]:
-    """The parts again."""
-    found = []
-    for number, part in enumerate(told):
-        along = arrays["experiment_coordinate"][number]
-        rows = np.flatnonzero(np.isfinite(along))
-        name, unit = part["coordinate"]
-        columns = np.array(part["columns"], dtype=int)
-        found.append(Part(part["name"], Coordinate(name, unit, along[rows]), tuple(part["channels"]), rows, columns))
-    return tuple(found)
+    def load(self, source: Source, settings: Mapping[str, Any], name: str) -> tuple[Part, ...]:
+        found = []
+        for number, part in enumerate(settings[name]):
+            along = source.arrays["experiment_coordinate"][number]
+            rows = np.flatnonzero(np.isfinite(along))
+            label, unit = part["coordinate"]
+            coordinate = Coordinate(label, unit, along[rows])
+            columns = np.array(part["columns"], dtype=int)
+            found.append(Part(part["name"], coordinate, tuple(part["channels"]), rows, columns))
+        return tuple(found)

@@ -1,81 +1,119 @@
 """The steps and starts of a search as variables of a dataset, and back."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from dalembert.inverse.events import StartEnd, Step
-from dalembert.inverse.fit.stored_steps import steps_of, stored_steps
+from dalembert.optimize import RegularisedStep
+from dalembert.stored_fields import Source, Store
+
+NUMBERS = ("mu", "chosen", "agreement", "residual", "length")
+CURVES = ("weights", "residual_norms", "step_norms")
+COUNTS = ("start", "iteration", "simulations")
+OPTIONAL = {"step_gap": "gap", "step_minimised": "minimised"}
 
 
-def stored_search(history: Sequence[Step], starts: Sequence[StartEnd], over: str, size: int) -> dict[str, Any]:
-    """Variables over ``step`` and ``start``; the dimension of their values is named ``over``, of the given size."""
-    return {
-        "step_start": ("step", np.array([step.start for step in history], dtype=np.int64)),
-        "step_iteration": ("step", np.array([step.iteration for step in history], dtype=np.int64)),
-        "step_simulations": ("step", np.array([step.simulations for step in history], dtype=np.int64)),
-        "step_best": ("step", np.array([step.best for step in history], dtype=float)),
-        "step_values": (("step", over), np.array([step.values for step in history]).reshape(-1, size)),
-        "start_values": (("start", over), np.array([start.start for start in starts]).reshape(-1, size)),
-        "end_values": (("start", over), np.array([start.end for start in starts]).reshape(-1, size)),
-        "end_fitness": ("start", np.array([start.fitness for start in starts], dtype=float)),
-        "start_simulations": ("start", np.array([start.simulations for start in starts], dtype=np.int64)),
-        **stored_steps(history),
-        **_stored_gaps(history),
-    }
+class History:
+    """Steps as variables over ``step``; their values lie along the dimension ``over``."""
+
+    def __init__(self, over: str) -> None:
+        self.over = over
+
+    def store(self, to: Store, settings: dict[str, Any], name: str, value: Sequence[Step]) -> None:
+        size = len(to.coordinates[self.over][1])
+        for count in COUNTS:
+            numbers = [getattr(step, count) for step in value]
+            to.variables[f"step_{count}"] = ("step", np.array(numbers, dtype=np.int64))
+        to.variables["step_best"] = ("step", np.array([step.best for step in value], dtype=float))
+        values = np.array([step.values for step in value]).reshape(-1, size)
+        to.variables["step_values"] = (("step", self.over), values)
+        to.variables.update(_stored_steps(value))
+        if any(step.gap is not None for step in value):
+            for variable, attribute in OPTIONAL.items():
+                numbers = [getattr(step, attribute) for step in value]
+                to.variables[variable] = ("step", np.array(numbers, dtype=float))
+        settings["samples"] = value[-1].samples if value else 0
+
+    def load(self, source: Source, settings: Mapping[str, Any], name: str) -> tuple[Step, ...]:
+        a, number = source.arrays, len(source.arrays["step_start"])
+        samples = settings.get("samples", len(a["coordinate"]))
+        counts = (a[f"step_{count}"].tolist() for count in COUNTS)
+        gaps, sums = (map(_finite, a.get(variable, np.full(number, np.nan))) for variable in OPTIONAL)
+        columns = zip(*counts, a["step_best"], a["step_values"], _steps_of(a, number), gaps, sums, strict=True)
+        return tuple(
+            Step(start, iteration, simulations, float(best), values, samples, how, gap, least, samples)
+            for start, iteration, simulations, best, values, how, gap, least in columns
+        )
 
 
-def stored_ends(starts: Sequence[StartEnd]) -> list[dict[str, Any]]:
-    """What of the starts is no array, for JSON."""
-    return [{"success": start.success, "message": start.message} for start in starts]
+class Starts:
+    """Starts as variables over ``start``; their values lie along the dimension ``over``."""
 
+    def __init__(self, over: str) -> None:
+        self.over = over
 
-def search_of(
-    arrays: Mapping[str, np.ndarray], ends: Sequence[Mapping[str, Any]], samples: int
-) -> tuple[tuple[Step, ...], tuple[StartEnd, ...]]:
-    """History and starts of a search over ``samples`` samples."""
-    a = arrays
-    regularised = steps_of(a, len(a["step_start"]))
-    columns = ("step_start", "step_iteration", "step_simulations", "step_best", "step_values")
-    gaps = a.get("step_gap", np.full(len(a["step_start"]), np.nan))
-    least = a.get("step_minimised", np.full(len(gaps), np.nan))
-    history = zip(*(a[column] for column in columns), regularised, gaps, least, strict=True)
-    starts = zip(a["start_values"], a["end_values"], a["end_fitness"], ends, a["start_simulations"], strict=True)
-    return (
-        tuple(
-            Step(
-                int(start),
-                int(iteration),
-                int(simulations),
-                float(best),
-                values,
-                samples,
-                how,
-                _gap(gap),
-                _gap(sum_),
-                samples,
-            )
-            for start, iteration, simulations, best, values, how, gap, sum_ in history
-        ),
-        tuple(
+    def store(self, to: Store, settings: dict[str, Any], name: str, value: Sequence[StartEnd]) -> None:
+        size = len(to.coordinates[self.over][1])
+        for variable, attribute in (("start_values", "start"), ("end_values", "end")):
+            values = np.array([getattr(start, attribute) for start in value]).reshape(-1, size)
+            to.variables[variable] = (("start", self.over), values)
+        to.variables["end_fitness"] = ("start", np.array([start.fitness for start in value], dtype=float))
+        counts = [start.simulations for start in value]
+        to.variables["start_simulations"] = ("start", np.array(counts, dtype=np.int64))
+        settings["ends"] = [{"success": start.success, "message": start.message} for start in value]
+
+    def load(self, source: Source, settings: Mapping[str, Any], name: str) -> tuple[StartEnd, ...]:
+        names = ("start_values", "end_values", "end_fitness", "start_simulations")
+        columns = zip(*(source.arrays[column] for column in names), settings["ends"], strict=True)
+        return tuple(
             StartEnd(start, end, float(fitness), bool(how["success"]), str(how["message"]), int(simulations))
-            for start, end, fitness, how, simulations in starts
-        ),
-    )
+            for start, end, fitness, simulations, how in columns
+        )
 
 
-def _stored_gaps(history: Sequence[Step]) -> dict[str, Any]:
-    """Gaps of multiple shooting over ``step``, NaN where a step has none; no variable where none has one."""
-    gaps = [step.gap for step in history]
-    if all(gap is None for gap in gaps):
-        return {}
-    sums = [step.minimised for step in history]
-    return {
-        "step_gap": ("step", np.array([np.nan if gap is None else gap for gap in gaps])),
-        "step_minimised": ("step", np.array([np.nan if one is None else one for one in sums])),
-    }
-
-
-def _gap(stored: float) -> float | None:
+def _finite(stored: float) -> float | None:
     return float(stored) if np.isfinite(stored) else None
+
+
+def _stored_steps(history: Sequence[Step]) -> dict[str, Any]:
+    """Variables over ``step``, and ``curve_point`` for the L-curves, NaN where a step has no such account.
+
+    None at all where no step has one.
+    """
+    accounts = [step.regularised for step in history]
+    if not any(accounts):
+        return {}
+    points = max(len(account.weights) for account in accounts if account)
+    numbers = {name: ("step", np.array([_number(account, name) for account in accounts])) for name in NUMBERS}
+    trials = np.array([account.trials if account else 0 for account in accounts], dtype=np.int64)
+    curves = {
+        name: (("step", "curve_point"), np.array([_padded(account, name, points) for account in accounts]))
+        for name in CURVES
+    }
+    return {f"step_{name}": stored for name, stored in (numbers | {"trials": ("step", trials)} | curves).items()}
+
+
+def _steps_of(arrays: Mapping[str, np.ndarray], number: int) -> Iterator[RegularisedStep | None]:
+    """The account of each of a number of steps."""
+    for k in range(number):
+        if "step_trials" not in arrays or arrays["step_trials"][k] == 0:
+            yield None
+            continue
+        curves = {name: arrays[f"step_{name}"][k] for name in CURVES}
+        there = np.isfinite(curves["weights"])
+        yield RegularisedStep(
+            **{name: float(arrays[f"step_{name}"][k]) for name in NUMBERS},
+            trials=int(arrays["step_trials"][k]),
+            **{name: curve[there] for name, curve in curves.items()},
+        )
+
+
+def _number(account: RegularisedStep | None, name: str) -> float:
+    return getattr(account, name) if account else np.nan
+
+
+def _padded(account: RegularisedStep | None, name: str, points: int) -> np.ndarray:
+    curve = getattr(account, name) if account else np.empty(0)
+    return np.pad(curve, (0, points - len(curve)), constant_values=np.nan)

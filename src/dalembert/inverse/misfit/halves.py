@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import Annotated
 
 import numpy as np
 from scipy.special import ndtr
@@ -14,6 +15,7 @@ from dalembert.inverse.misfit.residuals import Residuals
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.problem import Problem
 from dalembert.optimize import LeastSquares
+from dalembert.stored_fields import Over
 
 LEVEL = 0.001
 """Probability with which equal parameters are taken for different ones, over all parameters of a fit."""
@@ -41,9 +43,9 @@ class Halves:
         Whether each half was fitted; if not, the values are those of one Gauss–Newton step from the whole fit.
     """
 
-    values: np.ndarray
-    deviations: np.ndarray
-    differences: np.ndarray
+    values: Annotated[np.ndarray, Over("half", "parameter", name="half_values")]
+    deviations: Annotated[np.ndarray, Over("half", "parameter", name="half_deviations")]
+    differences: Annotated[np.ndarray, Over("parameter", name="half_differences")]
     refitted: bool
 
     @property

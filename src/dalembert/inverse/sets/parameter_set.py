@@ -2,16 +2,14 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
-from dalembert.contents import Contents
-from dalembert.data import Measurements
 from dalembert.findings import Finding
-from dalembert.intervals import Box
-from dalembert.parameters import Parameters
+from dalembert.inverse.fit.stored_data import StoredData
 from dalembert.results import EndedResult, fact_lines, fixed_lines, text_table
+from dalembert.stored_fields import Over, StoredParameters, StoredSides, Table
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,14 +49,14 @@ class ParameterSet(EndedResult):
 
     FORMAT: ClassVar[str] = "dalembert parameterset 1"
 
-    parameters: Parameters
-    data: Measurements
-    error: np.ndarray
-    inside: np.ndarray
-    boundary: np.ndarray
-    outer: Box | None
-    inner: Box | None
-    surrogate_error: np.ndarray
+    parameters: StoredParameters
+    data: StoredData
+    error: Table
+    inside: Annotated[np.ndarray, Over("inside_box", "side", "parameter")]
+    boundary: Annotated[np.ndarray, Over("boundary_box", "side", "parameter")]
+    outer: StoredSides
+    inner: StoredSides
+    surrogate_error: Table
     resolution: float
     runs: int
     seconds: float
@@ -105,17 +103,12 @@ class ParameterSet(EndedResult):
         ]
         return "\n".join([*text_table(rows), "", *facts, "", self.status, *map(str, self.findings)])
 
-    def contents(self) -> Contents:
-        from dalembert.inverse.sets.storage import contents_of
-
-        return contents_of(self)
-
     @classmethod
-    def from_xarray(cls, dataset: Any) -> "ParameterSet":
-        """The result that :meth:`to_xarray` turned into a dataset."""
-        from dalembert.inverse.sets.storage import from_xarray
-
-        return from_xarray(dataset)
+    def upgrade(cls, arrays: dict[str, Any], settings: dict[str, Any]) -> None:
+        super().upgrade(arrays, settings)
+        if "boxes" in arrays:
+            is_inside = arrays["is_inside"].astype(bool)
+            arrays |= {"inside": arrays["boxes"][is_inside], "boundary": arrays["boxes"][~is_inside]}
 
 
 def _in_any(boxes: np.ndarray, point: np.ndarray) -> bool:

@@ -1,8 +1,11 @@
 """Where the segments of multiple shooting meet."""
 
 from dataclasses import dataclass, field
+from typing import Annotated
 
 import numpy as np
+
+from dalembert.stored_fields import Over
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,15 +36,15 @@ class Nodes:
     """
 
     states: tuple[str, ...]
-    samples: np.ndarray
-    ends: np.ndarray
-    begins: np.ndarray
+    samples: Annotated[np.ndarray, Over("node", name="node_samples")]
+    ends: Annotated[np.ndarray, Over("node", "state", name="node_ends")]
+    begins: Annotated[np.ndarray, Over("node", "state", name="node_begins")]
     gap: float
     growth: float
     segments: int
     units: tuple[str, ...] = ()
     experiments: tuple[str, ...] = ()
-    times: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    times: Annotated[np.ndarray, Over("node", name="node_times")] = field(default_factory=lambda: np.zeros(0))
 
     def __str__(self) -> str:
         """How the segments ended, in a sentence."""

@@ -25,8 +25,7 @@ from dalembert.inverse.events import (
     Step,
     as_record,
 )
-from dalembert.inverse.experiments.experiment_fit import ExperimentFit
-from dalembert.inverse.experiments.experiments import Experiment
+from dalembert.inverse.experiments.experiment import Experiment, ExperimentFit
 from dalembert.inverse.experiments.validation import Validation
 from dalembert.inverse.fit.fit import Fit
 from dalembert.inverse.identify import identify

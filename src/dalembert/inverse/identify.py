@@ -14,7 +14,8 @@ from dalembert.forward.provenance import provenance
 from dalembert.inverse.correlation import CorrelatedResiduals, correlation, correlation_findings
 from dalembert.inverse.events import Finished, OnEvent
 from dalembert.inverse.experiments.coverage import with_coverage
-from dalembert.inverse.experiments.experiments import Experiment, JointModel, Part, begun, joint, joint_weights, placed
+from dalembert.inverse.experiments.experiment import Experiment, Part
+from dalembert.inverse.experiments.experiments import JointModel, begun, joint, joint_weights, placed
 from dalembert.inverse.experiments.explained import explained_findings
 from dalembert.inverse.experiments.smoothed import noise_findings, smooth_noise
 from dalembert.inverse.experiments.suspect_units import unit_findings

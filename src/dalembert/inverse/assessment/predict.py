@@ -12,7 +12,7 @@ from dalembert.forward import ForwardModel
 from dalembert.forward.provenance import provenance
 from dalembert.inverse.assessment.prediction import Prediction
 from dalembert.inverse.assessment.sensitivity import linearised
-from dalembert.inverse.experiments.experiments import Experiment
+from dalembert.inverse.experiments.experiment import Experiment
 from dalembert.inverse.fit.fit import Fit, check_level
 from dalembert.inverse.least_squares.estimate import UNSEEN
 

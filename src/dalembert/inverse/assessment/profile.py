@@ -16,7 +16,8 @@ from dalembert.inverse.assessment.elsewhere import elsewhere
 from dalembert.inverse.assessment.profiles import Profile, Profiles
 from dalembert.inverse.assessment.walk import Walk, walked
 from dalembert.inverse.events import OnEvent
-from dalembert.inverse.experiments.experiments import Experiment, joint, placed
+from dalembert.inverse.experiments.experiment import Experiment
+from dalembert.inverse.experiments.experiments import joint, placed
 from dalembert.inverse.fit.fit import Fit, check_level
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.prefetch import prefetched

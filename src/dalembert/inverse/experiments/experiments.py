@@ -8,9 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dalembert.arguments import check_model, names_of
 from dalembert.data import Measurements
-from dalembert.errors import DalembertError, InputError, shown, unknown
+from dalembert.errors import DalembertError, InputError, unknown
 from dalembert.findings import Finding
 from dalembert.forward import (
     Channel,
@@ -25,109 +24,9 @@ from dalembert.forward import (
     refined,
     starting,
 )
+from dalembert.inverse.experiments.experiment import Experiment, Part
 from dalembert.inverse.problem.matching import check_finite, check_samples, columns_of, weights_of
 from dalembert.parameters import Parameter, Parameters
-
-
-@dataclass(frozen=True, eq=False)
-class Experiment:
-    """One of several experiments with the same mechanism.
-
-    Parameters
-    ----------
-    name : str
-    model : ForwardModel
-        Its samples must be those of the data; it may have more channels.
-    data : Measurements
-    own : tuple of str
-        Parameters that this experiment has for itself, such as its initial state; in the fit they are named
-        ``"NAME.parameter"``. Others are shared with the experiments that name them, too.
-
-    Raises
-    ------
-    InputError
-        For an own parameter that the model lacks.
-    """
-
-    name: str
-    model: ForwardModel
-    data: Measurements
-    own: tuple[str, ...] = ()
-
-    def __post_init__(self) -> None:
-        if not isinstance(self.name, str):
-            raise InputError(f"Experiment: name is {shown(self.name)}; expected a text")
-        check_model(f"Experiment {self.name!r}", self.model)
-        if not isinstance(self.data, Measurements):
-            raise InputError(f"Experiment {self.name!r}: data is {shown(self.data)}; expected Measurements")
-        object.__setattr__(self, "own", names_of(self.own, f"Experiment {self.name!r}", "own"))
-        names = [item.name for item in self.model.parameters.declared]
-        for name in self.own:
-            if name not in names:
-                raise InputError(unknown("parameter", name, names, f"experiment {self.name!r}, own"))
-
-    @property
-    def parameters(self) -> tuple[Parameter, ...]:
-        """Parameters as the fit names them."""
-        return tuple(map(self._named, self.model.parameters))
-
-    @property
-    def fixed(self) -> tuple[Parameter, ...]:
-        """Fixed parameters as the fit names them."""
-        return tuple(map(self._named, self.model.parameters.fixed))
-
-    def values(self, joint: Mapping[str, float]) -> dict[str, float]:
-        """Values of the model's parameters, out of those of the fit by name."""
-        return {item.name: joint[self._named(item).name] for item in self.model.parameters.declared}
-
-    def _named(self, item: Parameter) -> Parameter:
-        return replace(item, name=f"{self.name}.{item.name}") if item.name in self.own else item
-
-
-@dataclass(frozen=True, eq=False)
-class Part:
-    """Where an experiment stands in the joint response: its samples' rows, its channels' columns.
-
-    Parameters
-    ----------
-    name : str
-    coordinate : Coordinate
-        Its own, shape (samples,).
-    channels : tuple of str
-        By their own names.
-    rows, columns : array of int, shape (samples,) and (channels,)
-    """
-
-    name: str
-    coordinate: Coordinate
-    channels: tuple[str, ...]
-    rows: np.ndarray
-    columns: np.ndarray
-
-    @property
-    def block(self) -> tuple[np.ndarray, ...]:
-        """Index of its values in an array of shape (samples, channels) of the joint response."""
-        return np.ix_(self.rows, self.columns)
-
-    def first(self, rows: int) -> "Part":
-        """The same in the first rows of the joint response."""
-        samples = int(np.searchsorted(self.rows, rows))
-        along = replace(self.coordinate, values=self.coordinate.values[:samples])
-        return replace(self, coordinate=along, rows=self.rows[:samples])
-
-    def data(self, joint: Measurements) -> Measurements:
-        """Its own measurements among the joint ones."""
-        names = [joint.channels[column] for column in self.columns]
-        own = dict(zip(names, self.channels, strict=True))
-        return replace(
-            joint,
-            coordinate=self.coordinate,
-            channels=self.channels,
-            values=joint.values[self.block],
-            deviations=None if joint.deviations is None else joint.deviations[self.columns],
-            wraps=tuple(own[name] for name in joint.wraps if name in own),
-            sampled=None if joint.sampled is None else joint.sampled[self.block],
-        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -191,7 +90,7 @@ class JointModel:
         response = np.zeros(self._shape)
         jacobian = np.zeros((*self._shape, len(vector)))
         for part, model, picked, wiring in self._simulated():
-            with told_of(part.name):
+            with errors_named(part.name):
                 own, slopes = model.linearise(np.asarray(vector)[wiring])
             response[part.block] = own[: len(part.rows), picked]
             jacobian[np.ix_(part.rows, part.columns, wiring)] = slopes[: len(part.rows), picked]
@@ -200,7 +99,7 @@ class JointModel:
     def check_derivatives(self, vector: np.ndarray) -> None:
         """Compare the complex steps of the models with differences at a vector (parameters,)."""
         for part, model, _, wiring in self._simulated():
-            with told_of(part.name):
+            with errors_named(part.name):
                 check_derivatives(model, np.asarray(vector)[wiring])
 
     def findings(self, vector: np.ndarray) -> tuple[Finding, ...]:
@@ -264,7 +163,7 @@ def joint(experiments: Sequence[Experiment]) -> tuple[JointModel, Measurements]:
     _check_names(experiments)
     picked = []
     for item in experiments:
-        with told_of(item.name):
+        with errors_named(item.name):
             picked.append(columns_of(item.model, item.data))
             check_finite(item.data)
             check_samples(item.model, item.data)
@@ -333,14 +232,14 @@ def joint_weights(model: JointModel, given: Mapping[str, ArrayLike] | None) -> n
             raise InputError(unknown("experiment", name, names, "weights"))
     weights = np.zeros((len(model.coordinate.values), len(model.channels)))
     for part in model.parts:
-        with told_of(part.name):
+        with errors_named(part.name):
             weights[part.block] = weights_of(given.get(part.name), (len(part.rows), len(part.columns)))
     return weights
 
 
 @contextmanager
-def told_of(name: str) -> Iterator[None]:
-    """Errors told with the experiment that they come from."""
+def errors_named(name: str) -> Iterator[None]:
+    """Name the experiment in errors of the block."""
     try:
         yield
     except DalembertError as error:

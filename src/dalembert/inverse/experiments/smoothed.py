@@ -8,7 +8,7 @@ import numpy as np
 from dalembert.data import Measurements, derivative
 from dalembert.errors import DataError
 from dalembert.findings import Finding
-from dalembert.inverse.experiments.experiments import Part
+from dalembert.inverse.experiments.experiment import Part
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,7 +7,8 @@ from typing import Annotated
 import numpy as np
 
 from dalembert.errors import InputError, unknown
-from dalembert.inverse.experiments.experiments import JointModel, Part
+from dalembert.inverse.experiments.experiment import Part
+from dalembert.inverse.experiments.experiments import JointModel
 from dalembert.inverse.experiments.explained import WORSE, Explained, explained, percentages
 from dalembert.inverse.problem.problem import Problem
 from dalembert.stored_fields import Over

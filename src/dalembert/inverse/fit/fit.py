@@ -13,8 +13,7 @@ from dalembert.errors import InputError, shown
 from dalembert.findings import Finding
 from dalembert.inverse.correlation.correlated import CorrelatedResiduals
 from dalembert.inverse.events import StartEnd, Step
-from dalembert.inverse.experiments.experiment_fit import ExperimentFit, experiment_fit
-from dalembert.inverse.experiments.experiments import Part
+from dalembert.inverse.experiments.experiment import ExperimentFit, Part, experiment_fit
 from dalembert.inverse.experiments.validation import Validation
 from dalembert.inverse.fit.integration import IntegrationBias
 from dalembert.inverse.fit.stored_data import StoredData

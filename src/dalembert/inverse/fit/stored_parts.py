@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from dalembert.forward import Coordinate
-from dalembert.inverse.experiments.experiments import Part
+from dalembert.inverse.experiments.experiment import Part
 from dalembert.stored_fields import Source, Store
 
 

@@ -6,7 +6,8 @@ import pytest
 from correlated_noise import autoregressive, exponential, left, polynomials, series
 from dalembert.inverse.correlation.series import Series, even_grid, series_of
 from dalembert.inverse.correlation.whiteness import p_value
-from dalembert.inverse.experiments.experiments import Experiment, joint
+from dalembert.inverse.experiments.experiment import Experiment
+from dalembert.inverse.experiments.experiments import joint
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.problem import pose
 from small_models import DECAY, measured

@@ -51,7 +51,7 @@ class Result:
     @classmethod
     def from_xarray(cls, dataset: "Dataset") -> Self:
         """The result that :meth:`to_xarray` turned into a dataset."""
-        settings = {**dataset.attrs, **told_of(dataset)}
+        settings = {**dataset.attrs, **settings_of(dataset)}
         source = Source(dataset, {str(name): variable.values for name, variable in dataset.variables.items()})
         cls.upgrade(source.arrays, settings)
         return restore(cls, source, settings)
@@ -176,19 +176,19 @@ def facts_of(kind: type[Result], dataset: "Dataset", names: Sequence[str]) -> di
     return {name: types[name](dataset.attrs[name]) for name in names}
 
 
-def told_of(dataset: "Dataset") -> dict[str, Any]:
+def settings_of(dataset: "Dataset") -> dict[str, Any]:
     """What :func:`stored_facts` was told."""
     return json.loads(dataset.attrs["settings"])
 
 
 def saved_findings(dataset: "Dataset") -> tuple[Finding, ...]:
     """Findings of a result in a dataset; none in those of versions that had no findings."""
-    return findings_of(told_of(dataset).get("findings", ()))
+    return findings_of(settings_of(dataset).get("findings", ()))
 
 
 def saved_outcome(dataset: "Dataset") -> tuple[Finding, ...]:
     """How a method ended, of a result in a dataset; versions without findings stored its text only."""
-    stored = told_of(dataset).get("outcome")
+    stored = settings_of(dataset).get("outcome")
     if stored is not None:
         return findings_of(stored)
     return (unclassified(str(dataset.attrs["status"]), success=bool(dataset.attrs.get("success", True))),)

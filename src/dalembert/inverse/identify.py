@@ -203,21 +203,23 @@ def identify(
     known = given or problem.priors > 0
     reached = best.fitness <= floor.fitness
     exact = reached and floor.source == "arithmetic"
-    told, correlated = _told(problem, response, at, best, known=known, exact=exact)
+    estimated, correlated = _estimated(problem, response, at, best, known=known, exact=exact)
     rounded = reached and floor.source == "rounded"
-    findings = correlation_findings(correlated, told.deviations, explained=rounded)
+    findings = correlation_findings(correlated, estimated.deviations, explained=rounded)
     found = integration_bias(problem, at, best.nodes)
     biased = (
         ()
         if exact
-        else integration_findings(found, problem, told.deviations, best.fitness, known=known, white=correlated is None)
+        else integration_findings(
+            found, problem, estimated.deviations, best.fitness, known=known, white=correlated is None
+        )
     )
     undetermined = repeated(problem, vector, response) if best.nodes is None else ()
-    rough = () if exact else roughness_findings(problem, best, at, told.deviations)
+    rough = () if exact else roughness_findings(problem, best, at, estimated.deviations)
     one_run = best.nodes is None or best.nodes.segments == 1
     looked = None if exact or rounded or not one_run else at
     parts_of_time, followed = misfit_conclusions(problem, looked, known=known)
-    others = rivals(problem, best, floor, told.deviations, known=known)
+    others = rivals(problem, best, floor, estimated.deviations, known=known)
     whole = response if problem is posed else posed.responses(vector[None])[0]
     predicted = parted.validation(whole)
     unexplained = () if predicted is None else explained_findings(predicted.explained)
@@ -226,10 +228,10 @@ def identify(
     fit = Fit(
         parameters=model.parameters,
         values=vector,
-        deviations=told.deviations,
-        correlation=told.correlation,
-        singular_values=told.singular_values,
-        directions=told.directions,
+        deviations=estimated.deviations,
+        correlation=estimated.correlation,
+        singular_values=estimated.singular_values,
+        directions=estimated.directions,
         fitness=best.fitness,
         response=whole,
         data=data,
@@ -312,7 +314,7 @@ def _origin(problem: Problem, start: Mapping[str, float] | ArrayLike) -> np.ndar
     return problem.search.points(vector)
 
 
-def _told(
+def _estimated(
     problem: Problem, response: np.ndarray, at: Linearisation | None, best: End, *, known: bool, exact: bool
 ) -> tuple[Estimate, CorrelatedResiduals | None]:
     """Deviations and correlations, NaN without a jacobian; the noise is known, or estimated from the residuals.

@@ -13,7 +13,7 @@ from dalembert.surrogate import Adaptive, Surrogate, bounds, fit
 from dalembert.surrogate.bounds import METHODS
 from dalembert.surrogate.scheme import Scheme
 from dalembert.surrogate.unseen import unseen
-from dalembert.uncertainty.found import Found
+from dalembert.uncertainty.method import MethodBounds
 from dalembert.uncertainty.runs import Runs
 
 SCANNED, MOST_EACH = 10_000, 257
@@ -72,7 +72,7 @@ class Chebyshev(Checked):
     def most(self, runs: Runs) -> int | None:
         return None
 
-    def bound(self, runs: Runs, seed: int) -> Found:
+    def bound(self, runs: Runs, seed: int) -> MethodBounds:
         box, shape = runs.box, runs.shape
         samples, channels = shape
         surrogate = fit(
@@ -97,7 +97,7 @@ class Chebyshev(Checked):
             error = 2 * error + np.maximum(excess, 0.0)
             findings += _overestimation(excess, surrogate.scale, self.tolerance)
         at_lower, at_upper = (None if part is None else part.reshape(*shape, len(box)) for part in at)
-        return Found(
+        return MethodBounds(
             "enclosure of the surrogate" if self.bounds == "bernstein" else "estimate",
             lower.reshape(shape),
             upper.reshape(shape),
@@ -109,7 +109,7 @@ class Chebyshev(Checked):
                 "note",
                 {"order": surrogate.order, "bounds": self.bounds},
                 f"The bounds are those of a polynomial of order {surrogate.order} in place of the model, "
-                f"{_worth(self.bounds)}.",
+                f"{_reliability(self.bounds)}.",
             ),
             not runs.failures,
             tuple(findings),
@@ -146,7 +146,7 @@ def _scanned(surrogate: Surrogate) -> int:
     return max(int(degrees.max(initial=0)) + 2, min(fine, MOST_EACH))
 
 
-def _worth(way: str) -> str:
+def _reliability(way: str) -> str:
     return {
         "optimise": "right within its estimated error",
         "scan": "right within its estimated error but for peaks between the points of the scan",

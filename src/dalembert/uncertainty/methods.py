@@ -4,7 +4,7 @@ from dataclasses import fields
 
 from dalembert.errors import InputError, unknown
 from dalembert.uncertainty.chebyshev import Chebyshev
-from dalembert.uncertainty.found import Method
+from dalembert.uncertainty.method import Method
 from dalembert.uncertainty.optimise import Optimise
 from dalembert.uncertainty.samplings import LatinHypercube, MonteCarlo, Scan, Vertex
 from dalembert.uncertainty.taylor import Taylor

@@ -9,9 +9,9 @@ import scipy
 from dalembert.arguments import Checked
 from dalembert.findings import Finding
 from dalembert.settings import expect
-from dalembert.uncertainty.found import Found
+from dalembert.uncertainty.extreme_search import ExtremeSearch
+from dalembert.uncertainty.method import MethodBounds
 from dalembert.uncertainty.runs import Runs
-from dalembert.uncertainty.search import Search
 from dalembert.uncertainty.unknown_error import share_of, unknown_error
 
 
@@ -52,9 +52,9 @@ class Optimise(Checked):
     def most(self, runs: Runs) -> int | None:
         return None
 
-    def bound(self, runs: Runs, seed: int) -> Found:
+    def bound(self, runs: Runs, seed: int) -> MethodBounds:
         design = self._design(runs, seed)
-        search = Search(runs, self.tolerance, radius=2 * len(design) ** (-1 / max(1, len(runs.free))))
+        search = ExtremeSearch(runs, self.tolerance, radius=2 * len(design) ** (-1 / max(1, len(runs.free))))
         search.run(design)
         if not search.extremes:
             raise runs.none_succeeded()
@@ -63,19 +63,19 @@ class Optimise(Checked):
             search.run(points[:affordable])
             gains, points = search.proposals()
         found, done = search.extremes, not len(points)
-        return Found(
+        return MethodBounds(
             "inner bound",
             found.lower,
             found.upper,
             found.at_lower,
             found.at_upper,
             None,
-            self._worth(done),
+            self._outcome(done),
             done and not runs.failures,
             (self._unknown(runs, search, gains),),
         )
 
-    def _worth(self, done: bool) -> Finding:
+    def _outcome(self, done: bool) -> Finding:
         """Return whether the search came to its end."""
         taken = "Every bound is the response of a run of the model"
         if done:
@@ -85,7 +85,7 @@ class Optimise(Checked):
         message = f"{taken}, but the search stopped at most_runs = {self.most_runs} before it was finished."
         return Finding("search-stopped", "error", {"most_runs": self.most_runs}, message, "Increase most_runs.")
 
-    def _unknown(self, runs: Runs, search: Search, gains: np.ndarray) -> Finding:
+    def _unknown(self, runs: Runs, search: ExtremeSearch, gains: np.ndarray) -> Finding:
         """Return why the error is unknown: expansions around the runs see no more than these do."""
         found = search.extremes
         gain = share_of(gains, found.lower, found.upper)

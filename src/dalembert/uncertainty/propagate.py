@@ -9,7 +9,7 @@ from dalembert.forward import Executor, ForwardModel, clock, findings_at, on_clu
 from dalembert.forward.provenance import provenance
 from dalembert.intervals import Box, Interval
 from dalembert.uncertainty.events import Began, Ended, OnEvent
-from dalembert.uncertainty.found import Found, Method
+from dalembert.uncertainty.method import Method, MethodBounds
 from dalembert.uncertainty.methods import label, method_of
 from dalembert.uncertainty.propagation import Propagation
 from dalembert.uncertainty.runs import Runs
@@ -127,7 +127,7 @@ def box_of(model: ForwardModel, intervals: Intervals) -> Box:
     return Box(names, given.lower[places], given.upper[places])
 
 
-def _outcome(found: Found, runs: Runs) -> Iterator[Finding]:
+def _outcome(found: MethodBounds, runs: Runs) -> Iterator[Finding]:
     if runs.failures:
         count = f"{len(runs.failures)} run{'s' * (len(runs.failures) > 1)}"
         yield Finding(
@@ -137,4 +137,4 @@ def _outcome(found: Found, runs: Runs) -> Iterator[Finding]:
             f"{count} failed, the first: {runs.failures[0]}. The bounds are valid only where the model can be run.",
             "Make the box smaller, or check the model there.",
         )
-    yield found.worth
+    yield found.outcome

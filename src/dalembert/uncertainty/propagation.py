@@ -44,7 +44,7 @@ class Propagation(Bands, EndedResult):
     success : bool
         Whether every run succeeded and the method came to its end.
     outcome : tuple of Finding
-        What the bounds are worth; ``status`` is their text.
+        How reliable the bounds are; ``status`` is their text.
     seconds : float
         Time taken.
     provenance : mapping

@@ -13,7 +13,7 @@ from dalembert.findings import Finding
 from dalembert.intervals import Box
 from dalembert.latin_hypercube import latin_hypercube
 from dalembert.settings import expect, expect_at_least
-from dalembert.uncertainty.found import Extremes, Found
+from dalembert.uncertainty.method import Extremes, MethodBounds
 from dalembert.uncertainty.runs import Runs
 from dalembert.uncertainty.unknown_error import share_of, unknown_error
 
@@ -36,13 +36,13 @@ class Sampling(Checked, ABC):
     def most(self, runs: Runs) -> int:
         return self.size(runs.box)
 
-    def bound(self, runs: Runs, seed: int) -> Found:
+    def bound(self, runs: Runs, seed: int) -> MethodBounds:
         first, rest = self.points(runs.box, seed)
         halfway = _extremes(runs, first, Extremes.none(runs))
         extremes = _extremes(runs, rest, halfway)
         if not extremes:
             raise runs.none_succeeded()
-        return Found(
+        return MethodBounds(
             "inner bound",
             extremes.lower,
             extremes.upper,

@@ -8,7 +8,7 @@ import numpy as np
 from dalembert.arguments import Checked
 from dalembert.findings import Finding
 from dalembert.settings import expect
-from dalembert.uncertainty.found import Found
+from dalembert.uncertainty.method import MethodBounds
 from dalembert.uncertainty.runs import Runs
 from dalembert.uncertainty.unknown_error import share_of
 
@@ -36,7 +36,7 @@ class Taylor(Checked):
     def most(self, runs: Runs) -> int:
         return 1 + len(runs.box) + self.held_out * bool(len(runs.free))
 
-    def bound(self, runs: Runs, seed: int) -> Found:
+    def bound(self, runs: Runs, seed: int) -> MethodBounds:
         box = runs.box
         at = runs.linearised(box.middle)
         if at is None:
@@ -44,7 +44,7 @@ class Taylor(Checked):
         response, slopes = at[0], at[1] * box.radius
         reach = np.sum(np.abs(slopes), axis=2)
         up = np.sign(slopes)
-        return Found(
+        return MethodBounds(
             "estimate",
             response - reach,
             response + reach,

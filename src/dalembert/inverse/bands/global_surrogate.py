@@ -11,7 +11,7 @@ from dalembert.inverse.bands.candidate import Candidate, candidate
 from dalembert.inverse.bands.check import Check, check, scale
 from dalembert.inverse.bands.correction import corrected
 from dalembert.inverse.bands.descent import descend, screened
-from dalembert.inverse.bands.found import Found
+from dalembert.inverse.bands.method import BandSolution
 from dalembert.inverse.events import Checked
 from dalembert.inverse.problem.matching import place
 from dalembert.inverse.problem.surrogates import surrogate_of
@@ -95,7 +95,7 @@ class GlobalSurrogate(CheckedArguments):
     def name(self) -> str:
         return "global"
 
-    def search(self, problem: BandProblem, seed: int) -> Found:
+    def search(self, problem: BandProblem, seed: int) -> BandSolution:
         """The best box.
 
         Raises
@@ -136,10 +136,12 @@ class GlobalSurrogate(CheckedArguments):
             problem.run, low, high, scheme, problem.journal, shape=problem.shape, seed=seed, held_out=self.held_out
         )
 
-    def _refined(self, problem: BandProblem, surrogate: Surrogate, best: Minimum, seed: int) -> tuple[Found, Surrogate]:
+    def _refined(
+        self, problem: BandProblem, surrogate: Surrogate, best: Minimum, seed: int
+    ) -> tuple[BandSolution, Surrogate]:
         """In turn checked by true runs, made better by them or around them, and descended from the answer so far."""
         polynomial, points, values = surrogate.polynomial, surrogate.points, surrogate.values
-        found = Found(
+        found = BandSolution(
             polynomial, candidate(problem, polynomial, best.x), surrogate.error, None, best.success, best.message
         )
         sharpest = np.inf
@@ -153,7 +155,7 @@ class GlobalSurrogate(CheckedArguments):
             if worst > sharpest:  # the correction made it worse
                 break
             sharpest = worst
-            found = Found(polynomial, at, checked.error, checked, best.success, best.message)
+            found = BandSolution(polynomial, at, checked.error, checked, best.success, best.message)
             if left == 0 or worst <= ENOUGH or np.all(checked.error <= NEGLIGIBLE * _misfit(problem, at)):
                 break
             points, values = np.concatenate([points, checked.points]), np.concatenate([values, checked.values])

@@ -14,8 +14,8 @@ from dalembert.intervals import Box
 from dalembert.inverse.bands.band_fit import BandFit
 from dalembert.inverse.bands.band_problem import BandProblem, pose
 from dalembert.inverse.bands.candidate import slopes
-from dalembert.inverse.bands.found import Found, Method
 from dalembert.inverse.bands.global_surrogate import GlobalSurrogate
+from dalembert.inverse.bands.method import BandSolution, Method
 from dalembert.inverse.bands.nested import Nested
 from dalembert.inverse.bands.outcome import conclusions, outcome
 from dalembert.inverse.bands.unknowns import unknowns_of
@@ -107,20 +107,20 @@ def identify_bands(
     at, checked = found.candidate, found.check
     concluded = conclusions(problem, found)
     ends = tuple(unknowns.search.vectors(end) for end in (at.lower, at.upper))
-    told = _told(problem, found)
+    estimated = _estimated(problem, found)
     d = len(model.parameters)
     radius_deviations = np.zeros(d)
-    radius_deviations[unknowns.chosen] = told.deviations[d:]
+    radius_deviations[unknowns.chosen] = estimated.deviations[d:]
     fit = BandFit(
         parameters=model.parameters,
         intervals=unknowns.intervals,
         box=Box(model.parameters.names, *ends),
         unknowns=unknowns.names,
-        middle_deviations=told.deviations[:d],
+        middle_deviations=estimated.deviations[:d],
         radius_deviations=radius_deviations,
-        correlation=told.correlation,
-        singular_values=told.singular_values,
-        directions=told.directions,
+        correlation=estimated.correlation,
+        singular_values=estimated.singular_values,
+        directions=estimated.directions,
         fitness=float(problem.fitness(at.bounds.lower, at.bounds.upper)),
         bands=Bands(bands.coordinate, bands.channels, bands.lower, bands.upper),
         weights=np.array(problem.weights),
@@ -164,7 +164,7 @@ def _method(given: Method | str | None) -> Method:
     return given
 
 
-def _told(problem: BandProblem, found: Found) -> Estimate:
+def _estimated(problem: BandProblem, found: BandSolution) -> Estimate:
     """Deviations and correlations of middles and radii, the noise estimated from the residuals."""
     unknowns, at = problem.unknowns, found.candidate
     by_lower, by_upper = slopes(problem, found.polynomial, at)

@@ -9,7 +9,7 @@ from dalembert.errors import InputError, SolveError
 from dalembert.inverse.bands.band_problem import BandProblem
 from dalembert.inverse.bands.candidate import candidate
 from dalembert.inverse.bands.check import check
-from dalembert.inverse.bands.found import Found
+from dalembert.inverse.bands.method import BandSolution
 from dalembert.inverse.problem.surrogates import surrogate_of
 from dalembert.optimize import ImprovedParticleSwarm, ParticleSwarm, Progress
 from dalembert.surrogate import ChebyshevPolynomial, TotalDegree, bounds
@@ -44,7 +44,7 @@ class Nested(Checked):
     def name(self) -> str:
         return f"nested {type(self.swarm).__name__}"
 
-    def search(self, problem: BandProblem, seed: int) -> Found:
+    def search(self, problem: BandProblem, seed: int) -> BandSolution:
         """The best box.
 
         Raises
@@ -93,7 +93,7 @@ class Nested(Checked):
         eta, exponents = self.scheme.points(directions), total_degree(directions, self.scheme.order)
         return eta, exponents, np.linalg.pinv(products(chebyshev(eta, exponents.max(axis=0)), exponents))
 
-    def _told(self, problem: BandProblem, x: np.ndarray, message: str, seed: int) -> Found:
+    def _told(self, problem: BandProblem, x: np.ndarray, message: str, seed: int) -> BandSolution:
         """The best box once more, with a surrogate that also knows slopes in directions without width, and a check."""
         search = problem.unknowns.search
         lower, upper = problem.unknowns.ends(x)
@@ -113,4 +113,4 @@ class Nested(Checked):
         at = candidate(problem, surrogate.polynomial, x)
         checked = check(problem, surrogate.polynomial, at)
         error = surrogate.error if checked is None else checked.error
-        return Found(surrogate.polynomial, at, error, checked, True, message)
+        return BandSolution(surrogate.polynomial, at, error, checked, True, message)

@@ -8,7 +8,7 @@ from scipy.special import ndtri
 from dalembert.findings import Finding
 from dalembert.inverse.bands.band_problem import BandProblem
 from dalembert.inverse.bands.check import scale
-from dalembert.inverse.bands.found import Found
+from dalembert.inverse.bands.method import BandSolution
 from dalembert.inverse.fit.outcome import converged, failed_simulations
 from dalembert.inverse.problem.matching import place
 from dalembert.inverse.problem.noise import quantum, random_residuals
@@ -26,7 +26,7 @@ CORRELATED = 4.0
 """Autocorrelation of noise, in its deviations, beyond which the bands are inconsistent: noise has it once in 10,000."""
 
 
-def outcome(problem: BandProblem, found: Found) -> Iterator[Finding]:
+def outcome(problem: BandProblem, found: BandSolution) -> Iterator[Finding]:
     """Yield whether the search converged, how far given and reproduced bands differ, and what true runs show."""
     yield converged(found.success, found.message)
     yield from failed_simulations(problem.journal.failures)
@@ -44,7 +44,7 @@ def outcome(problem: BandProblem, found: Found) -> Iterator[Finding]:
         )
 
 
-def _differences(problem: BandProblem, found: Found) -> Iterator[Finding]:
+def _differences(problem: BandProblem, found: BandSolution) -> Iterator[Finding]:
     """Yield what the difference between reproduced and given bands shows."""
     given, apart = problem.bands, _apart(problem, found)
     if _rounded(problem, apart):
@@ -72,7 +72,7 @@ def _differences(problem: BandProblem, found: Found) -> Iterator[Finding]:
         yield Finding("uncorrelated-residuals", "note", {}, "The remaining differences are not correlated.")
 
 
-def conclusions(problem: BandProblem, found: Found) -> tuple[Finding, ...]:
+def conclusions(problem: BandProblem, found: BandSolution) -> tuple[Finding, ...]:
     """Return the findings: bands that no box has, and a best end that only one of the descents reached."""
     findings = []
     share = inconsistency(problem, found)
@@ -100,14 +100,14 @@ def conclusions(problem: BandProblem, found: Found) -> tuple[Finding, ...]:
     return tuple(findings)
 
 
-def inconsistency(problem: BandProblem, found: Found) -> float:
+def inconsistency(problem: BandProblem, found: BandSolution) -> float:
     """Rms difference of reproduced and given bands, as part of their mean width, if it is not random; else 0."""
     apart = _apart(problem, found)
     share = float(_shares(problem, apart).max())
     return 0.0 if share <= SMALL or _rounded(problem, apart) or _random(problem, apart) else share
 
 
-def _apart(problem: BandProblem, found: Found) -> np.ndarray:
+def _apart(problem: BandProblem, found: BandSolution) -> np.ndarray:
     """Differences of reproduced and given bands, (2, samples, channels); 0 where none was given."""
     bounds, given = found.candidate.bounds, problem.bands
     apart = np.stack([bounds.lower, bounds.upper]).reshape(2, *problem.shape) - np.stack([given.lower, given.upper])

@@ -8,7 +8,7 @@ import numpy as np
 
 from dalembert.arguments import names_of
 from dalembert.errors import InputError
-from dalembert.inverse.problem.search import Search
+from dalembert.inverse.problem.search_coordinates import SearchCoordinates
 from dalembert.parameters import Parameters
 
 
@@ -44,8 +44,8 @@ class Unknowns:
     region: tuple[np.ndarray, np.ndarray] | None = None
 
     @cached_property
-    def search(self) -> Search:
-        return Search(self.parameters)
+    def search(self) -> SearchCoordinates:
+        return SearchCoordinates(self.parameters)
 
     @property
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:

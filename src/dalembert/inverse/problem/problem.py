@@ -19,7 +19,7 @@ from dalembert.inverse.problem.matching import (
     weights_of,
 )
 from dalembert.inverse.problem.prior import check_priors, prior_residual, prior_slopes
-from dalembert.inverse.problem.search import Search
+from dalembert.inverse.problem.search_coordinates import SearchCoordinates
 from dalembert.inverse.problem.simulated import named, simulated
 
 
@@ -46,7 +46,7 @@ class Problem:
         Where the data's channels stand among the model's.
     weights : array, shape (samples, channels)
         W.
-    search : Search
+    search : SearchCoordinates
     journal : Journal
     loss : Loss, optional
         The square if not given; all that is minimised are squares of residuals that it has transformed.
@@ -56,7 +56,7 @@ class Problem:
     data: Measurements
     columns: np.ndarray
     weights: np.ndarray
-    search: Search
+    search: SearchCoordinates
     journal: Journal
     loss: Loss | None = None
 
@@ -189,7 +189,7 @@ def pose(model: ForwardModel, data: Measurements, weights: ArrayLike | None, jou
     check_sizes(data)
     weighted = _weights(data, weights)
     check_weighted(data, weighted)
-    return Problem(model, data, columns, weighted, Search(model.parameters), journal)
+    return Problem(model, data, columns, weighted, SearchCoordinates(model.parameters), journal)
 
 
 def _weights(data: Measurements, given: ArrayLike | None) -> np.ndarray:

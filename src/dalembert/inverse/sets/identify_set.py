@@ -14,7 +14,7 @@ from dalembert.intervals import Box
 from dalembert.inverse.events import Finished, OnEvent
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.matching import check_finite, check_kinds, check_samples, check_sizes, columns_of
-from dalembert.inverse.problem.search import Search
+from dalembert.inverse.problem.search_coordinates import SearchCoordinates
 from dalembert.inverse.problem.simulated import named, simulated
 from dalembert.inverse.sets.conclusions import conclusions
 from dalembert.inverse.sets.inner_box import inner_box
@@ -115,7 +115,7 @@ def identify_set(
     errors = _errors(error, data)
     resolution = _resolution(resolution, len(model.parameters))
     chosen = Adaptive(tolerance=1e-2, most_order=MOST_ORDER) if scheme is None else scheme
-    journal, search = Journal(len(data.coordinate.values), on_event), Search(model.parameters)
+    journal, search = Journal(len(data.coordinate.values), on_event), SearchCoordinates(model.parameters)
 
     def run(points: np.ndarray) -> np.ndarray:
         return simulated(model, columns, journal, search.vectors(points)).reshape(len(points), -1)

@@ -11,7 +11,7 @@ from dalembert.errors import InputError, SolveError, StorageError, told
 from dalembert.inverse.least_squares.estimate import UNSEEN
 from dalembert.inverse.problem.prior import prior_residual, prior_slopes
 from dalembert.inverse.problem.problem import Linearisation, Problem
-from dalembert.inverse.problem.search import Search
+from dalembert.inverse.problem.search_coordinates import SearchCoordinates
 from dalembert.inverse.problem.simulated import named
 from dalembert.inverse.shooting.segments import Response, Segments, Tangent
 from dalembert.optimize import LeastSquares, Progress
@@ -56,7 +56,7 @@ class _Led(Exception):
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
+class ChainEnd:
     """Where segments that must meet ended: their search point, the misfit to the data alone, and the largest gap."""
 
     point: np.ndarray
@@ -64,7 +64,7 @@ class Found:
     gap: float
 
     @property
-    def met(self) -> bool:
+    def closed(self) -> bool:
         return self.gap <= MET
 
 
@@ -86,34 +86,34 @@ class Chain:
     _kept: list[Tangent] = field(default_factory=list, init=False, repr=False)
 
     @cached_property
-    def search(self) -> Search:
+    def search(self) -> SearchCoordinates:
         """Coordinates in which all unknowns are searched."""
-        return Search(self.segments.parameters)
+        return SearchCoordinates(self.segments.parameters)
 
-    def closed(self, point: np.ndarray, *, merged: bool = False) -> Found:
+    def closed(self, point: np.ndarray, *, merged: bool = False) -> ChainEnd:
         """Gaps closed from a search point on: their weight grows, then the conditions of continuity hold exactly.
 
         Where the steps to the exact conditions fail, the weight grows further, and multipliers close the gaps. Segments
         that were ``merged`` from others which met have no such gaps: where the steps fail, they are too long.
         """
-        found = Found(point, np.inf, self._gap(point))
+        found = ChainEnd(point, np.inf, self._gap(point))
         if merged:
             return self._met(found.point)
         for tightness in LADDER[np.searchsorted(-LADDER, -max(10 * found.gap, LADDER[-1])) :]:
             if found.gap <= NEAR:
                 close = self._met(found.point)
-                if close.met:
+                if close.closed:
                     return close
             found = self._solved(found.point, tightness, np.zeros(1), far=tightness == LADDER[0])
         shift, tightness = np.zeros(1), LADDER[-1]
         for _ in range(ROUNDS):
-            if found.met:
+            if found.closed:
                 break
             shift = shift + self._response(found.point).gaps
             found = self._solved(found.point, tightness, shift)
         return found
 
-    def _met(self, point: np.ndarray) -> Found:
+    def _met(self, point: np.ndarray) -> ChainEnd:
         """Steps of Gauss and Newton under the linearised conditions, each accepted by a filter.
 
         A step must not be worse in both, the misfit and the gaps, than any point before it. Source: H. G. Bock, 1983
@@ -137,24 +137,24 @@ class Chain:
                 trial = self._found(moved, response)
                 if all(trial.gap <= (1 - 1e-3) * gap or trial.misfit <= left - 1e-6 * left for gap, left in known):
                     break
-                if trial.met and trial.misfit <= now.misfit * (1 + 1e-9):
+                if trial.closed and trial.misfit <= now.misfit * (1 + 1e-9):
                     break
                 trial, length = None, length / 2
             if trial is None:
                 return best
             now = trial
             known.append((now.gap, now.misfit))
-            if now.met and (not best.met or now.misfit <= best.misfit):
+            if now.closed and (not best.closed or now.misfit <= best.misfit):
                 best = now
             self._tell(now, now.misfit)
             if now.gap <= CLOSED and foreseen <= FALL * now.misfit and length == 1.0:
                 return best
         return best
 
-    def _found(self, point: np.ndarray, response: Response) -> Found:
+    def _found(self, point: np.ndarray, response: Response) -> ChainEnd:
         values = self.search.vectors(point)[: len(self.problem.model.parameters)]
         left = self.problem.residuals(values, response.values)
-        return Found(point, float(left @ left), float(np.max(np.abs(response.gaps), initial=0.0)))
+        return ChainEnd(point, float(left @ left), float(np.max(np.abs(response.gaps), initial=0.0)))
 
     def _step(self, at: Tangent) -> tuple[np.ndarray, float]:
         """Search step dz of least (F + J dz)² under c + C dz = 0, and the fall of the misfit that it foresees.
@@ -183,11 +183,11 @@ class Chain:
             free &= ~over
         return step, foreseen
 
-    def _tell(self, found: Found, minimised: float) -> None:
+    def _tell(self, found: ChainEnd, minimised: float) -> None:
         values = self.search.vectors(found.point)[: len(self.problem.model.parameters)]
         self.problem.journal.step(found.misfit, values, self.problem.samples, gap=found.gap, minimised=minimised)
 
-    def led(self, point: np.ndarray) -> Found:
+    def led(self, point: np.ndarray) -> ChainEnd:
         """Least misfit near a search point, where gaps hardly count."""
         return self._solved(point, LADDER[0], np.zeros(1), far=True)
 
@@ -263,14 +263,14 @@ class Chain:
             follow[piece.begins] = ends @ follow[piece.places]
         return follow
 
-    def _solved(self, point: np.ndarray, tightness: float, shift: np.ndarray, *, far: bool = False) -> Found:
+    def _solved(self, point: np.ndarray, tightness: float, shift: np.ndarray, *, far: bool = False) -> ChainEnd:
         """Least F² + ((c + shift)/tightness)² from a search point on.
 
         Least squares get the sum's root as the first residual and zeros behind it, as many as there are unknowns, with
         the slopes turned accordingly: sums of squares, gradients and normal matrices are those of all residuals.
         """
         search, problem = self.search, self.problem
-        best = Found(point, np.inf, np.inf)
+        best = ChainEnd(point, np.inf, np.inf)
         least, before, hopeful = np.inf, np.inf, True
 
         def residual(now: np.ndarray) -> np.ndarray:
@@ -290,7 +290,7 @@ class Chain:
             total[0] = np.sqrt(misfit + gaps @ gaps)
             if total[0] ** 2 < least:
                 least = total[0] ** 2
-                best = Found(now, misfit, float(np.max(np.abs(response.gaps), initial=0.0)))
+                best = ChainEnd(now, misfit, float(np.max(np.abs(response.gaps), initial=0.0)))
             return total
 
         def jacobian(now: np.ndarray) -> np.ndarray:

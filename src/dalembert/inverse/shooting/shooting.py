@@ -13,7 +13,7 @@ from dalembert.inverse.least_squares.descent import End, descend
 from dalembert.inverse.problem.noise import NoiseFloor
 from dalembert.inverse.problem.prefetch import prefetched
 from dalembert.inverse.problem.problem import Problem
-from dalembert.inverse.shooting.continuity import Chain, Found
+from dalembert.inverse.shooting.continuity import Chain, ChainEnd
 from dalembert.inverse.shooting.cuts import Cut, guess, named_cut, segments
 from dalembert.inverse.shooting.natural_cuts import coarser, natural_cuts
 from dalembert.inverse.shooting.nodes import Nodes
@@ -151,7 +151,7 @@ class Level:
 
     cuts: Sequence[Cut]
     chain: Chain
-    found: Found
+    found: ChainEnd
 
 
 def _shot(problem: Problem, shooting: MultipleShooting, method: Squares, floor: NoiseFloor, values: np.ndarray) -> End:
@@ -165,9 +165,9 @@ def _shot(problem: Problem, shooting: MultipleShooting, method: Squares, floor: 
 
 def _merged(problem: Problem, levels: Sequence[Level], method: Squares, floor: NoiseFloor, number: int) -> End:
     """End of one run where segments merge into it, else of the fewest segments that explain the data as well."""
-    last = next((level for level in reversed(levels) if level.found.met), levels[-1])
+    last = next((level for level in reversed(levels) if level.found.closed), levels[-1])
     one = descend([problem], method, problem.search.points(_first(last, number)))
-    met = [level for level in levels if level.found.met]
+    met = [level for level in levels if level.found.closed]
     least = min([one.fitness, *(level.found.misfit for level in met)])
     nodes = next(iter(met or levels))
     spread = nodes.chain.spread(nodes.found.point)
@@ -199,13 +199,13 @@ def _levels(problem: Problem, shooting: MultipleShooting, values: np.ndarray) ->
         chain = Chain(problem, segments(problem, cuts))
         found = chain.closed(chain.search.points(chain.segments.parameters.clip(start)), merged=merged)
         yield Level(cuts, chain, found)
-        if all(len(cut.nodes) < 2 for cut in cuts) or (merged and not found.met):
+        if all(len(cut.nodes) < 2 for cut in cuts) or (merged and not found.closed):
             return
-        merged = found.met
+        merged = found.closed
         cuts, start = _continued(chain, found, [cut.merged() for cut in cuts])
 
 
-def _continued(chain: Chain, found: Found, cuts: list[Cut]) -> tuple[list[Cut], np.ndarray]:
+def _continued(chain: Chain, found: ChainEnd, cuts: list[Cut]) -> tuple[list[Cut], np.ndarray]:
     """Motions in fewer segments, and the unknowns where the former ones ended."""
     ended = dict(zip(chain.segments.parameters.names, chain.search.vectors(found.point), strict=True))
     names = [one.name for cut in cuts for node in cut.nodes for one in node.unknowns(cut.track)]

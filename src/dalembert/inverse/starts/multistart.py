@@ -12,7 +12,7 @@ from dalembert.inverse.least_squares.descent import End, descend
 from dalembert.inverse.problem.noise import NoiseFloor, random_residuals
 from dalembert.inverse.problem.prefetch import Work, prefetched
 from dalembert.inverse.problem.problem import Problem
-from dalembert.inverse.problem.search import Search
+from dalembert.inverse.problem.search_coordinates import SearchCoordinates
 from dalembert.inverse.starts.neighbours import neighbours
 from dalembert.inverse.starts.spread import spread_points
 from dalembert.optimize import Squares
@@ -133,7 +133,7 @@ def _attempts(
     yield from prefetched(ladder[-1], ahead, others)
 
 
-def _chosen(search: Search, points: np.ndarray, scores: np.ndarray) -> Iterator[Attempt]:
+def _chosen(search: SearchCoordinates, points: np.ndarray, scores: np.ndarray) -> Iterator[Attempt]:
     """Screened points (number, parameters) to start from, by their misfit over each horizon (rungs, number).
 
     The horizons, half of the samples, a quarter, an eighth, take turns to name the best point left by the misfit over

@@ -12,7 +12,7 @@ from dalembert.surrogate import ChebyshevPolynomial
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
+class BandSolution:
     """The best candidate, on the surrogate that bounds it.
 
     Parameters
@@ -43,4 +43,4 @@ class Method(Protocol):
     @property
     def name(self) -> str: ...
 
-    def search(self, problem: BandProblem, seed: int) -> Found: ...
+    def search(self, problem: BandProblem, seed: int) -> BandSolution: ...

@@ -12,10 +12,10 @@ KINDS = ("inner bound", "estimate", "enclosure of the surrogate")
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
+class MethodBounds:
     """Bounds (samples, channels), where they are taken (samples, channels, parameters), and their estimated error.
 
-    ``kind`` is one of ``KINDS``; ``worth`` is what the bounds are worth and what would be better.
+    ``kind`` is one of ``KINDS``; ``outcome`` is how reliable the bounds are, and which method is better.
     An error is None where it is unknown; a finding then has the reason.
     """
 
@@ -25,7 +25,7 @@ class Found:
     at_lower: np.ndarray | None
     at_upper: np.ndarray | None
     error: np.ndarray | None
-    worth: Finding
+    outcome: Finding
     success: bool = True
     findings: tuple[Finding, ...] = ()
 
@@ -39,7 +39,7 @@ class Method(Protocol):
         """Runs that it will make, None where it finds out by itself."""
         ...
 
-    def bound(self, runs: Runs, seed: int) -> Found: ...
+    def bound(self, runs: Runs, seed: int) -> MethodBounds: ...
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from dalembert.errors import InputError
-from dalembert.inverse.problem.search import Search
+from dalembert.inverse.problem.search_coordinates import SearchCoordinates
 from dalembert.parameters import Parameter, Parameters
 
 BOX = Parameters(
@@ -16,7 +16,7 @@ BOX = Parameters(
         Parameter("ratio", 0.5, 1.0, log=True),
     )
 )
-SEARCH = Search(BOX)
+SEARCH = SearchCoordinates(BOX)
 
 
 def test_wide_positive_parameters_are_searched_by_their_logarithm_unless_told_otherwise():

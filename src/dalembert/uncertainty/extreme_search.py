@@ -7,7 +7,7 @@ from scipy.spatial import KDTree
 
 from dalembert.forward import prefetched
 from dalembert.uncertainty.expansions import Expansions, expand, maxima
-from dalembert.uncertainty.found import Extremes
+from dalembert.uncertainty.method import Extremes
 from dalembert.uncertainty.runs import Runs
 
 COVERED = 0.8
@@ -61,7 +61,7 @@ class Tried:
 
 
 @dataclass
-class Search:
+class ExtremeSearch:
     """All runs so far, in the coordinates η of the intervals that have a width.
 
     Parameters

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from dalembert.contents import Contents
 from dalembert.files import read_dataset, write_contents
-from dalembert.findings import Finding, findings_of, stored_findings, unclassified
+from dalembert.findings import Finding, stored_findings, unclassified
 from dalembert.hooks import hook
 from dalembert.parameters import Parameter
 from dalembert.stored_fields import Source, Store, restore, store
@@ -51,7 +51,7 @@ class Result:
     @classmethod
     def from_xarray(cls, dataset: "Dataset") -> Self:
         """The result that :meth:`to_xarray` turned into a dataset."""
-        settings = {**dataset.attrs, **settings_of(dataset)}
+        settings = {**dataset.attrs, **stored_settings(dataset)}
         source = Source(dataset, {str(name): variable.values for name, variable in dataset.variables.items()})
         cls.upgrade(source.arrays, settings)
         return restore(cls, source, settings)
@@ -149,17 +149,17 @@ def text_table(rows: Sequence[Sequence[str]]) -> list[str]:
     return [lines[0], "─" * (sum(widths) + 2 * (len(widths) - 1)), *lines[1:]]
 
 
-def stored_facts(result: Result, names: Sequence[str], **told: Any) -> dict[str, Any]:
-    """Attributes of a dataset: the format of a result, its numbers and words by name, and, as JSON, what is told."""
-    told = {**told, "findings": stored_findings(result.findings)}
+def stored_facts(result: Result, names: Sequence[str], **settings: Any) -> dict[str, Any]:
+    """Return the attributes of a dataset: the format of a result, facts by name, and its settings as JSON."""
+    settings = {**settings, "findings": stored_findings(result.findings)}
     texts = {}
     if isinstance(result, EndedResult):
-        told["outcome"], texts["status"] = stored_findings(result.outcome), result.status
+        settings["outcome"], texts["status"] = stored_findings(result.outcome), result.status
     return {
         "format": result.FORMAT,
         **texts,
         **plain_facts(result, names),
-        "settings": json.dumps(told, sort_keys=True),
+        "settings": json.dumps(settings, sort_keys=True),
     }
 
 
@@ -176,22 +176,9 @@ def facts_of(kind: type[Result], dataset: "Dataset", names: Sequence[str]) -> di
     return {name: types[name](dataset.attrs[name]) for name in names}
 
 
-def settings_of(dataset: "Dataset") -> dict[str, Any]:
-    """What :func:`stored_facts` was told."""
+def stored_settings(dataset: "Dataset") -> dict[str, Any]:
+    """Return the settings of a stored result."""
     return json.loads(dataset.attrs["settings"])
-
-
-def saved_findings(dataset: "Dataset") -> tuple[Finding, ...]:
-    """Findings of a result in a dataset; none in those of versions that had no findings."""
-    return findings_of(settings_of(dataset).get("findings", ()))
-
-
-def saved_outcome(dataset: "Dataset") -> tuple[Finding, ...]:
-    """How a method ended, of a result in a dataset; versions without findings stored its text only."""
-    stored = settings_of(dataset).get("outcome")
-    if stored is not None:
-        return findings_of(stored)
-    return (unclassified(str(dataset.attrs["status"]), success=bool(dataset.attrs.get("success", True))),)
 
 
 def _types(kind: type[Result]) -> dict[str, Any]:

@@ -22,7 +22,7 @@ from dalembert.multibody.lowering import lower
 from dalembert.multibody.simulation import prepared, simulate
 from dalembert.multibody.system import System
 from dalembert.multibody.trajectory import Trajectory
-from dalembert.results import Result, facts_of, settings_of, stored_facts
+from dalembert.results import Result, facts_of, stored_facts, stored_settings
 
 OnRow = Callable[["Row"], None]
 
@@ -136,7 +136,7 @@ class WorkPrecision(Result):
     @classmethod
     def from_xarray(cls, dataset: Any) -> "WorkPrecision":
         """The comparison that :meth:`to_xarray` turned into a dataset."""
-        told = settings_of(dataset)
+        told = stored_settings(dataset)
         columns = {name: dataset[name].values.tolist() for name in Row.__dataclass_fields__}
         rows = tuple(Row(**dict(zip(columns, values, strict=True))) for values in zip(*columns.values(), strict=True))
         facts = facts_of(cls, dataset, ("end", "apart"))

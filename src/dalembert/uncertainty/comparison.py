@@ -11,7 +11,7 @@ from dalembert.contents import Contents
 from dalembert.errors import ClusterError, DalembertError, InputError, StorageError
 from dalembert.findings import Finding
 from dalembert.forward import Executor, ForwardModel, on_cluster, takes_executor
-from dalembert.results import EndedResult, settings_of, stored_facts, text_table
+from dalembert.results import EndedResult, stored_facts, stored_settings, text_table
 from dalembert.uncertainty.events import OnEvent
 from dalembert.uncertainty.method import Method
 from dalembert.uncertainty.methods import label, method_of
@@ -120,7 +120,7 @@ class Comparison(EndedResult):
     @classmethod
     def from_xarray(cls, dataset: Any) -> "Comparison":
         """The comparison that :meth:`to_xarray` turned into a dataset."""
-        told = settings_of(dataset)
+        told = stored_settings(dataset)
         results = tuple(
             Propagation.from_xarray(dataset.isel(method=number)[own["variables"]].assign_attrs(own["attributes"]))
             for number, own in enumerate(told["results"])

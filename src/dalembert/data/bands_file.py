@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from dalembert.data.bands import Bands
-from dalembert.data.formats import columns_in
+from dalembert.data.known_formats import columns_in
 from dalembert.data.opening import told_of
 from dalembert.data.text_layout import AUTO
 from dalembert.errors import DataError

@@ -8,7 +8,7 @@ from typing import Any
 from numpy.typing import ArrayLike
 
 from dalembert.data.columns import Trial, trial_label
-from dalembert.data.formats import columns_in, trial_labels
+from dalembert.data.known_formats import columns_in, trial_labels
 from dalembert.data.measurements import FIRST, Measurements
 from dalembert.data.opening import told_of
 from dalembert.data.text_layout import AUTO

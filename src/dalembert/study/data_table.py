@@ -18,7 +18,7 @@ from pydantic import (
 )
 
 from dalembert.arguments import is_whole
-from dalembert.data.formats import SUFFIXES
+from dalembert.data.known_formats import SUFFIXES
 from dalembert.data.measurements import FIRST, beginning
 from dalembert.errors import unknown
 from dalembert.forward.sensors import START
@@ -278,7 +278,7 @@ class DataTable(ChannelFile):
 
     def labels(self) -> list[str]:
         """Labels of the trials in the file."""
-        from dalembert.data.formats import trial_labels
+        from dalembert.data.known_formats import trial_labels
 
         assert self.split is not None
         return trial_labels(self.file, self.split, separator=self.separator, decimal=self.decimal, format=self.format)

@@ -158,3 +158,60 @@ columns = {"bar.end.y" = "y"}
 """
 FILES = {"own_gears": GEAR, "own_pull": PULL, "own_disc": BODY, "own_alpha": INTEGRATOR}
 """Texts by the names of their modules."""
+SWARM = '''
+"""One more swarm."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+from dalembert.optimize.particle_swarm import ParticleSwarm
+
+@dataclass(frozen=True)
+class SlowSwarm(ParticleSwarm):
+    """A swarm with small velocities."""
+
+    name: ClassVar[str] = "slow-swarm"
+    velocity_limit: float | None = 0.05
+'''
+SAMPLING = '''
+"""One more sampling."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+import numpy as np
+from dalembert.uncertainty.samplings import Drawn
+
+@dataclass(frozen=True)
+class Diagonal(Drawn):
+    """Points on the diagonal of the box."""
+
+    name: ClassVar[str] = "diagonal"
+    advice: ClassVar[str] = "The extremes on the diagonal."
+    runs: int = 11
+
+    def shares(self, dimensions, seed):
+        return np.tile(np.linspace(0.0, 1.0, self.runs)[:, None], (1, dimensions))
+'''
+FORMAT = '''
+"""One more format: pairs of a name and its numbers."""
+
+import numpy as np
+from dalembert.data.columns import Columns, chosen
+from dalembert.data.format import Format
+
+class Lines(Format):
+    """A line for each column: its name and its numbers."""
+
+    name = "lines"
+    suffixes = (".lines",)
+
+    def columns(self, path, request):
+        rows = [line.split() for line in path.read_text().splitlines()]
+        table = {name: np.array(numbers, dtype=float) for name, *numbers in rows}
+        return Columns(path, str(request.time), *chosen(path, table, str(request.time), request.labels, request.missing))
+'''
+METHODS = {
+    "optimize/slow_swarm": SWARM,
+    "uncertainty/diagonal": SAMPLING,
+    "data/formats/lines": FORMAT,
+}
+"""Texts of a swarm, a sampling and a format of data, by the place of their modules."""

@@ -13,6 +13,7 @@ from scipy.sparse import coo_array, csc_array
 from xarray import Dataset
 
 from dalembert.data import read, read_bands
+from dalembert.data.known_formats import known_formats
 from dalembert.errors import DataError, InputError
 from dalembert.structure import Dofs, Structure, read_structure, write_structure
 from data_files import ANGLE, TIMES, WAY, WRITERS, function, universal
@@ -222,9 +223,8 @@ FILES = {
         "a.xlsx",
         mat(t=TIMES, x=ANGLE),
         {},
-        "{path}: the suffix '.xlsx' stands for no format; expected one of .csv, .txt, .dat, .tsv, .asc, .log, .json, "
-        ".parquet, .pq, .mat, .uff, .unv, .uf, .bunv, .nc, .nc4, .cdf; rename the file, or say which format it has: "
-        "csv, json, parquet, mat, uff, netcdf",
+        "{path}: the suffix '.xlsx' stands for no format; expected one of {suffixes}; rename the file, or say "
+        "which format it has: {formats}",
     ),
     "a column that is there twice": (
         "a.csv",
@@ -245,7 +245,10 @@ FILES = {
 def test_a_defect_of_a_file_is_told_with_file_column_and_sample(defect, tmp_path):
     name, write, options, sentence = FILES[defect]
     write(tmp_path / name)
-    assert refused(tmp_path / name, **options) == sentence.format(path=tmp_path / name)
+    known = known_formats()  # with those that other tests define
+    suffixes = ", ".join(suffix for form in known.values() for suffix in form.suffixes)
+    expected = sentence.format(path=tmp_path / name, suffixes=suffixes, formats=", ".join(known))
+    assert refused(tmp_path / name, **options) == expected
 
 
 @pytest.mark.parametrize("suffix", [".csv", ".parquet", ".mat", ".uff", ".nc"])

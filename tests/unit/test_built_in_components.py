@@ -1,7 +1,8 @@
-"""A joint, a force element, a body and an integrator become part of the package, one file each."""
+"""A component, an integrator, a swarm, a sampling and a format of data become part of the package, one file each."""
 
 import hashlib
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -10,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import public_names
-from own_components import FILES, STUDY
+from own_components import FILES, METHODS, STUDY
 
 PLACES = {
     "components/planar/own_gears": "OwnGears",
@@ -30,6 +31,33 @@ for role, name in {kinds}.items():
     assert getattr(da, name) in kinds_of(role)
 study = load("study.toml")
 print([type(component).__name__ for component in study.system().bodies], type(study.solver).__name__)
+"""
+
+METHODS_CODE = """
+import numpy as np
+import dalembert as da
+from dalembert.data import read
+from dalembert.study import load
+from dalembert.study.catalogue import swarms
+from dalembert.uncertainty import propagate
+
+times = np.linspace(0.0, 1.0, 3)
+model = da.PythonModel(lambda a, b: (a - b) * times, {"a": (0.0, 1.0), "b": (0.0, 1.0)}, ["y"], times)
+print(propagate(model, {"a": (0.5, 1.0), "b": (0.0, 1.0)}, "diagonal").upper.max())
+print(read("data.lines", columns={"y": "y"}).values[:, 0].tolist(), read("data.lines", format="lines").values.shape)
+load("methods.toml")
+print(swarms()["slow-swarm"](particles=7).particles)
+"""
+METHODS_STUDY = """
+[parameters]
+a = { lower = 0.0, upper = 1.0 }
+[model]
+forward = "own.py:own"
+[data]
+file = "data.lines"
+columns = { y = "y" }
+[identify]
+method = { kind = "slow-swarm", particles = 7 }
 """
 
 
@@ -81,6 +109,35 @@ def test_one_file_each_and_the_generator_make_them_public(sources: Path) -> None
     )
     assert run.returncode == 0, run.stderr
     assert run.stdout == "['OwnDisc', 'OwnDisc', 'RigidBar'] OwnAlpha\n"
+
+
+def test_one_file_is_enough_for_a_swarm_a_sampling_and_a_format(sources: Path) -> None:
+    for place, text in METHODS.items():
+        (sources / "dalembert" / f"{place}.py").write_text(text)
+    (sources / "methods.toml").write_text(METHODS_STUDY)
+    (sources / "data.lines").write_text("t 0.0 0.5 1.0\ny 1.0 2.0 3.0\n")
+    (sources / "own.py").write_text(
+        "import dalembert as da, numpy as np\n"
+        "def own(parameters): return da.PythonModel(lambda a: a * np.ones(3), parameters, ['y'], np.linspace(0, 1, 3))\n"
+    )
+    run = subprocess.run(
+        [sys.executable, "-c", METHODS_CODE],
+        cwd=sources,
+        env={**os.environ, "PYTHONPATH": str(sources)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert run.returncode == 0, run.stderr
+    assert run.stdout.splitlines() == ["0.5", "[1.0, 2.0, 3.0] (3, 1)", "7"]
+
+
+def test_the_guide_names_the_folder_of_each_file() -> None:
+    guide = (public_names.SOURCES.parent / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    table = guide.partition("## Where to add what")[2].partition("\n## ")[0]
+    folders = set(re.findall(r"`src/dalembert/([\w/]+)/NAME\.py`", table))
+    added = [*(f"multibody/{place}" for place in PLACES), *METHODS]
+    assert folders == {str(Path(place).parent) for place in added}
 
 
 def test_a_name_that_two_modules_list_is_refused(sources: Path) -> None:

@@ -3,9 +3,9 @@
 from collections.abc import Collection, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from dalembert.data.bands import Bands
+from dalembert.data.format import Request
 from dalembert.data.known_formats import columns_in
 from dalembert.data.opening import told_of
 from dalembert.data.text_layout import AUTO
@@ -55,9 +55,9 @@ def read_bands(
         for name, pair in columns.items():
             if isinstance(pair, str) or len(pair) != 2:
                 raise DataError(f"columns, channel {name!r}: {pair!r} was given; expected two names, (lower, upper)")
-    names = None if columns is None else [column for pair in columns.values() for column in pair]
-    text: Any = {"separator": separator, "decimal": decimal}
-    found = columns_in(path, frequency or time, names, units=[*(units or ())], format=format, **text)
+    names = None if columns is None else tuple(column for pair in columns.values() for column in pair)
+    request = Request(frequency or time, names, units=tuple(units or ()), separator=separator, decimal=decimal)
+    found = columns_in(path, request, format)
     along, table = replace(found, frequency=found.frequency or frequency is not None).converted(units)
     pairs = _pairs(path, table) if columns is None else columns
     with told_of(path):

@@ -8,6 +8,7 @@ from typing import Any
 from numpy.typing import ArrayLike
 
 from dalembert.data.columns import Trial, trial_label
+from dalembert.data.format import Request
 from dalembert.data.known_formats import columns_in, trial_labels
 from dalembert.data.measurements import FIRST, Measurements
 from dalembert.data.opening import told_of
@@ -87,11 +88,10 @@ def read(
     ([0.0, 0.1], [[1.0], [0.9]])
     """
     path = Path(path)
-    names = None if columns is None else list(columns.values())
-    text = {"separator": separator, "decimal": decimal}
+    names = None if columns is None else tuple(columns.values())
     one = None if trial is None else Trial(trial[0], trial_label(trial[1]))
-    options: Any = {"missing": missing, "units": [*(units or ())], "format": format, "trial": one, **text}
-    found = columns_in(path, frequency or time, names, **options)
+    request = Request(frequency or time, names, missing, tuple(units or ()), separator, decimal, one)
+    found = columns_in(path, request, format)
     along, table = replace(found, frequency=found.frequency or frequency is not None).converted(units)
     chosen = {name: name for name in table} if columns is None else {name: str(of) for name, of in columns.items()}
     with told_of(path):

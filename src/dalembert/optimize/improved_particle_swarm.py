@@ -1,6 +1,7 @@
 """The improved particle swarm of Guo & Jin (2025): three groups and a memory of good positions."""
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -61,6 +62,7 @@ class ImprovedParticleSwarm(Swarm):
     True
     """
 
+    name: ClassVar[str] = "improved-swarm"
     groups: tuple[int, int, int] | None = None
     c1: float = 1.0
     c2: float = 1.0

@@ -1,6 +1,7 @@
 """The textbook global-best particle swarm."""
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -36,6 +37,7 @@ class ParticleSwarm(Swarm):
     (1200, True)
     """
 
+    name: ClassVar[str] = "standard-swarm"
     inertia: float | tuple[float, float] = (0.9, 0.4)
     c1: float = 2.0
     c2: float = 2.0

@@ -2,6 +2,7 @@
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -67,6 +68,8 @@ class Swarm(Checked, ABC):
         Evaluated swarms, the first random one included, so a run costs particles × iterations evaluations.
     """
 
+    name: ClassVar[str]
+    """Name in study files; a subclass needs no other registration."""
     particles: int = 40
     iterations: int = 100
 

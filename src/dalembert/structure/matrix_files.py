@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from scipy.sparse import coo_array, csc_array, issparse
 
+from dalembert.data.formats.mat import version_5
 from dalembert.data.guarded import guarded
-from dalembert.data.mat_file import version_5
 from dalembert.data.opening import library, reading
 from dalembert.errors import DataError
 from dalembert.structure.dofs import DIRECTIONS

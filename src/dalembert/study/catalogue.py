@@ -1,24 +1,17 @@
 """Which kinds a study file may name: those of the packages that define them."""
 
-import dataclasses
-import inspect
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from functools import cache, lru_cache
-from importlib.metadata import entry_points
 from typing import Any, get_args
 
 from dalembert.component_index import HOMES, KINDS
-from dalembert.errors import InputError
+from dalembert.kinds import derived_dataclasses, distinct, load_plugins, named
 from dalembert.study.components import settings_of
 from dalembert.study.structure_parts import LinearSpring, LumpedMass
 
 ROLES = {"body": "Body", "joint": "Joint", "load": "Load", "signal": "Signal", "solver": "Integrator"}
 """Base class of the kinds that a table names."""
-
-
-COMPONENTS = "dalembert.components"
-"""Group of entry points: modules of other packages that define components, signals or integrators."""
 
 
 Words = frozenset[str] | None
@@ -36,8 +29,8 @@ def kinds_of(role: str, words: Words = None) -> tuple[type, ...]:
 
     base = ROLES[role]
     own = [getattr(multibody, name) for name in KINDS[base] if words is None or name in words]
-    others = _distinct(kind for kind in _of_others(base) if words is None or kind.__name__ in words)
-    return tuple(sorted([*own, *others], key=lambda kind: kind.__name__))
+    others = distinct(kind for kind in _of_others(base) if words is None or kind.__name__ in words)
+    return tuple(sorted([*own, *others.values()], key=lambda kind: kind.__name__))
 
 
 def kind_names() -> Iterator[str]:
@@ -49,7 +42,7 @@ def kind_names() -> Iterator[str]:
 
 def _of_others(base: str) -> Iterator[type]:
     """Dataclasses of other packages that derive from a base."""
-    _load_entries()
+    load_plugins()
     home = sys.modules.get(f"dalembert.multibody.{HOMES[base]}")
     if home is not None:  # else nothing derives from it
         yield from _derived(getattr(home, base))
@@ -57,43 +50,9 @@ def _of_others(base: str) -> Iterator[type]:
 
 def _derived(base: type) -> Iterator[type]:
     """Public dataclasses of other packages that derive from a class."""
-    for kind in _all_derived(base):
+    for kind in derived_dataclasses(base):
         if kind.__module__.partition(".")[0] != __name__.partition(".")[0]:
             yield kind
-
-
-def _all_derived(base: type) -> Iterator[type]:
-    """Public dataclasses that derive from a class."""
-    for kind in base.__subclasses__():
-        yield from _all_derived(kind)
-        if dataclasses.is_dataclass(kind) and not inspect.isabstract(kind) and not kind.__name__.startswith("_"):
-            yield kind
-
-
-def _distinct(kinds: Iterable[type]) -> Iterable[type]:
-    """One kind of each name: the newest definition of a file, as a notebook or a reload makes several."""
-    by_name: dict[str, type] = {}
-    for kind in kinds:
-        other = by_name.setdefault(kind.__name__, kind)
-        if _file(kind) != _file(other):
-            raise InputError(
-                f"two components are named {kind.__name__!r}, in the modules {other.__module__!r} and "
-                f"{kind.__module__!r}. Rename one, or import only one of the modules"
-            )
-        by_name[kind.__name__] = kind
-    return by_name.values()
-
-
-def _file(kind: type) -> str:
-    """The file that defines a kind; its module if there is none."""
-    return getattr(sys.modules.get(kind.__module__), "__file__", None) or kind.__module__
-
-
-@cache
-def _load_entries() -> None:
-    """Import the modules of other packages that define components."""
-    for entry in entry_points(group=COMPONENTS):
-        entry.load()
 
 
 @cache
@@ -101,8 +60,8 @@ def structure_parts() -> dict[str, tuple[type, ...]]:
     """What a vibrating structure is made of beside its matrices, by the names of the tables, the usual kind first."""
     from dalembert import vibration
 
-    _load_entries()
-    laws = sorted(_distinct(_all_derived(vibration.LawElement)), key=lambda kind: kind.__name__)
+    load_plugins()
+    laws = sorted(distinct(derived_dataclasses(vibration.LawElement)).values(), key=lambda kind: kind.__name__)
     return {
         "mass": (LumpedMass,),
         "spring": (LinearSpring, *laws, vibration.UserElement),
@@ -135,12 +94,11 @@ def dampings() -> dict[str, type]:
     return {kind.__name__: kind for kind in (structure.Modal, structure.Rayleigh)}
 
 
-@cache
 def propagation_methods() -> dict[str, type]:
     """Methods that bound a response, by the names that a study file gives them."""
     from dalembert import uncertainty
 
-    return dict(uncertainty.METHODS)
+    return uncertainty.methods_by_name()
 
 
 @cache
@@ -151,12 +109,11 @@ def schemes() -> dict[str, type]:
     return {"total-degree": surrogate.TotalDegree, "tensor": surrogate.Tensor, "adaptive": surrogate.Adaptive}
 
 
-@cache
 def swarms() -> dict[str, type]:
     """Particle swarms, by the names that a study file gives them."""
     from dalembert import optimize
 
-    return {"standard-swarm": optimize.ParticleSwarm, "improved-swarm": optimize.ImprovedParticleSwarm}
+    return named("dalembert.optimize", optimize.Swarm)
 
 
 @cache
@@ -201,7 +158,6 @@ def part(name: str) -> Any:
     return None
 
 
-@cache
 def methods() -> dict[str, type]:
     """Methods of identification by the names that a study file gives them."""
     from dalembert import optimize

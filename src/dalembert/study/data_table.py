@@ -18,7 +18,7 @@ from pydantic import (
 )
 
 from dalembert.arguments import is_whole
-from dalembert.data.known_formats import SUFFIXES
+from dalembert.data.known_formats import known_formats
 from dalembert.data.measurements import FIRST, beginning
 from dalembert.errors import unknown
 from dalembert.forward.sensors import START
@@ -44,12 +44,12 @@ def _read_file(value: Any, info: ValidationInfo) -> Path:
 DataFile = Annotated[Path, PlainValidator(_read_file), WithJsonSchema({"type": "string"})]
 
 
-Format = Annotated[str, Read(Literal[tuple(SUFFIXES)])]  # pyright: ignore[reportInvalidTypeForm]
+Format = Annotated[str, Read(Literal[tuple(known_formats())])]  # pyright: ignore[reportInvalidTypeForm]
 
 
 def is_universal(file: Path, form: str | None) -> bool:
     """Whether a file is a universal one, by the format that is given or else its suffix."""
-    return form == "uff" or (form is None and file.suffix.lower() in SUFFIXES["uff"])
+    return form == "uff" or (form is None and file.suffix.lower() in known_formats()["uff"].suffixes)
 
 
 def _read_column(value: Any) -> str | int:

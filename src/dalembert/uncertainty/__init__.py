@@ -3,15 +3,14 @@
 from dalembert.uncertainty.chebyshev import Chebyshev
 from dalembert.uncertainty.comparison import Comparison, Row, compare
 from dalembert.uncertainty.events import Began, Ended, Event, Ran, as_record
-from dalembert.uncertainty.methods import METHODS
+from dalembert.uncertainty.methods import methods_by_name
 from dalembert.uncertainty.optimise import Optimise
 from dalembert.uncertainty.propagate import propagate
 from dalembert.uncertainty.propagation import Propagation
-from dalembert.uncertainty.samplings import LatinHypercube, MonteCarlo, Scan, Vertex
+from dalembert.uncertainty.samplings import LatinHypercube, MonteCarlo, Sampling, Scan, Vertex
 from dalembert.uncertainty.taylor import Taylor
 
 __all__ = [
-    "METHODS",
     "Began",
     "Chebyshev",
     "Comparison",
@@ -23,10 +22,12 @@ __all__ = [
     "Propagation",
     "Ran",
     "Row",
+    "Sampling",
     "Scan",
     "Taylor",
     "Vertex",
     "as_record",
     "compare",
+    "methods_by_name",
     "propagate",
 ]

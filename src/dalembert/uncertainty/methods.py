@@ -3,15 +3,17 @@
 from dataclasses import fields
 
 from dalembert.errors import InputError, unknown
+from dalembert.kinds import named
 from dalembert.uncertainty.chebyshev import Chebyshev
 from dalembert.uncertainty.method import Method
 from dalembert.uncertainty.optimise import Optimise
-from dalembert.uncertainty.samplings import LatinHypercube, MonteCarlo, Scan, Vertex
+from dalembert.uncertainty.samplings import Sampling
 from dalembert.uncertainty.taylor import Taylor
 
-METHODS: dict[str, type[Method]] = {
-    kind.name: kind for kind in (Vertex, Scan, MonteCarlo, LatinHypercube, Taylor, Optimise, Chebyshev)
-}
+
+def methods_by_name() -> dict[str, type[Method]]:
+    """Return all methods: a subclass of `Sampling` is one, also in a module of another package."""
+    return named("dalembert.uncertainty", Sampling, Taylor, Optimise, Chebyshev)
 
 
 def method_of(given: Method | str) -> Method:
@@ -30,14 +32,14 @@ def method_of(given: Method | str) -> Method:
     Traceback (most recent call last):
     dalembert.errors.InputError: unknown method 'vertices'; did you mean 'vertex'?
     """
+    known = methods_by_name()
     if isinstance(given, str):
-        if given not in METHODS:
-            raise InputError(unknown("method", given, METHODS))
-        return METHODS[given]()
-    if not isinstance(given, tuple(METHODS.values())):
+        if given not in known:
+            raise InputError(unknown("method", given, known))
+        return known[given]()
+    if not isinstance(given, tuple(known.values())):
         raise InputError(
-            f"method: {given!r} was given; expected one of {', '.join(METHODS)}, "
-            "or settings such as MonteCarlo(runs=500)"
+            f"method: {given!r} was given; expected one of {', '.join(known)}, or settings such as MonteCarlo(runs=500)"
         )
     return given
 
@@ -45,6 +47,7 @@ def method_of(given: Method | str) -> Method:
 def label(method: Method) -> str:
     """A method's name, and its settings that are not the usual ones.
 
+    >>> from dalembert.uncertainty import Scan
     >>> label(Scan()), label(Scan(points_each=5))
     ('scan', 'scan (points_each=5)')
     """

@@ -6,7 +6,7 @@ from types import ModuleType
 import pytest
 
 from dalembert import InputError
-from dalembert.study.catalogue import _distinct
+from dalembert.kinds import distinct
 
 
 def defined(module: str, file: str, monkeypatch: pytest.MonkeyPatch) -> type:
@@ -18,15 +18,15 @@ def defined(module: str, file: str, monkeypatch: pytest.MonkeyPatch) -> type:
 
 def test_a_file_that_is_loaded_again_replaces_its_kinds(monkeypatch: pytest.MonkeyPatch) -> None:
     first, second = defined("discs", "discs.py", monkeypatch), defined("parts.discs", "discs.py", monkeypatch)
-    assert list(_distinct([first, second])) == [second]
+    assert [*distinct([first, second]).values()] == [second]
 
 
 def test_a_cell_of_a_notebook_that_runs_again_replaces_its_kinds() -> None:
     first, second = (type("Disc", (), {"__module__": "a notebook"}) for _ in range(2))
-    assert list(_distinct([first, second])) == [second]
+    assert [*distinct([first, second]).values()] == [second]
 
 
 def test_two_packages_with_the_same_name_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     first, second = defined("discs", "discs.py", monkeypatch), defined("wheels", "wheels.py", monkeypatch)
     with pytest.raises(InputError, match="two components are named 'Disc', in the modules 'discs' and 'wheels'"):
-        _distinct([first, second])
+        distinct([first, second])

@@ -8,7 +8,7 @@ import pytest
 from dalembert.errors import InputError
 from dalembert.forward import Channel, Coordinate, PythonModel
 from dalembert.intervals import Box, Interval
-from dalembert.uncertainty import METHODS, Began, Ended, MonteCarlo, Ran, Taylor, as_record, propagate
+from dalembert.uncertainty import Began, Ended, MonteCarlo, Ran, Taylor, as_record, methods_by_name, propagate
 from dalembert.uncertainty.methods import label, method_of
 from small_models import DECAY, LINE, TIMES
 from support import says
@@ -52,7 +52,7 @@ def test_the_search_bounds_of_the_model_do_not_limit_the_box():
         ),
         (
             lambda: propagate(DECAY, BOX, 7),
-            f"method: 7 was given; expected one of {', '.join(METHODS)}, or settings such as MonteCarlo(runs=500)",
+            f"method: 7 was given; expected one of {', '.join(methods_by_name())}, or settings such as MonteCarlo(runs=500)",
         ),
     ],
 )
@@ -61,7 +61,7 @@ def test_what_cannot_be_meant_is_answered_in_a_sentence(wrong, sentence):
         wrong()
 
 
-@pytest.mark.parametrize("name", METHODS)
+@pytest.mark.parametrize("name", methods_by_name())
 def test_every_method_bounds_a_linear_response(name):
     """Exact where corners are run, from inside by random points; labelled, counted, and within its own error."""
     bands = propagate(LINE, {"offset": (-1.0, 2.0), "slope": (1.0, 3.0)}, name)
@@ -81,14 +81,14 @@ def test_every_method_bounds_a_linear_response(name):
     assert bands.method == name
 
 
-@pytest.mark.parametrize("name", METHODS)
+@pytest.mark.parametrize("name", methods_by_name())
 def test_every_method_answers_for_numbers_all_known_exactly(name):
     bands = propagate(DECAY, {"size": 2.0, "rate": 1.0}, name)
     np.testing.assert_allclose(bands.lower[:, 0], 2 * np.exp(-TIMES), rtol=1e-14)
     np.testing.assert_allclose(bands.upper[:, 0], 2 * np.exp(-TIMES), rtol=1e-14)
 
 
-@pytest.mark.parametrize("name", METHODS)
+@pytest.mark.parametrize("name", methods_by_name())
 def test_events_tell_the_beginning_the_runs_and_the_end(name):
     events = []
     bands = propagate(DECAY, BOX, name, on_event=events.append)

@@ -8,10 +8,25 @@ from typing import Any
 import numpy as np
 
 from dalembert.data.columns import Columns, Trial, chosen, trial_label
+from dalembert.data.format import Format, Request
 from dalembert.data.text_lines import file_bytes
 from dalembert.errors import DataError, unknown
 
 _FORMS = "an object of arrays, or an array of objects or of rows, of numbers"
+
+
+class Json(Format):
+    """JSON: columns or rows."""
+
+    name = "json"
+    suffixes = (".json",)
+    compressed = trials = True
+
+    def columns(self, path: Path, request: Request) -> Columns:
+        return json_columns(path, request.time, request.names, request.missing, request.trial)
+
+    def trial_labels(self, path: Path, column: str | int, separator: str, decimal: str) -> list[str]:
+        return json_labels(path, column)
 
 
 def json_columns(

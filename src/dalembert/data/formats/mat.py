@@ -7,8 +7,19 @@ from typing import Any
 import numpy as np
 
 from dalembert.data.columns import Columns, chosen
+from dalembert.data.format import Format, Request
 from dalembert.data.guarded import guarded
 from dalembert.data.opening import reading
+
+
+class Mat(Format):
+    """MAT of MATLAB, version 5 or 7.3."""
+
+    name = "mat"
+    suffixes = (".mat",)
+
+    def columns(self, path: Path, request: Request) -> Columns:
+        return mat_columns(path, str(request.time), request.labels, request.missing)
 
 
 def mat_columns(path: Path, time: str, names: Iterable[str] | None, missing: str) -> Columns:

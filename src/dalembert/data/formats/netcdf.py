@@ -8,11 +8,22 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dalembert.data.columns import Columns, chosen
+from dalembert.data.format import Format, Request
 from dalembert.data.opening import reading
 from dalembert.errors import DataError, unknown
 
 if TYPE_CHECKING:
     from xarray import Dataset
+
+
+class Netcdf(Format):
+    """NetCDF, version 3 or 4."""
+
+    name = "netcdf"
+    suffixes = (".nc", ".nc4", ".cdf")
+
+    def columns(self, path: Path, request: Request) -> Columns:
+        return netcdf_columns(path, str(request.time), request.labels, request.missing)
 
 
 def netcdf_columns(path: Path, time: str, names: Iterable[str] | None, missing: str) -> Columns:

@@ -6,7 +6,18 @@ from pathlib import Path
 import numpy as np
 
 from dalembert.data.columns import Columns, chosen
+from dalembert.data.format import Format, Request
 from dalembert.data.opening import library, reading
+
+
+class Parquet(Format):
+    """Parquet."""
+
+    name = "parquet"
+    suffixes = (".parquet", ".pq")
+
+    def columns(self, path: Path, request: Request) -> Columns:
+        return parquet_columns(path, str(request.time), request.labels, request.missing)
 
 
 def parquet_columns(path: Path, time: str, names: Iterable[str] | None, missing: str) -> Columns:

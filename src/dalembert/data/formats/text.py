@@ -8,9 +8,25 @@ from pathlib import Path
 import numpy as np
 
 from dalembert.data.columns import Columns, Trial, of_trial, trial_label
+from dalembert.data.format import Format, Request
 from dalembert.data.text_layout import AUTO, GAPS, Layout, Line, Row, is_number, layout, value
 from dalembert.data.text_lines import text_lines
 from dalembert.errors import DataError, unknown
+
+
+class Text(Format):
+    """Text with columns."""
+
+    name = "csv"
+    suffixes = (".csv", ".txt", ".dat", ".tsv", ".asc", ".log")
+    compressed = trials = True
+
+    def columns(self, path: Path, request: Request) -> Columns:
+        one = request
+        return csv_columns(path, one.time, one.names, one.missing, one.separator, one.decimal, one.trial)
+
+    def trial_labels(self, path: Path, column: str | int, separator: str, decimal: str) -> list[str]:
+        return csv_labels(path, column, separator, decimal)
 
 
 def csv_columns(

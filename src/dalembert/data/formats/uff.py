@@ -8,12 +8,23 @@ from typing import Any
 import numpy as np
 
 from dalembert.data.columns import Columns, chosen, foreign
+from dalembert.data.format import Format, Request
 from dalembert.data.opening import library, reading
 from dalembert.errors import DataError, unknown
 
 TIME, FREQUENCY = 17, 18
 AXES = ("X", "Y", "Z", "RX", "RY", "RZ")
 """Directions 1 to 6; negative numbers point the other way."""
+
+
+class Uff(Format):
+    """Universal files, dataset 58."""
+
+    name = "uff"
+    suffixes = (".uff", ".unv", ".uf", ".bunv")
+
+    def columns(self, path: Path, request: Request) -> Columns:
+        return uff_columns(path, request.labels, request.missing, request.units)
 
 
 def uff_columns(path: Path, names: Iterable[str] | None, missing: str, units: Iterable[str] = ()) -> Columns:

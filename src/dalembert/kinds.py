@@ -1,0 +1,92 @@
+"""Classes that derive from a base, in this package and in others: a subclass is its registration."""
+
+import dataclasses
+import inspect
+import sys
+from collections.abc import Callable, Iterable, Iterator
+from functools import cache
+from importlib import import_module
+from importlib.metadata import entry_points
+from itertools import filterfalse
+from operator import attrgetter
+from pkgutil import iter_modules
+
+from dalembert.errors import InputError
+
+PLUGINS = "dalembert.components"
+"""Group of entry points: modules of other packages that define components, laws, methods or formats."""
+
+
+@cache
+def load_plugins() -> None:
+    """Import the modules of other packages that define kinds."""
+    for entry in entry_points(group=PLUGINS):
+        entry.load()
+
+
+def derived(base: type) -> Iterator[type]:
+    """Public concrete classes that derive from a class, those of a class after it."""
+    for kind in base.__subclasses__():
+        yield from derived(kind)
+        if not inspect.isabstract(kind) and not kind.__name__.startswith("_"):
+            yield kind
+
+
+def derived_dataclasses(base: type) -> Iterator[type]:
+    """Public concrete dataclasses that derive from a class."""
+    return filter(dataclasses.is_dataclass, derived(base))
+
+
+def distinct(kinds: Iterable[type], key: Callable[[type], str] = attrgetter("__name__")) -> dict[str, type]:
+    """One kind of each name: the newest definition of a file, as a notebook or a reload makes several.
+
+    Raises
+    ------
+    InputError
+        For two kinds of one name from different files.
+    """
+    by_name: dict[str, type] = {}
+    for kind in kinds:
+        other = by_name.setdefault(key(kind), kind)
+        if _file(kind) != _file(other):
+            raise InputError(
+                f"two components are named {key(kind)!r}, in the modules {other.__module__!r} and "
+                f"{kind.__module__!r}. Rename one, or import only one of the modules"
+            )
+        by_name[key(kind)] = kind
+    return by_name
+
+
+def named(package: str, *bases: type) -> dict[str, type]:
+    """Concrete classes that derive from some bases, or are one of them, by their attribute ``name``.
+
+    They come from all modules of a package, and from other packages that are imported or that an entry point names. So
+    one file in the folder of the package is all that a new kind needs.
+
+    Raises
+    ------
+    InputError
+        For two classes of one name from different files.
+
+    Examples
+    --------
+    >>> from dalembert.optimize import Swarm
+    >>> sorted(named("dalembert.optimize", Swarm))
+    ['improved-swarm', 'standard-swarm']
+    """
+    load_plugins()
+    _load(package)
+    found = (kind for base in bases for kind in (base, *derived(base)) if hasattr(kind, "name"))
+    return distinct(filterfalse(inspect.isabstract, found), attrgetter("name"))
+
+
+@cache
+def _load(package: str) -> None:
+    """Import all modules in the folder of a package."""
+    for module in iter_modules(import_module(package).__path__):
+        import_module(f"{package}.{module.name}")
+
+
+def _file(kind: type) -> str:
+    """The file that defines a kind; its module if there is none."""
+    return getattr(sys.modules.get(kind.__module__), "__file__", None) or kind.__module__

@@ -218,8 +218,8 @@ def test_the_settings_of_a_table_are_in_si(study):
         (
             'columns = { a = "run.deg" }\nformat = "xls"',
             [
-                "study.toml: [data], format: 'xls' was given; expected 'csv', 'json', 'parquet', 'mat', 'uff' or "
-                "'netcdf'",
+                "study.toml: [data], format: 'xls' was given; expected 'csv', 'json', 'mat', 'netcdf', 'parquet' or "
+                "'uff'",
             ],
         ),
     ],

@@ -185,7 +185,7 @@ class Diagonal(Drawn):
     """Points on the diagonal of the box."""
 
     name: ClassVar[str] = "diagonal"
-    advice: ClassVar[str] = "The extremes on the diagonal."
+    message: ClassVar[str] = "The bounds are the extremes on the diagonal."
     runs: int = 11
 
     def shares(self, dimensions, seed):

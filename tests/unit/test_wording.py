@@ -10,7 +10,6 @@ from wording import GLOSSARY, ROOT, in_messages, in_pages, phrases
 MOST = Counter(
     {
         "cli.py": 1,
-        "data": 1,
         "errors.py": 1,
         "forward": 1,
         "inverse": 2,

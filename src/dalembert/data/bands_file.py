@@ -7,7 +7,7 @@ from pathlib import Path
 from dalembert.data.bands import Bands
 from dalembert.data.format import Request
 from dalembert.data.known_formats import columns_in
-from dalembert.data.opening import told_of
+from dalembert.data.opening import errors_with_file
 from dalembert.data.text_layout import AUTO
 from dalembert.errors import DataError
 
@@ -60,7 +60,7 @@ def read_bands(
     found = columns_in(path, request, format)
     along, table = replace(found, frequency=found.frequency or frequency is not None).converted(units)
     pairs = _pairs(path, table) if columns is None else columns
-    with told_of(path):
+    with errors_with_file(path):
         return Bands.of(along, {name: (table[lower], table[upper]) for name, (lower, upper) in pairs.items()})
 
 

@@ -118,7 +118,7 @@ def derivative(
     ]
     if not runs:
         raise DataError(
-            f"channel {channel!r}: fewer than {window or least} samples beside each other; expected at least as many "
+            f"channel {channel!r}: fewer than {window or least} samples without a gap; expected at least as many "
             f"for a derivative by polynomials of degree {degree}; take a smaller window or degree"
         )
     step = max(1, len(along) // LOOKED_AT)

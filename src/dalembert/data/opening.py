@@ -50,8 +50,8 @@ def library(name: str, path: Path, what: str, extra: str = "data", package: str 
 
 
 @contextmanager
-def told_of(path: Path) -> Iterator[None]:
-    """Defects of data, told with the file that they come from."""
+def errors_with_file(path: Path) -> Iterator[None]:
+    """Name the file in errors of its data."""
     try:
         yield
     except DataError as error:

@@ -11,7 +11,7 @@ from dalembert.data.columns import Trial, trial_label
 from dalembert.data.format import Request
 from dalembert.data.known_formats import columns_in, trial_labels
 from dalembert.data.measurements import FIRST, Measurements
-from dalembert.data.opening import told_of
+from dalembert.data.opening import errors_with_file
 from dalembert.data.text_layout import AUTO
 
 
@@ -94,7 +94,7 @@ def read(
     found = columns_in(path, request, format)
     along, table = replace(found, frequency=found.frequency or frequency is not None).converted(units)
     chosen = {name: name for name in table} if columns is None else {name: str(of) for name, of in columns.items()}
-    with told_of(path):
+    with errors_with_file(path):
         channels = {name: table[column] for name, column in chosen.items()}
         data = Measurements.of(along, channels, deviations, missing=missing, wraps=wraps)
         data = data if start is None else data.since(start)

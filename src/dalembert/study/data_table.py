@@ -170,13 +170,13 @@ class ChannelFile(FileTable):
     def of_file(self, **options: Any) -> "Measurements":
         """The channels of the file, filtered and decimated."""
         from dalembert.data import read
-        from dalembert.data.opening import told_of
+        from dalembert.data.opening import errors_with_file
 
         given = self.deviations
         known = None if given is None else {name: given[name] for name in self.columns if name in given}
         options |= {"missing": self.missing, "wraps": self.wraps, **self.how}
         data = read(self.file, self.time, self.columns, known, **options)
-        with told_of(self.file):
+        with errors_with_file(self.file):
             if self.decimate is not None:
                 return data.decimated(self.decimate, self.lowpass)
             return data if self.lowpass is None else data.filtered(self.lowpass)
@@ -249,13 +249,13 @@ class DataTable(ChannelFile):
     def read(self) -> "Measurements":
         """The data."""
         from dalembert.data import merged
-        from dalembert.data.opening import told_of
+        from dalembert.data.opening import errors_with_file
 
         given, trial = self.deviations, None if self.split is None else (self.split, self.trial)
         data = self.of_file(trial=trial)
         begin = 0.0 if self.begins is None else beginning(data.coordinate.values, self.begins)
         parts = [data.since(begin), *(file.of_file(start=begin) for file in self.more)]
-        with told_of(self.file):
+        with errors_with_file(self.file):
             data = merged(parts)
             for name, one in self.derivatives.items():
                 how = {"order": one.order, "window": one.window, "degree": one.degree, "gap": self.gap}

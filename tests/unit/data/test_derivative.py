@@ -105,7 +105,7 @@ LONG = Measurements.of(np.arange(20.0), {"x": np.arange(20.0)})
         (
             DataError,
             lambda: derivative(SHORT, "x"),
-            "channel 'x': fewer than 7 samples beside each other; expected at least as many for a derivative by "
+            "channel 'x': fewer than 7 samples without a gap; expected at least as many for a derivative by "
             "polynomials of degree 3; take a smaller window or degree",
         ),
         (InputError, lambda: derivative(LONG, "x", order=0), "order is 0; expected at least 1"),

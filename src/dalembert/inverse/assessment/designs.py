@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
@@ -11,9 +11,6 @@ from dalembert.errors import listed
 from dalembert.findings import Finding
 from dalembert.results import EndedResult, fixed_lines, text_table
 from dalembert.stored_fields import Over, StoredParameters
-
-if TYPE_CHECKING:
-    pass
 
 CRITERIA = {"D": "geometric mean of the standard deviations", "E": "largest standard deviation"}
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
@@ -13,9 +13,6 @@ from dalembert.forward.stored_coordinate import StoredCoordinate
 from dalembert.inverse.fit.stored_data import StoredMeasured
 from dalembert.results import EndedResult, text_table
 from dalembert.stored_fields import Labels, Over, Table
-
-if TYPE_CHECKING:
-    pass
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
@@ -10,9 +10,6 @@ from dalembert.errors import listed
 from dalembert.findings import Finding
 from dalembert.results import EndedResult, fixed_lines, text_table
 from dalembert.stored_fields import Over, Source, Store, StoredParameters
-
-if TYPE_CHECKING:
-    pass
 
 ASYMMETRIC = 1.5
 """Ratio of an interval's two sides from which its standard deviation does not describe it."""

@@ -23,6 +23,7 @@ source_suffix = {".md": "markdown", ".ipynb": "markdown"}
 exclude_patterns = ["_build"]
 
 autodoc_member_order = "bysource"
+suppress_warnings = ["ref.python"]  # words in descriptions of arrays that are names of several attributes, too
 autodoc_typehints = "signature"
 napoleon_google_docstring = False
 napoleon_use_rtype = False

@@ -43,18 +43,12 @@ def report(
     notes : str or sequence of str
         Paragraphs under the headline. In one text, empty lines separate them.
     **options
-        title : str
-        study : str
-            Text of the study file, for the provenance.
-        points : sequence of str
-            Points whose paths are drawn, for example ``"AB.end"``; the measured points or the free ends if not given.
-        truth : mapping of str
-            What is known of the parameters, to be drawn with what was identified: (lower, upper) for intervals
-            identified from bands, a number for a set of parameters.
-        dofs : sequence of str
-            Degrees of freedom that a response over frequency is drawn for; those that move most if not given.
-        amplitude : str
-            What is drawn over frequency: ``"peak"``, ``"rms"``, or ``"harmonic 1"`` and so on.
+        ``title``, a text. ``study``, the text of the study file, for the provenance. ``points`` whose paths are drawn,
+        such as ``["AB.end"]``; the measured points or the free ends if not given. ``truth``, what is known of the
+        parameters by their names, to be drawn with what was identified: (lower, upper) for intervals identified from
+        bands, a number for a set of parameters. ``dofs``, degrees of freedom that a response over frequency is drawn
+        for; those that move most if not given. ``amplitude``, what is drawn over frequency: ``"peak"``, ``"rms"``, or
+        ``"harmonic 1"`` and so on.
 
     Returns
     -------

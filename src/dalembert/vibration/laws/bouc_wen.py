@@ -101,7 +101,8 @@ class BoucWen(LawElement):
     yield_displacement : float
         :math:`u_y`, m; the hysteretic part carries at most :math:`(1 - \alpha) k u_y (\beta + \gamma)^{-1/n}`.
     beta, gamma : float
-        Shape of the loops; :math:`\beta + \gamma > 0`, and :math:`\beta \geq |\gamma|` for loops that never give energy.
+        Shape of the loops; :math:`\beta + \gamma > 0`, and :math:`\beta \geq |\gamma|`, so that loops never give
+        energy.
     exponent : float
         n, at least 1: how sharp the transition is.
 

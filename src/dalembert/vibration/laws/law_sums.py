@@ -20,6 +20,12 @@ from dalembert.vibration.laws.law import Law, call_law
 
 SWEEPS = 200
 """Periods after which a state is taken as it is."""
+PLAIN = 3
+"""Periods before a state that converges slowly is extrapolated, which is done every second period."""
+FAST, SLOW = 0.05, 1 - 1e-9
+"""Ratios of the changes over two periods between which a state is extrapolated."""
+NOISE = 1e-11
+"""Change of a state over a period, as part of its size, that is too small to extrapolate."""
 SETTLED = 1e-13
 """Change of a state over a period, as part of its largest value, at which it is periodic."""
 STEP = 1e-30
@@ -34,14 +40,15 @@ class Room(NamedTuple):
     force: Complexes
     state: Complexes
     before: Complexes
+    change: Complexes
     largest: Reals
 
     @classmethod
     def of(cls, columns: int, states: int) -> "Room":
         """Room for so many columns and internal numbers."""
         u, v, force = np.zeros((3, columns), complex)
-        state, before = np.zeros((2, states), complex)
-        return cls(u, v, force, state, before, np.zeros(states))
+        state, before, change = np.zeros((3, states), complex)
+        return cls(u, v, force, state, before, change, np.zeros(states))
 
 
 class Motion(NamedTuple):
@@ -79,11 +86,29 @@ def _act(law, motion, t, numbers, room):
 
 
 @inner
+def _ahead(change, last, size):
+    """What Aitken's extrapolation adds to a value that changed by ``change`` over a period, by ``last`` before."""
+    if abs(change) <= NOISE * size or last == 0.0:
+        return 0.0
+    ratio = change / last
+    return change * ratio / (1.0 - ratio) if FAST < ratio < SLOW else 0.0
+
+
+@inner
+def _extrapolate(room):
+    """Move a state that converges slowly to where it converges, real parts and derivatives apart."""
+    for i in range(len(room.state)):
+        change, last = room.state[i] - room.before[i], room.change[i]
+        real = _ahead(change.real, last.real, room.largest[i])
+        room.state[i] += real + 1j * _ahead(change.imag, last.imag, abs(room.state[i].imag))
+
+
+@inner
 def _periods(law, motion, numbers, room, result):
     """Periods from rest until the state returns; writes the forces (columns, samples) of the last one."""
     room.state[:] = 0.0
     room.largest[:] = 0.0
-    for _ in range(SWEEPS if len(room.state) else 1):
+    for sweep in range(SWEEPS if len(room.state) else 1):
         for i in range(len(room.state)):
             room.before[i] = room.state[i]
         for t in range(result.shape[1]):
@@ -94,6 +119,10 @@ def _periods(law, motion, numbers, room, result):
                 room.largest[i] = max(room.largest[i], abs(room.state[i].real))
         if _returned(room):
             break
+        if sweep >= PLAIN and sweep % 2 == 1:
+            _extrapolate(room)
+        for i in range(len(room.state)):
+            room.change[i] = room.state[i] - room.before[i]
 
 
 @kernel

@@ -104,6 +104,6 @@ def test_results_have_the_findings_of_their_mechanism() -> None:
     data = da.Measurements.of(times, {"rope.end.y": model.evaluate(np.array([[900.0]])).only()[0][:, 0]})
     fit = da.identify(model, data, starts=1, seed=0)
     assert finding in fit.findings
-    assert finding.message in fit.doubts
+    assert finding in fit.doubts
     bands = da.propagate(model, {"density": (800.0, 1000.0)}, "vertex")
     assert finding in bands.findings

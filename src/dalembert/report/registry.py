@@ -46,6 +46,11 @@ def sections_of(kind: type) -> Callable[[Function], Function]:
     return registered
 
 
+def register_single(kind: type, headline: Callable[..., Section], section: Callable[[Any], Section]) -> None:
+    """Register a kind of result that has one section below its headline."""
+    sections_of(kind)(lambda result, asked: [headline(result, asked.title, asked.notes), section(result)])
+
+
 def registered_sections(result: object, asked: Asked) -> list[Section]:
     """Sections of a result.
 

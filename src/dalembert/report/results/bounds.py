@@ -3,14 +3,10 @@
 from dalembert.report.asked import Asked
 from dalembert.report.charts.methods import reference
 from dalembert.report.needs import ComparisonLike, PropagationLike
-from dalembert.report.registry import sections_of
+from dalembert.report.registry import register_single, sections_of
 from dalembert.report.sections import Bounds, Methods, Section, bound_headlines
 
-
-@sections_of(PropagationLike)
-def propagation(result: PropagationLike, asked: Asked) -> list[Section]:
-    """Bounds of a response."""
-    return [bound_headlines.of_propagation(result, asked.title, asked.notes), Bounds(result)]
+register_single(PropagationLike, bound_headlines.of_propagation, Bounds)
 
 
 @sections_of(ComparisonLike)

@@ -14,7 +14,7 @@ from dalembert.report.needs_frequency import (
     ResonanceTrackLike,
     TimeComparisonLike,
 )
-from dalembert.report.registry import sections_of
+from dalembert.report.registry import register_single, sections_of
 from dalembert.report.sections import (
     Balance,
     Deformed,
@@ -46,46 +46,13 @@ def frequency_curve(result: FrequencyCurveLike, asked: Asked) -> list[Section]:
     ]
 
 
-@sections_of(DeformationLike)
-def deformation(result: DeformationLike, asked: Asked) -> list[Section]:
-    """The structure at one point of a response."""
-    return [vibration_headlines.of_deformation(result, asked.title, asked.notes), Deformed(result)]
-
-
-@sections_of(PeriodicMotionLike)
-def periodic_motion(result: PeriodicMotionLike, asked: Asked) -> list[Section]:
-    """A period in time."""
-    return [vibration_headlines.of_period(result, asked.title, asked.notes), Period(result)]
-
-
-@sections_of(ReductionErrorsLike)
-def reduction_errors(result: ReductionErrorsLike, asked: Asked) -> list[Section]:
-    """What a reduction changes."""
-    return [vibration_headlines.of_reduction(result, asked.title, asked.notes), Reduction(result)]
-
-
-@sections_of(ModeShapesLike)
-def mode_shapes(result: ModeShapesLike, asked: Asked) -> list[Section]:
-    """Modes of a structure."""
-    return [vibration_headlines.of_modes(result, asked.title, asked.notes), Modes(result)]
-
-
-@sections_of(TimeComparisonLike)
-def time_comparison(result: TimeComparisonLike, asked: Asked) -> list[Section]:
-    """Points of a response in time."""
-    return [vibration_headlines.of_time_comparison(result, asked.title, asked.notes), InTime(result)]
-
-
-@sections_of(BackboneLike)
-def backbone(result: BackboneLike, asked: Asked) -> list[Section]:
-    """A nonlinear mode."""
-    return [vibration_headlines.of_backbone(result, asked.title, asked.notes), NonlinearMode(result)]
-
-
-@sections_of(ResonanceTrackLike)
-def resonance_track(result: ResonanceTrackLike, asked: Asked) -> list[Section]:
-    """A resonance over a parameter."""
-    return [vibration_headlines.of_track(result, asked.title, asked.notes), Tracks(result)]
+register_single(DeformationLike, vibration_headlines.of_deformation, Deformed)
+register_single(PeriodicMotionLike, vibration_headlines.of_period, Period)
+register_single(ReductionErrorsLike, vibration_headlines.of_reduction, Reduction)
+register_single(ModeShapesLike, vibration_headlines.of_modes, Modes)
+register_single(TimeComparisonLike, vibration_headlines.of_time_comparison, InTime)
+register_single(BackboneLike, vibration_headlines.of_backbone, NonlinearMode)
+register_single(ResonanceTrackLike, vibration_headlines.of_track, Tracks)
 
 
 @sections_of(CurveFamilyLike)

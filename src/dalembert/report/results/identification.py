@@ -8,7 +8,7 @@ from dalembert.report.charts.correlation import unknowns
 from dalembert.report.needs import BandFitLike, FitLike, IdentifiedLike, ParameterSetLike, TrajectoryLike
 from dalembert.report.needs_telling import DesignsLike, PredictionLike, ProfilesLike
 from dalembert.report.plot import Plot
-from dalembert.report.registry import sections_of
+from dalembert.report.registry import register_single, sections_of
 from dalembert.report.results.moving import motions
 from dalembert.report.sections import (
     Comparison,
@@ -62,10 +62,7 @@ def parameter_set(result: ParameterSetLike, asked: Asked) -> list[Section]:
     return [bound_headlines.of_set(result, asked.title, asked.notes), Consistent(result, asked.truth)]
 
 
-@sections_of(ProfilesLike)
-def profiles(result: ProfilesLike, asked: Asked) -> list[Section]:
-    """Profile likelihoods."""
-    return [telling_headlines.of_profiles(result, asked.title, asked.notes), Profiling(result)]
+register_single(ProfilesLike, telling_headlines.of_profiles, Profiling)
 
 
 @sections_of(PredictionLike)
@@ -74,10 +71,7 @@ def prediction(result: PredictionLike, asked: Asked) -> list[Section]:
     return [telling_headlines.of_prediction(result, asked.title, asked.notes), Predicting({"": result})]
 
 
-@sections_of(DesignsLike)
-def designs(result: DesignsLike, asked: Asked) -> list[Section]:
-    """Designs of experiments."""
-    return [telling_headlines.of_designs(result, asked.title, asked.notes), Designing(result)]
+register_single(DesignsLike, telling_headlines.of_designs, Designing)
 
 
 def _compared(fit: FitLike) -> Section:

@@ -3,7 +3,7 @@
 from dalembert.report.asked import Asked
 from dalembert.report.needs import SweepLike, TrajectoryLike
 from dalembert.report.needs_integrators import WorkPrecisionLike
-from dalembert.report.registry import sections_of
+from dalembert.report.registry import register_single, sections_of
 from dalembert.report.results.moving import motions
 from dalembert.report.sections import Diagnostics, Integrators, Section, Sweeps, headline
 
@@ -19,10 +19,7 @@ def trajectory(result: TrajectoryLike, asked: Asked) -> list[Section]:
     ]
 
 
-@sections_of(SweepLike)
-def sweep(result: SweepLike, asked: Asked) -> list[Section]:
-    """Curves over parameters."""
-    return [headline.of_sweep(result, asked.title, asked.notes), Sweeps(result)]
+register_single(SweepLike, headline.of_sweep, Sweeps)
 
 
 @sections_of(WorkPrecisionLike)

@@ -13,14 +13,14 @@ from pkgutil import iter_modules
 
 from dalembert.errors import InputError
 
-PLUGINS = "dalembert.components"
-"""Group of entry points: modules of other packages that define components, laws, methods or formats."""
+PLUGINS, TASKS = "dalembert.components", "dalembert.tasks"
+"""Groups of entry points: modules of other packages that define components, laws, methods or formats; tasks."""
 
 
 @cache
-def load_plugins() -> None:
+def load_plugins(group: str = PLUGINS) -> None:
     """Import the modules of other packages that define kinds."""
-    for entry in entry_points(group=PLUGINS):
+    for entry in entry_points(group=group):
         entry.load()
 
 
@@ -57,11 +57,11 @@ def distinct(kinds: Iterable[type], key: Callable[[type], str] = attrgetter("__n
     return by_name
 
 
-def named(package: str, *bases: type) -> dict[str, type]:
+def named(package: str, *bases: type, plugins: str = PLUGINS) -> dict[str, type]:
     """Concrete classes that derive from some bases, or are one of them, by their attribute ``name``.
 
-    They come from all modules of a package, and from other packages that are imported or that an entry point names. So
-    one file in the folder of the package is all that a new kind needs.
+    They come from all modules of a package, and from other packages that are imported or that an entry point of the
+    group ``plugins`` names. So one file in the folder of the package is all that a new kind needs.
 
     Raises
     ------
@@ -74,14 +74,14 @@ def named(package: str, *bases: type) -> dict[str, type]:
     >>> sorted(named("dalembert.optimize", Swarm))
     ['improved-swarm', 'standard-swarm']
     """
-    load_plugins()
-    _load(package)
+    load_modules(package)
+    load_plugins(plugins)
     found = (kind for base in bases for kind in (base, *derived(base)) if hasattr(kind, "name"))
     return distinct(filterfalse(inspect.isabstract, found), attrgetter("name"))
 
 
 @cache
-def _load(package: str) -> None:
+def load_modules(package: str) -> None:
     """Import all modules in the folder of a package."""
     for module in iter_modules(import_module(package).__path__):
         import_module(f"{package}.{module.name}")

@@ -61,6 +61,82 @@ method = { kind = "slow-swarm", particles = 7 }
 """
 
 
+LAW = '''
+"""A spring that softens."""
+
+from dataclasses import dataclass, field
+
+from dalembert.vibration.laws.contacts import Number
+from dalembert.vibration.laws.element import LawElement
+from dalembert.vibration.laws.law import law
+
+
+@law
+def soft(u, v, z, numbers, force):
+    force[0] = numbers[0] * u[0] / (1.0 + u[0] ** 2)
+
+
+@dataclass(frozen=True)
+class SoftSpring(LawElement):
+    """A spring that softens."""
+
+    name: str
+    first: str
+    second: str | None = None
+    stiffness: Number = field(kw_only=True, metadata={"unit": "N/m"})
+
+    law = soft
+'''
+LAW_STUDY = """
+[[model.mass]]
+name = "m"
+mass = 1.0
+[[model.spring]]
+kind = "SoftSpring"
+name = "soft"
+first = "m"
+stiffness = "2 kN/m"
+[frequency_response]
+frequencies = [1.0, 2.0]
+"""
+LAW_CODE = """
+from dalembert.study import load
+(spring,) = load("law.toml").system().elements
+print(type(spring).__name__, spring.stiffness)
+"""
+TASK = '''
+"""The task ``[nothing]``."""
+
+from dalembert.study.table import StudyTable
+from dalembert.study.tasks.task import Task
+
+
+class Nothing(Task):
+    """The task ``[nothing]``."""
+
+    name = "nothing"
+
+    def table(self):
+        return StudyTable
+
+    def wrong(self, file):
+        return []
+
+    def plan(self, study):
+        return "computes nothing: no simulation"
+
+    def effort(self, study):
+        raise NotImplementedError
+
+    def run(self, study, emit):
+        raise NotImplementedError
+
+    def load(self, study, path):
+        raise NotImplementedError
+'''
+OTHERS = {"vibration/laws/soft_spring": LAW, "study/tasks/nothing": TASK}
+
+
 def digests(sources: Path) -> dict[str, str]:
     """What the files of a source folder hold, by path."""
     return {
@@ -132,11 +208,27 @@ def test_one_file_is_enough_for_a_swarm_a_sampling_and_a_format(sources: Path) -
     assert run.stdout.splitlines() == ["0.5", "[1.0, 2.0, 3.0] (3, 1)", "7"]
 
 
+def test_one_file_is_enough_for_a_law_and_for_a_task(sources: Path) -> None:
+    for place, text in OTHERS.items():
+        (sources / "dalembert" / f"{place}.py").write_text(text)
+    (sources / "law.toml").write_text(LAW_STUDY)
+    run = subprocess.run(
+        [sys.executable, "-c", f"{LAW_CODE}\nfrom dalembert.study.tasks import TASKS\nprint(list(TASKS)[-1])"],
+        cwd=sources,
+        env={**os.environ, "PYTHONPATH": str(sources)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert run.returncode == 0, run.stderr
+    assert run.stdout == "SoftSpring 2000.0\nnothing\n"
+
+
 def test_the_guide_names_the_folder_of_each_file() -> None:
     guide = (public_names.SOURCES.parent / "CONTRIBUTING.md").read_text(encoding="utf-8")
     table = guide.partition("## Where to add what")[2].partition("\n## ")[0]
     folders = set(re.findall(r"`src/dalembert/([\w/]+)/NAME\.py`", table))
-    added = [*(f"multibody/{place}" for place in PLACES), *METHODS]
+    added = [*(f"multibody/{place}" for place in PLACES), *METHODS, *OTHERS]
     assert folders == {str(Path(place).parent) for place in added}
 
 

@@ -6,7 +6,7 @@ from functools import cache, lru_cache
 from typing import Any, get_args
 
 from dalembert.component_index import HOMES, KINDS
-from dalembert.kinds import derived_dataclasses, distinct, load_plugins, named
+from dalembert.kinds import derived_dataclasses, distinct, load_modules, load_plugins, named
 from dalembert.study.components import settings_of
 from dalembert.study.structure_parts import LinearSpring, LumpedMass
 
@@ -61,6 +61,7 @@ def structure_parts() -> dict[str, tuple[type, ...]]:
     from dalembert import vibration
 
     load_plugins()
+    load_modules("dalembert.vibration.laws")
     laws = sorted(distinct(derived_dataclasses(vibration.LawElement)).values(), key=lambda kind: kind.__name__)
     return {
         "mass": (LumpedMass,),

@@ -57,6 +57,8 @@ class BackboneTable(StudyTable):
 class BackboneTask(Task):
     """The task ``[backbone]``."""
 
+    name = "backbone"
+    rank = 11
     of_structures = True
 
     def table(self) -> type[StudyTable]:

@@ -60,6 +60,9 @@ class WorkPrecisionTable(StudyTable):
 class CompareIntegrators(Task):
     """The task ``[work_precision]``."""
 
+    name = "work_precision"
+    rank = 8
+
     def table(self) -> type[StudyTable]:
         series = create_model("Series", __base__=SeriesTable, __doc__=SeriesTable.__doc__, solver=(solver(), ...))
         references = Field(

@@ -46,6 +46,9 @@ class DesignTable(StudyTable):
 class Design(Task):
     """The task ``[design]``."""
 
+    name = "design"
+    rank = 7
+
     def table(self) -> type[StudyTable]:
         return DesignTable
 

@@ -161,6 +161,8 @@ class Response(Outcome):
 class FrequencyResponseTask(Task):
     """The task ``[frequency_response]``."""
 
+    name = "frequency_response"
+    rank = 9
     of_structures = True
 
     def table(self) -> type[StudyTable]:

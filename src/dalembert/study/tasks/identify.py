@@ -221,6 +221,9 @@ class Identification(Outcome):
 class Identify(Task):
     """The task ``[identify]``."""
 
+    name = "identify"
+    rank = 2
+
     def table(self) -> type[StudyTable]:
         return identify_table()
 

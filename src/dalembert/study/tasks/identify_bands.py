@@ -47,6 +47,9 @@ def identify_bands_table() -> type[IdentifyBandsTable]:
 class IdentifyBands(Task):
     """The task ``[identify_bands]``."""
 
+    name = "identify_bands"
+    rank = 5
+
     def table(self) -> type[StudyTable]:
         return identify_bands_table()
 

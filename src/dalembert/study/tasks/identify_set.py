@@ -51,6 +51,9 @@ def identify_set_table() -> type[IdentifySetTable]:
 class IdentifySet(Task):
     """The task ``[identify_set]``."""
 
+    name = "identify_set"
+    rank = 6
+
     def table(self) -> type[StudyTable]:
         return identify_set_table()
 

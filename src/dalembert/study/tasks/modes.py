@@ -28,6 +28,8 @@ class ModesTable(StudyTable):
 class Modes(Task):
     """The task ``[modes]``."""
 
+    name = "modes"
+    rank = 12
     of_structures = True
 
     def table(self) -> type[StudyTable]:

@@ -56,6 +56,9 @@ def propagate_table() -> type[PropagateTable]:
 class Propagate(Task):
     """The task ``[propagate]``."""
 
+    name = "propagate"
+    rank = 4
+
     def table(self) -> type[StudyTable]:
         return propagate_table()
 

@@ -91,6 +91,9 @@ class Motion(Outcome):
 class Simulate(Task):
     """The task ``[simulate]``."""
 
+    name = "simulate"
+    rank = 1
+
     def table(self) -> type[StudyTable]:
         return SimulateTable
 

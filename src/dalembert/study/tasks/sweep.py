@@ -127,6 +127,9 @@ class Sweep(Outcome):
 class SweepTask(Task):
     """The task ``[sweep]``."""
 
+    name = "sweep"
+    rank = 3
+
     def table(self) -> type[StudyTable]:
         return SweepTable
 

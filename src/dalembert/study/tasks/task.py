@@ -61,9 +61,21 @@ class Outcome(Protocol):
 
 
 class Task(ABC):
-    """One thing that a study file can ask for: a table, its meaning, its run and its result."""
+    """One thing that a study file can ask for: a table, its meaning, its run and its result.
 
-    of_structures: ClassVar[bool] = False  # whether it is for structures over frequency alone
+    Attributes
+    ----------
+    name : str
+        Of the table. A class with a name is a task of study files.
+    rank : int
+        Place in lists of tasks.
+    of_structures : bool
+        Whether it is for structures over frequency alone.
+    """
+
+    name: ClassVar[str]
+    rank: ClassVar[int] = 100
+    of_structures: ClassVar[bool] = False
 
     @abstractmethod
     def table(self) -> type[StudyTable]:

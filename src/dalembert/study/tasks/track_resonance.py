@@ -34,6 +34,8 @@ class TrackResonanceTable(StudyTable):
 class TrackResonance(Task):
     """The task ``[track_resonance]``."""
 
+    name = "track_resonance"
+    rank = 10
     of_structures = True
 
     def table(self) -> type[StudyTable]:

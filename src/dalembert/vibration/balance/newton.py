@@ -19,8 +19,6 @@ DAMPINGS = (1.0, 0.5, 0.25, 0.125, 0.03125)
 """Parts of a Newton step of the line search, until the residual falls."""
 PATIENCE, PROGRESS = 10, 0.7
 """Newton's method stops if this many iterations do not reduce the least residual to this part."""
-SAME = 1e-6
-"""Difference of residuals, as part of them, of the same place."""
 COARSE = 1e-6
 """Residual of the linear system of a step, as part of its right-hand side, where that is iterated."""
 ROUNDING = 100 * np.finfo(float).eps
@@ -169,8 +167,6 @@ def evaluated(balance: Balance, point: Point, unknowns: np.ndarray) -> tuple[Eva
 def _stalls(errors: list[float]) -> bool:
     """Whether residuals stagnate: Newton's method alternates between the sides of kinks."""
     if not np.isfinite(errors[-1]):
-        return True
-    if len(errors) > 4 and np.allclose(errors[-2:], errors[-4:-2], rtol=SAME, atol=0):  # around between two places
         return True
     return len(errors) > PATIENCE and min(errors[-PATIENCE:]) > PROGRESS * min(errors[:-PATIENCE])
 

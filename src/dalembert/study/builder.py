@@ -159,7 +159,10 @@ def _resolved(given: Any, values: Values, placed: Values, system: Any, where: st
         case Place():
             return _place(given, values, placed, system, where)
         case KindTable():
-            return built(given, values, where, placed, system)
+            try:
+                return built(given, values, where, placed, system)
+            except InputError as error:
+                raise InputError(str(error) if str(error).startswith("[") else f"{where}: {error}") from None
         case FunctionReference():
             return given.load()
         case list():

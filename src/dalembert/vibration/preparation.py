@@ -5,10 +5,13 @@ from threading import Lock
 
 from dalembert.kernels.kernel import Compiled
 from dalembert.kernels.preparation import prepare
+from dalembert.vibration.balance.fourier import Fourier
 from dalembert.vibration.laws.contact_sums import EventSums, Shape, sums_for
 from dalembert.vibration.laws.friction_tangent import forces_and_slopes
-from dalembert.vibration.laws.law_sums import law_forces, law_samples, law_slopes
+from dalembert.vibration.laws.law_march import marches
 from dalembert.vibration.laws.linearised_law import linearise
+from dalembert.vibration.laws.marched_sums import MarchedSums
+from dalembert.vibration.laws.sampled_sums import law_derivatives, sampled_forces
 from dalembert.vibration.system.lowering import ELASTIC, Lowered
 from dalembert.vibration.time.elements import react, settle
 from dalembert.vibration.time.steps import go_through
@@ -21,7 +24,7 @@ def prepare_balance(lowered: Lowered, events: bool, *, residuals: bool, stabilit
     """Prepare the kernels of harmonic balance, for the same arguments as ``equations`` takes."""
     kernels = _kernels(lowered, events, residuals, derivatives)
     if stability and any(block.remembers for block in lowered.laws):
-        kernels += [law_samples]
+        kernels += [kernel for kernel in (law_derivatives,) if kernel not in kernels]
     if stability and lowered.blocks:  # the map of stability goes from sample to sample
         kernels += [kernel for kernel in (forces_and_slopes,) if kernel not in kernels]
         kernels += [linearise] if any(block.kind == ELASTIC for block in lowered.blocks) else []
@@ -32,15 +35,18 @@ def prepare_balance(lowered: Lowered, events: bool, *, residuals: bool, stabilit
 def _kernels(lowered: Lowered, events: bool, residuals: bool, derivatives: bool) -> list[Compiled]:
     """Kernels of the sums of contacts and stops."""
     shapes = [(block.numbers, Shape(block.tangents, block.normal, block.memory)) for block in lowered.blocks]
-    corrected = [events and block.kind.switches for block in lowered.laws]
+    corrected = [events and block.element.switches for block in lowered.laws]
     used = [sums_for(*own, events).kernels for own in shapes] + [EventSums.kernels] * any(corrected)
     needed = (True, residuals, derivatives)
     kernels: list[Compiled] = [
         kernel for own in dict.fromkeys(used) for kernel, use in zip(own, needed, strict=True) if use
     ]
-    if not all(corrected):
-        kernels += [law_forces, law_slopes]
-    return kernels + [kernel for block in lowered.laws for kernel in block.law.all_kernels()]
+    sums = [block.sums(Fourier((0, 1), 4), events) for block in lowered.laws]
+    kernels += [marches] * any(isinstance(own, MarchedSums) for own in sums)
+    if lowered.laws:
+        kernels += [sampled_forces, law_derivatives]
+    laws = [own for block in lowered.laws for own in (block.law, block.element.events) if own is not None]
+    return kernels + [kernel for law in laws for kernel in law.all_kernels()]
 
 
 def prepare_time(lowered: Lowered, events: bool | None) -> None:

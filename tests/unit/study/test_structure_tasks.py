@@ -560,3 +560,22 @@ def test_a_law_that_drops_the_imaginary_part_is_refused_in_a_study(write, tmp_pa
     )
     with pytest.raises(InputError, match=r"element 'drag': the derivative of its force by the displacements is .* abs"):
         run_study(load(write(text)), tmp_path / "run")
+
+
+def test_a_law_with_its_events_is_named_in_a_study(write, tmp_path):
+    (tmp_path / "law.py").write_text(
+        "def stop(u, v, z, numbers, force):\n"
+        "    over = u[0] - numbers[1]\n"
+        "    force[0] = numbers[0] * over if over.real > 0 else 0.0 * over\n"
+        "def touch(u, v, z, numbers, values):\n"
+        "    values[0] = u[0] - numbers[1]\n"
+    )
+    own = 'kind = "UserLaw"\nfunction = "law.py:stop"\nvalues = [3.0, 0.05]\nevents = "law.py:touch"\nevent_count = 1\n'
+    built_in = 'kind = "Gap"\nstiffness = 3.0\ngap = 0.05\n'
+
+    def amplitudes(name: str, element: str) -> np.ndarray:
+        table = f'[[model.spring]]\nname = "stop"\nfirst = "m1"\n{element}[harmonic_balance]\n'
+        run_study(load(write(WHOLE.replace("[harmonic_balance]\n", table))), tmp_path / name)
+        return FrequencyCurve.load(tmp_path / name / "result.nc").amplitude("m1")
+
+    np.testing.assert_allclose(amplitudes("own", own), amplitudes("gap", built_in), rtol=1e-5)

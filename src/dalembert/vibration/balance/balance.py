@@ -23,7 +23,7 @@ from dalembert.vibration.balance.fourier import Fourier, real_blocks
 from dalembert.vibration.balance.tangents import BlockTangent, DenseTangent, Tangent
 from dalembert.vibration.laws.contact_sums import ContactSums, Shape, contact_sums
 from dalembert.vibration.laws.friction_law import GAP, NORMAL, STUCK, TANGENTIAL
-from dalembert.vibration.laws.law_sums import Sums
+from dalembert.vibration.laws.sums import Sums
 from dalembert.vibration.system.lowering import ELASTIC, FrictionBlock, Lowered
 
 LARGE = 500

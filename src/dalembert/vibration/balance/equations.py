@@ -13,8 +13,8 @@ from dalembert.vibration.balance.condensation import Condensation, Point, norm
 from dalembert.vibration.balance.fourier import Fourier
 from dalembert.vibration.balance.harmonic_balance import AUTOMATIC, MOST_SAMPLES, HarmonicBalance
 from dalembert.vibration.balance.newton import Plane, Solution, correct
-from dalembert.vibration.laws.element import LawBlock
-from dalembert.vibration.laws.law_sums import LawSums
+from dalembert.vibration.laws.law_block import LawBlock
+from dalembert.vibration.laws.sampled_sums import forces_from_rest
 from dalembert.vibration.preparation import prepare_balance
 from dalembert.vibration.system.lowering import ELASTIC, Lowered, lower
 from dalembert.vibration.system.system import StaticForce, VibrationSystem
@@ -185,9 +185,8 @@ def _require_symmetry(lowered: Lowered) -> None:
 
 def _force(block: LawBlock, element: int, u: np.ndarray) -> np.ndarray:
     """Forces of an element of a block over motions (columns, samples), from rest."""
-    series = Fourier((0, 1), u.shape[1])
-    own = replace(block, numbers=block.numbers[[element]])
-    return LawSums(own.names[0], own.law, own.numbers, own.states, own.kind.rated, series).over(u[None])[0]
+    own, motion = replace(block, numbers=block.numbers[[element]]), u[None].astype(complex)
+    return np.real(forces_from_rest(own, motion, 0 * motion))[0]
 
 
 @np.errstate(all="ignore")

@@ -1,16 +1,17 @@
-"""Elements between degrees of freedom that follow a law, and blocks of them: all elements but friction contacts."""
+"""Elements between degrees of freedom that follow a law: all elements but friction contacts."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from typing import Any, ClassVar
-
-import numpy as np
 
 from dalembert.arguments import Checked
 from dalembert.vibration.balance.fourier import Fourier
 from dalembert.vibration.laws.contacts import Number
 from dalembert.vibration.laws.law import Law
-from dalembert.vibration.laws.law_sums import LawSums, Sums
+from dalembert.vibration.laws.law_block import LawBlock
+from dalembert.vibration.laws.marched_sums import MarchedSums
+from dalembert.vibration.laws.sampled_sums import SampledSums
+from dalembert.vibration.laws.sums import Sums
 
 
 class LawElement(Checked):
@@ -27,12 +28,19 @@ class LawElement(Checked):
         Whether forces depend on velocities.
     switches : bool
         Whether the stiffness jumps between two values, as where a stop is touched.
+    events : Law, optional
+        ``events(u, v, z, numbers, values)`` writes functions whose zeros divide the motion into smooth parts, such as
+        ``v[0]`` where a law changes with the direction of motion. Harmonic balance finds the zeros between samples.
+    event_count : int
+        Number of these functions.
     """
 
     name: str
     law: ClassVar[Law]
     rated: ClassVar[bool] = False
     switches: ClassVar[bool] = False
+    events: ClassVar[Law | None] = None
+    event_count: ClassVar[int] = 0
 
     @property
     def states(self) -> int:
@@ -51,44 +59,8 @@ class LawElement(Checked):
         own: Any = self
         return {one.name: getattr(self, one.name) for one in fields(own) if "unit" in one.metadata}
 
-    @classmethod
-    def sums(cls, block: "LawBlock", series: Fourier, events: bool) -> Sums:
+    def sums(self, block: LawBlock, series: Fourier, events: bool) -> Sums:
         """Fourier coefficients of the forces. A kind may have a faster way, or one that corrects events."""
-        return LawSums(block.names[0], block.law, block.numbers, block.states, cls.rated, series)
-
-
-@dataclass(frozen=True)
-class LawBlock:
-    """Elements of one kind and one law.
-
-    Parameters
-    ----------
-    kind : type
-    law : Law
-    states : int
-        Internal numbers of each.
-    names : tuple of str
-        Of the elements.
-    given : tuple of str
-        Names of the numbers.
-    rows : array of int, shape (elements, columns)
-        Among the rows of all elements.
-    numbers : array, shape (elements, numbers)
-    """
-
-    kind: type[LawElement]
-    law: Law
-    states: int
-    names: tuple[str, ...]
-    given: tuple[str, ...]
-    rows: np.ndarray
-    numbers: np.ndarray
-
-    @property
-    def remembers(self) -> bool:
-        """Whether forces depend on more than displacements, which Hill's method does not see."""
-        return self.states > 0 or self.kind.rated
-
-    def sums(self, series: Fourier, events: bool = True) -> Sums:
-        """Fourier coefficients of the forces."""
-        return self.kind.sums(self, series, events)
+        if block.states or (events and self.events is not None):
+            return MarchedSums(block, series, events and self.events is not None)
+        return SampledSums(block, series)

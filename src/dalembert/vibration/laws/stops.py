@@ -8,9 +8,10 @@ import numpy as np
 from dalembert.vibration.balance.fourier import Fourier
 from dalembert.vibration.laws.contact_sums import ContactSums, Shape, contact_sums
 from dalembert.vibration.laws.contacts import Number, require_not_negative, require_positive
-from dalembert.vibration.laws.element import LawBlock, LawElement
+from dalembert.vibration.laws.element import LawElement
 from dalembert.vibration.laws.law import law
-from dalembert.vibration.laws.law_sums import Sums
+from dalembert.vibration.laws.law_block import LawBlock
+from dalembert.vibration.laws.sums import Sums
 
 
 @law
@@ -57,8 +58,7 @@ class Gap(LawElement):
     def __post_init__(self) -> None:
         require_positive(f"gap {self.name!r}: the stiffness", "N/m", self.stiffness)
 
-    @classmethod
-    def sums(cls, block: LawBlock, series: Fourier, events: bool) -> Sums:
+    def sums(self, block: LawBlock, series: Fourier, events: bool) -> Sums:
         """Sums that are corrected where the stop begins and ends to touch."""
         return StopSums(block.numbers, np.array([1.0]), series) if events else super().sums(block, series, events)
 
@@ -93,8 +93,7 @@ class BilinearStop(LawElement):
         require_positive(f"stop {self.name!r}: the stiffness", "N/m", self.stiffness)
         require_not_negative(f"stop {self.name!r}: the gap", "m", self.gap)
 
-    @classmethod
-    def sums(cls, block: LawBlock, series: Fourier, events: bool) -> Sums:
+    def sums(self, block: LawBlock, series: Fourier, events: bool) -> Sums:
         """Sums that are corrected where a side begins and ends to touch."""
         both = np.array([1.0, -1.0])
         return StopSums(block.numbers, both, series) if events else super().sums(block, series, events)

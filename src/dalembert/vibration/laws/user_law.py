@@ -32,6 +32,12 @@ class UserLaw(LawElement):
         Numbers of the law; they may depend on parameters.
     internal : int
         Internal numbers, which are 0 at rest.
+    events : callable, optional
+        ``events(u, v, z, numbers, values)`` writes functions whose zeros divide the motion into smooth parts, such as
+        ``values[0] = v[0]`` where the law changes with the direction of motion. Harmonic balance finds the zeros
+        between samples, and so needs fewer samples.
+    event_count : int
+        Number of these functions.
 
     Raises
     ------
@@ -53,18 +59,27 @@ class UserLaw(LawElement):
     function: Callable[..., None] = None  # type: ignore[assignment] - required, and checked
     values: Sequence[Number] = ()
     internal: int = 0
+    events: Callable[..., None] | None = None  # type: ignore[assignment] - compiled when the element is made
+    event_count: int = 0
 
     rated = True
 
     def __post_init__(self) -> None:
         where = f"UserLaw {self.name!r}"
-        if self.internal < 0:
-            raise InputError(f"{where}: internal is {self.internal}; expected 0 or more")
+        for name in ("internal", "event_count"):
+            if getattr(self, name) < 0:
+                raise InputError(f"{where}: {name} is {getattr(self, name)}; expected 0 or more")
+        if (self.events is None) != (self.event_count == 0):
+            raise InputError(
+                f"{where}: event_count is {self.event_count}; expected the number of functions that events writes"
+            )
         values = np.asarray(self.values)
         if values.ndim != 1 or not np.all(np.isfinite(values)):
             raise InputError(f"{where}: values is {shown(self.values)}; expected finite numbers")
         object.__setattr__(self, "values", tuple(self.values))
         _law_of(self.function)
+        if self.events is not None:
+            object.__setattr__(self, "events", _law_of(self.events))
 
     @property
     def law(self) -> Law:  # type: ignore[override] - of the element, not of its class

@@ -115,7 +115,7 @@ def _finer(finer: Equations, problem: Equations, solution: Solution) -> np.ndarr
 
 def _touches(problem: Equations, solution: Solution) -> bool:
     """Whether a stop acts at some time."""
-    stops = [block.rows.ravel() for block in problem.lowered.laws if block.kind.switches]
+    stops = [block.rows.ravel() for block in problem.lowered.laws if block.element.switches]
     return bool(stops) and bool(np.any(solution.evaluation.forces[np.concatenate(stops)]))
 
 

@@ -20,8 +20,8 @@ from scipy.linalg import cholesky
 from dalembert.errors import InputError
 from dalembert.vibration.balance.uncondensed import Uncondensed
 from dalembert.vibration.laws.friction_law import FRICTION, SEPARATED, STUCK, TANGENTIAL
-from dalembert.vibration.laws.law_sums import LawSums
 from dalembert.vibration.laws.linearised_law import linearised
+from dalembert.vibration.laws.marched_sums import MarchedSums
 from dalembert.vibration.system.lowering import ELASTIC
 
 MEMORY = 4_000_000
@@ -223,11 +223,9 @@ def _laws(system: Uncondensed, unknowns: np.ndarray, omega: float) -> Laws:
         reaction += combination[rows].T @ slopes @ combination[rows]
     stiffness, ended = reaction.copy(), damping.copy()
     for block in system.lowered.laws:
-        sums = LawSums(block.names[0], block.law, block.numbers, block.states, block.kind.rated, series)
-        displacements = (combination @ unknowns)[block.rows]
-        for number, rows in enumerate(block.rows):
+        slopes = MarchedSums(block, series, events=False).derivatives((combination @ unknowns)[block.rows], omega)
+        for own, rows in zip(slopes, block.rows, strict=True):
             seen, columns = combination[rows], len(rows)
-            own = sums.at_samples(number, displacements, omega)
             by_place, by_speed = (seen.T @ own[:, :columns, first : first + columns] @ seen for first in (0, columns))
             reaction += by_place
             damping += by_speed

@@ -15,7 +15,7 @@ from dalembert.forward.complex_steps import check_steps
 from dalembert.parameters import Parameters
 from dalembert.structure.craig_bampton import HeldBases
 from dalembert.structure.structure import MATRICES, Structure
-from dalembert.vibration.laws.element import LawBlock
+from dalembert.vibration.laws.law_block import LawBlock
 from dalembert.vibration.laws.user_element import UserElement
 from dalembert.vibration.system.lowering import Lowered, lower
 from dalembert.vibration.system.system import VibrationSystem
@@ -115,11 +115,11 @@ def _parts(lowered: Lowered) -> Iterator[Part]:
             lambda entry, names=names: f"{NUMBERS[entry % len(NUMBERS)]!r} of {names[entry // len(NUMBERS)]!r}",
         )
     for block in lowered.laws:
-        yield block.numbers.ravel(), lambda entry, own=block: _number(own, *divmod(entry, len(own.given)))
+        yield block.numbers.ravel(), lambda entry, own=block: _number(own, *divmod(entry, own.numbers.shape[1]))
 
 
 def _number(block: LawBlock, element: int, number: int) -> str:
-    return f"{block.given[number]!r} of {block.names[element]!r}"
+    return f"{list(block.element.numbers)[number]!r} of {block.names[element]!r}"
 
 
 def _fields(component: Any, owner: str) -> Part:

@@ -13,8 +13,9 @@ from dalembert.structure import Structure
 from dalembert.vibration.balance.coordinates import Coordinates, coordinates
 from dalembert.vibration.balance.fourier import Fourier
 from dalembert.vibration.laws.contacts import ElasticSlider, FrictionContact, Iwan, Number, Rigid
-from dalembert.vibration.laws.element import LawBlock, LawElement
+from dalembert.vibration.laws.element import LawElement
 from dalembert.vibration.laws.law import Law
+from dalembert.vibration.laws.law_block import LawBlock
 from dalembert.vibration.laws.user_element import UserElement
 from dalembert.vibration.system.system import HarmonicForce, StaticForce, VibrationSystem
 
@@ -215,7 +216,7 @@ class _Rows:
 
 
 class _Entry(NamedTuple):
-    name: str
+    element: LawElement
     rows: list[int]
     numbers: list[Number]
 
@@ -225,7 +226,7 @@ class _Laws:
 
     def __init__(self, rows: _Rows) -> None:
         self._rows = rows
-        self._blocks: dict[tuple[type[LawElement], Law, int, int, tuple[str, ...]], list[_Entry]] = {}
+        self._blocks: dict[tuple[type[LawElement], Law, Law | None, int, int, tuple[str, ...]], list[_Entry]] = {}
 
     def add(self, element: LawElement) -> None:
         """Add the rows and the numbers of an element."""
@@ -234,18 +235,18 @@ class _Laws:
             name = element.name if len(element.ends) == 1 else f"{element.name}.{first}"
             own.append(self._rows.between(name, first, second, where))
         numbers = element.numbers
-        key = type(element), element.law, element.states, len(own), tuple(numbers)
-        self._blocks.setdefault(key, []).append(_Entry(element.name, own, list(numbers.values())))
+        key = type(element), element.law, element.events, element.states, len(own), tuple(numbers)
+        self._blocks.setdefault(key, []).append(_Entry(element, own, list(numbers.values())))
 
     @property
     def blocks(self) -> tuple[LawBlock, ...]:
         return tuple(
             LawBlock(
-                kind, law, states, tuple(entry.name for entry in entries), names,
+                entries[0].element, tuple(entry.element.name for entry in entries),
                 np.array([entry.rows for entry in entries]),
                 np.array([entry.numbers for entry in entries]).reshape(len(entries), len(names)),
             )
-            for (kind, law, states, _, names), entries in self._blocks.items()
+            for (*_, names), entries in self._blocks.items()
         )  # fmt: skip
 
 

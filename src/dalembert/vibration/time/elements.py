@@ -9,7 +9,7 @@ from dalembert.kernels.views import call_with, stack
 from dalembert.kernels.words import Address, Bytes, Complexes, Integers, Integers2, Reals, Reals2
 from dalembert.vibration.laws.friction_law import FRICTION, NORMAL, SEPARATED, SLIPPING, STUCK, TANGENTIAL, update
 from dalembert.vibration.laws.law import call_law
-from dalembert.vibration.laws.law_sums import STEP
+from dalembert.vibration.laws.sampled_sums import STEP
 
 COLUMNS, NUMBERS, STATES, NUMBER, STATE = range(5)
 """Columns of the layout of elements with a law: how many of each, and where numbers and states begin."""

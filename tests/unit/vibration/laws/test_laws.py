@@ -1,6 +1,7 @@
 """Laws as compiled functions: derivatives, memory, fast ways, and what is refused."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 import pytest
@@ -30,9 +31,10 @@ from dalembert.vibration import (
 )
 from dalembert.vibration.balance.equations import equations
 from dalembert.vibration.balance.fourier import Fourier
-from dalembert.vibration.laws.element import LawBlock
+from dalembert.vibration.laws.contact_sums import Shape, contact_sums
 from dalembert.vibration.laws.friction_law import update
-from dalembert.vibration.laws.law_sums import LawSums
+from dalembert.vibration.laws.law_block import LawBlock
+from dalembert.vibration.laws.marched_sums import MarchedSums
 from dalembert.vibration.system.lowering import lower
 from refusals import refused
 
@@ -57,6 +59,19 @@ def lossy(u, v, z, numbers, force):
 def slide(u, v, z, numbers, force):
     """The elastic slider in one direction, under a constant load."""
     update(u, z, force, numbers, 1, False, True)
+
+
+@dataclass(frozen=True)
+class Slider(LawElement):
+    name: str
+    first: str
+    second: str | None = None
+
+    law = slide
+
+    @property
+    def states(self) -> int:
+        return 1
 
 
 ELEMENTS: dict[str, Callable[[], LawElement]] = {
@@ -134,17 +149,82 @@ def test_a_slider_as_a_general_law_is_the_built_in_one() -> None:
     series = Fourier((0, 1, 3), 128)
     contact = FrictionContact("slider", "a", friction=0.5, preload=0.6, law=ElasticSlider(2.0))
     (own,) = lower(system(contact)).real.blocks
-    sums = LawSums("slider", slide, own.numbers, 1, False, series)
+    sums = MarchedSums(LawBlock(Slider("slider", "a"), ("slider",), own.rows, own.numbers), series, events=False)
     problem = equations(system(contact), HarmonicBalance(harmonics=1, events=False))
     unknowns = np.array([[0.1, 0.5, 0.2, 0.1, -0.1]])
     built_in = problem.balance(128)
-    from dalembert.vibration.laws.contact_sums import Shape, contact_sums
-
     force, _, jacobian = contact_sums(own.numbers, Shape(1, False, True), series, False).with_slopes(unknowns[None])
     general, slopes, _ = sums.with_slopes(unknowns[None], 1.0)
     np.testing.assert_allclose(general, force, atol=1e-14)
     np.testing.assert_allclose(slopes, jacobian, atol=1e-12)
     assert built_in.series.samples == 128
+
+
+def sliding(u, v, z, numbers, force):
+    """A spring in series with a slider."""
+    force[0] = numbers[0] * (u[0] - z[0])
+    if force[0].real > numbers[1].real:
+        force[0] = numbers[1]
+    elif force[0].real < -numbers[1].real:
+        force[0] = -numbers[1]
+    z[0] = u[0] - force[0] / numbers[0]
+
+
+def slip_or_turn(u, v, z, numbers, values):
+    values[0] = v[0]
+    values[1] = numbers[0] * (u[0] - z[0]) - numbers[1]
+    values[2] = numbers[0] * (u[0] - z[0]) + numbers[1]
+
+
+def touching(u, v, z, numbers, force):
+    over = u[0] - numbers[1]
+    force[0] = numbers[0] * over if over.real > 0.0 else 0.0 * over
+
+
+def touch(u, v, z, numbers, values):
+    values[0] = u[0] - numbers[1]
+
+
+SLIDER = UserLaw("slider", "a.x", function=sliding, values=[2.0, 0.3], internal=1, events=slip_or_turn, event_count=3)
+STOP = UserLaw("stop", "a.x", function=touching, values=[3.0, 0.1], events=touch, event_count=1)
+
+
+@pytest.mark.parametrize(
+    ("own", "built_in", "exact"),
+    [
+        (SLIDER, FrictionContact("slider", "a", friction=0.5, preload=0.6, law=ElasticSlider(2.0)), 1e-7),
+        (STOP, Gap("stop", "a.x", stiffness=3.0, gap=0.1), 1e-7),
+    ],
+)
+def test_a_law_with_events_has_the_sums_of_the_built_in_one(own: UserLaw, built_in: object, exact: float) -> None:
+    """Those of the built-in one with 4096 samples, with 64."""
+    unknowns = np.array([[0.1, 0.5, 0.2, 0.1, -0.1]])
+    few, many = Fourier((0, 1, 3), 64), Fourier((0, 1, 3), 4096)
+    (block,) = lower(system(own)).real.laws
+    force, jacobian, _ = block.sums(few).with_slopes(unknowns[None], 1.0)
+    lowered = lower(system(built_in)).real  # type: ignore[arg-type]
+    if lowered.laws:
+        expected, slopes, _ = lowered.laws[0].sums(many).with_slopes(unknowns[None], 1.0)
+    else:
+        expected, _, slopes = contact_sums(lowered.blocks[0].numbers, Shape(1, False, True), many, True).with_slopes(
+            unknowns[None]
+        )
+    plain = block.sums(few, events=False).forces(unknowns[None], 1.0)
+    error = np.abs(force - expected).max()
+    assert error < exact
+    assert error < 0.01 * np.abs(plain - expected).max()
+    np.testing.assert_allclose(jacobian, slopes, atol=1e-4)
+
+
+@pytest.mark.parametrize("own", [SLIDER, STOP])
+def test_the_jacobian_with_events_is_that_of_differences(own: UserLaw) -> None:
+    (block,) = lower(system(own)).real.laws
+    sums, unknowns = block.sums(Fourier((0, 1, 3), 64)), np.array([0.1, 0.5, 0.2, 0.1, -0.1])
+    _, jacobian, _ = sums.with_slopes(unknowns[None, None], 1.0)
+    step = 1e-6 * np.eye(5)
+    differences = [(sums.forces((unknowns + h)[None, None], 1.0) - sums.forces((unknowns - h)[None, None], 1.0)) / 2e-6
+                   for h in step]  # fmt: skip
+    np.testing.assert_allclose(jacobian[0], np.array(differences)[:, 0, 0].T, atol=1e-8)
 
 
 def iwan_force(path: list[float], element: FourParameterIwan) -> float:

@@ -1,0 +1,55 @@
+"""Elements of one kind and one law, as arrays."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from dalembert.vibration.balance.fourier import Fourier
+from dalembert.vibration.laws.law import Law
+from dalembert.vibration.laws.sums import Sums
+
+
+@dataclass(frozen=True)
+class LawBlock:
+    """Elements of one kind and one law.
+
+    Parameters
+    ----------
+    element : LawElement
+        One of them: law, events and internal numbers are those of all.
+    names : tuple of str
+        Of the elements.
+    rows : array of int, shape (elements, columns)
+        Among the rows of all elements.
+    numbers : array, shape (elements, numbers)
+    """
+
+    element: Any
+    names: tuple[str, ...]
+    rows: np.ndarray
+    numbers: np.ndarray
+
+    @property
+    def law(self) -> Law:
+        """The law of all elements."""
+        return self.element.law
+
+    @property
+    def states(self) -> int:
+        """Internal numbers of each element."""
+        return self.element.states
+
+    @property
+    def remembers(self) -> bool:
+        """Whether forces depend on more than displacements, which Hill's method does not see."""
+        return self.states > 0 or self.element.rated
+
+    def sums(self, series: Fourier, events: bool = True) -> Sums:
+        """Fourier coefficients of the forces."""
+        return self.element.sums(self, series, events)
+
+    @property
+    def complex_numbers(self) -> np.ndarray:
+        """The numbers as laws take them, (elements, numbers)."""
+        return np.ascontiguousarray(self.numbers, dtype=complex)

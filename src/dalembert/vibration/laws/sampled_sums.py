@@ -1,0 +1,194 @@
+r"""Fourier coefficients of the forces of laws without internal state, by samples, with their exact derivatives.
+
+Alternating frequency and time: the law is called at each sample. Its derivatives by displacement and velocity come from
+complex steps, and :math:`\partial\lambda/\partial U_k = \lambda_{,u} \cos k\tau - \omega k\,\lambda_{,v} \sin k\tau`.
+"""
+
+from dataclasses import dataclass
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+
+from dalembert.errors import InputError
+from dalembert.forward.complex_steps import DROPPING, attempted, lost_step
+from dalembert.kernels.kernel import inner, kernel
+from dalembert.kernels.words import Address, Complexes, Complexes2, Complexes3, Reals4
+from dalembert.vibration.balance.fourier import Fourier
+from dalembert.vibration.laws.law import call_law
+from dalembert.vibration.laws.law_block import LawBlock
+
+STEP = 1e-30
+"""Size of the imaginary step; second-order terms vanish below the rounding of the first."""
+
+
+class Room(NamedTuple):
+    """Room for one element: displacements, velocities, forces (columns,), and internal numbers (states,)."""
+
+    u: Complexes
+    v: Complexes
+    force: Complexes
+    state: Complexes
+
+    @classmethod
+    def of(cls, columns: int, states: int) -> "Room":
+        """Room for an element with these numbers of columns and of internal numbers."""
+        u, v, force = np.zeros((3, columns), complex)
+        return cls(u, v, force, np.zeros(states, complex))
+
+
+@inner
+def _place(place, velocity, t, room):
+    """Set displacements and velocities to those (columns, samples) of a sample."""
+    for i in range(len(room.u)):
+        room.u[i], room.v[i] = place[i, t], velocity[i, t]
+
+
+@kernel
+def sampled_forces(
+    law: Address, numbers: Complexes2, place: Complexes3, velocity: Complexes3, room: Room, result: Complexes3
+) -> None:
+    """Forces (elements, columns, samples) from rest over a motion (elements, columns, samples)."""
+    for e in range(len(place)):
+        room.state[:] = 0.0
+        for t in range(place.shape[2]):
+            _place(place[e], velocity[e], t, room)
+            call_law(law, room.u, room.v, room.state, numbers[e], room.force)
+            for i in range(len(room.u)):
+                result[e, i, t] = room.force[i]
+
+
+@kernel
+def law_derivatives(
+    law: Address, numbers: Complexes2, place: Complexes3, velocity: Complexes3, start: Complexes2, directions: int,
+    room: Room, moved: Complexes, slopes: Reals4,
+) -> None:  # fmt: skip
+    """Derivatives of forces and next state by displacement, velocity and state before, at each sample.
+
+    ``start`` (elements, states) are the states before the first sample; ``moved`` (states,) is room. ``slopes``
+    (elements, samples, columns + states, directions); directions are columns, columns and states.
+    """
+    columns, states = len(room.u), len(room.state)
+    for e in range(len(place)):
+        for s in range(states):
+            room.state[s] = start[e, s].real
+        for t in range(place.shape[2]):
+            for direction in range(directions):
+                _place(place[e], velocity[e], t, room)
+                for s in range(states):
+                    moved[s] = room.state[s]
+                if direction < columns:
+                    room.u[direction] += 1j * STEP
+                elif direction < 2 * columns:
+                    room.v[direction - columns] += 1j * STEP
+                else:
+                    moved[direction - 2 * columns] += 1j * STEP
+                call_law(law, room.u, room.v, moved, numbers[e], room.force)
+                for i in range(columns):
+                    slopes[e, t, i, direction] = room.force[i].imag / STEP
+                for s in range(states):
+                    slopes[e, t, columns + s, direction] = moved[s].imag / STEP
+            if states:
+                _place(place[e], velocity[e], t, room)
+                call_law(law, room.u, room.v, room.state, numbers[e], room.force)
+
+
+@dataclass(frozen=True)
+class SampledSums:
+    """Sums of samples, of laws without internal state.
+
+    Parameters
+    ----------
+    block : LawBlock
+    series : Fourier
+    """
+
+    block: LawBlock
+    series: Fourier
+
+    def forces(self, displacements: np.ndarray, omega: float) -> np.ndarray:
+        """Coefficients of forces; see :class:`dalembert.vibration.laws.sums.Sums`."""
+        force = forces_from_rest(self.block, *self._motion(displacements, omega)) @ self.series.analysis.T
+        return force if np.iscomplexobj(displacements) or np.iscomplexobj(self.block.numbers) else np.real(force)
+
+    def with_slopes(self, displacements: np.ndarray, omega: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Coefficients of forces, Jacobians and derivatives by ω; see :class:`dalembert.vibration.laws.sums.Sums`."""
+        require_complex_steps(self.block, self.series, displacements, omega)
+        rated, columns, series = self.block.element.rated, displacements.shape[1], self.series
+        motion = self._motion(displacements, omega)
+        force = np.real(forces_from_rest(self.block, *motion))
+        none = np.zeros((len(displacements), 0))
+        slopes = derivatives(self.block, *motion, none, (1 + rated) * columns)  # (elements, samples, columns, columns)
+        local = series.analysis @ (np.moveaxis(slopes[..., :columns], 1, 3)[..., None] * series.synthesis)
+        by_omega = np.zeros(displacements.shape)
+        if rated:
+            by_rate = np.moveaxis(slopes[..., columns:], 1, 3)
+            local = local + omega * (series.analysis @ (by_rate[..., None] * series.waves[1]))
+            by_omega = np.einsum("eijt,ejt->eit", by_rate, displacements @ series.waves[1].T) @ series.analysis.T
+        # (elements, columns, columns, coefficients, coefficients) to square matrices
+        unknowns = columns * series.count
+        return force @ series.analysis.T, np.swapaxes(local, 2, 3).reshape(-1, unknowns, unknowns), by_omega
+
+    def _motion(self, displacements: np.ndarray, omega: float) -> tuple[np.ndarray, np.ndarray]:
+        return sampled_motion(displacements, omega * self.block.element.rated, self.series)
+
+
+def sampled_motion(displacements: np.ndarray, omega: float, series: Fourier) -> tuple[np.ndarray, np.ndarray]:
+    """Displacements and velocities at samples, as kernels take them."""
+    place, rate = (np.ascontiguousarray(displacements @ own.T, dtype=complex) for own in series.waves[:2])
+    return place, omega * rate
+
+
+def forces_from_rest(block: LawBlock, place: np.ndarray, velocity: np.ndarray) -> np.ndarray:
+    """Forces at samples of a motion, all (elements, columns, samples), complex."""
+    result = np.empty_like(place)
+    room = Room.of(place.shape[1], block.states)
+    sampled_forces(block.law.address, block.complex_numbers, place, velocity, room, result)
+    return result
+
+
+def derivatives(
+    block: LawBlock, place: np.ndarray, velocity: np.ndarray, start: np.ndarray, directions: int
+) -> np.ndarray:
+    """Derivatives at each sample, (elements, samples, columns + states, directions), see :func:`law_derivatives`."""
+    (elements, columns, samples), states = place.shape, block.states
+    slopes = np.empty((elements, samples, columns + states, directions))
+    law_derivatives(
+        block.law.address, block.complex_numbers, place, velocity, start.astype(complex), directions,
+        Room.of(columns, states), np.empty(states, complex), slopes,
+    )  # fmt: skip
+    return slopes
+
+
+_compared: set[str] = set()
+"""Digests of the laws whose complex step was compared with differences."""
+
+
+def require_complex_steps(block: LawBlock, series: Fourier, displacements: np.ndarray, omega: float) -> None:
+    """Refuse a law of the user's that drops the imaginary part of displacements or of its state.
+
+    Raises
+    ------
+    InputError
+    """
+    law = block.law
+    if law.packaged or law.digest in _compared or not np.any(displacements):
+        return
+    place, velocity = sampled_motion(displacements, omega, series)
+    way = np.random.default_rng(0).uniform(0.5, 1.0, displacements.shape)
+    way *= np.max(np.abs(place)) / max(np.max(np.abs(way @ series.synthesis.T)), np.finfo(float).tiny)
+    moves, speeds = sampled_motion(way, omega, series)
+
+    def forces(shift: complex) -> np.ndarray:
+        values = np.ravel(forces_from_rest(block, place + shift * moves, velocity + shift * speeds))
+        return values if np.imag(shift) else np.real(values)
+
+    lost = attempted(partial(lost_step, forces, 1.0))
+    if lost:
+        raise InputError(
+            f"element {block.names[0]!r}: the derivative of its force along a motion is {lost.by_step:.6g} N by the "
+            f"complex step, but {lost.by_differences:.6g} N by differences. Its law {law.name!r} drops the imaginary "
+            f"part, as {DROPPING} do. Compare real parts (u[0].real), and use absolute, norm, hypot and atan2 of "
+            "dalembert"
+        )
+    _compared.add(law.digest)

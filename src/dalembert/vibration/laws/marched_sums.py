@@ -72,7 +72,7 @@ class MarchedSums:
         """
         start = np.array([run.periodic()[0] for run in self._runs(displacements, omega)])
         directions = 2 * displacements.shape[1] + self.block.states
-        return derivatives(self.block, *sampled_motion(displacements, omega, self.series), start, directions)
+        return derivatives(self.block, *sampled_motion(displacements, omega, self.series), start, directions)[1]
 
     def _runs(self, displacements: np.ndarray, omega: float) -> "list[_Run]":
         element = self.block.element

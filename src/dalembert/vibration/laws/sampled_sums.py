@@ -13,7 +13,7 @@ import numpy as np
 from dalembert.errors import InputError
 from dalembert.forward.complex_steps import DROPPING, attempted, lost_step
 from dalembert.kernels.kernel import inner, kernel
-from dalembert.kernels.words import Address, Complexes, Complexes2, Complexes3, Reals4
+from dalembert.kernels.words import Address, Complexes, Complexes2, Complexes3, Reals3, Reals4
 from dalembert.vibration.balance.fourier import Fourier
 from dalembert.vibration.laws.law import call_law
 from dalembert.vibration.laws.law_block import LawBlock
@@ -61,12 +61,12 @@ def sampled_forces(
 @kernel
 def law_derivatives(
     law: Address, numbers: Complexes2, place: Complexes3, velocity: Complexes3, start: Complexes2, directions: int,
-    room: Room, moved: Complexes, slopes: Reals4,
+    room: Room, moved: Complexes, force: Reals3, slopes: Reals4,
 ) -> None:  # fmt: skip
-    """Derivatives of forces and next state by displacement, velocity and state before, at each sample.
+    """Forces (elements, columns, samples), and derivatives of forces and next state, at each sample.
 
     ``start`` (elements, states) are the states before the first sample; ``moved`` (states,) is room. ``slopes``
-    (elements, samples, columns + states, directions); directions are columns, columns and states.
+    (elements, samples, columns + states, directions), by displacements, velocities and states before.
     """
     columns, states = len(room.u), len(room.state)
     for e in range(len(place)):
@@ -85,6 +85,7 @@ def law_derivatives(
                     moved[direction - 2 * columns] += 1j * STEP
                 call_law(law, room.u, room.v, moved, numbers[e], room.force)
                 for i in range(columns):
+                    force[e, i, t] = room.force[i].real
                     slopes[e, t, i, direction] = room.force[i].imag / STEP
                 for s in range(states):
                     slopes[e, t, columns + s, direction] = moved[s].imag / STEP
@@ -115,19 +116,18 @@ class SampledSums:
         """Coefficients of forces, Jacobians and derivatives by ω; see :class:`dalembert.vibration.laws.sums.Sums`."""
         require_complex_steps(self.block, self.series, displacements, omega)
         rated, columns, series = self.block.element.rated, displacements.shape[1], self.series
-        motion = self._motion(displacements, omega)
-        force = np.real(forces_from_rest(self.block, *motion))
-        none = np.zeros((len(displacements), 0))
-        slopes = derivatives(self.block, *motion, none, (1 + rated) * columns)  # (elements, samples, columns, columns)
-        local = series.analysis @ (np.moveaxis(slopes[..., :columns], 1, 3)[..., None] * series.synthesis)
+        motion, none = self._motion(displacements, omega), np.zeros((len(displacements), 0))
+        force, slopes = derivatives(self.block, *motion, none, (1 + rated) * columns)
+        slopes = np.moveaxis(slopes, 1, 3)
+        local = slopes[:, :, :columns, None] * series.synthesis.T  # (elements, columns, columns, coefficients, samples)
         by_omega = np.zeros(displacements.shape)
         if rated:
-            by_rate = np.moveaxis(slopes[..., columns:], 1, 3)
-            local = local + omega * (series.analysis @ (by_rate[..., None] * series.waves[1]))
-            by_omega = np.einsum("eijt,ejt->eit", by_rate, displacements @ series.waves[1].T) @ series.analysis.T
-        # (elements, columns, columns, coefficients, coefficients) to square matrices
+            by_rate, rates = slopes[:, :, columns:], displacements @ series.waves[1].T
+            local = local + omega * (by_rate[:, :, :, None] * series.waves[1].T)
+            by_omega = np.einsum("eijt,ejt->eit", by_rate, rates) @ series.analysis.T
+        local = np.moveaxis((local.reshape(-1, series.samples) @ series.analysis.T).reshape(*local.shape[:4], -1), 4, 2)
         unknowns = columns * series.count
-        return force @ series.analysis.T, np.swapaxes(local, 2, 3).reshape(-1, unknowns, unknowns), by_omega
+        return force @ series.analysis.T, local.reshape(-1, unknowns, unknowns), by_omega
 
     def _motion(self, displacements: np.ndarray, omega: float) -> tuple[np.ndarray, np.ndarray]:
         return sampled_motion(displacements, omega * self.block.element.rated, self.series)
@@ -149,15 +149,15 @@ def forces_from_rest(block: LawBlock, place: np.ndarray, velocity: np.ndarray) -
 
 def derivatives(
     block: LawBlock, place: np.ndarray, velocity: np.ndarray, start: np.ndarray, directions: int
-) -> np.ndarray:
-    """Derivatives at each sample, (elements, samples, columns + states, directions), see :func:`law_derivatives`."""
+) -> tuple[np.ndarray, np.ndarray]:
+    """Forces and derivatives at each sample, see :func:`law_derivatives`."""
     (elements, columns, samples), states = place.shape, block.states
-    slopes = np.empty((elements, samples, columns + states, directions))
+    force, slopes = np.empty(place.shape), np.empty((elements, samples, columns + states, directions))
     law_derivatives(
         block.law.address, block.complex_numbers, place, velocity, start.astype(complex), directions,
-        Room.of(columns, states), np.empty(states, complex), slopes,
+        Room.of(columns, states), np.empty(states, complex), force, slopes,
     )  # fmt: skip
-    return slopes
+    return force, slopes
 
 
 _compared: set[str] = set()

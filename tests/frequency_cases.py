@@ -197,7 +197,7 @@ FREQUENCY_CASES: dict[str, Case] = {
         (
             "! incomplete",
             "It lies at the end of the values: beyond them the peak may be smaller still.",
-            "the preload is -1 N; expected a number that is not negative",
+            "preload is -1 N; expected zero or a positive number",
         ),
     ),
     "responses over a preload that are not found": Case(

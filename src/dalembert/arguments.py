@@ -4,7 +4,7 @@ import inspect
 import types
 import typing
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import InitVar
+from dataclasses import MISSING, InitVar, field
 from functools import cache, wraps
 from typing import Any, NamedTuple, TypeVar, Union, cast
 
@@ -17,13 +17,60 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 _PLAIN = (float, int, complex, np.float64, np.complex128)
 
 
+class Range(NamedTuple):
+    """Range of a number, of which the limits ``above`` and ``below`` are no part.
+
+    >>> [0 in POSITIVE, 0 in NOT_NEGATIVE, -0.5 in Range(above=-1.0, most=0.0)]
+    [False, True, True]
+    >>> f"{POSITIVE}; {Range(least=1.0)}; {Range(above=-1.0, below=0.5)}"
+    'a positive number; a number of at least 1; a number between -1 and 0.5'
+    """
+
+    above: float = -np.inf
+    least: float = -np.inf
+    below: float = np.inf
+    most: float = np.inf
+
+    def __contains__(self, value: object) -> bool:
+        real = np.real(value)  # type: ignore[call-overload]
+        return bool(np.all((self.above < real) & (self.least <= real) & (real < self.below) & (real <= self.most)))
+
+    def __str__(self) -> str:
+        if self in (POSITIVE, NOT_NEGATIVE):
+            return "a positive number" if self == POSITIVE else "zero or a positive number"
+        limits = {name: limit for name, limit in self._asdict().items() if np.isfinite(limit)}
+        if limits.keys() == {"least", "most"}:
+            return f"a number from {self.least:g} to {self.most:g}"
+        if limits.keys() == {"above", "below"}:
+            return f"a number between {self.above:g} and {self.below:g}"
+        words = {"above": "above", "least": "of at least", "below": "below", "most": "at most"}
+        return "a number " + " and ".join(f"{words[name]} {limit:g}" for name, limit in limits.items())
+
+
+POSITIVE, NOT_NEGATIVE = Range(above=0.0), Range(least=0.0)
+
+
+def limited(default: Any = MISSING, **limits: float) -> Any:
+    """Field of a dataclass that derives from :class:`Checked` whose values lie in a :class:`Range`.
+
+    >>> from dataclasses import dataclass
+    >>> @dataclass(frozen=True)
+    ... class Search(Checked):
+    ...     tolerance: float = limited(1e-8, above=0, below=1)
+    >>> Search(2.0)
+    Traceback (most recent call last):
+    dalembert.errors.InputError: Search: tolerance is 2; expected a number between 0 and 1
+    """
+    return field(default=default, metadata={"range": Range(**limits)})
+
+
 class Checked:
     """Base of dataclasses whose arguments are checked when they are made, those of subclasses included.
 
     An annotation says what is accepted: ``float | complex`` a finite number of a model, which is complex while a
     derivative is taken; ``float`` a real number; ``int``, ``bool``, ``str``, ``None`` and classes what they name;
     tuples, sequences and mappings of these. Other annotations accept everything, and so do fields with the metadata
-    ``checked=False``, which the class checks itself.
+    ``checked=False``, which the class checks itself. The metadata ``range`` limits numbers, those of sequences too.
 
     Raises
     ------
@@ -36,10 +83,13 @@ class Checked:
     >>> @dataclass(frozen=True)
     ... class Rod(Checked):
     ...     name: str
-    ...     length: float | complex = field(metadata={"unit": "m"})
+    ...     length: float | complex = field(metadata={"unit": "m", "range": POSITIVE})
     >>> Rod("AB", "2")
     Traceback (most recent call last):
     dalembert.errors.InputError: Rod 'AB': length is '2'; expected a number in m
+    >>> Rod("AB", -2.0)
+    Traceback (most recent call last):
+    dalembert.errors.InputError: Rod 'AB': length is -2 m; expected a positive number
     """
 
     def __init_subclass__(cls, **options: Any) -> None:
@@ -67,11 +117,12 @@ class _Argument(NamedTuple):
     default: Any
     kinds: tuple[Any, ...]
     unit: str
+    range: Range | None
 
 
 def _check(made: Any, passed_on: tuple[Any, ...]) -> None:
     for argument in _arguments(type(made)):
-        name, tests, place, default, kinds, unit = argument
+        name, tests, place, default, kinds, unit, within = argument
         value = getattr(made, name) if place is None else passed_on[place]
         if value is default:
             continue
@@ -79,9 +130,18 @@ def _check(made: Any, passed_on: tuple[Any, ...]) -> None:
             if test(value):
                 break
         else:
-            owner = getattr(made, "name", None)
-            named = f" {owner!r}" if isinstance(owner, str) and name != "name" else ""
-            raise InputError(refusal(type(made).__name__ + named, name, value, kinds, unit))
+            raise InputError(refusal(_owner(made, name), name, value, kinds, unit))
+        if within is not None and value is not None and value not in within:
+            first = next(one for one in np.ravel(np.real(value)) if one not in within)
+            number = f"{first:g} {unit}".strip()
+            words = str(within).replace("number", "whole number") if int in kinds else str(within)
+            raise InputError(f"{_owner(made, name)}: {name} is {number}; expected {words}")
+
+
+def _owner(made: Any, argument: str) -> str:
+    """Class and name of an object, for messages about an argument."""
+    name = getattr(made, "name", None)
+    return type(made).__name__ + (f" {name!r}" if isinstance(name, str) and argument != "name" else "")
 
 
 @cache
@@ -98,7 +158,8 @@ def _arguments(made: type) -> tuple[_Argument, ...]:
             annotation, place, passed_on = annotation.type, passed_on, passed_on + 1
         kinds = kinds_of(annotation if entry.metadata.get("checked", True) else Any)
         unit = entry.metadata.get("unit", "")
-        found.append(_Argument(entry.name, tuple(map(_test, kinds)), place, entry.default, kinds, unit))
+        tests, within = tuple(map(_test, kinds)), entry.metadata.get("range")
+        found.append(_Argument(entry.name, tests, place, entry.default, kinds, unit, within))
     return tuple(found)
 
 

@@ -2,8 +2,7 @@
 
 from dataclasses import dataclass, field
 
-from dalembert.arguments import Checked
-from dalembert.errors import InputError
+from dalembert.arguments import POSITIVE, Checked, Range
 
 
 @dataclass(frozen=True)
@@ -30,18 +29,9 @@ class Material(Checked):
     (80000000000.0, 80000000000.0)
     """
 
-    youngs_modulus: float | complex = field(metadata={"unit": "Pa"})
-    poisson_ratio: float | complex
-    density: float | complex = field(metadata={"unit": "kg/m^3"})
-
-    def __post_init__(self) -> None:
-        for name, unit in (("youngs_modulus", " Pa"), ("density", " kg/m³")):
-            if not getattr(self, name).real > 0:
-                raise InputError(f"Material: {name} is {getattr(self, name)}{unit}; expected a positive number")
-        if not -1 < self.poisson_ratio.real < 0.5:
-            raise InputError(
-                f"Material: poisson_ratio is {self.poisson_ratio}; expected a number above -1 and below 0.5"
-            )
+    youngs_modulus: float | complex = field(metadata={"unit": "Pa", "range": POSITIVE})
+    poisson_ratio: float | complex = field(metadata={"range": Range(above=-1.0, below=0.5)})
+    density: float | complex = field(metadata={"unit": "kg/m^3", "range": POSITIVE})
 
     @property
     def lame(self) -> tuple[float | complex, float | complex]:

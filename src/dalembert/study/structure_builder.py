@@ -144,5 +144,5 @@ def _told(where: str, function: Any, *arguments: Any) -> Any:
     try:
         return function(*arguments)
     except DalembertError as error:
-        text = re.sub(r"^(contact|gap|stop) '.*?': ", "", str(error))
+        text = re.sub(r"^\w+ '[^']*': ", "", str(error))
         raise type(error)(text if text.startswith("[") else f"{where}: {text}") from None

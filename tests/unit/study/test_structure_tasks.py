@@ -394,7 +394,7 @@ def refused(write, text) -> str:
     [
         (
             ('"mu"\npreload', '"mu - 1"\npreload'),
-            "[[model.contact]] 'slider': the coefficient of friction is -0.7; expected a number that is not negative",
+            "[[model.contact]] 'slider': friction is -0.7; expected zero or a positive number",
         ),
         (
             ('first = "m2"\nfriction', 'first = "m3"\nfriction'),

@@ -13,9 +13,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from dalembert.arguments import POSITIVE, Range
 from dalembert.errors import InputError
 from dalembert.kernels.kernel import inner
-from dalembert.vibration.laws.contacts import Number, require_not_negative, require_positive
+from dalembert.vibration.laws.contacts import Number
 from dalembert.vibration.laws.element import LawElement
 from dalembert.vibration.laws.law import law
 
@@ -122,31 +123,21 @@ class BoucWen(LawElement):
     1.0
     """
 
-    name: str
-    first: str
-    second: str | None = None
-    stiffness: Number = field(kw_only=True, metadata={"unit": "N/m"})
-    ratio: Number = field(default=0.0, kw_only=True, metadata={"unit": ""})
-    yield_displacement: Number = field(kw_only=True, metadata={"unit": "m"})
+    stiffness: Number = field(kw_only=True, metadata={"unit": "N/m", "range": POSITIVE})
+    ratio: Number = field(default=0.0, kw_only=True, metadata={"unit": "", "range": Range(least=0.0, most=1.0)})
+    yield_displacement: Number = field(kw_only=True, metadata={"unit": "m", "range": POSITIVE})
     beta: Number = field(default=0.5, kw_only=True, metadata={"unit": ""})
     gamma: Number = field(default=0.5, kw_only=True, metadata={"unit": ""})
-    exponent: Number = field(default=1.0, kw_only=True, metadata={"unit": ""})
+    exponent: Number = field(default=1.0, kw_only=True, metadata={"unit": "", "range": Range(least=1.0)})
 
     law = bouc_wen
 
     def __post_init__(self) -> None:
-        where = f"BoucWen {self.name!r}"
-        require_positive(f"{where}: the stiffness", "N/m", self.stiffness)
-        require_positive(f"{where}: the yield_displacement", "m", self.yield_displacement)
-        require_not_negative(f"{where}: the ratio", "", self.ratio)
-        beta, gamma, exponent, ratio = (float(np.real(x)) for x in (self.beta, self.gamma, self.exponent, self.ratio))
-        if ratio > 1:
-            raise InputError(f"{where}: ratio is {ratio:g}; expected 0 to 1")
-        if not exponent >= 1:
-            raise InputError(f"{where}: exponent is {exponent:g}; expected 1 or more")
+        beta, gamma = np.real(self.beta), np.real(self.gamma)
         if not (beta + gamma > 0 and beta >= abs(gamma)):
             raise InputError(
-                f"{where}: beta is {beta:g} and gamma is {gamma:g}; expected beta + gamma > 0 and beta at least |gamma|"
+                f"BoucWen {self.name!r}: beta is {beta:g} and gamma is {gamma:g}; expected beta + gamma > 0 and beta "
+                "at least |gamma|"
             )
 
     @property

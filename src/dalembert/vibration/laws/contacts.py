@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from dalembert.arguments import Checked
+from dalembert.arguments import NOT_NEGATIVE, POSITIVE, Checked
 from dalembert.errors import InputError, shown, unknown
 
 Number = float | complex
@@ -13,18 +13,6 @@ Number = float | complex
 
 RIGID_KINDS = ("displacement", "velocity")
 AXES = ("x", "y", "z")
-
-
-def require_not_negative(what: str, unit: str, value: Number) -> None:
-    """Refuse a number that is negative or not finite."""
-    if not (np.isfinite(value) and np.real(value) >= 0):
-        raise InputError(f"{what} is {f'{np.real(value):g} {unit}'.strip()}; expected a number that is not negative")
-
-
-def require_positive(what: str, unit: str, value: Number | None) -> None:
-    """Refuse a number that is not positive; None is none."""
-    if value is not None and not (np.isfinite(value) and np.real(value) > 0):
-        raise InputError(f"{what} is {f'{np.real(value):g} {unit}'.strip()}; expected a positive number")
 
 
 @dataclass(frozen=True)
@@ -41,8 +29,8 @@ class ElasticSlider(Checked):
         Penetration at which the contact closes, m.
     """
 
-    tangential_stiffness: Number = field(metadata={"unit": "N/m"})
-    normal_stiffness: Number | None = field(default=None, metadata={"unit": "N/m"})
+    tangential_stiffness: Number = field(metadata={"unit": "N/m", "range": POSITIVE})
+    normal_stiffness: Number | None = field(default=None, metadata={"unit": "N/m", "range": POSITIVE})
     gap: Number = field(default=0.0, metadata={"unit": "m"})
 
 
@@ -62,16 +50,14 @@ class Iwan(Checked):
         m.
     """
 
-    stiffnesses: tuple[Number, ...] = field(metadata={"unit": "N/m"})
-    shares: tuple[Number, ...]
-    normal_stiffness: Number | None = field(default=None, metadata={"unit": "N/m"})
+    stiffnesses: tuple[Number, ...] = field(metadata={"unit": "N/m", "range": POSITIVE})
+    shares: tuple[Number, ...] = field(metadata={"range": NOT_NEGATIVE})
+    normal_stiffness: Number | None = field(default=None, metadata={"unit": "N/m", "range": POSITIVE})
     gap: Number = field(default=0.0, metadata={"unit": "m"})
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "stiffnesses", tuple(self.stiffnesses))
         object.__setattr__(self, "shares", tuple(self.shares))
-        for share in self.shares:
-            require_not_negative("Iwan: a share", "", share)
         total = sum(self.shares)
         if len(self.stiffnesses) != len(self.shares) or not self.shares or abs(total - 1) > 1e-9:
             raise InputError(
@@ -102,14 +88,13 @@ class Rigid(Checked):
     Lagrangian method" (2019).
     """
 
-    penalty: Number | None = field(default=None, metadata={"unit": "N/m"})
+    penalty: Number | None = field(default=None, metadata={"unit": "N/m", "range": POSITIVE})
     kind: str = "displacement"
     gap: Number = field(default=0.0, metadata={"unit": "m"})
 
     def __post_init__(self) -> None:
         if self.kind not in RIGID_KINDS:
             raise InputError(unknown("kind", self.kind, RIGID_KINDS, "Rigid"))
-        require_positive("Rigid: the penalty", "N/m", self.penalty)
 
 
 Law = ElasticSlider | Iwan | Rigid
@@ -150,8 +135,7 @@ class FrictionContact(Checked):
     'z'
     >>> FrictionContact("foot", "A", friction=-0.6)
     Traceback (most recent call last):
-    dalembert.errors.InputError: contact 'foot': the coefficient of friction is -0.6; expected a number that is not
-    negative
+    dalembert.errors.InputError: FrictionContact 'foot': friction is -0.6; expected zero or a positive number
     """
 
     name: str
@@ -159,8 +143,8 @@ class FrictionContact(Checked):
     second: str | None = None
     tangential: Sequence[str] = field(default=("x",), metadata={"checked": False})
     normal: str | None = None
-    friction: Number = field(kw_only=True, metadata={"unit": ""})
-    preload: Number = field(default=0.0, kw_only=True, metadata={"unit": "N"})
+    friction: Number = field(kw_only=True, metadata={"unit": "", "range": NOT_NEGATIVE})
+    preload: Number = field(default=0.0, kw_only=True, metadata={"unit": "N", "range": NOT_NEGATIVE})
     law: Law = field(default=Rigid(), kw_only=True, metadata={"checked": False})
 
     def __post_init__(self) -> None:
@@ -180,17 +164,8 @@ class FrictionContact(Checked):
                 f"{where}: the directions are {', '.join(self.tangential) or 'none'}, normal {self.normal}; expected "
                 "one or two tangential ones and another one for the normal, if any, each x, y or z"
             )
-        require_not_negative(f"{where}: the coefficient of friction", "", self.friction)
-        require_not_negative(f"{where}: the preload", "N", self.preload)
-        if isinstance(self.law, Rigid):
-            return
-        cells = self.law.stiffnesses if isinstance(self.law, Iwan) else (self.law.tangential_stiffness,)
-        for stiffness in cells:
-            require_positive(f"{where}: the tangential stiffness", "N/m", stiffness)
-        if self.normal is not None:
-            if self.law.normal_stiffness is None:
-                raise InputError(f"{where} has a normal direction; give its law a normal_stiffness in N/m")
-            require_positive(f"{where}: the normal stiffness", "N/m", self.law.normal_stiffness)
+        if self.normal is not None and not isinstance(self.law, Rigid) and self.law.normal_stiffness is None:
+            raise InputError(f"{where} has a normal direction; give its law a normal_stiffness in N/m")
 
 
 def _require_law(where: str, law: object) -> None:

@@ -28,9 +28,6 @@ class CubicSpring(LawElement):
         N/m³.
     """
 
-    name: str
-    first: str
-    second: str | None = None
     stiffness: Number = field(kw_only=True, metadata={"unit": "N/m^3"})
 
     law = cubic

@@ -1,8 +1,8 @@
 """Elements between degrees of freedom that follow a law: all elements but friction contacts."""
 
 from collections.abc import Sequence
-from dataclasses import fields
-from typing import Any, ClassVar
+from dataclasses import dataclass, fields
+from typing import ClassVar
 
 from dalembert.arguments import Checked
 from dalembert.vibration.balance.fourier import Fourier
@@ -14,11 +14,19 @@ from dalembert.vibration.laws.sampled_sums import SampledSums
 from dalembert.vibration.laws.sums import Sums
 
 
+@dataclass(frozen=True)
 class LawElement(Checked):
     """Base of elements that follow a law. A frozen dataclass that derives from it is a new kind of element.
 
-    The dataclass has a ``name`` and the degrees of freedom ``first`` and ``second``, the ground if None. Its fields
-    with a unit in their metadata are the numbers of the law, in their order.
+    Its fields with a unit in their metadata are the numbers of the law, in their order.
+
+    Parameters
+    ----------
+    name : str
+    first : str
+        Degree of freedom, such as ``"A.x"``.
+    second : str, optional
+        The ground if not given; u is the first displacement less the second.
 
     Attributes
     ----------
@@ -36,6 +44,9 @@ class LawElement(Checked):
     """
 
     name: str
+    first: str
+    second: str | None = None
+
     law: ClassVar[Law]
     rated: ClassVar[bool] = False
     switches: ClassVar[bool] = False
@@ -50,14 +61,12 @@ class LawElement(Checked):
     @property
     def ends(self) -> Sequence[tuple[str, str | None]]:
         """Degrees of freedom, first and second, of each column that the law sees."""
-        own: Any = self
-        return ((own.first, own.second),)
+        return ((self.first, self.second),)
 
     @property
     def numbers(self) -> dict[str, Number]:
         """Numbers of the law by their names."""
-        own: Any = self
-        return {one.name: getattr(self, one.name) for one in fields(own) if "unit" in one.metadata}
+        return {one.name: getattr(self, one.name) for one in fields(self) if "unit" in one.metadata}
 
     def sums(self, block: LawBlock, series: Fourier, events: bool) -> Sums:
         """Fourier coefficients of the forces. A kind may have a faster way, or one that corrects events."""

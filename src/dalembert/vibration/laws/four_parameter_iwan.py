@@ -15,11 +15,9 @@ Source: Segalman, "A four-parameter Iwan model for lap-type joints", Journal of 
 
 from dataclasses import dataclass, field
 
-import numpy as np
-
-from dalembert.errors import InputError
+from dalembert.arguments import NOT_NEGATIVE, POSITIVE, Range
 from dalembert.kernels.kernel import inner
-from dalembert.vibration.laws.contacts import Number, require_not_negative, require_positive
+from dalembert.vibration.laws.contacts import Number
 from dalembert.vibration.laws.element import LawElement
 from dalembert.vibration.laws.law import law
 
@@ -123,23 +121,12 @@ class FourParameterIwan(LawElement):
     0.00015
     """
 
-    name: str
-    first: str
-    second: str | None = None
-    force_limit: Number = field(kw_only=True, metadata={"unit": "N"})
-    stiffness: Number = field(kw_only=True, metadata={"unit": "N/m"})
-    exponent: Number = field(kw_only=True, metadata={"unit": ""})
-    ratio: Number = field(kw_only=True, metadata={"unit": ""})
+    force_limit: Number = field(kw_only=True, metadata={"unit": "N", "range": POSITIVE})
+    stiffness: Number = field(kw_only=True, metadata={"unit": "N/m", "range": POSITIVE})
+    exponent: Number = field(kw_only=True, metadata={"unit": "", "range": Range(above=-1.0, most=0.0)})
+    ratio: Number = field(kw_only=True, metadata={"unit": "", "range": NOT_NEGATIVE})
 
     law = four_parameter_iwan
-
-    def __post_init__(self) -> None:
-        where = f"FourParameterIwan {self.name!r}"
-        require_positive(f"{where}: the force_limit", "N", self.force_limit)
-        require_positive(f"{where}: the stiffness", "N/m", self.stiffness)
-        require_not_negative(f"{where}: the ratio", "", self.ratio)
-        if not -1 < np.real(self.exponent) <= 0:
-            raise InputError(f"{where}: exponent is {np.real(self.exponent):g}; expected more than -1 and at most 0")
 
     @property
     def states(self) -> int:

@@ -5,9 +5,10 @@ from functools import cached_property
 
 import numpy as np
 
+from dalembert.arguments import NOT_NEGATIVE, POSITIVE
 from dalembert.vibration.balance.fourier import Fourier
 from dalembert.vibration.laws.contact_sums import ContactSums, Shape, contact_sums
-from dalembert.vibration.laws.contacts import Number, require_not_negative, require_positive
+from dalembert.vibration.laws.contacts import Number
 from dalembert.vibration.laws.element import LawElement
 from dalembert.vibration.laws.law import law
 from dalembert.vibration.laws.law_block import LawBlock
@@ -46,17 +47,11 @@ class Gap(LawElement):
         m.
     """
 
-    name: str
-    first: str
-    second: str | None = None
-    stiffness: Number = field(kw_only=True, metadata={"unit": "N/m"})
+    stiffness: Number = field(kw_only=True, metadata={"unit": "N/m", "range": POSITIVE})
     gap: Number = field(default=0.0, kw_only=True, metadata={"unit": "m"})
 
     law = one_sided
     switches = True
-
-    def __post_init__(self) -> None:
-        require_positive(f"gap {self.name!r}: the stiffness", "N/m", self.stiffness)
 
     def sums(self, block: LawBlock, series: Fourier, events: bool) -> Sums:
         """Sums that are corrected where the stop begins and ends to touch."""
@@ -80,18 +75,11 @@ class BilinearStop(LawElement):
         Half the free way, m.
     """
 
-    name: str
-    first: str
-    second: str | None = None
-    stiffness: Number = field(kw_only=True, metadata={"unit": "N/m"})
-    gap: Number = field(default=0.0, kw_only=True, metadata={"unit": "m"})
+    stiffness: Number = field(kw_only=True, metadata={"unit": "N/m", "range": POSITIVE})
+    gap: Number = field(default=0.0, kw_only=True, metadata={"unit": "m", "range": NOT_NEGATIVE})
 
     law = two_sided
     switches = True
-
-    def __post_init__(self) -> None:
-        require_positive(f"stop {self.name!r}: the stiffness", "N/m", self.stiffness)
-        require_not_negative(f"stop {self.name!r}: the gap", "m", self.gap)
 
     def sums(self, block: LawBlock, series: Fourier, events: bool) -> Sums:
         """Sums that are corrected where a side begins and ends to touch."""

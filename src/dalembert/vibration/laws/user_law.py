@@ -6,6 +6,7 @@ from functools import cache
 
 import numpy as np
 
+from dalembert.arguments import limited
 from dalembert.errors import InputError, shown
 from dalembert.vibration.laws.contacts import Number
 from dalembert.vibration.laws.element import LawElement
@@ -53,22 +54,16 @@ class UserLaw(LawElement):
     {'values[0]': 0.3}
     """
 
-    name: str
-    first: str
-    second: str | None = None
     function: Callable[..., None] = None  # type: ignore[assignment] - required, and checked
     values: Sequence[Number] = ()
-    internal: int = 0
+    internal: int = limited(0, least=0)
     events: Callable[..., None] | None = None  # type: ignore[assignment] - compiled when the element is made
-    event_count: int = 0
+    event_count: int = limited(0, least=0)
 
     rated = True
 
     def __post_init__(self) -> None:
         where = f"UserLaw {self.name!r}"
-        for name in ("internal", "event_count"):
-            if getattr(self, name) < 0:
-                raise InputError(f"{where}: {name} is {getattr(self, name)}; expected 0 or more")
         if (self.events is None) != (self.event_count == 0):
             raise InputError(
                 f"{where}: event_count is {self.event_count}; expected the number of functions that events writes"

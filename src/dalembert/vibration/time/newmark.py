@@ -4,10 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dalembert.arguments import Checked
-from dalembert.errors import InputError
-from dalembert.settings import expect
-from dalembert.vibration.laws.contacts import require_positive
+from dalembert.arguments import Checked, limited
 from dalembert.vibration.time.steps import Scheme
 
 
@@ -39,24 +36,14 @@ class Newmark(Checked):
     --------
     >>> Newmark(steps_per_period=2)
     Traceback (most recent call last):
-    dalembert.errors.InputError: Newmark: 2 steps of a period were asked for; expected at least 8
+    dalembert.errors.InputError: Newmark: steps_per_period is 2; expected a whole number of at least 8
     """
 
-    steps_per_period: int = 512
-    spectral_radius: float | None = None
-    periods: int = 2000
-    tolerance: float = 1e-9
-    stand_in: float = 100.0
-
-    def __post_init__(self) -> None:
-        if self.steps_per_period < 8:
-            raise InputError(f"Newmark: {self.steps_per_period} steps of a period were asked for; expected at least 8")
-        if self.periods < 1:
-            raise InputError(f"Newmark: {self.periods} periods were allowed; expected at least 1")
-        in_range = "a number in [0, 1], or none"
-        expect(self, in_range, lambda given: given is None or 0 <= given <= 1, "spectral_radius")
-        expect(self, "a number between 0 and 1", lambda given: 0 < given < 1, "tolerance")
-        require_positive("Newmark: stand_in", "", self.stand_in)
+    steps_per_period: int = limited(512, least=8)
+    spectral_radius: float | None = limited(None, least=0, most=1)
+    periods: int = limited(2000, least=1)
+    tolerance: float = limited(1e-9, above=0, below=1)
+    stand_in: float = limited(100.0, above=0)
 
     def scheme(self, omega: float) -> Scheme:
         """Numbers of the method at a frequency, rad/s."""

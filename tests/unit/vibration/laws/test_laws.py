@@ -350,20 +350,20 @@ def test_elements_of_one_law_are_one_block() -> None:
         ),
         (
             lambda: UserLaw("w", "a.x", function=drag, internal=-1),
-            snapshot("UserLaw 'w': internal is -1; expected 0 or more"),
+            snapshot("UserLaw 'w': internal is -1; expected zero or a positive whole number"),
         ),
         (lambda: law(3), snapshot("law: 3 was given; expected a Python function")),  # type: ignore[arg-type]
         (
             lambda: BoucWen("m", "a.x", stiffness=1.0, yield_displacement=-1.0),
-            snapshot("BoucWen 'm': the yield_displacement is -1 m; expected a positive number"),
+            snapshot("BoucWen 'm': yield_displacement is -1 m; expected a positive number"),
         ),
         (
             lambda: BoucWen("m", "a.x", stiffness=1.0, yield_displacement=1.0, ratio=2.0),
-            snapshot("BoucWen 'm': ratio is 2; expected 0 to 1"),
+            snapshot("BoucWen 'm': ratio is 2; expected a number from 0 to 1"),
         ),
         (
             lambda: BoucWen("m", "a.x", stiffness=1.0, yield_displacement=1.0, exponent=0.5),
-            snapshot("BoucWen 'm': exponent is 0.5; expected 1 or more"),
+            snapshot("BoucWen 'm': exponent is 0.5; expected a number of at least 1"),
         ),
         (
             lambda: BoucWen("m", "a.x", stiffness=1.0, yield_displacement=1.0, beta=0.1, gamma=0.5),
@@ -371,11 +371,11 @@ def test_elements_of_one_law_are_one_block() -> None:
         ),
         (
             lambda: FourParameterIwan("j", "a.x", force_limit=1, stiffness=1, exponent=0.5, ratio=1),
-            snapshot("FourParameterIwan 'j': exponent is 0.5; expected more than -1 and at most 0"),
+            snapshot("FourParameterIwan 'j': exponent is 0.5; expected a number above -1 and at most 0"),
         ),
         (
             lambda: FourParameterIwan("j", "a.x", force_limit=0, stiffness=1, exponent=-0.5, ratio=1),
-            snapshot("FourParameterIwan 'j': the force_limit is 0 N; expected a positive number"),
+            snapshot("FourParameterIwan 'j': force_limit is 0 N; expected a positive number"),
         ),
     ],
 )

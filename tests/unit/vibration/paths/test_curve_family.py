@@ -79,7 +79,7 @@ def test_a_family_is_kept_to_the_bit(tmp_path, builder) -> None:
 
 def test_a_value_without_a_curve_is_marked_with_its_reason() -> None:
     family = frequency_responses(damped, "preload", [2.0, -1.0], FREQUENCIES, METHOD, unit="N")
-    reason = "contact 'damper': the preload is -1 N; expected a number that is not negative"
+    reason = "FrictionContact 'damper': preload is -1 N; expected zero or a positive number"
     assert family.failures == (None, reason)
     assert not family.success
     assert family.status == f"1 of 2 curves over preload, 14 of 14 points found; preload = -1: {reason}"
@@ -109,7 +109,7 @@ def test_past_folds_all_branches_count() -> None:
 
 def test_where_there_is_no_curve_at_all_the_first_reason_is_raised() -> None:
     with pytest.raises(
-        InputError, match=says("contact 'damper': the preload is -2 N; expected a number that is not negative")
+        InputError, match=says("FrictionContact 'damper': preload is -2 N; expected zero or a positive number")
     ):
         frequency_responses(damped, "preload", [-2.0, -1.0], FREQUENCIES, METHOD)
     with pytest.raises(

@@ -78,7 +78,7 @@ def test_a_batch_gives_the_bits_of_its_samples_and_marks_those_that_fail() -> No
     batch[1, 1] = -1.0
     responses = own.evaluate(batch)
     assert responses.failures[0] is None
-    assert responses.failures[1] == "contact 'foot': the preload is -1 N; expected a number that is not negative"
+    assert responses.failures[1] == "FrictionContact 'foot': preload is -1 N; expected zero or a positive number"
     np.testing.assert_array_equal(responses.values[0], own.evaluate(vector[None]).values[0])
     np.testing.assert_array_equal(responses.values[0], responses.values[2])
 

@@ -287,17 +287,17 @@ def large() -> VibrationSystem:
         (
             lambda: Newmark(periods=0),
             InputError,
-            "Newmark: 0 periods were allowed; expected at least 1",
+            "Newmark: periods is 0; expected a whole number of at least 1",
         ),
         (
             lambda: Newmark(spectral_radius=1.2),
             InputError,
-            "Newmark: spectral_radius is 1.2; expected a number in [0, 1], or none",
+            "Newmark: spectral_radius is 1.2; expected a number from 0 to 1",
         ),
         (
             lambda: Newmark(tolerance=0.0),
             InputError,
-            "Newmark: tolerance is 0.0; expected a number between 0 and 1",
+            "Newmark: tolerance is 0; expected a number between 0 and 1",
         ),
         (
             lambda: Newmark(stand_in=-1.0),

@@ -4,7 +4,7 @@ import inspect
 import types
 import typing
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import MISSING, InitVar, field
+from dataclasses import MISSING, InitVar, field, fields
 from functools import cache, wraps
 from typing import Any, NamedTuple, TypeVar, Union, cast
 
@@ -50,7 +50,7 @@ class Range(NamedTuple):
 POSITIVE, NOT_NEGATIVE = Range(above=0.0), Range(least=0.0)
 
 
-def limited(default: Any = MISSING, **limits: float) -> Any:
+def limited(default: Any = MISSING, unit: str | None = None, **limits: float) -> Any:
     """Field of a dataclass that derives from :class:`Checked` whose values lie in a :class:`Range`.
 
     >>> from dataclasses import dataclass
@@ -61,7 +61,8 @@ def limited(default: Any = MISSING, **limits: float) -> Any:
     Traceback (most recent call last):
     dalembert.errors.InputError: Search: tolerance is 2; expected a number between 0 and 1
     """
-    return field(default=default, metadata={"range": Range(**limits)})
+    of_unit = {} if unit is None else {"unit": unit}
+    return field(default=default, metadata={"range": Range(**limits), **of_unit})
 
 
 class Checked:
@@ -140,19 +141,19 @@ def _check(made: Any, passed_on: tuple[Any, ...]) -> None:
 
 def _owner(made: Any, argument: str) -> str:
     """Class and name of an object, for messages about an argument."""
-    name = getattr(made, "name", None)
-    return type(made).__name__ + (f" {name!r}" if isinstance(name, str) and argument != "name" else "")
+    named = argument != "name" and any(entry.name == "name" for entry in fields(made)) and isinstance(made.name, str)
+    return type(made).__name__ + (f" {made.name!r}" if named else "")
 
 
 @cache
 def _arguments(made: type) -> tuple[_Argument, ...]:
-    fields = [entry for entry in made.__dataclass_fields__.values() if entry.init]  # type: ignore[attr-defined]
+    entries = [entry for entry in made.__dataclass_fields__.values() if entry.init]  # type: ignore[attr-defined]
     try:
         annotations = typing.get_type_hints(made)
     except Exception:  # a name that only type checkers know
         annotations = {}
     found, passed_on = [], 0
-    for entry in fields:
+    for entry in entries:
         annotation, place = annotations.get(entry.name, entry.type), None
         if isinstance(annotation, InitVar):
             annotation, place, passed_on = annotation.type, passed_on, passed_on + 1

@@ -78,6 +78,17 @@ def unknown(what: str, given: object, known: Iterable[str], where: str = "") -> 
     return f"{prefix}unknown {what} {given!r}; known: {', '.join(names) or 'none'}"
 
 
+def require_known(what: str, given: object, known: Iterable[str], where: str = "") -> None:
+    """Refuse a name that is not among the known ones, see :func:`unknown`.
+
+    Raises
+    ------
+    InputError
+    """
+    if given not in (names := list(known)):
+        raise InputError(unknown(what, given, names, where))
+
+
 def _closest(given: str, names: list[str]) -> list[str]:
     """Up to two close names; those that end in the part that the given one ends in, or is meant to, come first."""
     close = get_close_matches(given, names, n=len(names) or 1, cutoff=0.6)

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from importlib import import_module
 from typing import Any
 
-from dalembert.errors import InputError, unknown
+from dalembert.errors import require_known
 
 ENTRIES = {
     "figures": "dalembert.report:figures",
@@ -32,7 +32,6 @@ def hook(name: str) -> Callable[..., Any]:
     Traceback (most recent call last):
     dalembert.errors.InputError: unknown hook 'figure'; did you mean 'figures'?
     """
-    if name not in ENTRIES:
-        raise InputError(unknown("hook", name, ENTRIES))
+    require_known("hook", name, ENTRIES)
     module, function = ENTRIES[name].split(":")
     return getattr(import_module(module), function)

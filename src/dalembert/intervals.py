@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from dalembert.arguments import Checked, takes_checked
-from dalembert.errors import InputError, shown, unknown
+from dalembert.errors import InputError, require_known, shown
 
 
 @dataclass(frozen=True)
@@ -157,8 +157,7 @@ class Box:
         return iter(self.names)
 
     def __getitem__(self, name: str) -> Interval:
-        if name not in self.names:
-            raise InputError(unknown("interval", name, self.names))
+        require_known("interval", name, self.names)
         place = self.names.index(name)
         return Interval(float(self.lower[place]), float(self.upper[place]))
 

@@ -198,7 +198,7 @@ CASES: dict[str, tuple[Callable[[], object], str]] = {
     ),
     "a gap of NaN": (lambda: ElasticSlider(1.0, gap=NAN), "ElasticSlider: gap is nan; expected a finite number in m"),
     "a cell alone": (lambda: Iwan(1.0, 1.0), "Iwan: stiffnesses is 1.0; expected a list"),
-    "a negative share": (lambda: Iwan((1.0, 1.0), (2.0, -1.0)), "Iwan: a share is -1; expected a number that is not"),
+    "a negative share": (lambda: Iwan((1.0, 1.0), (2.0, -1.0)), "Iwan: shares is -1; expected zero or a positive"),
     "a penalty as text": (lambda: Rigid("1"), "Rigid: penalty is '1'; expected a number in N/m"),
     # springs and laws of the user's
     "a cubic spring of NaN": (
@@ -206,7 +206,10 @@ CASES: dict[str, tuple[Callable[[], object], str]] = {
         "CubicSpring 'k': stiffness is nan; expected",
     ),
     "a gap as text": (lambda: Gap("k", "m", stiffness=1.0, gap="1"), "Gap 'k': gap is '1'; expected a number in m"),
-    "a negative gap": (lambda: BilinearStop("k", "m", stiffness=1.0, gap=-1.0), "stop 'k': the gap is -1 m; expected"),
+    "a negative gap": (
+        lambda: BilinearStop("k", "m", stiffness=1.0, gap=-1.0),
+        "BilinearStop 'k': gap is -1 m; expected",
+    ),
     "a stop with itself": (
         lambda: run(FORCE, Gap("k", "m.x", "m", stiffness=1.0)),
         "element 'k' is between 'm.x' and itself",
@@ -232,11 +235,11 @@ CASES: dict[str, tuple[Callable[[], object], str]] = {
     "two and a half harmonics": (lambda: HarmonicBalance(2.5), "HarmonicBalance: harmonics is 2.5; expected a whole"),
     "no iterations": (
         lambda: HarmonicBalance(3, iterations=0),
-        "HarmonicBalance: iterations is 0; expected at least 1",
+        "HarmonicBalance: iterations is 0; expected a whole number of at least 1",
     ),
     "negative halvings": (
         lambda: HarmonicBalance(3, halvings=-1),
-        "HarmonicBalance: halvings is -1; expected at least 0",
+        "HarmonicBalance: halvings is -1; expected zero or a positive whole number",
     ),
     "steps of NaN": (lambda: Newmark(NAN), "Newmark: steps_per_period is nan; expected a whole number"),
     "a number as a method": (

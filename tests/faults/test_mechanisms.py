@@ -302,11 +302,11 @@ INPUTS = {
     ),
     "a step of zero": (
         lambda: mb.GeneralizedAlpha(step=0.0),
-        "GeneralizedAlpha: step is 0.0; expected a positive number of seconds",
+        "GeneralizedAlpha: step is 0 s; expected a positive number",
     ),
     "a spectral radius above one": (
         lambda: mb.GeneralizedAlpha(1e-3, spectral_radius=1.1),
-        "GeneralizedAlpha: spectral_radius is 1.1; expected a number in [0, 1]",
+        "GeneralizedAlpha: spectral_radius is 1.1; expected a number from 0 to 1",
     ),
     "a start that is not there": (
         lambda: mb.GeneralizedAlpha(1e-3, initial_acceleration="consistant"),
@@ -314,7 +314,7 @@ INPUTS = {
     ),
     "a tolerance of zero": (
         lambda: mb.GeneralizedAlpha(1e-3, adaptive=True, tolerance=0.0),
-        "GeneralizedAlpha: tolerance is 0.0; expected a positive number",
+        "GeneralizedAlpha: tolerance is 0; expected a positive number",
     ),
     "a Newton tolerance that is not a number": (
         lambda: mb.GeneralizedAlpha(1e-3, newton_tolerance=np.nan),

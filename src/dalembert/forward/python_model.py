@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from dalembert.arguments import check_whole, samples_of
-from dalembert.errors import DalembertError, InputError, SolveError, shown, told, unknown, users_place
+from dalembert.errors import DalembertError, InputError, SolveError, require_known, shown, told, users_place
 from dalembert.forward.builders import named
 from dalembert.forward.complex_steps import STEP, Compared, check_steps
 from dalembert.forward.differences import COMPLEX_STEP, DERIVATIVES, RELATIVE_STEP
@@ -66,8 +66,7 @@ class PythonModel:
         derivative: str = COMPLEX_STEP,
         kept: int | None = None,
     ) -> None:
-        if derivative not in DERIVATIVES:
-            raise InputError(unknown("derivative", derivative, DERIVATIVES))
+        require_known("derivative", derivative, DERIVATIVES)
         if not callable(function):
             raise InputError(f"PythonModel: function is {shown(function)}; expected a function")
         parameters = Parameters.of(parameters)

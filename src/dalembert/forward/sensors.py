@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import make_interp_spline
 
 from dalembert.arguments import check_model, samples_of
-from dalembert.errors import InputError, shown, unknown
+from dalembert.errors import InputError, require_known, shown
 from dalembert.forward.complex_steps import check_derivatives
 from dalembert.forward.lag import lagged
 from dalembert.forward.model import Channel, Coordinate, ForwardModel
@@ -288,8 +288,7 @@ class Sensors:
 def _unknowns(model: ForwardModel, name: str, sensor: Sensor) -> list[Parameter]:
     """Parameters of one sensor."""
     units = {channel.name: channel.unit for channel in model.channels}
-    if name not in units:
-        raise InputError(unknown("channel", name, units, "Sensors"))
+    require_known("channel", name, units, "Sensors")
     given = {what: getattr(sensor, what) for what in QUANTITIES if getattr(sensor, what) is not None}
     if not given:
         raise InputError(

@@ -12,7 +12,7 @@ from typing import NamedTuple, cast
 import numpy as np
 from scipy.linalg import qr
 
-from dalembert.errors import InputError, ModelError, unknown
+from dalembert.errors import ModelError, require_known
 from dalembert.multibody.components.planar.body import Body
 from dalembert.multibody.equilibrium_start import begin_at_rest, unstable_body
 from dalembert.multibody.evaluate import constraint_jacobian, residual
@@ -141,10 +141,8 @@ def _free(system: System) -> np.ndarray:
     free = np.array([[True, True, body.turns] for body in system.bodies])
     for entry in system.driving:
         name, _, coordinate = entry.rpartition(".")
-        if coordinate not in _FRAME:
-            raise InputError(unknown("coordinate", coordinate, _FRAME, f"driving {entry!r}"))
-        if name not in names:
-            raise InputError(unknown("body", name, names, f"driving {entry!r}"))
+        require_known("coordinate", coordinate, _FRAME, f"driving {entry!r}")
+        require_known("body", name, names, f"driving {entry!r}")
         free[names.index(name), _FRAME[coordinate]] = False
     return free
 

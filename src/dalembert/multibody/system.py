@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import Any, TypeVar
 
 from dalembert.arguments import is_number, names_of
-from dalembert.errors import InputError, ModelError, shown, unknown
+from dalembert.errors import InputError, ModelError, require_known, shown, unknown
 from dalembert.findings import Finding
 from dalembert.multibody.components.fields import Number
 from dalembert.multibody.components.planar.body import Body
@@ -57,8 +57,7 @@ class System:
             )
         self.gravity = gravity
         self.driving = names_of(driving, "System", "driving")
-        if start not in STARTS:
-            raise InputError(unknown("start", str(start), STARTS, "System"))
+        require_known("start", str(start), STARTS, "System")
         self.start = start
         self.ground = Ground()
         self.bodies: list[Body] = []

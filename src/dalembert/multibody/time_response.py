@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from dalembert.arguments import names_of
-from dalembert.errors import InputError, ModelError, SolveError, told, unknown
+from dalembert.errors import InputError, ModelError, SolveError, require_known, told
 from dalembert.findings import Finding
 from dalembert.forward import Channel, Coordinate, Refinement, Responses, StateChart, ensemble, error_factor
 from dalembert.forward.builders import built, check_function, cores, inexact, restructured
@@ -98,8 +98,7 @@ class TimeResponse:
         derivative: str = COMPLEX_STEP,
         begin: float = 0.0,
     ) -> None:
-        if derivative not in DERIVATIVES:
-            raise InputError(unknown("derivative", derivative, DERIVATIVES, "TimeResponse"))
+        require_known("derivative", derivative, DERIVATIVES, "TimeResponse")
         times = checked(times)
         if times[-1] <= 0:
             raise InputError("TimeResponse: the last of the times is 0 s; expected a motion of some duration")

@@ -5,9 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dalembert.arguments import Checked
+from dalembert.arguments import Checked, limited
 from dalembert.optimize.minimum import Minimum, Objective, OnIteration, Progress, box, fitness_of
-from dalembert.settings import expect, expect_at_least, expect_positive
 
 
 @dataclass(frozen=True)
@@ -52,20 +51,14 @@ class Firefly(Checked):
     ('the fitness fell below the target of 1e-15', [0.3, 0.3])
     """
 
-    fireflies: int = 60
-    absorption: float = 1.0
-    attraction: float = 0.7
-    randomness: float = 0.7
-    target: float = 1e-15
-    generations: int = 1000
-    exponent: float = 2.0
-    resolution: float = 1e-10
-
-    def __post_init__(self) -> None:
-        expect_at_least(self, 1, "fireflies", "generations")
-        expect(self, "no negative number", lambda given: given >= 0, "absorption", "target", "resolution")
-        expect_positive(self, "attraction", "exponent")
-        expect(self, "a number from 0 to below 1", lambda given: 0 <= given < 1, "randomness")
+    fireflies: int = limited(60, least=1)
+    absorption: float = limited(1.0, least=0)
+    attraction: float = limited(0.7, above=0)
+    randomness: float = limited(0.7, least=0, below=1)
+    target: float = limited(1e-15, least=0)
+    generations: int = limited(1000, least=1)
+    exponent: float = limited(2.0, above=0)
+    resolution: float = limited(1e-10, least=0)
 
     def minimise(
         self,

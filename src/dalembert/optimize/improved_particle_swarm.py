@@ -5,7 +5,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from dalembert.errors import InputError, unknown
+from dalembert.errors import InputError, require_known
 from dalembert.optimize.swarm import Swarm, SwarmState, pulled
 
 SPANS = ("bound", "width")
@@ -76,8 +76,7 @@ class ImprovedParticleSwarm(Swarm):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.span not in SPANS:
-            raise InputError(unknown("span", self.span, SPANS, "ImprovedParticleSwarm"))
+        require_known("span", self.span, SPANS, "ImprovedParticleSwarm")
         if self.groups is not None and (sum(self.groups) != self.particles or min(self.groups) < 0):
             raise InputError(
                 f"ImprovedParticleSwarm: groups {self.groups} hold {sum(self.groups)} particles; "

@@ -7,10 +7,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import least_squares
 
-from dalembert.arguments import Checked
-from dalembert.optimize.minimum import Minimum, OnIteration, Progress, box, expect_reachable
+from dalembert.arguments import Checked, limited
+from dalembert.optimize.minimum import Minimum, OnIteration, Progress, box, reachable
 from dalembert.optimize.stopping import WINDOW, Stopped, Stopping
-from dalembert.settings import expect
 
 LEAST_GAIN = 1e-14
 """Fraction of the sum of squares. A step that gains less ends a descent, whatever is foreseen."""
@@ -68,13 +67,9 @@ class LeastSquares(Checked):
     [1.0, 1.0]
     """
 
-    trials: int | None = None
-    tolerance: float = 1e-10
-    gain: float = 1e-13
-
-    def __post_init__(self) -> None:
-        expect(self, "at least 1", lambda given: given is None or given >= 1, "trials")
-        expect_reachable(self, "tolerance", "gain")
+    trials: int | None = limited(None, least=1)
+    tolerance: float = reachable(1e-10)
+    gain: float = reachable(1e-13)
 
     def minimise(
         self,

@@ -11,7 +11,7 @@ import scipy.optimize as so
 from numpy.typing import ArrayLike
 
 from dalembert.arguments import Checked
-from dalembert.errors import InputError, unknown
+from dalembert.errors import InputError, require_known, unknown
 from dalembert.optimize.minimum import Minimum, Objective, OnIteration, Progress, box, fitness_of
 
 BOUNDED = ("Nelder-Mead", "Powell", "L-BFGS-B", "TNC", "COBYLA", "COBYQA", "SLSQP", "trust-constr")
@@ -71,8 +71,7 @@ class Minimiser(Checked):
                 "callback",
             }
             for option in self.options:
-                if option not in taken:
-                    raise InputError(unknown("option", option, taken, f"Minimiser({self.name!r})"))
+                require_known("option", option, taken, f"Minimiser({self.name!r})")
 
     @property
     def batched(self) -> bool:

@@ -2,15 +2,21 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from dalembert.arguments import limited
 from dalembert.errors import InputError
-from dalembert.settings import expect
 
 Objective = Callable[[np.ndarray], np.ndarray]
 """Fitness of a batch, (batch, parameters) to (batch,); NaN or an infinity marks a sample that failed."""
+
+
+def reachable(default: float) -> Any:
+    """Field of a tolerance that is not lost in rounding."""
+    return limited(default, above=3e-16, below=1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,8 +126,3 @@ def box(lower: ArrayLike, upper: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
             f"bounds are {low.tolist()} and {high.tolist()}; expected two vectors of one length, finite, lower < upper"
         )
     return low, high
-
-
-def expect_reachable(method: object, *names: str) -> None:
-    """Refuse tolerances of a method that are lost in rounding, or are none."""
-    expect(method, "a number from 3e-16 to 1", lambda given: np.finfo(float).eps < given < 1, *names)

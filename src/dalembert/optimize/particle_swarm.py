@@ -5,8 +5,8 @@ from typing import ClassVar
 
 import numpy as np
 
+from dalembert.arguments import limited
 from dalembert.optimize.swarm import Swarm, SwarmState, pulled
-from dalembert.settings import expect
 
 
 @dataclass(frozen=True)
@@ -41,11 +41,10 @@ class ParticleSwarm(Swarm):
     inertia: float | tuple[float, float] = (0.9, 0.4)
     c1: float = 2.0
     c2: float = 2.0
-    velocity_limit: float | None = 0.2
+    velocity_limit: float | None = limited(0.2, above=0)
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        expect(self, "a positive fraction", lambda given: given is None or given > 0, "velocity_limit")
 
     def velocity_bound(self, lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
         return (upper - lower) * (1.0 if self.velocity_limit is None else self.velocity_limit)

@@ -6,12 +6,11 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dalembert.arguments import Checked
-from dalembert.errors import InputError, unknown
+from dalembert.arguments import Checked, limited
+from dalembert.errors import InputError, require_known
 from dalembert.optimize.linear_model import LinearModel
-from dalembert.optimize.minimum import Minimum, OnIteration, Progress, RegularisedStep, box, expect_reachable
+from dalembert.optimize.minimum import Minimum, OnIteration, Progress, RegularisedStep, box, reachable
 from dalembert.optimize.tikhonov import Regularised
-from dalembert.settings import expect, expect_at_least
 
 REGULARISATIONS = ("l-curve", "gcv", "discrepancy")
 
@@ -67,28 +66,22 @@ class ResponseSensitivity(Checked):
     """
 
     regularisation: str = "l-curve"
-    agreement: float = 0.5
-    growth: float = 2.0
-    trials: int = 100
-    iterations: int = 50
-    tolerance: float = 1e-10
-    gain: float = 1e-8
-    noise: float | None = None
+    agreement: float = limited(0.5, least=0.25, most=0.75)
+    growth: float = limited(2.0, above=1)
+    trials: int = limited(100, least=1)
+    iterations: int = limited(50, least=1)
+    tolerance: float = reachable(1e-10)
+    gain: float = reachable(1e-8)
+    noise: float | None = limited(None, above=0)
 
     def __post_init__(self) -> None:
         where = "ResponseSensitivity"
-        if self.regularisation not in REGULARISATIONS:
-            raise InputError(unknown("regularisation", self.regularisation, REGULARISATIONS, where))
+        require_known("regularisation", self.regularisation, REGULARISATIONS, where)
         if self.regularisation == "discrepancy" and self.noise is None:
             raise InputError(
                 f"{where}: regularisation 'discrepancy' needs noise, the standard deviation of a weighted residual; "
                 "give noise=1.0 where the data have deviations"
             )
-        expect(self, "a positive number", lambda given: given is None or 0 < given < np.inf, "noise")
-        expect(self, "a number from 0.25 to 0.75", lambda given: 0.25 <= given <= 0.75, "agreement")
-        expect(self, "a number above 1, such as 2 to 5", lambda given: 1 < given < np.inf, "growth")
-        expect_at_least(self, 1, "trials", "iterations")
-        expect_reachable(self, "tolerance", "gain")
 
     def minimise(
         self,

@@ -7,9 +7,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dalembert.arguments import Checked
+from dalembert.arguments import Checked, limited
 from dalembert.optimize.minimum import Minimum, Objective, OnIteration, Progress, box, fitness_of
-from dalembert.settings import expect_at_least
 
 
 @dataclass(frozen=True)
@@ -70,11 +69,8 @@ class Swarm(Checked, ABC):
 
     name: ClassVar[str]
     """Name in study files; a subclass needs no other registration."""
-    particles: int = 40
-    iterations: int = 100
-
-    def __post_init__(self) -> None:
-        expect_at_least(self, 1, "particles", "iterations")
+    particles: int = limited(40, least=1)
+    iterations: int = limited(100, least=1)
 
     def start(
         self, objective: Objective, lower: ArrayLike, upper: ArrayLike, seed: int, start: ArrayLike | None = None

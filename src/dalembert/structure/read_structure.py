@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 from scipy.sparse import csc_array, issparse
 
-from dalembert.errors import DataError, InputError, shown, unknown
+from dalembert.errors import DataError, InputError, require_known, shown, unknown
 from dalembert.files import replacing
 from dalembert.structure.dofs import Dofs
 from dalembert.structure.matrix_files import NamedMatrix, matrices
@@ -79,8 +79,7 @@ def read_structure(
     files = path if isinstance(path, Mapping) else dict.fromkeys(ROLES, path)
     names = names or {}
     for role in (*files, *names):
-        if role not in ROLES:
-            raise InputError(unknown("role of a matrix", role, ROLES, "read_structure"))
+        require_known("role of a matrix", role, ROLES, "read_structure")
     whole = not isinstance(path, Mapping)
     read = {file: matrices(Path(file)) for file in dict.fromkeys(files.values())}
     found = {}

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from dalembert.arguments import takes_checked
-from dalembert.errors import DataError, InputError, shown, told, unknown
+from dalembert.errors import DataError, InputError, require_known, shown, told, unknown
 from dalembert.structure.assembly import assemble, library
 from dalembert.structure.counts import require_counts, require_lengths
 from dalembert.structure.dofs import Dofs
@@ -126,8 +126,7 @@ def solid(mesh: Any, material: Material | Mapping[str, Material], element: str |
     if not isinstance(mesh, skfem.Mesh):
         raise InputError(f"solid: mesh is {shown(mesh)}; expected a mesh of scikit-fem, such as box(...), or a path")
     kind = element or ("tetrahedron 10" if isinstance(mesh, skfem.MeshTet) else "brick 20")
-    if kind not in ELEMENTS:
-        raise InputError(unknown("element", kind, ELEMENTS, "solid"))
+    require_known("element", kind, ELEMENTS, "solid")
     shape, degree, mass_degree = ELEMENTS[kind]
     shape = getattr(skfem, shape)()
     if shape.refdom is not mesh.refdom:

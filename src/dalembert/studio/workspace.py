@@ -5,7 +5,7 @@ import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 
-from dalembert.errors import InputError, no_text, unknown
+from dalembert.errors import InputError, no_text, require_known
 from dalembert.files import replacing
 from dalembert.study.folder import RunFolder, find_runs
 from dalembert.study.loader import LARGEST
@@ -45,8 +45,7 @@ class Workspace:
             If there is none.
         """
         known = {folder.path.name: folder for folder in self.runs()}
-        if name not in known:
-            raise InputError(unknown("run", name, known))
+        require_known("run", name, known)
         return known[name]
 
     def new_run(self, name: str) -> Path:
@@ -77,8 +76,7 @@ class Workspace:
         InputError
             If there is none.
         """
-        if name not in self.studies():
-            raise InputError(unknown("study", name, self.studies()))
+        require_known("study", name, self.studies())
         return self.root / "studies" / f"{name}.toml"
 
     def create(self, name: str, content: str) -> str:

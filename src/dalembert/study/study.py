@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from dalembert.errors import DataError, InputError, ModelError, unknown
+from dalembert.errors import DataError, InputError, ModelError, require_known
 from dalembert.forward import Checkpoint, Executor, ForwardModel, Recorded, on_cluster
 from dalembert.parameters import Parameters
 from dalembert.study.builder import FunctionBuilder, SystemBuilder
@@ -52,8 +52,7 @@ def _require_given(channels: Sequence[str], model: ForwardModel) -> None:
     """Refuse channels that a model does not give."""
     names = [channel.name for channel in model.channels]
     for name in channels:
-        if name not in names:
-            raise InputError(unknown("channel", name, names))
+        require_known("channel", name, names)
 
 
 def _refuse_outside(files: str, times: np.ndarray) -> None:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
 
-from dalembert.errors import InputError, unknown
+from dalembert.errors import InputError, require_known
 from dalembert.files import write_text
 
 TEMPLATES = files("dalembert.study") / "templates"
@@ -52,8 +52,7 @@ def begin(template: str, folder: Path) -> Path:
         For a template that there is not, and a folder that is there already or cannot be made.
     """
     known = templates()
-    if template not in known:
-        raise InputError(unknown("template", template, known))
+    require_known("template", template, known)
     try:
         folder.mkdir(parents=True)
     except FileExistsError:

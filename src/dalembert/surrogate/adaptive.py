@@ -6,9 +6,8 @@ from typing import Literal
 
 import numpy as np
 
-from dalembert.arguments import Checked
-from dalembert.errors import InputError, unknown
-from dalembert.settings import expect_at_least, expect_positive
+from dalembert.arguments import Checked, limited
+from dalembert.errors import require_known
 from dalembert.surrogate.decay import by_direction, by_total_degree, slow_tails
 from dalembert.surrogate.growth import Growth
 from dalembert.surrogate.held_out import SHARE, HeldOut
@@ -72,19 +71,15 @@ class Adaptive(Checked):
     (27, [10, 3], True)
     """
 
-    tolerance: float = 1e-6
-    most_runs: int = 2000
-    most_order: int = 256
-    memory: float = 1e9
+    tolerance: float = limited(1e-6, above=0)
+    most_runs: int = limited(2000, least=1)
+    most_order: int = limited(256, least=1)
+    memory: float = limited(1e9, above=0)
     cautious: bool = True
     basis: Literal["sparse", "total-degree", "tensor"] = "sparse"
 
     def __post_init__(self) -> None:
-        expect_positive(self, "tolerance")
-        expect_at_least(self, 1, "most_runs", "most_order")
-        expect_positive(self, "memory")
-        if self.basis not in BASES:
-            raise InputError(unknown("basis", self.basis, BASES, "Adaptive"))
+        require_known("basis", self.basis, BASES, "Adaptive")
 
     def fitted(self, runs: Runs, seed: int, held_out: HeldOut, scale: Callable[[], np.ndarray]) -> Fitted:
         growth = Growth(runs.directions, self.basis)

@@ -7,7 +7,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dalembert.errors import InputError, unknown
+from dalembert.errors import InputError, require_known
 from dalembert.surrogate import scan
 from dalembert.surrogate.polynomial import ChebyshevPolynomial
 from dalembert.surrogate.rows import Rows, rows_of
@@ -83,8 +83,7 @@ def bounds(
     >>> found.at_lower[:, 0, 0].tolist()
     [0.0, 0.5]
     """
-    if method not in METHODS:
-        raise InputError(unknown("method of bounding a polynomial", method, METHODS))
+    require_known("method of bounding a polynomial", method, METHODS)
     low, high = _boxes(polynomial, lower, upper)
     if method == "bernstein":
         from dalembert.surrogate.bernstein import enclosures

@@ -6,9 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import lstsq, qr
 
-from dalembert.arguments import Checked
+from dalembert.arguments import Checked, limited
 from dalembert.errors import SolveError
-from dalembert.settings import expect, expect_at_least
 from dalembert.surrogate.basis import chebyshev, products, roots, terms_of, total_degree
 from dalembert.surrogate.decay import by_direction, by_total_degree, slow_tails, tail
 from dalembert.surrogate.held_out import HeldOut
@@ -48,12 +47,8 @@ class TotalDegree(Checked):
     12
     """
 
-    order: int = 2
-    oversampling: float = 2.0
-
-    def __post_init__(self) -> None:
-        expect_at_least(self, 1, "order")
-        expect(self, "a finite number, at least 1", lambda given: 1 <= given < np.inf, "oversampling")
+    order: int = limited(2, least=1)
+    oversampling: float = limited(2.0, least=1)
 
     def runs(self, directions: int) -> int:
         """Number M of runs that it takes."""

@@ -5,10 +5,9 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
-from dalembert.arguments import Checked
-from dalembert.errors import InputError, unknown
+from dalembert.arguments import Checked, limited
+from dalembert.errors import require_known
 from dalembert.findings import Finding
-from dalembert.settings import expect, expect_positive
 from dalembert.surrogate import Adaptive, Surrogate, bounds, fit
 from dalembert.surrogate.bounds import METHODS
 from dalembert.surrogate.scheme import Scheme
@@ -59,15 +58,12 @@ class Chebyshev(Checked):
 
     name: ClassVar[str] = "chebyshev"
     scheme: Scheme = Adaptive()
-    tolerance: float = 1e-4
+    tolerance: float = limited(1e-4, above=0)
     bounds: Literal["optimise", "scan", "bernstein"] = "optimise"
-    held_out: int | None = None
+    held_out: int | None = limited(None, least=0)
 
     def __post_init__(self) -> None:
-        if self.bounds not in METHODS:
-            raise InputError(unknown("way to bound a polynomial", self.bounds, METHODS, "Chebyshev, bounds"))
-        expect_positive(self, "tolerance")
-        expect(self, "zero or more", lambda given: given is None or given >= 0, "held_out")
+        require_known("way to bound a polynomial", self.bounds, METHODS, "Chebyshev, bounds")
 
     def most(self, runs: Runs) -> int | None:
         return None

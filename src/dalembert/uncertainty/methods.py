@@ -2,7 +2,7 @@
 
 from dataclasses import fields
 
-from dalembert.errors import InputError, unknown
+from dalembert.errors import InputError, require_known
 from dalembert.kinds import named
 from dalembert.uncertainty.chebyshev import Chebyshev
 from dalembert.uncertainty.method import Method
@@ -34,8 +34,7 @@ def method_of(given: Method | str) -> Method:
     """
     known = methods_by_name()
     if isinstance(given, str):
-        if given not in known:
-            raise InputError(unknown("method", given, known))
+        require_known("method", given, known)
         return known[given]()
     if not isinstance(given, tuple(known.values())):
         raise InputError(

@@ -6,9 +6,8 @@ from typing import ClassVar
 import numpy as np
 import scipy
 
-from dalembert.arguments import Checked
+from dalembert.arguments import Checked, limited
 from dalembert.findings import Finding
-from dalembert.settings import expect
 from dalembert.uncertainty.extreme_search import ExtremeSearch
 from dalembert.uncertainty.method import MethodBounds
 from dalembert.uncertainty.runs import Runs
@@ -41,13 +40,9 @@ class Optimise(Checked):
     """
 
     name: ClassVar[str] = "optimise"
-    tolerance: float = 1e-6
-    start: int | None = None
+    tolerance: float = limited(1e-6, above=0, below=1)
+    start: int | None = limited(None, least=0)
     most_runs: int = 3000
-
-    def __post_init__(self) -> None:
-        expect(self, "a number between 0 and 1", lambda given: 0 < given < 1, "tolerance")
-        expect(self, "zero points or more", lambda given: given is None or given >= 0, "start")
 
     def most(self, runs: Runs) -> int | None:
         return None

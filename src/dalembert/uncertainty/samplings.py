@@ -7,12 +7,11 @@ from typing import ClassVar
 
 import numpy as np
 
-from dalembert.arguments import Checked
+from dalembert.arguments import Checked, limited
 from dalembert.errors import InputError
 from dalembert.findings import Finding
 from dalembert.intervals import Box
 from dalembert.latin_hypercube import latin_hypercube
-from dalembert.settings import expect, expect_at_least
 from dalembert.uncertainty.method import Extremes, MethodBounds
 from dalembert.uncertainty.runs import Runs
 from dalembert.uncertainty.unknown_error import share_of, unknown_error
@@ -114,11 +113,8 @@ class Scan(Sampling):
         "them."
     )
     advice: ClassVar[str] = "Use 'optimise' to find peaks."
-    points_each: int = 21
+    points_each: int = limited(21, least=2)
     most_runs: int = 1_000_000
-
-    def __post_init__(self) -> None:
-        expect(self, "at least 2, the ends of each interval", lambda given: given >= 2, "points_each")
 
     def size(self, box: Box) -> int:
         return _grid_size(self.name, self.points_each, box, self.most_runs, "fewer points a parameter, or Optimise()")
@@ -136,10 +132,7 @@ class Scan(Sampling):
 class Drawn(Sampling):
     """Runs at points drawn by chance, in halves: what the second half still widened is a finding."""
 
-    runs: int
-
-    def __post_init__(self) -> None:
-        expect_at_least(self, 2, "runs")
+    runs: int = limited(least=2)
 
     def size(self, box: Box) -> int:
         return self.runs
@@ -169,7 +162,7 @@ class MonteCarlo(Drawn):
         "corners of the box."
     )
     advice: ClassVar[str] = "Use 'optimise' or 'chebyshev', which need fewer runs."
-    runs: int = 1000
+    runs: int = limited(1000, least=2)
 
     def shares(self, dimensions: int, seed: int) -> np.ndarray:
         return np.random.default_rng(seed).random((self.runs, dimensions))
@@ -191,7 +184,7 @@ class LatinHypercube(Drawn):
         "corners of the box."
     )
     advice: ClassVar[str] = "Use 'optimise' or 'chebyshev', which need fewer runs."
-    runs: int = 200
+    runs: int = limited(200, least=2)
 
     def shares(self, dimensions: int, seed: int) -> np.ndarray:
         return latin_hypercube(dimensions, self.runs, np.random.default_rng(seed))

@@ -5,9 +5,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from dalembert.arguments import Checked
+from dalembert.arguments import Checked, limited
 from dalembert.findings import Finding
-from dalembert.settings import expect
 from dalembert.uncertainty.method import MethodBounds
 from dalembert.uncertainty.runs import Runs
 from dalembert.uncertainty.unknown_error import share_of
@@ -28,10 +27,7 @@ class Taylor(Checked):
     """
 
     name: ClassVar[str] = "taylor"
-    held_out: int = 4
-
-    def __post_init__(self) -> None:
-        expect(self, "zero or more", lambda given: given >= 0, "held_out")
+    held_out: int = limited(4, least=0)
 
     def most(self, runs: Runs) -> int:
         return 1 + len(runs.box) + self.held_out * bool(len(runs.free))

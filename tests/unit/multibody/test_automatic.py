@@ -74,5 +74,5 @@ def test_another_word_is_no_solver() -> None:
 
 
 def test_the_tolerance_is_positive() -> None:
-    with pytest.raises(InputError, match=says("Automatic: tolerance is 0.0; expected a positive number")):
+    with pytest.raises(InputError, match=says("Automatic: tolerance is 0; expected a positive number")):
         Automatic(tolerance=0.0)

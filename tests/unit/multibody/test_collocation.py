@@ -232,9 +232,9 @@ def test_a_search_without_an_exact_end_has_no_derivatives():
 @pytest.mark.parametrize(
     ("wrong", "sentence"),
     [
-        (lambda: da.GaussNewton(iterations=0), "GaussNewton: iterations is 0; expected at least 1"),
-        (lambda: da.Collocation(step=0.0), "Collocation: step is 0.0; expected a positive number of seconds"),
-        (lambda: da.Collocation(step=0.1, degree=1), "Collocation: degree is 1; expected at least 2"),
+        (lambda: da.GaussNewton(iterations=0), "GaussNewton: iterations is 0; expected a whole number of at least 1"),
+        (lambda: da.Collocation(step=0.0), "Collocation: step is 0 s; expected a positive number"),
+        (lambda: da.Collocation(step=0.1, degree=1), "Collocation: degree is 1; expected a whole number of at least 2"),
         (
             lambda: da.Collocation(step=0.1, degree=4),
             "Collocation: gauss_points is 2; expected at least degree - 1 = 3",

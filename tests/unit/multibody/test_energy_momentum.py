@@ -13,7 +13,7 @@ from support import says
 
 
 def test_settings_that_cannot_be_meant() -> None:
-    with pytest.raises(InputError, match=says("EnergyMomentum: step is -1.0; expected a positive number of seconds")):
+    with pytest.raises(InputError, match=says("EnergyMomentum: step is -1 s; expected a positive number")):
         mb.EnergyMomentum(step=-1.0)
 
 

@@ -135,7 +135,7 @@ def test_partitioning_without_constraints_takes_the_steps_of_augmented(method: s
 @pytest.mark.parametrize(
     ("make", "sentence"),
     [
-        (lambda: mb.RungeKutta4(0.0), "RungeKutta4: step is 0.0; expected a positive number of seconds"),
+        (lambda: mb.RungeKutta4(0.0), "RungeKutta4: step is 0 s; expected a positive number"),
         (
             lambda: mb.Baumgarte(alpha=1.0),
             "Baumgarte: alpha is 1.0 and beta is None; expected two positive numbers (1/s), or none of them, which "
@@ -146,18 +146,18 @@ def test_partitioning_without_constraints_takes_the_steps_of_augmented(method: s
             "Baumgarte: neither alpha nor beta was given, and the integrator chooses its step by the error; give both "
             "(1/s), such as Baumgarte(alpha=10.0, beta=10.0), or use Projection() or Partitioning()",
         ),
-        (lambda: mb.Partitioning(1.0), "Partitioning: limit is 1.0; expected a number greater than 1"),
+        (lambda: mb.Partitioning(1.0), "Partitioning: limit is 1; expected a number above 1"),
         (
             lambda: mb.OdeSolver("dop853"),
             "OdeSolver: unknown method 'dop853'; known: BDF, DOP853, LSODA, RK45, Radau",
         ),
         (
             lambda: mb.OdeSolver(relative_tolerance=1e-14),
-            "OdeSolver: relative_tolerance is 1e-14; expected a number from 1e-12 to 1",
+            "OdeSolver: relative_tolerance is 1e-14; expected a number of at least 1e-12 and below 1",
         ),
         (
             lambda: mb.OdeSolver(absolute_tolerance=0.0),
-            "OdeSolver: absolute_tolerance is 0.0; expected a positive number",
+            "OdeSolver: absolute_tolerance is 0; expected a positive number",
         ),
         (
             lambda: mb.OdeSolver("LSODA"),

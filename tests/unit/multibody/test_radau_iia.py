@@ -18,8 +18,8 @@ from support import says
 @pytest.mark.parametrize(
     ("settings", "sentence"),
     [
-        ({"step": 0.0}, "RadauIIA: step is 0.0; expected a positive number of seconds, or none"),
-        ({"tolerance": -1.0}, "RadauIIA: tolerance is -1.0; expected a positive number"),
+        ({"step": 0.0}, "RadauIIA: step is 0 s; expected a positive number"),
+        ({"tolerance": -1.0}, "RadauIIA: tolerance is -1; expected a positive number"),
         ({"stages": 4}, "RadauIIA: stages is 4; expected 3, 5 or 7"),
     ],
 )

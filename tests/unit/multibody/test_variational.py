@@ -11,10 +11,10 @@ from support import says
 @pytest.mark.parametrize(
     ("settings", "sentence"),
     [
-        ({"step": 0.0}, "Variational: step is 0.0; expected a positive number of seconds"),
+        ({"step": 0.0}, "Variational: step is 0 s; expected a positive number"),
         (
             {"step": 1e-3, "newton_tolerance": -1.0},
-            "Variational: newton_tolerance is -1.0; expected a positive number",
+            "Variational: newton_tolerance is -1; expected a positive number",
         ),
     ],
 )

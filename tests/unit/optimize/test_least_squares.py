@@ -138,9 +138,9 @@ def test_one_of_many_descents_is_judged_sooner():
 @pytest.mark.parametrize(
     ("settings", "sentence"),
     [
-        ({"trials": 0}, "LeastSquares: trials is 0; expected at least 1"),
-        ({"tolerance": 0.0}, "LeastSquares: tolerance is 0.0; expected a number from 3e-16 to 1"),
-        ({"gain": 2.0}, "LeastSquares: gain is 2.0; expected a number from 3e-16 to 1"),
+        ({"trials": 0}, "LeastSquares: trials is 0; expected a whole number of at least 1"),
+        ({"tolerance": 0.0}, "LeastSquares: tolerance is 0; expected a number between 3e-16 and 1"),
+        ({"gain": 2.0}, "LeastSquares: gain is 2; expected a number between 3e-16 and 1"),
     ],
 )
 def test_wrong_settings_are_answered_in_a_sentence(settings, sentence):

@@ -284,13 +284,13 @@ def test_the_path_does_not_depend_on_origin_and_unit_of_a_parameter():
             "ResponseSensitivity: regularisation 'discrepancy' needs noise, the standard deviation of a weighted "
             "residual; give noise=1.0 where the data have deviations",
         ),
-        ({"noise": -1.0}, "ResponseSensitivity: noise is -1.0; expected a positive number"),
+        ({"noise": -1.0}, "ResponseSensitivity: noise is -1; expected a positive number"),
         ({"agreement": 0.9}, "ResponseSensitivity: agreement is 0.9; expected a number from 0.25 to 0.75"),
-        ({"growth": 1.0}, "ResponseSensitivity: growth is 1.0; expected a number above 1, such as 2 to 5"),
-        ({"trials": 0}, "ResponseSensitivity: trials is 0; expected at least 1"),
-        ({"iterations": 0}, "ResponseSensitivity: iterations is 0; expected at least 1"),
-        ({"tolerance": 0.0}, "ResponseSensitivity: tolerance is 0.0; expected a number from 3e-16 to 1"),
-        ({"gain": 2.0}, "ResponseSensitivity: gain is 2.0; expected a number from 3e-16 to 1"),
+        ({"growth": 1.0}, "ResponseSensitivity: growth is 1; expected a number above 1"),
+        ({"trials": 0}, "ResponseSensitivity: trials is 0; expected a whole number of at least 1"),
+        ({"iterations": 0}, "ResponseSensitivity: iterations is 0; expected a whole number of at least 1"),
+        ({"tolerance": 0.0}, "ResponseSensitivity: tolerance is 0; expected a number between 3e-16 and 1"),
+        ({"gain": 2.0}, "ResponseSensitivity: gain is 2; expected a number between 3e-16 and 1"),
     ],
 )
 def test_wrong_settings_are_answered_in_a_sentence(settings, sentence):

@@ -130,11 +130,14 @@ def test_the_standard_move_is_the_textbook_formula():
 @pytest.mark.parametrize(
     ("wrong", "sentence"),
     [
-        (lambda: ParticleSwarm(particles=0), "ParticleSwarm: particles is 0; expected at least 1"),
-        (lambda: ImprovedParticleSwarm(iterations=0), "ImprovedParticleSwarm: iterations is 0; expected at least 1"),
+        (lambda: ParticleSwarm(particles=0), "ParticleSwarm: particles is 0; expected a whole number of at least 1"),
+        (
+            lambda: ImprovedParticleSwarm(iterations=0),
+            "ImprovedParticleSwarm: iterations is 0; expected a whole number of at least 1",
+        ),
         (
             lambda: ParticleSwarm(velocity_limit=-1.0),
-            "ParticleSwarm: velocity_limit is -1.0; expected a positive fraction",
+            "ParticleSwarm: velocity_limit is -1; expected a positive number",
         ),
         (
             lambda: ParticleSwarm().minimise(sphere, [1, 1], [0, 2], 0),

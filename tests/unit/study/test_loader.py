@@ -249,7 +249,7 @@ horizon = "growin"
         "study.toml: [[model.joint]] 'O', b: 'OA-end' was given; "
         "expected a point such as 'ground', 'OA.end', 'ground(0.3, 0)' or [0.3, 0.0]",
         "study.toml: [[model.load]] 'T', torque: unknown kind 'Harmonik'; did you mean 'Harmonic'?",
-        "study.toml: [solver]: GeneralizedAlpha: spectral_radius is 2.0; expected a number in [0, 1]",
+        "study.toml: [solver]: GeneralizedAlpha: spectral_radius is 2; expected a number from 0 to 1",
         f"study.toml: [data], file: 'none.csv' was given, but there is no file {path.parent / 'none.csv'}",
         "study.toml: [data.columns], x: 1.5 was given; expected the name of a column in quotes, or its number from 1",
         "study.toml: [identify], method: unknown method 'nelder-meat'; did you mean 'Nelder-Mead'?",

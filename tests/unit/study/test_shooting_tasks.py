@@ -98,7 +98,7 @@ def test_a_study_shoots_and_reports_where_its_segments_meet(write, tmp_path):
         ),
         (
             DATA + "[identify]\n" + SHOOTING.replace("segments = 4", "segments = 1"),
-            "MultipleShooting: segments is 1; expected at least 2",
+            "MultipleShooting: segments is 1; expected a whole number of at least 2",
         ),
         (
             DATA + "[identify]\n" + SHOOTING.replace("upper = 2.0", "upper = -3.0"),

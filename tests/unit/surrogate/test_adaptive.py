@@ -111,8 +111,8 @@ def test_a_constant_and_a_failed_run() -> None:
 @pytest.mark.parametrize(
     ("options", "sentence"),
     [
-        ({"tolerance": 0.0}, "Adaptive: tolerance is 0.0; expected a positive number"),
-        ({"most_runs": 0}, "Adaptive: most_runs is 0; expected at least 1"),
+        ({"tolerance": 0.0}, "Adaptive: tolerance is 0; expected a positive number"),
+        ({"most_runs": 0}, "Adaptive: most_runs is 0; expected a whole number of at least 1"),
         ({"basis": "sparce"}, "Adaptive: unknown basis 'sparce'; did you mean 'sparse'?"),
     ],
 )

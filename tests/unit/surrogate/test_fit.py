@@ -89,8 +89,8 @@ def test_what_cannot_be_meant_is_refused() -> None:
         scheme=Tensor((2, 2, 2)),
     )
     for make, sentence in {
-        lambda: TotalDegree(0): "TotalDegree: order is 0; expected at least 1",
-        lambda: TotalDegree(2, 0.5): "TotalDegree: oversampling is 0.5; expected a finite number, at least 1",
+        lambda: TotalDegree(0): "TotalDegree: order is 0; expected a whole number of at least 1",
+        lambda: TotalDegree(2, 0.5): "TotalDegree: oversampling is 0.5; expected a number of at least 1",
         lambda: Tensor((2, 0)): "Tensor: order is (2, 0); expected at least 1 in each direction",
     }.items():
         with pytest.raises(InputError, match=says(sentence)):

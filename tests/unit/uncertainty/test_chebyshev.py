@@ -77,8 +77,8 @@ def test_the_tolerance_is_relative_to_the_variation_of_the_channel():
             lambda: Chebyshev(bounds="optimize"),
             "Chebyshev, bounds: unknown way to bound a polynomial 'optimize'; did you mean 'optimise'?",
         ),
-        (lambda: Chebyshev(tolerance=0.0), "Chebyshev: tolerance is 0.0; expected a positive number"),
-        (lambda: Chebyshev(held_out=-1), "Chebyshev: held_out is -1; expected zero or more"),
+        (lambda: Chebyshev(tolerance=0.0), "Chebyshev: tolerance is 0; expected a positive number"),
+        (lambda: Chebyshev(held_out=-1), "Chebyshev: held_out is -1; expected zero or a positive whole number"),
     ],
 )
 def test_settings_that_cannot_be_meant_are_answered_in_a_sentence(wrong, sentence):

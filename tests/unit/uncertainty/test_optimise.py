@@ -95,8 +95,8 @@ def test_six_parameters():
 @pytest.mark.parametrize(
     ("wrong", "sentence"),
     [
-        (lambda: Optimise(tolerance=0.0), "Optimise: tolerance is 0.0; expected a number between 0 and 1"),
-        (lambda: Optimise(start=-1), "Optimise: start is -1; expected zero points or more"),
+        (lambda: Optimise(tolerance=0.0), "Optimise: tolerance is 0; expected a number between 0 and 1"),
+        (lambda: Optimise(start=-1), "Optimise: start is -1; expected zero or a positive whole number"),
     ],
 )
 def test_settings_that_cannot_be_meant_are_answered_in_a_sentence(wrong, sentence):

@@ -80,9 +80,9 @@ def test_a_number_known_exactly_takes_no_more_points():
 @pytest.mark.parametrize(
     ("wrong", "sentence"),
     [
-        (lambda: Scan(1), "Scan: points_each is 1; expected at least 2, the ends of each interval"),
-        (lambda: MonteCarlo(1), "MonteCarlo: runs is 1; expected at least 2"),
-        (lambda: LatinHypercube(0), "LatinHypercube: runs is 0; expected at least 2"),
+        (lambda: Scan(1), "Scan: points_each is 1; expected a whole number of at least 2"),
+        (lambda: MonteCarlo(1), "MonteCarlo: runs is 1; expected a whole number of at least 2"),
+        (lambda: LatinHypercube(0), "LatinHypercube: runs is 0; expected a whole number of at least 2"),
         (
             lambda: propagate(HILL, BOX, Vertex(most_runs=3)),
             "method 'vertex': 2 points for each of 2 intervals are 4 runs, more than most_runs = 3; raise it, or use "

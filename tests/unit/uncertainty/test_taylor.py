@@ -46,5 +46,5 @@ def test_numbers_all_known_exactly_need_no_held_out_runs():
 
 
 def test_a_negative_number_of_held_out_runs_is_refused():
-    with pytest.raises(InputError, match=says("Taylor: held_out is -1; expected zero or more")):
+    with pytest.raises(InputError, match=says("Taylor: held_out is -1; expected zero or a positive whole number")):
         Taylor(held_out=-1)

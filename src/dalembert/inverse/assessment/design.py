@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from dalembert.arguments import takes_checked
-from dalembert.errors import InputError, unknown
+from dalembert.errors import InputError, require_known
 from dalembert.forward import ForwardModel
 from dalembert.forward.provenance import provenance
 from dalembert.inverse.assessment.designs import CRITERIA, Designs
@@ -70,8 +70,7 @@ def design(
     >>> designs.sensors[0], designs.horizons[0]
     (('vx',), np.float64(5.0))
     """
-    if criterion not in CRITERIA:
-        raise InputError(unknown("criterion", criterion, CRITERIA, "design"))
+    require_known("criterion", criterion, CRITERIA, "design")
     vector, parameters = at_of(model, at, "design"), model.parameters
     names, columns, noise = noise_of(model, deviations, "design")
     sets = _sets(sensors, names)
@@ -114,8 +113,7 @@ def design(
 def _sets(sensors: str | Iterable[str | Sequence[str]], names: tuple[str, ...]) -> list[tuple[str, ...]]:
     """Sets of channels."""
     if isinstance(sensors, str):
-        if sensors not in SETS:
-            raise InputError(unknown("set of sensors", sensors, SETS, "design"))
+        require_known("set of sensors", sensors, SETS, "design")
         if sensors == "all":
             return [names]
         found = list(combinations(names, 1 if sensors == "singles" else 2))
@@ -124,8 +122,7 @@ def _sets(sensors: str | Iterable[str | Sequence[str]], names: tuple[str, ...]) 
         return found
     found = [(entry,) if isinstance(entry, str) else tuple(entry) for entry in sensors]
     for name in (name for chosen in found for name in chosen):
-        if name not in names:
-            raise InputError(unknown("channel", name, names, "design: sensors"))
+        require_known("channel", name, names, "design: sensors")
     if not found or not all(found):
         raise InputError("design: a set of sensors is empty; expected at least one channel in each")
     return found

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.special import chdtri, ndtri
 
 from dalembert.arguments import takes_checked
-from dalembert.errors import InputError, unknown
+from dalembert.errors import require_known
 from dalembert.findings import Finding
 from dalembert.forward import ForwardModel
 from dalembert.forward.provenance import provenance
@@ -155,8 +155,7 @@ def _wiring(names: list[str], fit: Fit) -> np.ndarray:
     """Where parameters stand among the identified ones."""
     known = fit.parameters.names
     for name in names:
-        if name not in known:
-            raise InputError(unknown("parameter", name, known, "predict: the model has one that was not identified"))
+        require_known("parameter", name, known, "predict: the model has one that was not identified")
     return np.array([known.index(name) for name in names], dtype=int)
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from dalembert.arguments import numbers_of
-from dalembert.errors import InputError, SolveError, StorageError, told, unknown
+from dalembert.errors import InputError, SolveError, StorageError, require_known, told
 from dalembert.forward import ForwardModel, check_derivatives
 
 
@@ -25,8 +25,7 @@ def noise_of(
     known = tuple(channel.name for channel in model.channels)
     names = tuple(deviations) if isinstance(deviations, Mapping) else known
     for name in names:
-        if name not in known:
-            raise InputError(unknown("channel", name, known, f"{where}: deviations"))
+        require_known("channel", name, known, f"{where}: deviations")
     given = [deviations[name] for name in names] if isinstance(deviations, Mapping) else deviations
     values = numbers_of(given, where, "deviations")
     if values.shape not in ((), (len(names),)) or not names:

@@ -6,6 +6,7 @@ from functools import partial
 import numpy as np
 
 from dalembert.arguments import Checked as CheckedArguments
+from dalembert.arguments import limited
 from dalembert.inverse.bands.band_problem import BandProblem
 from dalembert.inverse.bands.candidate import Candidate, candidate
 from dalembert.inverse.bands.check import Check, check, scale
@@ -16,7 +17,6 @@ from dalembert.inverse.events import Checked
 from dalembert.inverse.problem.matching import place
 from dalembert.inverse.problem.surrogates import surrogate_of
 from dalembert.optimize import LeastSquares, Minimum
-from dalembert.settings import expect, expect_at_least
 from dalembert.surrogate import Adaptive, Surrogate
 from dalembert.surrogate.held_out import SHARE
 from dalembert.surrogate.scheme import Scheme
@@ -81,15 +81,10 @@ class GlobalSurrogate(CheckedArguments):
 
     scheme: Scheme = field(default_factory=lambda: Adaptive(tolerance=1e-2, cautious=False))
     local: Scheme = field(default_factory=lambda: Adaptive(tolerance=2e-4, cautious=False))
-    starts: int = 4
-    checks: int = 4
-    tolerance: float = 1e-3
-    held_out: int = 4
-
-    def __post_init__(self) -> None:
-        expect_at_least(self, 1, "starts")
-        expect_at_least(self, 0, "checks", "held_out")
-        expect(self, "a positive number", lambda given: 0 < given < np.inf, "tolerance")
+    starts: int = limited(4, least=1)
+    checks: int = limited(4, least=0)
+    tolerance: float = limited(1e-3, above=0)
+    held_out: int = limited(4, least=0)
 
     @property
     def name(self) -> str:

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from dalembert.arguments import check_whole, takes_checked
 from dalembert.data import Bands
-from dalembert.errors import InputError, shown, unknown
+from dalembert.errors import InputError, require_known, shown
 from dalembert.forward import Executor, ForwardModel, clock, findings_at, on_cluster, takes_executor
 from dalembert.forward.provenance import provenance
 from dalembert.intervals import Box
@@ -156,8 +156,7 @@ def _method(given: Method | str | None) -> Method:
     if given is None:
         return GlobalSurrogate()
     if isinstance(given, str):
-        if given not in METHODS:
-            raise InputError(unknown("method of identifying bands", given, METHODS))
+        require_known("method of identifying bands", given, METHODS)
         return METHODS[given]()
     if isinstance(given, type) or not hasattr(given, "search"):
         raise InputError(f"method is {shown(given)}; expected GlobalSurrogate(...), Nested(...), 'global' or 'nested'")

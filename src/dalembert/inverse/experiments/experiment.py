@@ -7,7 +7,7 @@ import numpy as np
 
 from dalembert.arguments import check_model, names_of
 from dalembert.data import Measurements
-from dalembert.errors import InputError, shown, unknown
+from dalembert.errors import InputError, require_known, shown
 from dalembert.forward import Coordinate, ForwardModel
 from dalembert.parameters import Parameter
 
@@ -46,8 +46,7 @@ class Experiment:
         object.__setattr__(self, "own", names_of(self.own, f"Experiment {self.name!r}", "own"))
         names = [item.name for item in self.model.parameters.declared]
         for name in self.own:
-            if name not in names:
-                raise InputError(unknown("parameter", name, names, f"experiment {self.name!r}, own"))
+            require_known("parameter", name, names, f"experiment {self.name!r}, own")
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from dalembert.data import Measurements
-from dalembert.errors import DalembertError, InputError, unknown
+from dalembert.errors import DalembertError, InputError, require_known
 from dalembert.findings import Finding
 from dalembert.forward import (
     Channel,
@@ -228,8 +228,7 @@ def joint_weights(model: JointModel, given: Mapping[str, ArrayLike] | None) -> n
             f"not a {type(given).__name__}"
         )
     for name in given:
-        if name not in names:
-            raise InputError(unknown("experiment", name, names, "weights"))
+        require_known("experiment", name, names, "weights")
     weights = np.zeros((len(model.coordinate.values), len(model.channels)))
     for part in model.parts:
         with errors_named(part.name):

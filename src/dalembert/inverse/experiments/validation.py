@@ -6,7 +6,7 @@ from typing import Annotated
 
 import numpy as np
 
-from dalembert.errors import InputError, unknown
+from dalembert.errors import InputError, require_known
 from dalembert.inverse.experiments.experiment import Part
 from dalembert.inverse.experiments.experiments import JointModel
 from dalembert.inverse.experiments.explained import WORSE, Explained, explained, percentages
@@ -134,8 +134,7 @@ def _experiments(problem: Problem, lengths: Mapping[str, float], fitted: np.ndar
         )
     known = [part.name for part in model.parts]
     for name in names:
-        if name not in known:
-            raise InputError(unknown("experiment", name, known, "validation"))
+        require_known("experiment", name, known, "validation")
     if not names or len(names) == len(known):
         raise InputError("validation: expected at least one experiment to be fitted, and one to be predicted")
     kept = [name for name in known if name not in names or lengths[name] > 0]

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from dalembert.arguments import check_whole, numbers_of, takes_checked
 from dalembert.data import Measurements
-from dalembert.errors import InputError, unknown
+from dalembert.errors import InputError, require_known
 from dalembert.forward import Executor, ForwardModel, clock, findings_at, on_cluster, takes_executor
 from dalembert.forward.provenance import provenance
 from dalembert.intervals import Box
@@ -184,8 +184,7 @@ def _errors(given: float | Mapping[str, float] | ArrayLike, data: Measurements) 
     """Largest errors of shape (samples, channels)."""
     if isinstance(given, Mapping):
         for name in given:
-            if name not in data.channels:
-                raise InputError(unknown("channel", name, data.channels, "error"))
+            require_known("channel", name, data.channels, "error")
         missing = [name for name in data.channels if name not in given]
         if missing:
             raise InputError(

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from dalembert.errors import InputError, unknown
+from dalembert.errors import InputError, require_known, unknown
 from dalembert.forward import begun_later, restartable
 from dalembert.inverse.problem.problem import Problem
 from dalembert.inverse.shooting.shooting import MultipleShooting
@@ -51,8 +51,7 @@ def _check_named(track: Track, shooting: MultipleShooting) -> None:
     names = [channel.name for channel in track.model.channels]
     for name, state in (shooting.states or {}).items():
         track.model.parameters.check_name(name, where="shooting, states")
-        if state.channel not in names:
-            raise InputError(unknown("channel", state.channel, names, f"shooting, state {name!r}"))
+        require_known("channel", state.channel, names, f"shooting, state {name!r}")
         if state.rate_of is not None and state.rate_of not in data.channels:
             raise InputError(unknown("channel", state.rate_of, data.channels, f"shooting, state {name!r}, rate_of"))
     if len(along.values) <= 2 * shooting.count:

@@ -8,6 +8,7 @@ from itertools import chain
 import numpy as np
 from threadpoolctl import threadpool_limits
 
+from dalembert.arguments import Checked, limited
 from dalembert.errors import InputError, SolveError
 from dalembert.inverse.least_squares.descent import End, descend
 from dalembert.inverse.problem.noise import NoiseFloor
@@ -21,7 +22,6 @@ from dalembert.inverse.shooting.segments import ShootingState
 from dalembert.inverse.shooting.tracks import tracks
 from dalembert.inverse.starts.spread import spread_points
 from dalembert.optimize import Squares
-from dalembert.settings import expect_at_least
 
 WORSE = 1.1
 """Ratio of misfits up to which fewer segments are taken to explain the data as well as more of them."""
@@ -31,7 +31,7 @@ USUAL = 8
 
 
 @dataclass(frozen=True)
-class MultipleShooting:
+class MultipleShooting(Checked):
     """The motion in segments with initial states of their own, which must meet; for chaotic motion.
 
     Parameters
@@ -97,11 +97,9 @@ class MultipleShooting:
     """
 
     states: Mapping[str, ShootingState] | None = None
-    segments: int | None = None
+    segments: int | None = limited(None, least=2)
 
     def __post_init__(self) -> None:
-        if self.segments is not None:
-            expect_at_least(self, 2, "segments")
         if self.states is not None and not self.states:
             raise InputError(
                 "MultipleShooting: no states were given; expected all parameters of the initial state, each with the "

@@ -12,7 +12,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from dalembert.arguments import Checked
-from dalembert.errors import InputError, unknown
+from dalembert.errors import InputError, require_known
 from dalembert.multibody.components.fields import Number
 from dalembert.multibody.kernels import signals as kinds
 
@@ -143,8 +143,7 @@ class Table(Signal):
     integrals: int = 0
 
     def __post_init__(self) -> None:
-        if self.kind not in TABLE_KINDS:
-            raise InputError(unknown("kind", self.kind, TABLE_KINDS, "Table"))
+        require_known("kind", self.kind, TABLE_KINDS, "Table")
         if len(self.times) != len(self.values) or len(self.times) < 2:
             raise InputError(
                 f"Table: {len(self.times)} times and {len(self.values)} values were given; "
@@ -186,8 +185,7 @@ class Table(Signal):
         >>> Table.of(data, "current", scale=0.35).values.tolist()
         [0.0, 2.0, 1.0]
         """
-        if channel not in data.channels:
-            raise InputError(unknown("channel", channel, data.channels, "Table.of"))
+        require_known("channel", channel, data.channels, "Table.of")
         values = data.continuous[:, data.channels.index(channel)]
         there = np.isfinite(values)
         own: Any = cls

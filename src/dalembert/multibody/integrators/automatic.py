@@ -2,8 +2,9 @@
 
 __all__ = ["Automatic"]
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
+from dalembert.arguments import limited
 from dalembert.multibody.assemble import redundancy
 from dalembert.multibody.integrators.batch import Batch
 from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha
@@ -14,7 +15,6 @@ from dalembert.multibody.integrators.run import Run
 from dalembert.multibody.integrators.stabilisation import Partitioning
 from dalembert.multibody.lowered import Lowered
 from dalembert.multibody.singular_positions import SINGULAR_POSITION
-from dalembert.settings import expect_positive
 
 _FIRST = 1e-3  # of the motion: the first step of an adaptive one
 _MOST_STEPS = 20_000  # of an explicit method past a singular position
@@ -45,10 +45,7 @@ class Automatic(Integrator):
     RadauIIA(tolerance=1e-06, step=None, stages=5, newton_tolerance=1e-14, most_steps=1000000)
     """
 
-    tolerance: float = field(default=1e-6, metadata={"unit": ""})
-
-    def __post_init__(self) -> None:
-        expect_positive(self, "tolerance")
+    tolerance: float = limited(1e-6, unit="", above=0)
 
     def suiting(self, lowered: Lowered, end: float) -> Integrator:
         """The integrator for a mechanism's motion until ``end`` (s)."""

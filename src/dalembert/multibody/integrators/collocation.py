@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from dalembert.arguments import Checked, limited
 from dalembert.errors import InputError
 from dalembert.kernels.kernel import Compiled
 from dalembert.multibody.integrators.batch import Batch, Sample
@@ -24,11 +25,10 @@ from dalembert.multibody.kernels.linear import DENSE_KERNELS
 from dalembert.multibody.kernels.motion import Histories, MotionStates, resting
 from dalembert.multibody.structure import Structure
 from dalembert.optimize import Firefly, LeastSquares, Minimiser, ResponseSensitivity, Squares, Swarm
-from dalembert.settings import expect, expect_at_least
 
 
 @dataclass(frozen=True)
-class GaussNewton:
+class GaussNewton(Checked):
     """Gauss and Newton's iterations with exact derivatives, compiled; for :class:`Collocation`.
 
     Parameters
@@ -37,10 +37,7 @@ class GaussNewton:
         At most, a step; fewer where rounding is reached before.
     """
 
-    iterations: int = 3
-
-    def __post_init__(self) -> None:
-        expect_at_least(self, 1, "iterations")
+    iterations: int = limited(3, least=1)
 
 
 @dataclass(frozen=True)
@@ -85,19 +82,19 @@ class Collocation(Integrator):
     dalembert.errors.InputError: Collocation: gauss_points is 1; expected at least degree - 1 = 2
     """
 
-    step: float = field(metadata={"unit": "s"})
+    step: float = limited(unit="s", above=0)
     minimiser: GaussNewton | Firefly | LeastSquares | ResponseSensitivity | Swarm | Minimiser = field(
         default=GaussNewton(), metadata={"checked": False}
     )
-    degree: int = 2
+    degree: int = limited(2, least=2)
     gauss_points: int = 2
     seed: int = 0
 
     def __post_init__(self) -> None:
-        expect(self, "a positive number of seconds", lambda given: 0 < given < np.inf, "step")
-        expect_at_least(self, 2, "degree")
-        least = self.degree - 1
-        expect(self, f"at least degree - 1 = {least}", lambda given: given >= least, "gauss_points")
+        if self.gauss_points < self.degree - 1:
+            raise InputError(
+                f"Collocation: gauss_points is {self.gauss_points}; expected at least degree - 1 = {self.degree - 1}"
+            )
         if not isinstance(self.minimiser, GaussNewton | Firefly | Squares | Swarm | Minimiser):
             raise InputError(
                 f"Collocation: minimiser is {self.minimiser!r}; expected GaussNewton(), Firefly(), LeastSquares() or "

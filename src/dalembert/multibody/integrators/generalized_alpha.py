@@ -2,12 +2,13 @@
 
 __all__ = ["GeneralizedAlpha"]
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 
-from dalembert.errors import InputError, unknown
+from dalembert.arguments import limited
+from dalembert.errors import require_known
 from dalembert.kernels.kernel import Compiled, inlined, inner, kernel
 from dalembert.kernels.words import Address, Integers, Integers2, Reals2
 from dalembert.multibody.integrators.batch import Batch, restarts
@@ -70,26 +71,16 @@ class GeneralizedAlpha(Integrator):
     0.8
     """
 
-    step: float = field(metadata={"unit": "s"})
-    spectral_radius: float = field(default=0.8, metadata={"unit": ""})
+    step: float = limited(unit="s", above=0)
+    spectral_radius: float = limited(0.8, unit="", least=0, most=1)
     initial_acceleration: str = "consistent"
     adaptive: bool = False
-    tolerance: float = field(default=1e-6, metadata={"unit": ""})
-    newton_tolerance: float = field(default=2e-15, metadata={"unit": ""})
+    tolerance: float = limited(1e-6, unit="", above=0)
+    newton_tolerance: float = limited(2e-15, unit="", above=0)
     most_steps: int = 1_000_000
 
     def __post_init__(self) -> None:
-        if not (np.isfinite(self.step) and self.step > 0):
-            raise InputError(f"GeneralizedAlpha: step is {self.step}; expected a positive number of seconds")
-        if not 0 <= self.spectral_radius <= 1:
-            raise InputError(
-                f"GeneralizedAlpha: spectral_radius is {self.spectral_radius}; expected a number in [0, 1]"
-            )
-        if self.initial_acceleration not in STARTS:
-            raise InputError(unknown("initial_acceleration", self.initial_acceleration, STARTS, "GeneralizedAlpha"))
-        for name in ("tolerance", "newton_tolerance"):
-            if not getattr(self, name) > 0:
-                raise InputError(f"GeneralizedAlpha: {name} is {getattr(self, name)}; expected a positive number")
+        require_known("initial_acceleration", self.initial_acceleration, STARTS, "GeneralizedAlpha")
 
     @property
     def convergence(self) -> int:

@@ -9,7 +9,8 @@ import numpy as np
 from scipy import integrate as scipy_integrate
 from scipy.sparse import block_diag
 
-from dalembert.errors import InputError, unknown
+from dalembert.arguments import limited
+from dalembert.errors import InputError, require_known
 from dalembert.kernels.kernel import Compiled
 from dalembert.multibody.integrators.batch import Batch
 from dalembert.multibody.integrators.completion import kernels
@@ -22,7 +23,6 @@ from dalembert.multibody.integrators.stabilisation import Projection, Stabilisat
 from dalembert.multibody.kernels.motion import MotionState, resting
 from dalembert.multibody.singular_positions import named
 from dalembert.multibody.structure import Structure
-from dalembert.settings import expect, expect_positive
 
 EXPLICIT, IMPLICIT = ("RK45", "DOP853"), ("Radau", "BDF", "LSODA")
 _SHORT, _STUCK = 1e-9, 100  # part of a stretch below which a step is short, and how many in turn do not advance
@@ -67,17 +67,14 @@ class OdeSolver(Integrator):
     """
 
     method: str = "DOP853"
-    relative_tolerance: float = field(default=1e-8, metadata={"unit": ""})
-    absolute_tolerance: float = field(default=1e-10, metadata={"unit": ""})
+    relative_tolerance: float = limited(1e-8, unit="", least=_FINEST, below=1)
+    absolute_tolerance: float = limited(1e-10, unit="", above=0)
     stabilisation: Stabilisation = field(default_factory=Projection)
     most_steps: int = 1_000_000
     takes_redundancy = True
 
     def __post_init__(self) -> None:
-        if self.method not in EXPLICIT + IMPLICIT:
-            raise InputError(unknown("method", self.method, EXPLICIT + IMPLICIT, "OdeSolver"))
-        expect(self, f"a number from {_FINEST:g} to 1", lambda given: _FINEST <= given < 1, "relative_tolerance")
-        expect_positive(self, "absolute_tolerance")
+        require_known("method", self.method, EXPLICIT + IMPLICIT, "OdeSolver")
         if self.method == "LSODA" and self.stabilisation.way == PROJECTED:
             raise InputError(
                 "OdeSolver: LSODA keeps a memory of past steps that a projection cannot move; give "

@@ -2,10 +2,12 @@
 
 __all__ = ["RadauIIA"]
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from dalembert.arguments import limited
+from dalembert.errors import InputError
 from dalembert.kernels.kernel import Compiled
 from dalembert.multibody.integrators.batch import Batch
 from dalembert.multibody.integrators.consistent import accelerate_along
@@ -22,7 +24,6 @@ from dalembert.multibody.kernels.motion import resting
 from dalembert.multibody.lowered import Lowered
 from dalembert.multibody.singular_positions import named
 from dalembert.multibody.structure import Structure
-from dalembert.settings import expect, expect_positive
 
 _ROOM = 100_000  # steps whose Newton counts are kept, where their number is not known before
 _ABOVE = 100.0  # times the smallest error: a tolerance at which rounding hardly changes the step
@@ -72,17 +73,15 @@ class RadauIIA(Integrator):
     9
     """
 
-    tolerance: float = field(default=1e-7, metadata={"unit": ""})
-    step: float | None = field(default=None, metadata={"unit": "s"})
+    tolerance: float = limited(1e-7, unit="", above=0)
+    step: float | None = limited(None, unit="s", above=0)
     stages: int = 5
-    newton_tolerance: float = field(default=1e-14, metadata={"unit": ""})
+    newton_tolerance: float = limited(1e-14, unit="", above=0)
     most_steps: int = 1_000_000
 
     def __post_init__(self) -> None:
-        in_range = "a positive number of seconds, or none"
-        expect(self, in_range, lambda given: given is None or 0 < given < np.inf, "step")
-        expect_positive(self, "tolerance", "newton_tolerance")
-        expect(self, "3, 5 or 7", lambda given: given in (3, 5, 7), "stages")
+        if self.stages not in (3, 5, 7):
+            raise InputError(f"RadauIIA: stages is {self.stages}; expected 3, 5 or 7")
 
     @property
     def order(self) -> int:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dalembert.errors import InputError
+from dalembert.arguments import limited
 from dalembert.kernels.kernel import Compiled, inner, kernel
 from dalembert.kernels.words import Address, Integers, Reals
 from dalembert.multibody.integrators.batch import Batch
@@ -49,14 +49,10 @@ class RungeKutta4(Integrator):
     Projection()
     """
 
-    step: float = field(metadata={"unit": "s"})
+    step: float = limited(unit="s", above=0)
     stabilisation: Stabilisation = field(default_factory=Projection)
     takes_redundancy = True
     convergence = 4
-
-    def __post_init__(self) -> None:
-        if not (np.isfinite(self.step) and self.step > 0):
-            raise InputError(f"RungeKutta4: step is {self.step}; expected a positive number of seconds")
 
     def kernels(self, structure: Structure, derivatives: bool) -> list[Compiled]:
         """The loop with its linear systems, and what completes states."""

@@ -7,14 +7,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from dalembert.arguments import Checked
+from dalembert.arguments import Checked, limited
 from dalembert.errors import InputError
 from dalembert.multibody.assemble import redundancy
 from dalembert.multibody.evaluate import constraint_jacobian
 from dalembert.multibody.integrators.index1 import AS_THEY_COME, PARTITIONED, PROJECTED, Terms
 from dalembert.multibody.integrators.problem import Problem
 from dalembert.multibody.lowered import Lowered
-from dalembert.settings import expect
 
 
 class Stabilisation(Checked):
@@ -126,11 +125,8 @@ class Partitioning(Stabilisation):
     10.0
     """
 
-    limit: float = field(default=10.0, metadata={"unit": ""})
+    limit: float = limited(10.0, unit="", above=1)
     way = PARTITIONED
-
-    def __post_init__(self) -> None:
-        expect(self, "a number greater than 1", lambda given: given > 1, "limit")
 
 
 def posed(

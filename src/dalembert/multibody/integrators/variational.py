@@ -3,10 +3,11 @@
 __all__ = ["Variational"]
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
+from dalembert.arguments import limited
 from dalembert.kernels.kernel import Compiled
 from dalembert.multibody.integrators.batch import Batch
 from dalembert.multibody.integrators.consistent import accelerate_along
@@ -20,7 +21,6 @@ from dalembert.multibody.integrators.run import Run, cut_down, explain
 from dalembert.multibody.kernels.motion import MotionState, resting
 from dalembert.multibody.lowered import Lowered
 from dalembert.multibody.structure import Structure
-from dalembert.settings import expect, expect_positive
 
 
 @dataclass(frozen=True)
@@ -55,13 +55,9 @@ class Variational(Integrator):
     0.001
     """
 
-    step: float = field(metadata={"unit": "s"})
-    newton_tolerance: float = field(default=1e-14, metadata={"unit": ""})
+    step: float = limited(unit="s", above=0)
+    newton_tolerance: float = limited(1e-14, unit="", above=0)
     convergence = 2
-
-    def __post_init__(self) -> None:
-        expect(self, "a positive number of seconds", lambda given: 0 < given < np.inf, "step")
-        expect_positive(self, "newton_tolerance")
 
     def kernels(self, structure: Structure, derivatives: bool) -> list[Compiled]:
         """The loop with its linear systems, and what differentiates a step."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy as np
 from pydantic import Discriminator, Field, Tag, model_validator
 
-from dalembert.errors import InputError, StorageError, told, unknown
+from dalembert.errors import InputError, StorageError, require_known, told
 from dalembert.files import replacing
 from dalembert.forward import ForwardModel, prefetched
 from dalembert.parameters import Parameters
@@ -196,8 +196,7 @@ def _sample(model: ForwardModel, at: float) -> int:
 def _columns(model: ForwardModel, channels: list[str]) -> list[int]:
     names = [channel.name for channel in model.channels]
     for channel in channels:
-        if channel not in names:
-            raise InputError(unknown("channel", channel, names, "[sweep], channels"))
+        require_known("channel", channel, names, "[sweep], channels")
     return [names.index(channel) for channel in channels]
 
 

@@ -2,9 +2,8 @@
 
 from dataclasses import dataclass, replace
 
-from dalembert.arguments import Checked
+from dalembert.arguments import Checked, limited
 from dalembert.errors import InputError
-from dalembert.settings import expect, expect_at_least
 
 AUTOMATIC = "automatic"
 
@@ -57,11 +56,11 @@ class HarmonicBalance(Checked):
     odd_only: bool = False
     samples: int | str = AUTOMATIC
     events: bool = True
-    sampling: float = 1e-4
-    tolerance: float = 1e-10
-    iterations: int = 30
-    halvings: int = 6
-    resolution: float = 0.02
+    sampling: float = limited(1e-4, above=0, below=1)
+    tolerance: float = limited(1e-10, above=0, below=1)
+    iterations: int = limited(30, least=1)
+    halvings: int = limited(6, least=0)
+    resolution: float = limited(0.02, above=0, below=1)
 
     def __post_init__(self) -> None:
         if not 1 <= self.harmonics <= MOST_HARMONICS:
@@ -81,9 +80,6 @@ class HarmonicBalance(Checked):
             raise InputError(
                 f"HarmonicBalance: {self.samples} samples of a period were asked for; expected at most {MOST_GIVEN}"
             )
-        expect_at_least(self, 1, "iterations")
-        expect_at_least(self, 0, "halvings")
-        expect(self, "a number between 0 and 1", lambda given: 0 < given < 1, "sampling", "tolerance", "resolution")
 
     def refined(self) -> "HarmonicBalance | None":
         """Return the method with twice the harmonics and one more, and twice the samples; None beyond the limits."""

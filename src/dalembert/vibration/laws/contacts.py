@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from dalembert.arguments import NOT_NEGATIVE, POSITIVE, Checked
-from dalembert.errors import InputError, shown, unknown
+from dalembert.errors import InputError, require_known, shown
 
 Number = float | complex
 """A float, or a complex number whose imaginary part is a direction of differentiation."""
@@ -93,8 +93,7 @@ class Rigid(Checked):
     gap: Number = field(default=0.0, metadata={"unit": "m"})
 
     def __post_init__(self) -> None:
-        if self.kind not in RIGID_KINDS:
-            raise InputError(unknown("kind", self.kind, RIGID_KINDS, "Rigid"))
+        require_known("kind", self.kind, RIGID_KINDS, "Rigid")
 
 
 Law = ElasticSlider | Iwan | Rigid

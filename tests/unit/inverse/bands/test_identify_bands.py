@@ -366,10 +366,13 @@ def test_the_summary_names_intervals_fitness_and_effort():
             lambda: identify_bands(DECAY, EXACT, intervals=[], method=NESTED),
             "no intervals were given; expected the name of at least one parameter",
         ),
-        (lambda: GlobalSurrogate(starts=0), "GlobalSurrogate: starts is 0; expected at least 1"),
-        (lambda: GlobalSurrogate(checks=-1), "GlobalSurrogate: checks is -1; expected at least 0"),
-        (lambda: GlobalSurrogate(held_out=-1), "GlobalSurrogate: held_out is -1; expected at least 0"),
-        (lambda: GlobalSurrogate(tolerance=0.0), "GlobalSurrogate: tolerance is 0.0; expected a positive number"),
+        (lambda: GlobalSurrogate(starts=0), "GlobalSurrogate: starts is 0; expected a whole number of at least 1"),
+        (lambda: GlobalSurrogate(checks=-1), "GlobalSurrogate: checks is -1; expected zero or a positive whole number"),
+        (
+            lambda: GlobalSurrogate(held_out=-1),
+            "GlobalSurrogate: held_out is -1; expected zero or a positive whole number",
+        ),
+        (lambda: GlobalSurrogate(tolerance=0.0), "GlobalSurrogate: tolerance is 0; expected a positive number"),
         (
             lambda: identify_bands(DECAY, EXACT, weights=[1.0, 2.0]),
             "weights of shape (2,) were given; expected (channels,) = (1,) or (samples, channels) = (41, 1)",

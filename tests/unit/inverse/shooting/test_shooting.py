@@ -188,7 +188,7 @@ def test_simulations_of_all_fits_are_counted_as_runs_over_all_samples():
     ("change", "sentence"),
     [
         ({"segments": 32}, "shooting: 41 samples are too few for 32 segments; expected more than two each"),
-        ({"segments": 1}, "MultipleShooting: segments is 1; expected at least 2"),
+        ({"segments": 1}, "MultipleShooting: segments is 1; expected a whole number of at least 2"),
         (
             {"states": {}},
             "MultipleShooting: no states were given; expected all parameters of the initial state, each with the "

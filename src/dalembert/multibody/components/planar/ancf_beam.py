@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dalembert.errors import InputError, unknown
+from dalembert.errors import InputError, require_known
 from dalembert.findings import Finding
 from dalembert.multibody.components.fields import Number, number, pair, require, require_not_negative
 from dalembert.multibody.components.planar import markers
@@ -92,10 +92,8 @@ class AncfBeam(Ancf):
         owner = f"beam {self.name!r}"
         require(owner, density=self.density, height=self.height, width=self.width)
         require_not_negative(owner, damping=self.damping)
-        if self.law not in LAWS:
-            raise InputError(unknown("law", self.law, LAWS, owner))
-        if self.formulation not in FORMULATIONS:
-            raise InputError(unknown("formulation", self.formulation, FORMULATIONS, owner))
+        require_known("law", self.law, LAWS, owner)
+        require_known("formulation", self.formulation, FORMULATIONS, owner)
         if not -1 < np.real(self.poisson_ratio) < 0.5:
             raise InputError(
                 f"{owner}: poisson_ratio is {np.real(self.poisson_ratio):g}; expected a number in (-1, 0.5)"

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from dalembert.arguments import Checked
-from dalembert.errors import InputError, unknown
+from dalembert.errors import require_known
 from dalembert.findings import Finding
 from dalembert.multibody.components.fields import Number
 from dalembert.multibody.components.points import Place, Point
@@ -101,8 +101,7 @@ class Body(Checked):
 
     def point(self, name: str) -> Point:
         """The point of this name."""
-        if name not in self.point_names:
-            raise InputError(unknown("point", name, self.point_names, f"body {self.name!r}"))
+        require_known("point", name, self.point_names, f"body {self.name!r}")
         return Point(self, name)
 
     def rigid_modes(self, coordinates: np.ndarray, frame: np.ndarray) -> np.ndarray:

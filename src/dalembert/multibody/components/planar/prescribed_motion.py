@@ -5,7 +5,7 @@ __all__ = ["PrescribedMotion"]
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from dalembert.errors import InputError, unknown
+from dalembert.errors import InputError, require_known
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.planar import pairs
 from dalembert.multibody.components.planar.joint import OUTPUTS, Joint, observe_joint
@@ -95,8 +95,7 @@ class PrescribedMotion(Joint):
     kind = MOTION
 
     def __post_init__(self) -> None:
-        if self.coordinate not in _COORDINATES:
-            raise InputError(unknown("coordinate", self.coordinate, _COORDINATES, f"prescribed motion {self.name!r}"))
+        require_known("coordinate", self.coordinate, _COORDINATES, f"prescribed motion {self.name!r}")
         if isinstance(self.motion, Step) or (isinstance(self.motion, Table) and not self.motion.is_smooth):
             raise InputError(
                 f"prescribed motion {self.name!r}: the velocity of its {type(self.motion).__name__} jumps, which no "

@@ -5,7 +5,7 @@ __all__ = ["RigidBody"]
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from dalembert.errors import InputError, unknown
+from dalembert.errors import InputError, require_known
 from dalembert.multibody.components.fields import Number, number, pair, require
 from dalembert.multibody.components.planar.body import with_points
 from dalembert.multibody.components.planar.rigid import Rigid
@@ -58,8 +58,7 @@ class RigidBody(Rigid):
         require(f"rigid body {self.name!r}", mass=self.mass, inertia=self.inertia)
         if "centre" in self.points:
             raise InputError(f"rigid body {self.name!r}: the point name 'centre' is taken by the centre of mass")
-        if self.anchor not in self.point_names:
-            raise InputError(unknown("anchor", self.anchor, self.point_names, f"rigid body {self.name!r}"))
+        require_known("anchor", self.anchor, self.point_names, f"rigid body {self.name!r}")
 
     @property
     def place(self) -> Place:

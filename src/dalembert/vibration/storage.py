@@ -1,8 +1,9 @@
 """What results on vibration have in common as datasets: arrays with units; names, numbers and provenance as JSON."""
 
 import json
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Mapping
+from dataclasses import fields
+from typing import TYPE_CHECKING, Any, NamedTuple, Self, get_args
 
 import numpy as np
 import scipy
@@ -10,12 +11,74 @@ import scipy
 import dalembert
 from dalembert.contents import Contents
 from dalembert.findings import findings_of, stored_findings
+from dalembert.results import Result
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
-Dimensions = Mapping[str, tuple[str, ...]]
-"""Names of arrays of a result, each with the names of its dimensions."""
+
+class Over(NamedTuple):
+    """How an array is stored: over which dimensions, and its unit, or what returns the unit for a result."""
+
+    dimensions: tuple[str, ...]
+    unit: str | Callable[[Any], str] = ""
+
+
+class VibrationResult(Result):
+    """A dataclass whose arrays are annotated with :class:`Over`; its other fields are names and numbers."""
+
+    provenance: Mapping[str, Any]
+
+    def contents(self) -> Contents:
+        over, names = _split(type(self))
+        units = {name: form.unit if isinstance(form.unit, str) else form.unit(self) for name, form in over.items()}
+        variables = {
+            name: (form.dimensions, getattr(self, name), {"units": units[name]} if units[name] else {})
+            for name, form in over.items()
+        }
+        facts = {
+            "names": {name: getattr(self, name) for name in names},
+            "provenance": dict(self.provenance),
+            "findings": stored_findings(self.findings),
+        }
+        return Contents(variables, attributes={"format": self.FORMAT} | {key: json.dumps(facts[key]) for key in facts})
+
+    @classmethod
+    def from_xarray(cls, dataset: "Dataset") -> Self:
+        over, names = _split(cls)
+        arrays = {name: dataset[name].values for name in over if name in dataset}
+        for name in ("converged", "fold"):  # NetCDF has no truth values
+            if name in arrays:
+                arrays[name] = arrays[name].astype(bool)
+        facts = {name: dataset.attrs[name] for name in names if name in dataset.attrs}  # of former versions
+        facts |= {name: _tuples(own) for name, own in json.loads(dataset.attrs["names"]).items()}
+        found = findings_of(json.loads(dataset.attrs.get("findings", "[]")))
+        facts |= {"provenance": json.loads(dataset.attrs["provenance"]), **({"findings": found} if found else {})}
+        cls.upgrade(arrays, facts)
+        return cls(**arrays, **facts)
+
+
+class ConvergedResult(VibrationResult):
+    """A result whose points are marked where they are not converged."""
+
+    converged: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.converged)
+
+    def summary(self) -> str:
+        """Return some lines, the first on how many points are converged."""
+        raise NotImplementedError
+
+    @property
+    def success(self) -> bool:
+        """Whether every point is converged."""
+        return bool(self.converged.all())
+
+    @property
+    def status(self) -> str:
+        """How many were found, in a sentence."""
+        return self.summary().partition("\n")[0]
 
 
 def versions() -> dict[str, str]:
@@ -23,30 +86,11 @@ def versions() -> dict[str, str]:
     return {"version": dalembert.__version__, "numpy": np.__version__, "scipy": scipy.__version__}
 
 
-def stored(result: Any, dimensions: Dimensions, units: Mapping[str, str], names: Sequence[str]) -> Contents:
-    """A :class:`~dalembert.results.Result` as arrays; as attributes its format, ``names`` and provenance."""
-    variables = {
-        name: (over, getattr(result, name), {"units": units[name]} if units.get(name) else {})
-        for name, over in dimensions.items()
-    }
-    found = stored_findings(result.findings)
-    facts = {
-        "names": {name: getattr(result, name) for name in names},
-        "provenance": dict(result.provenance),
-        "findings": found,
-    }
-    attributes = {"format": result.FORMAT, **{key: json.dumps(own) for key, own in facts.items()}}
-    return Contents(variables, attributes=attributes)
-
-
-def fields_of(dataset: "Dataset", dimensions: Dimensions, truths: Sequence[str] = ()) -> dict[str, Any]:
-    """Fields of a result that was :func:`stored`; the arrays ``truths`` are of truth values."""
-    arrays = {name: dataset[name].values for name in dimensions if name in dataset}
-    names = {name: _tuples(own) for name, own in json.loads(dataset.attrs["names"]).items()}
-    provenance = json.loads(dataset.attrs["provenance"])
-    found = findings_of(json.loads(dataset.attrs.get("findings", "[]")))
-    facts = {"provenance": provenance, **({"findings": found} if found else {})}
-    return {**arrays, **{name: arrays[name].astype(bool) for name in truths}, **names, **facts}
+def _split(kind: Any) -> tuple[dict[str, Over], list[str]]:
+    """How the arrays of a result are stored, and the names of its other fields."""
+    given = {part.name: part.type for part in fields(kind) if part.name not in ("provenance", "findings")}
+    forms = {name: form for name, hint in given.items() for form in get_args(hint)[1:] if isinstance(form, Over)}
+    return forms, [name for name in given if name not in forms]
 
 
 def _tuples(given: Any) -> Any:

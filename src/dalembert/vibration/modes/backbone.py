@@ -2,37 +2,19 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
-from dalembert.contents import Contents
-from dalembert.results import Result
 from dalembert.units import unit_of
 from dalembert.vibration.paths.amplitudes import Amplitude, observed_column
-from dalembert.vibration.storage import fields_of, stored
+from dalembert.vibration.storage import ConvergedResult, Over
 
-if TYPE_CHECKING:
-    from xarray import Dataset
-
-_DIMENSIONS = {
-    "amplitudes": ("point",),
-    "frequencies": ("point",),
-    "damping": ("point",),
-    "energies": ("point",),
-    "forces": ("point",),
-    "iterations": ("point",),
-    "residuals": ("point",),
-    "converged": ("point",),
-    "samples": ("point",),
-    "shapes": ("point", "dof", "coefficient"),
-}
-_UNITS = {"amplitudes": "m", "frequencies": "Hz", "energies": "J", "forces": "N", "shapes": "m"}
-_NAMES = ("mode", "dof", "dofs", "orders")
+Points = Annotated[np.ndarray, Over(("point",))]
 
 
 @dataclass(frozen=True, eq=False)
-class Backbone(Result):
+class Backbone(ConvergedResult):
     """Frequency, damping and shape of a nonlinear mode over its amplitude, as :func:`backbone` returns them.
 
     Parameters
@@ -72,20 +54,17 @@ class Backbone(Result):
     dof: str
     dofs: tuple[str, ...]
     orders: tuple[int, ...]
-    amplitudes: np.ndarray
-    frequencies: np.ndarray
-    damping: np.ndarray
-    energies: np.ndarray
-    forces: np.ndarray
-    shapes: np.ndarray
-    iterations: np.ndarray
-    residuals: np.ndarray
-    converged: np.ndarray
-    samples: np.ndarray
+    amplitudes: Annotated[np.ndarray, Over(("point",), lambda own: unit_of(own.dof))]
+    frequencies: Annotated[np.ndarray, Over(("point",), "Hz")]
+    damping: Points
+    energies: Annotated[np.ndarray, Over(("point",), "J")]
+    forces: Annotated[np.ndarray, Over(("point",), "N")]
+    shapes: Annotated[np.ndarray, Over(("point", "dof", "coefficient"), "m")]
+    iterations: Points
+    residuals: Points
+    converged: Points
+    samples: Points
     provenance: Mapping[str, Any]
-
-    def __len__(self) -> int:
-        return len(self.amplitudes)
 
     def amplitude(self, dof: str, kind: str = "peak") -> np.ndarray:
         """Size of the motion of a degree of freedom, m, (points,): ``"peak"``, ``"rms"`` or ``"harmonic 1"`` and so on.
@@ -96,16 +75,6 @@ class Backbone(Result):
             For another kind, or an unknown degree of freedom.
         """
         return Amplitude(kind, self.orders).of(self.shapes[:, observed_column(self.dofs, dof)])
-
-    @property
-    def success(self) -> bool:
-        """Whether every motion is converged."""
-        return bool(self.converged.all())
-
-    @property
-    def status(self) -> str:
-        """How many were found, in a sentence."""
-        return self.summary().partition("\n")[0]
 
     def summary(self) -> str:
         """A few lines: points, and the ranges of frequency, damping and energy."""
@@ -126,11 +95,3 @@ class Backbone(Result):
             lost = ", ".join(f"{value:.6g} {unit_of(self.dof)}" for value in self.amplitudes[~found][:5])
             lines.append(f"not found: {lost}")
         return "\n".join(lines)
-
-    def contents(self) -> Contents:
-        return stored(self, _DIMENSIONS, {**_UNITS, "amplitudes": unit_of(self.dof)}, _NAMES)
-
-    @classmethod
-    def from_xarray(cls, dataset: "Dataset") -> "Backbone":
-        """The backbone that :meth:`to_xarray` turned into a dataset."""
-        return cls(**fields_of(dataset, _DIMENSIONS, ("converged",)))

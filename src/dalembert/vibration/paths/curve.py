@@ -2,41 +2,18 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from typing import Annotated, Any, ClassVar, NamedTuple
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.optimize import minimize_scalar
 
-from dalembert.contents import Contents
 from dalembert.errors import InputError, unknown
 from dalembert.findings import Finding
-from dalembert.results import Result
 from dalembert.units import unit_of
 from dalembert.vibration.balance.fourier import synthesis
 from dalembert.vibration.paths.amplitudes import Amplitude, observed_column
-from dalembert.vibration.storage import fields_of, stored
-
-if TYPE_CHECKING:
-    from xarray import Dataset
-
-_DIMENSIONS = {
-    "frequencies": ("point",),
-    "response": ("point", "dof", "coefficient"),
-    "displacements": ("point", "coordinate", "coefficient"),
-    "forces": ("point", "coordinate", "coefficient"),
-    "states": ("point", "contact", "phase"),
-    "unknowns": ("point", "retained", "coefficient"),
-    "iterations": ("point",),
-    "residuals": ("point",),
-    "converged": ("point",),
-    "fold": ("point",),
-    "samples": ("point",),
-    "sampling_errors": ("point",),
-    "stable": ("point",),
-}
-_UNITS = {"frequencies": "Hz", "response": "m", "displacements": "m", "forces": "N", "unknowns": "m"}
-_NAMES = ("dofs", "coordinates", "contacts", "orders", "markers")
+from dalembert.vibration.storage import Over, VibrationResult
 
 
 class Peak(NamedTuple):
@@ -48,9 +25,11 @@ class Peak(NamedTuple):
 
 _ROUNDING = 1e-10  # of the work done in and out in a period: energies below it are none
 
+Points = Annotated[np.ndarray, Over(("point",))]
+
 
 @dataclass(frozen=True, eq=False)
-class FrequencyCurve(Result):
+class FrequencyCurve(VibrationResult):
     """Periodic responses of a system over frequency, as :func:`frequency_response` returns them.
 
     Parameters
@@ -98,19 +77,19 @@ class FrequencyCurve(Result):
     coordinates: tuple[str, ...]
     contacts: tuple[str, ...]
     orders: tuple[int, ...]
-    frequencies: np.ndarray
-    response: np.ndarray
-    displacements: np.ndarray
-    forces: np.ndarray
-    states: np.ndarray
-    unknowns: np.ndarray
-    iterations: np.ndarray
-    residuals: np.ndarray
-    converged: np.ndarray
-    fold: np.ndarray
-    samples: np.ndarray
-    sampling_errors: np.ndarray
-    stable: np.ndarray
+    frequencies: Annotated[np.ndarray, Over(("point",), "Hz")]
+    response: Annotated[np.ndarray, Over(("point", "dof", "coefficient"), "m")]
+    displacements: Annotated[np.ndarray, Over(("point", "coordinate", "coefficient"), "m")]
+    forces: Annotated[np.ndarray, Over(("point", "coordinate", "coefficient"), "N")]
+    states: Annotated[np.ndarray, Over(("point", "contact", "phase"))]
+    unknowns: Annotated[np.ndarray, Over(("point", "retained", "coefficient"), "m")]
+    iterations: Points
+    residuals: Points
+    converged: Points
+    fold: Points
+    samples: Points
+    sampling_errors: Points
+    stable: Points
     markers: tuple[tuple[str, int], ...]
     provenance: Mapping[str, Any]
     findings: tuple[Finding, ...] = ()
@@ -240,18 +219,12 @@ class FrequencyCurve(Result):
         asked = int(np.sum(self.stable >= 0))
         return lines + [f"{np.sum(self.stable == 1)} of {asked} points stable"] * bool(asked)
 
+    @classmethod
+    def upgrade(cls, arrays: dict[str, Any], settings: dict[str, Any]) -> None:
+        if "stable" not in arrays:  # written before curves kept their stability
+            arrays["stable"] = np.full(len(arrays["fold"]), -1, dtype=np.int8)
+            settings["markers"] = tuple(("fold", int(point)) for point in np.flatnonzero(arrays["fold"]))
+
     def _lost(self) -> list[tuple[float, float]]:
         lost = ~self.converged
         return list(zip(self.frequencies[lost].tolist(), self.residuals[lost].tolist(), strict=True))
-
-    def contents(self) -> Contents:
-        return stored(self, _DIMENSIONS, _UNITS, _NAMES)
-
-    @classmethod
-    def from_xarray(cls, dataset: "Dataset") -> "FrequencyCurve":
-        """The curve that :meth:`to_xarray` turned into a dataset."""
-        values = fields_of(dataset, _DIMENSIONS, ("converged", "fold"))
-        if "stable" not in values:  # written before curves kept their stability
-            values["stable"] = np.full(len(values["fold"]), -1, dtype=np.int8)
-            values["markers"] = tuple(("fold", int(point)) for point in np.flatnonzero(values["fold"]))
-        return cls(**values)

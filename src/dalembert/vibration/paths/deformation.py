@@ -2,13 +2,11 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
-from dalembert.contents import Contents
 from dalembert.errors import InputError
-from dalembert.results import Result
 from dalembert.structure.mode_shapes import drawn_nodes
 from dalembert.structure.node_motion import known_nodes, node_motion
 from dalembert.vibration.balance.equations import Equations
@@ -16,28 +14,14 @@ from dalembert.vibration.balance.fourier import synthesis
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.laws.contacts import FrictionContact
 from dalembert.vibration.paths.curve import FrequencyCurve
-from dalembert.vibration.storage import fields_of, stored
+from dalembert.vibration.storage import Over, VibrationResult
 from dalembert.vibration.system.lowering import lower
 from dalembert.vibration.system.system import VibrationSystem
 from dalembert.vibration.threads import one_thread
 
-if TYPE_CHECKING:
-    from xarray import Dataset
-
-_DIMENSIONS = {
-    "places": ("node", "axis"),
-    "faces": ("face", "corner"),
-    "coefficients": ("node", "axis", "coefficient"),
-    "contact_places": ("contact", "axis"),
-    "states": ("contact", "phase"),
-    "energies": ("contact",),
-}
-_UNITS = {"places": "m", "coefficients": "m", "contact_places": "m", "energies": "J"}
-_NAMES = ("frequency", "orders", "contacts")
-
 
 @dataclass(frozen=True, eq=False)
-class Deformation(Result):
+class Deformation(VibrationResult):
     """A periodic motion of a structure at its nodes, as :func:`deformation` returns it.
 
     Parameters
@@ -67,13 +51,13 @@ class Deformation(Result):
 
     frequency: float
     orders: tuple[int, ...]
-    places: np.ndarray
-    faces: np.ndarray
-    coefficients: np.ndarray
+    places: Annotated[np.ndarray, Over(("node", "axis"), "m")]
+    faces: Annotated[np.ndarray, Over(("face", "corner"))]
+    coefficients: Annotated[np.ndarray, Over(("node", "axis", "coefficient"), "m")]
     contacts: tuple[str, ...]
-    contact_places: np.ndarray
-    states: np.ndarray
-    energies: np.ndarray
+    contact_places: Annotated[np.ndarray, Over(("contact", "axis"), "m")]
+    states: Annotated[np.ndarray, Over(("contact", "phase"))]
+    energies: Annotated[np.ndarray, Over(("contact",), "J")]
     provenance: Mapping[str, Any]
 
     def motion(self, phases: np.ndarray) -> np.ndarray:
@@ -85,14 +69,6 @@ class Deformation(Result):
         """A line: nodes, frequency and the largest displacement of a period."""
         largest = np.linalg.norm(self.motion(np.linspace(0, 2 * np.pi, 64)), axis=2).max(initial=0.0)
         return f"{len(self.places)} nodes at {self.frequency:.6g} Hz, displacements up to {largest:.6g} m"
-
-    def contents(self) -> Contents:
-        return stored(self, _DIMENSIONS, _UNITS, _NAMES)
-
-    @classmethod
-    def from_xarray(cls, dataset: "Dataset") -> "Deformation":
-        """The deformation that :meth:`to_xarray` turned into a dataset."""
-        return cls(**fields_of(dataset, _DIMENSIONS))
 
 
 def deformation(system: VibrationSystem, curve: FrequencyCurve, point: int | None = None) -> Deformation:

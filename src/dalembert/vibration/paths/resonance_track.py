@@ -2,31 +2,17 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
-from dalembert.contents import Contents
 from dalembert.errors import InputError
-from dalembert.results import Result
 from dalembert.units import unit_of
-from dalembert.vibration.storage import Dimensions, fields_of, stored
-
-if TYPE_CHECKING:
-    from xarray import Dataset
-
-_DIMENSIONS: Dimensions = {
-    "values": ("value",),
-    "frequencies": ("value",),
-    "amplitudes": ("value",),
-    "solves": ("value",),
-    "converged": ("value",),
-}
-_NAMES = ("parameter", "unit", "dof", "kind")
+from dalembert.vibration.storage import ConvergedResult, Over
 
 
 @dataclass(frozen=True, eq=False)
-class ResonanceTrack(Result):
+class ResonanceTrack(ConvergedResult):
     """The peak of a response over a parameter, as :func:`track_resonance` returns it.
 
     Parameters
@@ -53,15 +39,12 @@ class ResonanceTrack(Result):
     unit: str
     dof: str
     kind: str
-    values: np.ndarray
-    frequencies: np.ndarray
-    amplitudes: np.ndarray
-    solves: np.ndarray
-    converged: np.ndarray
+    values: Annotated[np.ndarray, Over(("value",), lambda own: own.unit)]
+    frequencies: Annotated[np.ndarray, Over(("value",), "Hz")]
+    amplitudes: Annotated[np.ndarray, Over(("value",), lambda own: unit_of(own.dof))]
+    solves: Annotated[np.ndarray, Over(("value",))]
+    converged: Annotated[np.ndarray, Over(("value",))]
     provenance: Mapping[str, Any]
-
-    def __len__(self) -> int:
-        return len(self.values)
 
     def best(self) -> float:
         """The value with the smallest peak.
@@ -74,16 +57,6 @@ class ResonanceTrack(Result):
         if not self.converged.any():
             raise InputError("no peak was found, so none is the smallest; begin nearer to it, or with a whole curve")
         return float(self.values[np.nanargmin(self.amplitudes)])
-
-    @property
-    def success(self) -> bool:
-        """Whether every peak is converged."""
-        return bool(self.converged.all())
-
-    @property
-    def status(self) -> str:
-        """How many were found, in a sentence."""
-        return self.summary().partition("\n")[0]
 
     def summary(self) -> str:
         """Return some lines: converged peaks, the smallest and the largest, and the number of solutions."""
@@ -101,12 +74,3 @@ class ResonanceTrack(Result):
             lost = ", ".join(f"{value:.6g}" for value in self.values[~found][:5])
             lines.append(f"not found where {self.parameter} is {lost} {self.unit}".rstrip())
         return "\n".join(lines)
-
-    def contents(self) -> Contents:
-        units = {"values": self.unit, "frequencies": "Hz", "amplitudes": unit_of(self.dof)}
-        return stored(self, _DIMENSIONS, units, _NAMES)
-
-    @classmethod
-    def from_xarray(cls, dataset: "Dataset") -> "ResonanceTrack":
-        """The track that :meth:`to_xarray` turned into a dataset."""
-        return cls(**fields_of(dataset, _DIMENSIONS, ("converged",)))

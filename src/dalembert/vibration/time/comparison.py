@@ -3,18 +3,16 @@
 import hashlib
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
 from dalembert.arguments import takes_checked
-from dalembert.contents import Contents
 from dalembert.errors import InputError
 from dalembert.forward import Checkpoint, ensemble
-from dalembert.results import Result
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.paths.curve import FrequencyCurve
-from dalembert.vibration.storage import fields_of, stored
+from dalembert.vibration.storage import Over, VibrationResult
 from dalembert.vibration.system.fingerprint import fingerprint
 from dalembert.vibration.system.lowering import lower
 from dalembert.vibration.system.system import VibrationSystem
@@ -22,25 +20,14 @@ from dalembert.vibration.threads import one_thread
 from dalembert.vibration.time.newmark import Newmark
 from dalembert.vibration.time.reference import LONG_RUN, steady_state
 
-if TYPE_CHECKING:
-    from xarray import Dataset
-
 SPREAD = 4
 """Points besides the largest response that are compared if none are asked for."""
-_DIMENSIONS = {
-    "points": ("point",),
-    "frequencies": ("point",),
-    "balance": ("point", "dof"),
-    "time": ("point", "dof"),
-    "periods": ("point",),
-    "residuals": ("point",),
-    "converged": ("point",),
-}
-_UNITS = {"frequencies": "Hz", "balance": "m", "time": "m"}
+
+Points = Annotated[np.ndarray, Over(("point",))]
 
 
 @dataclass(frozen=True, eq=False)
-class TimeComparison(Result):
+class TimeComparison(VibrationResult):
     """Sizes of periodic motions by harmonic balance and in time, as :func:`compare_in_time` returns them.
 
     Parameters
@@ -68,13 +55,13 @@ class TimeComparison(Result):
 
     dofs: tuple[str, ...]
     kind: str
-    points: np.ndarray
-    frequencies: np.ndarray
-    balance: np.ndarray
-    time: np.ndarray
-    periods: np.ndarray
-    residuals: np.ndarray
-    converged: np.ndarray
+    points: Points
+    frequencies: Annotated[np.ndarray, Over(("point",), "Hz")]
+    balance: Annotated[np.ndarray, Over(("point", "dof"), "m")]
+    time: Annotated[np.ndarray, Over(("point", "dof"), "m")]
+    periods: Points
+    residuals: Points
+    converged: Points
     provenance: Mapping[str, Any]
 
     def __len__(self) -> int:
@@ -97,14 +84,6 @@ class TimeComparison(Result):
         late = ", ".join(f"{value:.6g} Hz" for value in self.frequencies[~self.converged])
         lines += [f"not periodic yet in time, so not to be compared: {late}"] * bool(late)
         return "\n".join(lines)
-
-    def contents(self) -> Contents:
-        return stored(self, _DIMENSIONS, _UNITS, ("dofs", "kind"))
-
-    @classmethod
-    def from_xarray(cls, dataset: "Dataset") -> "TimeComparison":
-        """The comparison that :meth:`to_xarray` turned into a dataset."""
-        return cls(**fields_of(dataset, _DIMENSIONS, ("converged",)))
 
 
 @takes_checked("points", "frequencies", "way", "kind")

@@ -1,35 +1,19 @@
 """A periodic motion in time."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, ClassVar
+from dataclasses import dataclass
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
-from dalembert.contents import Contents
 from dalembert.errors import InputError, unknown
-from dalembert.results import Result, facts_of, plain_facts
 from dalembert.units import unit_of
 from dalembert.vibration.paths.amplitudes import PHASES, Amplitude, observed_column
-from dalembert.vibration.storage import fields_of, stored
-
-if TYPE_CHECKING:
-    from xarray import Dataset
-
-_DIMENSIONS = {
-    "times": ("time",),
-    "displacements": ("time", "dof"),
-    "relative": ("time", "coordinate"),
-    "forces": ("time", "coordinate"),
-    "states": ("time", "contact"),
-}
-_UNITS = {"times": "s", "displacements": "m", "relative": "m", "forces": "N"}
-_NAMES = ("dofs", "coordinates", "contacts")
-_FACTS = ("frequency", "periods", "residual", "converged")
+from dalembert.vibration.storage import Over, VibrationResult
 
 
 @dataclass(frozen=True, eq=False)
-class PeriodicMotion(Result):
+class PeriodicMotion(VibrationResult):
     """One period of a motion in time, as :func:`steady_state` returns it.
 
     Parameters
@@ -62,11 +46,11 @@ class PeriodicMotion(Result):
     coordinates: tuple[str, ...]
     contacts: tuple[str, ...]
     frequency: float
-    times: np.ndarray
-    displacements: np.ndarray
-    relative: np.ndarray
-    forces: np.ndarray
-    states: np.ndarray
+    times: Annotated[np.ndarray, Over(("time",), "s")]
+    displacements: Annotated[np.ndarray, Over(("time", "dof"), "m")]
+    relative: Annotated[np.ndarray, Over(("time", "coordinate"), "m")]
+    forces: Annotated[np.ndarray, Over(("time", "coordinate"), "N")]
+    states: Annotated[np.ndarray, Over(("time", "contact"))]
     periods: int
     residual: float
     converged: bool
@@ -125,14 +109,9 @@ class PeriodicMotion(Result):
         lines += [f"{dof}: largest {self.amplitude(dof):.6g} {unit_of(dof)}" for dof in self.dofs[:8]]
         return "\n".join(lines)
 
-    def contents(self) -> Contents:
-        found = stored(self, _DIMENSIONS, _UNITS, _NAMES)
-        return replace(found, attributes={**found.attributes, **plain_facts(self, _FACTS)})
-
     @classmethod
-    def from_xarray(cls, dataset: "Dataset") -> "PeriodicMotion":
-        """The motion that :meth:`to_xarray` turned into a dataset."""
-        return cls(**fields_of(dataset, _DIMENSIONS), **facts_of(cls, dataset, _FACTS))
+    def upgrade(cls, arrays: dict[str, Any], settings: dict[str, Any]) -> None:
+        settings["converged"] = bool(settings["converged"])  # 0 or 1 in files of former versions
 
 
 def _coefficients(samples: np.ndarray, highest: int) -> np.ndarray:

@@ -2,22 +2,39 @@
 
 from dataclasses import dataclass, field
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 
 from dalembert.forward import Coordinate
+from dalembert.inverse import BandFit, Fit, Identifiability, ParameterSet
+from dalembert.multibody import Trajectory
 from dalembert.parameters import Parameter, Parameters
+from dalembert.study.tasks.sweep import Sweep
+from dalembert.uncertainty import Comparison, Propagation
 
 
-@dataclass(frozen=True)
-class Motion:
+def stand_in(kind: type, /, **values: Any) -> Any:
+    """A result of a kind with given attributes in place of what its class computes; they may be changed."""
+    members = {name: staticmethod(value) if callable(value) else value for name, value in values.items()}
+    return type(kind.__name__, (kind,), {"__init__": object.__init__, "__setattr__": object.__setattr__, **members})()
+
+
+@dataclass(frozen=True, eq=False)
+class Motion(Trajectory):
     """Two bars that swing with given angles; its diagnostics are given, not computed."""
 
-    times: np.ndarray
-    energies: dict[str, np.ndarray]
-    violations: dict[str, np.ndarray]
-    newton_iterations: np.ndarray
-    channel_names: tuple[str, ...] = ("AB.end.x", "AB.end.y")
+    system: Any = None
+    lowered: Any = None
+    solver: Any = None
+    run: Any = None
+    rows: Any = None
+    findings: tuple = ()
+    times: Any = None
+    energies: Any = None
+    violations: Any = None
+    newton_iterations: Any = None
+    channel_names: Any = ("AB.end.x", "AB.end.y")
     extra: dict[str, np.ndarray] = field(default_factory=dict)
 
     def drawing(self, points: int = 8) -> SimpleNamespace:
@@ -45,20 +62,20 @@ def motion(samples: int = 401, end: float = 2.0) -> Motion:
     kinetic = 40 * np.sin(3.1 * times) ** 2
     balance = 2e-6 * np.sin(9 * times) * times
     return Motion(
-        times,
-        {
+        times=times,
+        energies={
             "kinetic": kinetic,
             "potential": -12 - kinetic + balance,
             "total": -12 + balance,
             "work": np.zeros(samples),
             "balance": balance,
         },
-        {
+        violations={
             "position": 1e-13 * np.abs(np.sin(5 * times)),
             "velocity": 1e-8 * (1 + np.abs(np.sin(7 * times))),
             "acceleration": 3e-5 * (1 + np.abs(np.cos(7 * times))),
         },
-        np.where(np.arange(samples - 1) % 37 == 0, 5, 3),
+        newton_iterations=np.where(np.arange(samples - 1) % 37 == 0, 5, 3),
     )
 
 
@@ -88,7 +105,14 @@ def fit(
         )
         for start in range(starts)
     )
-    return SimpleNamespace(
+    return stand_in(
+        Fit,
+        doubts=(),
+        experiments=(),
+        weights=np.ones(response.shape),
+        plain_deviations=np.array([2.1e-4, 3.3e-4]),
+        integration_bias=np.full(2, np.nan),
+        identifiability=lambda: Identifiability(np.array([120.0, 3.0]), np.eye(2), ()),
         parameters=parameters,
         values=np.array([0.785312, 0.65]),
         deviations=np.array([2.1e-4, 3.3e-4]),
@@ -113,7 +137,7 @@ def fit(
     )
 
 
-def sweep() -> SimpleNamespace:
+def sweep() -> Any:
     angle = np.linspace(0.6, 1.0, 21)
     values = np.stack([np.sin(angle), -np.cos(angle)], axis=1)
     slopes = np.stack([np.cos(angle), np.sin(angle)], axis=1)
@@ -136,8 +160,8 @@ def sweep() -> SimpleNamespace:
         responses=values,
         sensitivities=None,
     )
-    return SimpleNamespace(
-        at="time 0.5 s", success=True, status="42 points along theta1, theta2.", curves=(first, second)
+    return stand_in(
+        Sweep, at="time 0.5 s", success=True, status="42 points along theta1, theta2.", curves=(first, second)
     )
 
 
@@ -153,7 +177,8 @@ def propagation(method: str = "optimise", kind: str = "estimate", shrink: float 
     angles = box(theta1=(0.746, 0.825), theta2=(0.497, 0.55))
     corner = np.broadcast_to(angles.upper, (41, 2, 2)).copy()
     corner[20:, :, 1] = 0.52
-    return SimpleNamespace(
+    return stand_in(
+        Propagation,
         coordinate=Coordinate("time", "s", times),
         channels=("AB.end.x", "AB.end.y"),
         units=("m", "m"),
@@ -174,7 +199,7 @@ def propagation(method: str = "optimise", kind: str = "estimate", shrink: float 
     )
 
 
-def comparison() -> SimpleNamespace:
+def comparison() -> Any:
     results = (
         propagation(),
         propagation("vertex", "inner bound", 3e-3, 4),
@@ -193,7 +218,8 @@ def comparison() -> SimpleNamespace:
         )
         for one in results
     )
-    return SimpleNamespace(
+    return stand_in(
+        Comparison,
         results=results,
         reference="optimise",
         rows=rows,
@@ -203,7 +229,7 @@ def comparison() -> SimpleNamespace:
     )
 
 
-def band_fit(names: tuple[str, str] = ("theta1", "theta2")) -> SimpleNamespace:
+def band_fit(names: tuple[str, str] = ("theta1", "theta2")) -> Any:
     """Intervals identified from the bands above; the second parameter's radius is none."""
     like, given = fit(names), propagation()
     noise = 1e-3 * np.sin(40 * given.coordinate.values)[:, None] * [1.0, 0.5]
@@ -212,7 +238,10 @@ def band_fit(names: tuple[str, str] = ("theta1", "theta2")) -> SimpleNamespace:
     correlation[0, 2] = correlation[2, 0] = -0.5
     for start in like.starts:
         start.end = np.array([*start.end, 0.04, 0.0])
-    return SimpleNamespace(
+    return stand_in(
+        BandFit,
+        doubts=(),
+        identifiability=lambda: Identifiability(np.arange(4.0, 0, -1), np.eye(4), ()),
         parameters=like.parameters,
         box=box(**{names[0]: (0.7461, 0.8247), names[1]: (0.52, 0.52)}),
         unknowns=unknowns,
@@ -239,7 +268,7 @@ def band_fit(names: tuple[str, str] = ("theta1", "theta2")) -> SimpleNamespace:
     )
 
 
-def parameter_set(names: tuple[str, ...] = ("theta1", "theta2"), cells: int = 12) -> SimpleNamespace:
+def parameter_set(names: tuple[str, ...] = ("theta1", "theta2"), cells: int = 12) -> Any:
     """A ball in the box of the parameters, paved by equal cubes."""
     items = tuple(Parameter(name, 0.5, 1.0, unit="rad") for name in names)
     grid = np.stack(np.meshgrid(*[np.arange(cells)] * len(names), indexing="ij"), axis=-1).reshape(-1, len(names))
@@ -249,7 +278,8 @@ def parameter_set(names: tuple[str, ...] = ("theta1", "theta2"), cells: int = 12
     boxes = 0.75 + 0.25 * np.stack([low, high], axis=1)
     inside, touched = farthest <= 0.6, nearest <= 0.6
     size = (0.5 / cells) ** len(names)
-    return SimpleNamespace(
+    return stand_in(
+        ParameterSet,
         parameters=Parameters(items),
         inside=boxes[inside],
         boundary=boxes[touched & ~inside],

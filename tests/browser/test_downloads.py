@@ -6,7 +6,6 @@ import xml.etree.ElementTree as ElementTree
 from collections.abc import Callable
 from functools import partial
 from html import escape
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -15,7 +14,8 @@ from playwright.sync_api import Frame, Locator, Page
 from browser.visitor import move_focus, wait_for_figures, wait_until
 from dalembert.report import figures, report
 from dalembert.report.look import DARK, LIGHT
-from stand_ins import fit, motion
+from dalembert.vibration import Deformation
+from stand_ins import fit, motion, stand_in
 
 pytestmark = pytest.mark.slow
 SVG = "{http://www.w3.org/2000/svg}"
@@ -95,7 +95,8 @@ def _colour(hexadecimal: str) -> str:
 
 
 def test_a_figure_in_space_is_saved(chromium, tmp_path):
-    shape = SimpleNamespace(
+    shape = stand_in(
+        Deformation,
         frequency=10.0,
         places=np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]),
         faces=np.array([[0, 1, 2, 3]]),

@@ -1,14 +1,13 @@
 """The report in a real browser: drawn, silent, dark where asked, and moving."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
 from browser.visitor import move_focus, wait_until
 from dalembert.report import figures, report
 from dalembert.report.look import DARK, LIGHT
-from stand_ins import band_fit, comparison, fit, motion, parameter_set, propagation, sweep
+from dalembert.vibration import Deformation
+from stand_ins import band_fit, comparison, fit, motion, parameter_set, propagation, stand_in, sweep
 
 pytestmark = pytest.mark.slow
 NASTY = "<img src=x onerror=\"document.title='run'\">"
@@ -177,7 +176,8 @@ def test_reports_on_intervals_fit_a_phone(chromium, tmp_path, make):
 def test_a_film_of_a_period_goes_on_without_end(chromium, tmp_path):
     phases = np.arange(64)
     states = np.where(phases < 32, 1, 2).astype(np.uint8)[None]
-    shape = SimpleNamespace(
+    shape = stand_in(
+        Deformation,
         frequency=10.0,
         places=np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]),
         faces=np.array([[0, 1, 2, 3]]),

@@ -36,6 +36,8 @@ class Asked:
     truth: Mapping[str, Any] = field(default_factory=dict)
     dofs: tuple[str, ...] = ()
     amplitude: str = "peak"
+    taken: list[Any] = field(default_factory=list, init=False, repr=False)
+    """Results beside that a section shows."""
 
     def each(self, kind: type[Kind]) -> dict[str, Kind]:
         """Results of a kind by the names of their experiments; by no name where there is only one.
@@ -47,6 +49,7 @@ class Asked:
         for one in self.beside:
             given = one if isinstance(one, Mapping) else {"": one}
             found.update({name: value for name, value in given.items() if isinstance(value, kind)})
+        self.taken.extend(found.values())
         return found
 
     def one(self, kind: type[Kind]) -> Kind | None:
@@ -58,21 +61,21 @@ class Asked:
         """Sections of the user's."""
         return [one for one in self.beside if isinstance(one, Section)]
 
-    def require(self, kinds: Sequence[type]) -> None:
-        """Refuse what no section shows.
+    def refuse_others(self) -> None:
+        """Refuse what no section has taken.
 
         Raises
         ------
         InputError
-            For anything else than results of some kinds, and sections.
+            For anything else than results that a section has taken, and sections.
         """
         for one in self.beside:
-            values = list(one.values()) if isinstance(one, Mapping) else [one]
-            if not all(isinstance(value, (Section, *kinds)) for value in values):
-                raise InputError(
-                    f"report: {shown(one)} was given beside the result; expected a trajectory, profiles, a prediction, "
-                    "a comparison in time, a backbone, a deformation, reduction errors, or a section"
-                )
+            for value in one.values() if isinstance(one, Mapping) else [one]:
+                if not isinstance(value, Section) and not any(value is other for other in self.taken):
+                    raise InputError(
+                        f"report: {shown(one)} was given beside the result; expected a trajectory, profiles, a "
+                        "prediction, a comparison in time, a backbone, a deformation, reduction errors, or a section"
+                    )
 
 
 def asked(beside: tuple[Any, ...], **options: Any) -> Asked:
@@ -83,7 +86,7 @@ def asked(beside: tuple[Any, ...], **options: Any) -> Asked:
     InputError
         For an unknown option.
     """
-    known = {one.name for one in fields(Asked)} - {"beside"}
+    known = {one.name for one in fields(Asked) if one.init} - {"beside"}
     for name in options:
         if name not in known:
             raise InputError(unknown("option", name, sorted(known), "report"))

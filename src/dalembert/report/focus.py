@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dalembert.report.needs_frequency import CurveFamilyLike, FrequencyCurveLike
 from dalembert.units import OF_DIRECTION, unit_of
+from dalembert.vibration import CurveFamily, FrequencyCurve
 
 MOST = 6
 """Lines that a figure shows unless more are named."""
@@ -38,14 +38,14 @@ class Look:
         Its peak.
     """
 
-    curve: FrequencyCurveLike
+    curve: FrequencyCurve
     dofs: tuple[str, ...]
     kind: str
     dof: str
     point: int
 
     @classmethod
-    def of(cls, curve: FrequencyCurveLike, dofs: Sequence[str] = (), kind: str = "peak") -> "Look":
+    def of(cls, curve: FrequencyCurve, dofs: Sequence[str] = (), kind: str = "peak") -> "Look":
         """At degrees of freedom that are given, or those that move most; the peak is that of the first to move most."""
         chosen = tuple(dofs) or movers(curve)
         sizes = {dof: np.where(curve.converged, curve.amplitude(dof, kind), np.nan) for dof in chosen}
@@ -53,14 +53,14 @@ class Look:
         return cls(curve, chosen, kind, dof, int(np.nanargmax(sizes[dof])))
 
 
-def movers(curve: FrequencyCurveLike, most: int = MOST) -> tuple[str, ...]:
+def movers(curve: FrequencyCurve, most: int = MOST) -> tuple[str, ...]:
     """The degrees of freedom that move most, by their rms; displacements before rotations and modes."""
     kinds = [[dof for dof in curve.dofs if unit_of(dof) == unit] for unit in dict.fromkeys(OF_DIRECTION.values())]
     own = next(filter(None, kinds), list(curve.dofs))
     return foremost({dof: float(np.nanmax(curve.amplitude(dof, "rms")[curve.converged])) for dof in own}, most)
 
 
-def family_dofs(family: CurveFamilyLike, kind: str = "peak") -> tuple[str, ...]:
+def family_dofs(family: CurveFamily, kind: str = "peak") -> tuple[str, ...]:
     """The degree of freedom that moves most in the first curve there is; none where there is none."""
     found = (curve for curve in family.curves if curve is not None and curve.converged.any())
     return next(((Look.of(curve, kind=kind).dof,) for curve in found), ())
@@ -76,18 +76,18 @@ def foremost(sizes: dict[str, float], most: int = MOST) -> tuple[str, ...]:
     return tuple(name for name in sizes if name in kept)
 
 
-def of_contacts(curve: FrequencyCurveLike) -> dict[str, list[str]]:
+def of_contacts(curve: FrequencyCurve) -> dict[str, list[str]]:
     """The coordinates of each contact: its tangential directions, then its normal one if it has one."""
     return {contact: [name for name in curve.coordinates if _owner(name) == contact] for contact in curve.contacts}
 
 
-def of_springs(curve: FrequencyCurveLike) -> list[str]:
+def of_springs(curve: FrequencyCurve) -> list[str]:
     """The coordinates of all other elements."""
     contacts = set(curve.contacts)
     return [name for name in curve.coordinates if _owner(name) not in contacts]
 
 
-def dissipation_of(curve: FrequencyCurveLike) -> dict[str, np.ndarray]:
+def dissipation_of(curve: FrequencyCurve) -> dict[str, np.ndarray]:
     """Energy that each contact takes from the motion in a period, J, (points,)."""
     return {
         contact: np.sum([curve.dissipated(name) for name in names], axis=0)
@@ -95,7 +95,7 @@ def dissipation_of(curve: FrequencyCurveLike) -> dict[str, np.ndarray]:
     }
 
 
-def marked(curve: FrequencyCurveLike) -> dict[str, list[int]]:
+def marked(curve: FrequencyCurve) -> dict[str, list[int]]:
     """Points where the path turns back or changes its stability, by what they are."""
     found: dict[str, list[int]] = {}
     for kind, point in curve.markers:
@@ -103,7 +103,7 @@ def marked(curve: FrequencyCurveLike) -> dict[str, list[int]]:
     return found
 
 
-def unstable(curve: FrequencyCurveLike) -> np.ndarray:
+def unstable(curve: FrequencyCurve) -> np.ndarray:
     """Whether each point is known to be unstable, (points,)."""
     return np.asarray(curve.stable) == 0
 

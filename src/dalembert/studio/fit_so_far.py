@@ -1,34 +1,13 @@
 """The best fit so far beside the data, computed in a process of its own while the run goes on in another."""
 
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from dalembert.inverse import ExperimentFit
 from dalembert.study.experiments import posed
 from dalembert.study.folder import RunFolder
-
-if TYPE_CHECKING:
-    from dalembert.data import Measurements
-
-
-@dataclass(frozen=True)
-class Current:
-    """A response at the best values so far, and the data.
-
-    Parameters
-    ----------
-    data : Measurements
-    response : array, shape (samples, channels)
-    """
-
-    data: "Measurements"
-    response: np.ndarray
-
-    @property
-    def residuals(self) -> np.ndarray:
-        return self.response - self.data.values
 
 
 def fit_so_far(run: Path, values: list[float]) -> dict[str, Any] | None:
@@ -43,4 +22,4 @@ def fit_so_far(run: Path, values: list[float]) -> dict[str, Any] | None:
         return None
     names = [channel.name for channel in model.channels]
     found = model.evaluate(np.array(values)[None]).only()[0][:, [names.index(channel) for channel in data.channels]]
-    return responses(Current(data, found), title="").to_plotly_json()
+    return responses(ExperimentFit("", data, found, np.ones_like(found)), title="").to_plotly_json()

@@ -2,7 +2,6 @@ import base64
 import hashlib
 import json
 import re
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,6 +10,7 @@ from plotly.offline import get_plotlyjs
 
 from dalembert.errors import InputError
 from dalembert.findings import Finding
+from dalembert.inverse import Identifiability
 from dalembert.report import figures, report
 from dalembert.report.table import Table, cell
 from pages import Page, read_page
@@ -25,8 +25,6 @@ NASTY = "<script>alert(1)</script>"
 def whole(tmp_path_factory):
     """Report of a fit with all that it can hold."""
     result = fit()
-    told = SimpleNamespace(singular_values=np.array([120.0, 3.0]), directions=np.eye(2))
-    result.identifiability = lambda: told
     path = tmp_path_factory.mktemp("report") / "new" / "fit.html"
     return report(result, path, motion(), title="Pendulum", notes="A note.", study="[model]\nlength = 1")
 
@@ -115,7 +113,7 @@ def test_every_figure_is_in_the_page_with_its_numbers(whole):
         "violations",
         "newton",
     ]
-    assert set(drawn) - {"singular-values"} == set(figures(fit(), motion()))
+    assert set(drawn) == set(figures(fit(), motion()))
     places = {attrs["id"] for tag, attrs in page.tags if "canvas" in attrs.get("class", "")}
     assert places == {f"figure-{name}" for name in drawn}
     packed = next(trace["y"] for trace in drawn["responses-1"]["data"] if trace["name"] == "AB.end.x computed")
@@ -133,7 +131,8 @@ def test_names_with_markup_are_shown_as_they_stand(tmp_path):
     result.status = result.method = NASTY
     result.provenance = {NASTY: NASTY}
     result.starts[0].message = NASTY
-    result.identifiability = lambda: NASTY
+    finding = Finding("unidentifiable", "warning", {}, NASTY)
+    result.identifiability = lambda: Identifiability(np.ones(2), np.eye(2), (finding,))
     trajectory = motion()
     trajectory.extra[NASTY] = trajectory.drawing().lines["AB"]
     path = report(result, tmp_path / "a.html", trajectory, title=NASTY, notes=[NASTY], study=NASTY, points=["AB.end"])
@@ -166,7 +165,7 @@ def test_a_fit_without_motion_and_history(tmp_path):
     result = fit()
     result.history, result.starts = (), result.starts[:1]
     names = figures(result)
-    assert list(names) == ["parameters", "responses-1", "correlation"]
+    assert list(names) == ["parameters", "responses-1", "correlation", "singular-values"]
     assert report(result, tmp_path / "a.html").exists()
 
 

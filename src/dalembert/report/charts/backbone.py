@@ -7,15 +7,15 @@ from plotly.subplots import make_subplots
 from dalembert.report.charts.logarithm import logarithmic
 from dalembert.report.focus import unit_of
 from dalembert.report.look import LIGHT, plain, themed
-from dalembert.report.needs_frequency import BackboneLike
 from dalembert.report.prefixes import prefixed
 from dalembert.report.quantities import labelled
+from dalembert.vibration import Backbone
 
 DECADES = 30
 """Ratio of the largest amplitude to the smallest above which its axis is logarithmic."""
 
 
-def backbone(mode: BackboneLike, *, title: str | None = None) -> go.Figure:
+def backbone(mode: Backbone, *, title: str | None = None) -> go.Figure:
     """Frequency and damping ratio of a nonlinear mode over its amplitude; gaps where it was not found.
 
     Parameters
@@ -53,7 +53,7 @@ def backbone(mode: BackboneLike, *, title: str | None = None) -> go.Figure:
     return figure.update_layout(showlegend=False)
 
 
-def backbone_line(mode: BackboneLike, dof: str, kind: str, factor: float) -> go.Scatter:
+def backbone_line(mode: Backbone, dof: str, kind: str, factor: float) -> go.Scatter:
     """The line through the peaks of forced responses: amplitude of a degree of freedom over the mode's frequency."""
     return go.Scatter(
         x=mode.frequencies,

@@ -7,19 +7,20 @@ import numpy as np
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
+from dalembert.data import Bands
 from dalembert.errors import InputError, unknown
+from dalembert.inverse import Prediction
 from dalembert.report.look import LIGHT, faint, plain, themed
-from dalembert.report.needs import BandsLike
 from dalembert.report.quantities import labelled, quantity
 from dalembert.report.thin import thin
 
 
-def bands(given: BandsLike, channels: Sequence[str] | None = None, *, title: str = "Bounds") -> go.Figure:
+def bands(given: Bands | Prediction, channels: Sequence[str] | None = None, *, title: str = "Bounds") -> go.Figure:
     """A filled band between the lower and upper bounds of each channel; below, upper minus lower.
 
     Parameters
     ----------
-    given : BandsLike
+    given : Bands | Prediction
         Lower and upper bounds, (samples, channels).
     channels : sequence of str, optional
         Channels to draw, all if not given; they share an axis.
@@ -55,7 +56,7 @@ def bands(given: BandsLike, channels: Sequence[str] | None = None, *, title: str
     return dressed(figure, given, chosen, title, below="width").update_yaxes(rangemode="tozero", row=2)
 
 
-def selected(given: BandsLike, channels: Sequence[str] | None, where: str) -> tuple[str, ...]:
+def selected(given: Bands | Prediction, channels: Sequence[str] | None, where: str) -> tuple[str, ...]:
     """Names of the channels to draw; InputError for one that the bands do not have."""
     chosen = given.channels if channels is None else tuple(channels)
     for name in chosen:
@@ -64,7 +65,7 @@ def selected(given: BandsLike, channels: Sequence[str] | None, where: str) -> tu
     return chosen
 
 
-def draw_band(figure: go.Figure, given: BandsLike, column: int, colour: str, *, legend: str = "") -> None:
+def draw_band(figure: go.Figure, given: Bands | Prediction, column: int, colour: str, *, legend: str = "") -> None:
     """One channel's band in the first row: its inside faint, its two bounds as lines."""
     at, name = given.coordinate.values, plain(given.channels[column])
     bounds = {"upper": given.upper[:, column], "lower": given.lower[:, column]}
@@ -139,7 +140,9 @@ def outline(at: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> tuple[np.nd
     return x, np.concatenate([lower[there], upper[back], lower[:1]])
 
 
-def dressed(figure: go.Figure, given: BandsLike, chosen: Sequence[str], title: str, *, below: str) -> go.Figure:
+def dressed(
+    figure: go.Figure, given: Bands | Prediction, chosen: Sequence[str], title: str, *, below: str
+) -> go.Figure:
     """The figure with its look and the labels of its two rows."""
     themed(figure, title, height=480)
     units = dict(zip(given.channels, getattr(given, "units", ()), strict=False))

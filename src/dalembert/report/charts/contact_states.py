@@ -4,7 +4,7 @@ import numpy as np
 import plotly.graph_objects as go
 
 from dalembert.report.look import LIGHT, plain, themed
-from dalembert.report.needs_frequency import FrequencyCurveLike
+from dalembert.vibration import FrequencyCurve
 
 STATES = ("separated", "stuck", "slipping")
 COLOURS = {"separated": LIGHT.grid, "stuck": LIGHT.series[0], "slipping": LIGHT.series[1]}
@@ -12,7 +12,7 @@ NAMED = 40
 """Contacts up to which each has its name beside its row."""
 
 
-def contact_states(curve: FrequencyCurveLike, point: int, *, title: str = "Contact states over a period") -> go.Figure:
+def contact_states(curve: FrequencyCurve, point: int, *, title: str = "Contact states over a period") -> go.Figure:
     """State of each contact, a row, over the phase of a period at one point of a curve.
 
     Parameters
@@ -55,7 +55,7 @@ def contact_states(curve: FrequencyCurveLike, point: int, *, title: str = "Conta
     return figure.update_layout(showlegend=True)
 
 
-def contact_shares(curve: FrequencyCurveLike, *, title: str = "Contact states over frequency") -> go.Figure:
+def contact_shares(curve: FrequencyCurve, *, title: str = "Contact states over frequency") -> go.Figure:
     """Part of the period that contacts are stuck, slip and are separated, mean of all, over frequency.
 
     Parameters

@@ -3,18 +3,18 @@
 import numpy as np
 import plotly.graph_objects as go
 
+from dalembert.inverse import BandFit, Fit
 from dalembert.report.charts.logarithm import logarithmic, positive
 from dalembert.report.look import LIGHT, themed
-from dalembert.report.needs import IdentifiedLike
 from dalembert.report.thin import thin
 
 
-def convergence(fit: IdentifiedLike, *, title: str = "Convergence") -> go.Figure:
+def convergence(fit: Fit | BandFit, *, title: str = "Convergence") -> go.Figure:
     """Best fitness so far over the iterations, one line a start, the winning start in colour.
 
     Parameters
     ----------
-    fit : FitLike or BandFitLike
+    fit : Fit or BandFit
     title : str
 
     Returns
@@ -52,7 +52,7 @@ def convergence(fit: IdentifiedLike, *, title: str = "Convergence") -> go.Figure
     return figure.update_layout(showlegend=True)
 
 
-def winner(fit: IdentifiedLike) -> int:
+def winner(fit: Fit | BandFit) -> int:
     """Number of the start with the lowest fitness at its end."""
     ends = [start.fitness if np.isfinite(start.fitness) else np.inf for start in fit.starts]
     return int(np.argmin(ends)) if ends else 0

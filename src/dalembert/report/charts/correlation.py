@@ -3,18 +3,18 @@
 import numpy as np
 import plotly.graph_objects as go
 
+from dalembert.inverse import BandFit, Fit
 from dalembert.report.look import LIGHT, plain, themed
-from dalembert.report.needs import BandFitLike, IdentifiedLike
 
 MOST_TEXTS = 12
 
 
-def correlation(fit: IdentifiedLike, *, title: str = "Correlation of the estimates") -> go.Figure:
+def correlation(fit: Fit | BandFit, *, title: str = "Correlation of the estimates") -> go.Figure:
     """Heat map of the correlation matrix (parameters, parameters), from −1 to 1.
 
     Parameters
     ----------
-    fit : FitLike or BandFitLike
+    fit : Fit or BandFit
         Intervals identified from bands have two unknowns a parameter, a middle and a radius.
     title : str
 
@@ -48,9 +48,9 @@ def correlation(fit: IdentifiedLike, *, title: str = "Correlation of the estimat
     return figure.update_layout(margin_t=56)
 
 
-def unknowns(fit: IdentifiedLike) -> tuple[str, ...]:
+def unknowns(fit: Fit | BandFit) -> tuple[str, ...]:
     """Names of what was identified: parameters, or the middles and radii of their intervals."""
-    return fit.unknowns if isinstance(fit, BandFitLike) else fit.parameters.names
+    return fit.unknowns if isinstance(fit, BandFit) else fit.parameters.names
 
 
 def _number(row: int, column: int, entry: float) -> go.layout.Annotation:

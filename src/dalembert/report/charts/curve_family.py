@@ -9,16 +9,16 @@ from dalembert.report.charts.logarithm import logarithmic, positive
 from dalembert.report.charts.resonance_peaks import value_text
 from dalembert.report.focus import size_label, unit_of
 from dalembert.report.look import LIGHT, plain, themed
-from dalembert.report.needs_frequency import CurveFamilyLike
 from dalembert.report.prefixes import prefixed
 from dalembert.report.quantities import labelled
 from dalembert.report.thin import thin
+from dalembert.vibration import CurveFamily
 
 WIDE = 300
 """Ratio of the largest amplitude to the smallest above which the axis is logarithmic."""
 
 
-def curve_family(family: CurveFamilyLike, dof: str, *, kind: str = "peak", title: str | None = None) -> go.Figure:
+def curve_family(family: CurveFamily, dof: str, *, kind: str = "peak", title: str | None = None) -> go.Figure:
     """Amplitude over frequency for each value of the parameter, and the envelope of all.
 
     Of more values than there are colours, those in colour are the first, the last and the one with the smallest peak.
@@ -76,7 +76,7 @@ def curve_family(family: CurveFamilyLike, dof: str, *, kind: str = "peak", title
     return figure.update_yaxes(title=labelled(size_label(kind), unit), **axis).update_layout(showlegend=True)
 
 
-def _coloured(family: CurveFamilyLike, found: list[int], best: float) -> dict[int, str]:
+def _coloured(family: CurveFamily, found: list[int], best: float) -> dict[int, str]:
     """Places of the curves in colour, and their colours."""
     if len(found) <= len(LIGHT.series):
         return dict(zip(found, LIGHT.series, strict=False))

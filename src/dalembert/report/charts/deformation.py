@@ -7,9 +7,9 @@ from dalembert.report.charts.body import magnification, outline, space, surface
 from dalembert.report.charts.film import Film
 from dalembert.report.digits import shown
 from dalembert.report.look import themed
-from dalembert.report.needs_frequency import DeformationLike
 from dalembert.report.prefixes import prefixed
 from dalembert.report.quantities import labelled
+from dalembert.vibration import Deformation
 
 FRAMES, FEW_FRAMES = 24, 12
 MANY = 20_000
@@ -19,7 +19,7 @@ STILL = 1e-3
 """Part of the largest displacement up to which an axis counts as still."""
 
 
-def deformation(shape: DeformationLike, *, title: str | None = None) -> go.Figure:
+def deformation(shape: Deformation, *, title: str | None = None) -> go.Figure:
     """The structure over a period, magnified, coloured by the largest displacement of each node in the period.
 
     Parameters
@@ -57,7 +57,7 @@ def deformation(shape: DeformationLike, *, title: str | None = None) -> go.Figur
     return space(figure, np.concatenate([positions.reshape(-1, 3), shape.places])).update_layout(**film.controls())
 
 
-def magnified(shape: DeformationLike) -> float:
+def magnified(shape: Deformation) -> float:
     """How much larger than they are displacements are drawn."""
     motion = shape.motion(2 * np.pi * np.arange(FRAMES) / FRAMES)
     return magnification(shape.places, np.linalg.norm(motion, axis=2).max(axis=0))

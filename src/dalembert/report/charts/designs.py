@@ -3,24 +3,24 @@
 import numpy as np
 import plotly.graph_objects as go
 
+from dalembert.inverse import Designs
 from dalembert.report.charts.logarithm import logarithmic, positive
 from dalembert.report.digits import shown
 from dalembert.report.look import LIGHT, plain, themed
-from dalembert.report.needs_telling import DesignsLike
 from dalembert.report.quantities import labelled
 
 MOST = 20
 """Designs that a ranking shows."""
 
 
-def ranking(result: DesignsLike, *, title: str = "Ranking") -> go.Figure:
+def ranking(result: Designs, *, title: str = "Ranking") -> go.Figure:
     """Scores of the best designs on a logarithmic scale, the best on top; small is good.
 
     Designs that leave a combination of the parameters unseen have no score and are left out.
 
     Parameters
     ----------
-    result : DesignsLike
+    result : Designs
     title : str
 
     Returns
@@ -44,12 +44,12 @@ def ranking(result: DesignsLike, *, title: str = "Ranking") -> go.Figure:
     return figure.update_yaxes(autorange="reversed").update_layout(showlegend=False, margin_r=72)
 
 
-def horizons(result: DesignsLike, *, title: str = "What a longer measurement brings") -> go.Figure:
+def horizons(result: Designs, *, title: str = "What a longer measurement brings") -> go.Figure:
     """Score over the horizon, one line a set of sensors, on a logarithmic scale; a gap where something is unseen.
 
     Parameters
     ----------
-    result : DesignsLike
+    result : Designs
     title : str
 
     Returns
@@ -72,7 +72,7 @@ def horizons(result: DesignsLike, *, title: str = "What a longer measurement bri
     return figure.update_yaxes(title="score", **logarithmic(figure)).update_layout(showlegend=True)
 
 
-def named(result: DesignsLike, k: int) -> str:
+def named(result: Designs, k: int) -> str:
     """A design in a few words."""
     sensors = plain(", ".join(result.sensors[k]))
     several = len(set(result.horizons.tolist())) > 1

@@ -5,12 +5,12 @@ import plotly.graph_objects as go
 
 from dalembert.report.focus import dissipation_of, foremost
 from dalembert.report.look import LIGHT, plain, themed
-from dalembert.report.needs_frequency import FrequencyCurveLike
 from dalembert.report.prefixes import prefixed
 from dalembert.report.quantities import labelled
+from dalembert.vibration import FrequencyCurve
 
 
-def dissipation(curve: FrequencyCurveLike, *, title: str = "Friction energy of a period") -> go.Figure:
+def dissipation(curve: FrequencyCurve, *, title: str = "Friction energy of a period") -> go.Figure:
     """Energy dissipated in a period by each contact, of many those that take most, and by all together.
 
     Parameters

@@ -4,8 +4,8 @@ import numpy as np
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
+from dalembert.multibody import Trajectory
 from dalembert.report.look import LIGHT, themed
-from dalembert.report.needs import TrajectoryLike
 from dalembert.report.thin import thin
 
 LINES = {
@@ -16,14 +16,14 @@ LINES = {
 }
 
 
-def energies(trajectory: TrajectoryLike, *, title: str = "Energies") -> go.Figure:
+def energies(trajectory: Trajectory, *, title: str = "Energies") -> go.Figure:
     """Kinetic, potential and total energy and the work of loads over time; below, their balance on its own scale.
 
     The balance is zero for an exact solution, so what is seen there is the error of the integration.
 
     Parameters
     ----------
-    trajectory : TrajectoryLike
+    trajectory : Trajectory
         With ``energies``: arrays (samples,) in J, by name.
     title : str
 

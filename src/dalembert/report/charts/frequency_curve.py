@@ -10,10 +10,10 @@ from dalembert.report.charts.backbone import backbone_line
 from dalembert.report.charts.logarithm import logarithmic, positive
 from dalembert.report.focus import marked, movers, size_label, unit_of, unstable
 from dalembert.report.look import LIGHT, plain, themed
-from dalembert.report.needs_frequency import BackboneLike, FrequencyCurveLike
 from dalembert.report.prefixes import prefixed
 from dalembert.report.quantities import labelled
 from dalembert.report.thin import thin
+from dalembert.vibration import Backbone, FrequencyCurve
 
 SYMBOLS = {"fold": "diamond", "torus": "circle-open", "period doubling": "square-open", "branch point": "star"}
 WIDE = 300
@@ -23,11 +23,11 @@ FEW = 60
 
 
 def frequency_curve(
-    curve: FrequencyCurveLike,
+    curve: FrequencyCurve,
     dofs: Sequence[str] | None = None,
     *,
     kind: str = "peak",
-    mode: BackboneLike | None = None,
+    mode: Backbone | None = None,
     title: str = "Forced response",
 ) -> go.Figure:
     """Amplitude over frequency along the path; dashed where it is unstable, with folds and points that were not found.
@@ -82,7 +82,7 @@ def scale(sizes: Mapping[str, np.ndarray]) -> tuple[float, str]:
     return prefixed(most, units.pop()) if len(units) == 1 else (1.0, "")
 
 
-def _path(figure: go.Figure, curve: FrequencyCurveLike, dof: str, size: np.ndarray, colour: str) -> None:
+def _path(figure: go.Figure, curve: FrequencyCurve, dof: str, size: np.ndarray, colour: str) -> None:
     """One degree of freedom: solid, and dashed where it is unstable; the two meet."""
     bad = unstable(curve)
     touched = (
@@ -107,7 +107,7 @@ def _path(figure: go.Figure, curve: FrequencyCurveLike, dof: str, size: np.ndarr
         )
 
 
-def _lost(figure: go.Figure, curve: FrequencyCurveLike, sizes: Mapping[str, np.ndarray]) -> None:
+def _lost(figure: go.Figure, curve: FrequencyCurve, sizes: Mapping[str, np.ndarray]) -> None:
     """Crosses where points were not found, on the straight line between their neighbours."""
     found, points = np.flatnonzero(curve.converged), np.flatnonzero(~curve.converged)
     if not len(points) or not len(found):

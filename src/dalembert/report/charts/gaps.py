@@ -4,18 +4,18 @@ import numpy as np
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
+from dalembert.inverse import Fit
 from dalembert.report.charts.convergence import winner
 from dalembert.report.charts.logarithm import positive
 from dalembert.report.look import LIGHT, themed
-from dalembert.report.needs import FitLike
 
 
-def gaps(fit: FitLike, *, title: str = "Gaps between segments") -> go.Figure:
+def gaps(fit: Fit, *, title: str = "Gaps between segments") -> go.Figure:
     """Largest gap and misfit of the best start after each step in segments, over the steps.
 
     Parameters
     ----------
-    fit : FitLike
+    fit : Fit
         Of multiple shooting.
     title : str
 
@@ -23,7 +23,7 @@ def gaps(fit: FitLike, *, title: str = "Gaps between segments") -> go.Figure:
     -------
     plotly.graph_objects.Figure
     """
-    steps = [step for step in fit.history if step.start == winner(fit) and getattr(step, "gap", None) is not None]
+    steps = [step for step in fit.history if step.start == winner(fit) and step.gap is not None]
     number = np.arange(1, len(steps) + 1)
     figure = make_subplots(rows=2, cols=1, shared_xaxes=True, vertical_spacing=0.08)
     for row, name, key, colour in (

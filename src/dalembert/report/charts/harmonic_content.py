@@ -6,15 +6,15 @@ import plotly.graph_objects as go
 from dalembert.report.charts.logarithm import logarithmic, positive
 from dalembert.report.focus import unit_of
 from dalembert.report.look import LIGHT, plain, themed
-from dalembert.report.needs_frequency import FrequencyCurveLike
 from dalembert.report.prefixes import prefixed
 from dalembert.report.quantities import labelled
+from dalembert.vibration import FrequencyCurve
 
 NOTHING = 1e-6
 """Size of a harmonic, as part of the largest, below which it is left out."""
 
 
-def harmonic_content(curve: FrequencyCurveLike, dof: str, *, title: str | None = None) -> go.Figure:
+def harmonic_content(curve: FrequencyCurve, dof: str, *, title: str | None = None) -> go.Figure:
     """Amplitude of each harmonic of a degree of freedom over frequency, on a logarithmic scale.
 
     Harmonics that never reach a millionth of the largest are left out.
@@ -58,7 +58,7 @@ def harmonic_content(curve: FrequencyCurveLike, dof: str, *, title: str | None =
     return figure.update_yaxes(title=labelled("amplitude", unit), **logarithmic(figure)).update_layout(showlegend=True)
 
 
-def by_order(curve: FrequencyCurveLike, dof: str) -> dict[int, np.ndarray]:
+def by_order(curve: FrequencyCurve, dof: str) -> dict[int, np.ndarray]:
     """Amplitude of each harmonic, of the mean its size, (points,)."""
     coefficients, mean = curve.harmonics(dof), int(curve.orders[0] == 0)
     sizes = {0: np.abs(coefficients[:, 0])} if mean else {}

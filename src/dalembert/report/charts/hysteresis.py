@@ -7,16 +7,16 @@ import plotly.graph_objects as go
 
 from dalembert.report.focus import foremost, of_contacts
 from dalembert.report.look import LIGHT, plain, themed
-from dalembert.report.needs_frequency import FrequencyCurveLike
 from dalembert.report.prefixes import prefixed
 from dalembert.report.quantities import labelled
+from dalembert.vibration import FrequencyCurve
 
 NOTHING = 1e-9
 """Energy, as part of the most that a coordinate takes, below which its loop is closed."""
 
 
 def hysteresis(
-    curve: FrequencyCurveLike,
+    curve: FrequencyCurve,
     point: int,
     coordinates: Sequence[str] | None = None,
     *,
@@ -62,7 +62,7 @@ def hysteresis(
     return figure.update_yaxes(title=labelled("force", force)).update_layout(showlegend=True)
 
 
-def rubbing(curve: FrequencyCurveLike, point: int) -> tuple[str, ...]:
+def rubbing(curve: FrequencyCurve, point: int) -> tuple[str, ...]:
     """The coordinates of contacts that take most energy at a point; the first tangential ones where none takes any."""
     sizes = {name: float(curve.dissipated(name)[point]) for own in of_contacts(curve).values() for name in own}
     most = max(sizes.values(), default=0.0)

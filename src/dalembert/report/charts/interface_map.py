@@ -8,8 +8,8 @@ from dalembert.report.charts.contact_states import COLOURS, STATES, shares
 from dalembert.report.charts.deformation import SECONDS, slowness
 from dalembert.report.charts.film import Film
 from dalembert.report.look import LIGHT, plain, themed
-from dalembert.report.needs_frequency import DeformationLike
 from dalembert.report.prefixes import prefixed
+from dalembert.vibration import Deformation
 
 FRAMES = 32
 SMALLEST, LARGEST = 9, 22
@@ -17,7 +17,7 @@ SMALLEST, LARGEST = 9, 22
 MANY = 16
 
 
-def interface_map(shape: DeformationLike, *, title: str | None = None) -> go.Figure:
+def interface_map(shape: Deformation, *, title: str | None = None) -> go.Figure:
     """Contacts from above: filled by their state at a phase of the period, ringed by the one they are in for longest.
 
     Larger ones take more energy from the motion.
@@ -85,7 +85,7 @@ def interface_map(shape: DeformationLike, *, title: str | None = None) -> go.Fig
     return figure.update_layout(showlegend=True, **film.controls())
 
 
-def _structure(shape: DeformationLike, wide: np.ndarray) -> go.Scatter:
+def _structure(shape: Deformation, wide: np.ndarray) -> go.Scatter:
     """The edges of the structure at rest, from above."""
     ends = edges(shape.places, shape.faces)
     lines = np.full((len(ends), 3, 2), np.nan, dtype=np.float32)

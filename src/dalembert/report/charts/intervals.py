@@ -5,13 +5,13 @@ from collections.abc import Mapping
 import numpy as np
 import plotly.graph_objects as go
 
+from dalembert.inverse import BandFit
 from dalembert.report.digits import interval, shown
 from dalembert.report.look import LIGHT, plain, themed
-from dalembert.report.needs import BandFitLike
 
 
 def intervals(
-    fit: BandFitLike,
+    fit: BandFit,
     truth: Mapping[str, tuple[float, float]] | None = None,
     *,
     title: str = "Intervals within the search bounds",
@@ -23,7 +23,7 @@ def intervals(
 
     Parameters
     ----------
-    fit : BandFitLike
+    fit : BandFit
     truth : mapping of str to (lower, upper), optional
         Intervals to compare with.
     title : str
@@ -60,7 +60,7 @@ def intervals(
     return figure.update_yaxes(range=[len(box) - 0.5, -0.7], showgrid=False).update_layout(margin_t=64)
 
 
-def end_deviations(fit: BandFitLike) -> np.ndarray:
+def end_deviations(fit: BandFit) -> np.ndarray:
     """Standard deviations of the two ends, middle − radius and middle + radius, shape (parameters, 2).
 
     Those of a parameter whose middle or radius is not identifiable are infinite.
@@ -73,7 +73,7 @@ def end_deviations(fit: BandFitLike) -> np.ndarray:
     return np.where(known[:, None], np.sqrt(np.maximum(variance, 0.0)), np.inf)
 
 
-def _correlation(fit: BandFitLike, name: str) -> float:
+def _correlation(fit: BandFit, name: str) -> float:
     """Correlation of a parameter's middle and radius; 0 where the radius was not searched."""
     pair = [fit.unknowns.index(word) for word in (f"{name} middle", f"{name} radius") if word in fit.unknowns]
     return float(fit.correlation[pair[0], pair[1]]) if len(pair) == 2 else 0.0
@@ -96,7 +96,7 @@ def _bar(figure: go.Figure, name: str, ends: np.ndarray, text: str, *, legend: b
     )
 
 
-def _diamonds(figure: go.Figure, fit: BandFitLike, truth: Mapping[str, tuple[float, float]]) -> None:
+def _diamonds(figure: go.Figure, fit: BandFit, truth: Mapping[str, tuple[float, float]]) -> None:
     known = [(place, item) for place, item in enumerate(fit.parameters) if item.name in truth]
     at = [(np.array(truth[item.name]) - item.lower) / (item.upper - item.lower) for _, item in known]
     figure.add_scatter(
@@ -111,6 +111,6 @@ def _diamonds(figure: go.Figure, fit: BandFitLike, truth: Mapping[str, tuple[flo
     )
 
 
-def _placed(fit: BandFitLike, values: np.ndarray) -> np.ndarray:
+def _placed(fit: BandFit, values: np.ndarray) -> np.ndarray:
     """How far on the way from its lower to its upper search bound each value lies, (parameters,)."""
     return (values - fit.parameters.lower) / (fit.parameters.upper - fit.parameters.lower)

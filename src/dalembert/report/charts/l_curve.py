@@ -3,20 +3,21 @@
 import numpy as np
 import plotly.graph_objects as go
 
+from dalembert.inverse import BandFit, Fit
+from dalembert.optimize.minimum import RegularisedStep
 from dalembert.report.charts.logarithm import logarithmic, positive
 from dalembert.report.charts.starts import ranked
 from dalembert.report.look import LIGHT, themed
-from dalembert.report.needs import IdentifiedLike, RegularisedStepLike
 
 
-def l_curve(fit: IdentifiedLike, *, title: str = "L-curves") -> go.Figure:
+def l_curve(fit: Fit | BandFit, *, title: str = "L-curves") -> go.Figure:
     """Length of a step over the residual that it would leave, for all weights, with the weight chosen and that taken.
 
     One curve a step of the best start; in colour the last one that has a corner.
 
     Parameters
     ----------
-    fit : FitLike or BandFitLike
+    fit : Fit or BandFit
         With at least one step that has an account of its regularisation.
     title : str
 
@@ -57,11 +58,11 @@ def l_curve(fit: IdentifiedLike, *, title: str = "L-curves") -> go.Figure:
     return figure.update_yaxes(title="length of the step", **logarithmic(figure))
 
 
-def accounts(fit: IdentifiedLike) -> list[RegularisedStepLike]:
+def accounts(fit: Fit | BandFit) -> list[RegularisedStep]:
     """Accounts of the steps of the best start that has several of them, or of the best that has any."""
-    best: list[RegularisedStepLike] = []
+    best: list[RegularisedStep] = []
     for start in ranked(fit):
-        steps = [getattr(step, "regularised", None) for step in fit.history if step.start == start]
+        steps = [step.regularised for step in fit.history if step.start == start]
         own = [step for step in steps if step is not None]
         if len(own) > 1:
             return own
@@ -69,7 +70,7 @@ def accounts(fit: IdentifiedLike) -> list[RegularisedStepLike]:
     return best
 
 
-def _at(step: RegularisedStepLike, weight: float) -> tuple[float, float]:
+def _at(step: RegularisedStep, weight: float) -> tuple[float, float]:
     """Where a weight stands on the L-curve, between its points or at its ends."""
     along = np.log(weight), np.log(step.weights)
     return tuple(  # pyright: ignore[reportReturnType]

@@ -2,8 +2,8 @@
 
 import plotly.graph_objects as go
 
+from dalembert.data import Measurements
 from dalembert.report.look import LIGHT, plain, themed
-from dalembert.report.needs import MeasurementsLike
 from dalembert.report.quantities import labelled, quantity
 from dalembert.report.thin import thin
 
@@ -11,7 +11,7 @@ FEW = 500
 """Samples up to which each is drawn as a circle."""
 
 
-def measured(data: MeasurementsLike, *, title: str = "") -> go.Figure:
+def measured(data: Measurements, *, title: str = "") -> go.Figure:
     """Every channel over the data's coordinate.
 
     Parameters

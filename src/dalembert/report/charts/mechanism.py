@@ -5,9 +5,9 @@ from collections.abc import Mapping
 import numpy as np
 import plotly.graph_objects as go
 
+from dalembert.multibody import Drawing
 from dalembert.report.charts.playback import Playback, controls
 from dalembert.report.look import LIGHT, plain, themed
-from dalembert.report.needs import DrawingLike
 
 NAMED_BODIES = 7
 """More bodies than colours share one trace."""
@@ -16,7 +16,7 @@ GHOSTS = 6
 
 
 def mechanism(
-    drawing: DrawingLike,
+    drawing: Drawing,
     *,
     paths: Mapping[str, np.ndarray] | None = None,
     measured: Mapping[str, np.ndarray] | None = None,
@@ -29,7 +29,7 @@ def mechanism(
 
     Parameters
     ----------
-    drawing : DrawingLike
+    drawing : Drawing
         Lines (frames, points, 2) and joints (frames, 2), by name, in m, at times (frames,) in s.
     paths : mapping of str to array, shape (samples, 2), optional
         Paths of points, in m.
@@ -81,7 +81,7 @@ def mechanism(
     return figure.update_layout(**controls(playback))
 
 
-def _bodies(drawing: DrawingLike) -> dict[str, np.ndarray]:
+def _bodies(drawing: Drawing) -> dict[str, np.ndarray]:
     """Lines (frames, points, 2) in single precision, thinned; many bodies become one line with gaps."""
     total = sum(line.shape[1] for line in drawing.lines.values())
     stride = max(1, -(-total // POINTS_A_FRAME))

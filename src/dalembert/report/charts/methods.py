@@ -6,9 +6,9 @@ import plotly.graph_objects as go
 from dalembert.report.charts.logarithm import logarithmic, positive
 from dalembert.report.charts.responses import FEW
 from dalembert.report.look import LIGHT, plain, themed
-from dalembert.report.needs import ComparisonLike, PropagationLike
 from dalembert.report.quantities import labelled
 from dalembert.report.thin import thin
+from dalembert.uncertainty import Comparison, Propagation
 
 KINDS = {
     "inner bound": (LIGHT.series[0], "circle"),
@@ -17,14 +17,14 @@ KINDS = {
 }
 
 
-def methods(comparison: ComparisonLike, *, title: str = "Error against runs") -> go.Figure:
+def methods(comparison: Comparison, *, title: str = "Error against runs") -> go.Figure:
     """Largest distance of each method's bounds from the reference, over the runs of the model that it took.
 
     A method that gives the same bounds as the reference has no place on a logarithmic axis and is left out.
 
     Parameters
     ----------
-    comparison : ComparisonLike
+    comparison : Comparison
     title : str
 
     Returns
@@ -50,14 +50,14 @@ def methods(comparison: ComparisonLike, *, title: str = "Error against runs") ->
     return figure.update_yaxes(title="largest error", **logarithmic(figure))
 
 
-def differences(comparison: ComparisonLike, *, title: str = "Distance from the reference") -> go.Figure:
+def differences(comparison: Comparison, *, title: str = "Distance from the reference") -> go.Figure:
     """Largest distance of any bound from the reference at each sample, one line a method, on a logarithmic scale.
 
     Where a bound is that of the reference there is a gap.
 
     Parameters
     ----------
-    comparison : ComparisonLike
+    comparison : Comparison
     title : str
 
     Returns
@@ -82,6 +82,6 @@ def differences(comparison: ComparisonLike, *, title: str = "Distance from the r
     return figure.update_yaxes(title="distance", **logarithmic(figure)).update_layout(showlegend=True)
 
 
-def reference(comparison: ComparisonLike) -> PropagationLike:
+def reference(comparison: Comparison) -> Propagation:
     """The result that the others are measured by."""
     return next(one for one in comparison.results if one.method == comparison.reference)

@@ -7,14 +7,14 @@ from dalembert.report.charts.body import MAGNIFIED, outline, space, surface
 from dalembert.report.charts.film import Film
 from dalembert.report.digits import shown
 from dalembert.report.look import themed
-from dalembert.report.needs_frequency import ModeShapesLike
+from dalembert.structure import ModeShapes
 
 MOST = 12
 """Modes that are drawn."""
 SECONDS_A_MODE = 1.5
 
 
-def mode_shapes(modes: ModeShapesLike, *, title: str = "Mode shapes") -> go.Figure:
+def mode_shapes(modes: ModeShapes, *, title: str = "Mode shapes") -> go.Figure:
     """Each mode at its largest deflection, coloured by the size of the displacement; a slider takes one after another.
 
     Parameters

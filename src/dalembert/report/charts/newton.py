@@ -3,18 +3,18 @@
 import numpy as np
 import plotly.graph_objects as go
 
+from dalembert.multibody import Trajectory
 from dalembert.report.look import LIGHT, themed
-from dalembert.report.needs import TrajectoryLike
 
 BINS = 400
 
 
-def newton(trajectory: TrajectoryLike, *, title: str = "Newton iterations") -> go.Figure:
+def newton(trajectory: Trajectory, *, title: str = "Newton iterations") -> go.Figure:
     """Newton iterations of each step; in a long run the most and the mean of every few steps.
 
     Parameters
     ----------
-    trajectory : TrajectoryLike
+    trajectory : Trajectory
         With ``newton_iterations``: array of int (steps,).
     title : str
 

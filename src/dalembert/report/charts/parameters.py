@@ -3,23 +3,23 @@
 import numpy as np
 import plotly.graph_objects as go
 
+from dalembert.inverse import Fit
 from dalembert.parameters import Parameters
 from dalembert.report.digits import shown
 from dalembert.report.look import LIGHT, plain, themed
-from dalembert.report.needs import FitLike
 
 ON_BOUND = 1e-6
 """Part of the way between the bounds within which a value counts as on one."""
 
 
-def parameters(fit: FitLike, *, title: str = "Parameters within their bounds") -> go.Figure:
+def parameters(fit: Fit, *, title: str = "Parameters within their bounds") -> go.Figure:
     """Each value where it lies between its bounds, with two standard deviations; a value on a bound is a diamond.
 
     Where the logarithm of a parameter is searched, the way between its bounds is logarithmic too.
 
     Parameters
     ----------
-    fit : FitLike
+    fit : Fit
     title : str
 
     Returns
@@ -76,7 +76,7 @@ def parameters(fit: FitLike, *, title: str = "Parameters within their bounds") -
     return figure.update_yaxes(range=[len(box) - 0.5, -0.7], showgrid=False).update_layout(margin_t=56)
 
 
-def on_bound(fit: FitLike) -> np.ndarray:
+def on_bound(fit: Fit) -> np.ndarray:
     """Mask (parameters,) of the values that lie on a bound."""
     place = placed(fit.parameters, fit.values)
     return (place <= ON_BOUND) | (place >= 1 - ON_BOUND)

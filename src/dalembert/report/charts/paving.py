@@ -8,8 +8,8 @@ import numpy as np
 import plotly.graph_objects as go
 
 from dalembert.errors import InputError, unknown
+from dalembert.inverse import ParameterSet
 from dalembert.report.look import LIGHT, faint, plain, themed
-from dalembert.report.needs import ParameterSetLike
 from dalembert.report.quantities import labelled
 
 MARGIN = 0.08
@@ -17,7 +17,7 @@ MOST_PLANES = 6
 
 
 def paving(
-    found: ParameterSetLike,
+    found: ParameterSet,
     plane: Sequence[str] | None = None,
     *,
     truth: Mapping[str, float] | None = None,
@@ -30,7 +30,7 @@ def paving(
 
     Parameters
     ----------
-    found : ParameterSetLike
+    found : ParameterSet
     plane : sequence of one or two str, optional
         Parameters of the axes; the first two if not given.
     truth : mapping of str to float, optional
@@ -125,7 +125,7 @@ def _mark(figure: go.Figure, chosen: Sequence[str], truth: Mapping[str, float]) 
         figure.add_scatter(x=at[:1], y=at[1:], name="true", mode="markers", marker=marker)
 
 
-def _ranges(found: ParameterSetLike, axes: Sequence[int]) -> list[list[float]]:
+def _ranges(found: ParameterSet, axes: Sequence[int]) -> list[list[float]]:
     """Range of each axis: the outer box with a margin, or all that was searched where there is no set."""
     box: Any = found.parameters if found.outer is None else found.outer
     width = np.where(box.upper > box.lower, box.upper - box.lower, 1e-9 * found.parameters.scale)

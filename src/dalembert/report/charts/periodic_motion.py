@@ -5,12 +5,12 @@ import plotly.graph_objects as go
 
 from dalembert.report.focus import foremost, unit_of
 from dalembert.report.look import LIGHT, plain, themed
-from dalembert.report.needs_frequency import PeriodicMotionLike
 from dalembert.report.prefixes import prefixed
 from dalembert.report.quantities import labelled
+from dalembert.vibration import PeriodicMotion
 
 
-def periodic_motion(motion: PeriodicMotionLike, *, title: str = "A period in time") -> go.Figure:
+def periodic_motion(motion: PeriodicMotion, *, title: str = "A period in time") -> go.Figure:
     """Displacements of the degrees of freedom that move most over the phase of the period.
 
     Parameters
@@ -34,7 +34,7 @@ def periodic_motion(motion: PeriodicMotionLike, *, title: str = "A period in tim
     return figure.update_yaxes(title=labelled("displacement", unit)).update_layout(showlegend=True)
 
 
-def loops_in_time(motion: PeriodicMotionLike, *, title: str = "Hysteresis loops in time") -> go.Figure:
+def loops_in_time(motion: PeriodicMotion, *, title: str = "Hysteresis loops in time") -> go.Figure:
     """Force over relative displacement of the contacts and springs that take most energy in the period.
 
     Parameters

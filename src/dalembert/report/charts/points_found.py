@@ -6,10 +6,10 @@ from plotly.subplots import make_subplots
 
 from dalembert.report.charts.logarithm import positive
 from dalembert.report.look import LIGHT, themed
-from dalembert.report.needs_frequency import FrequencyCurveLike
+from dalembert.vibration import FrequencyCurve
 
 
-def points_found(curve: FrequencyCurveLike, *, title: str = "How the points were found") -> go.Figure:
+def points_found(curve: FrequencyCurve, *, title: str = "How the points were found") -> go.Figure:
     """Newton iterations of each point; below, what is left unbalanced and what twice as many samples would change.
 
     Parameters

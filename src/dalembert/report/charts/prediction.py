@@ -6,21 +6,19 @@ import numpy as np
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
+from dalembert.inverse import Prediction
 from dalembert.report.charts.bands import draw_line, dressed, fill_band, selected
 from dalembert.report.charts.responses import FEW
 from dalembert.report.look import LIGHT, faint, plain
-from dalembert.report.needs_telling import PredictionLike
 from dalembert.report.thin import thin
 
 
-def prediction(
-    result: PredictionLike, channels: Sequence[str] | None = None, *, title: str = "Prediction"
-) -> go.Figure:
+def prediction(result: Prediction, channels: Sequence[str] | None = None, *, title: str = "Prediction") -> go.Figure:
     """Response with the band of its true value, fainter the band of a new measurement; below, half the widths.
 
     Parameters
     ----------
-    result : PredictionLike
+    result : Prediction
     channels : sequence of str, optional
         Channels to draw, all if not given; they share an axis.
     title : str
@@ -41,7 +39,7 @@ def prediction(
     return dressed(figure, result, chosen, title, below="± band").update_yaxes(rangemode="tozero", row=2)
 
 
-def _channel(figure: go.Figure, result: PredictionLike, column: int, colour: str) -> None:
+def _channel(figure: go.Figure, result: Prediction, column: int, colour: str) -> None:
     along, name, centre = result.coordinate.values, plain(result.channels[column]), result.response[:, column]
     bands = (
         ("measurement", result.measured_lower[:, column], result.measured_upper[:, column], 0.12, "dot"),

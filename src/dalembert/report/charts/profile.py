@@ -5,20 +5,20 @@ import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
 from dalembert.errors import InputError, unknown
+from dalembert.inverse import Profiles
 from dalembert.report.digits import interval
 from dalembert.report.look import LIGHT, faint, plain, themed
-from dalembert.report.needs_telling import ProfilesLike
 from dalembert.report.quantities import labelled
 
 
-def profile(result: ProfilesLike, name: str, *, title: str = "") -> go.Figure:
+def profile(result: Profiles, name: str, *, title: str = "") -> go.Figure:
     """Excess of the misfit along one parameter with its threshold; below, how the other parameters make up for it.
 
     Dotted is what the standard deviation says, a parabola; shaded is the interval.
 
     Parameters
     ----------
-    result : ProfilesLike
+    result : Profiles
     name : str
         The parameter.
     title : str

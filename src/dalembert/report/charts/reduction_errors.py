@@ -6,10 +6,10 @@ from plotly.subplots import make_subplots
 
 from dalembert.report.charts.logarithm import positive
 from dalembert.report.look import LIGHT, themed
-from dalembert.report.needs_frequency import ReductionErrorsLike
+from dalembert.structure import ReductionErrors
 
 
-def reduction_errors(errors: ReductionErrorsLike, *, title: str = "Modes of the reduced structure") -> go.Figure:
+def reduction_errors(errors: ReductionErrors, *, title: str = "Modes of the reduced structure") -> go.Figure:
     """Error of each frequency in percent; below, what is missing of the shape's similarity to 1; both logarithmic.
 
     Parameters

@@ -5,15 +5,15 @@ from collections.abc import Sequence
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
+from dalembert.inverse import BandFit
 from dalembert.report.charts.bands import draw_band, draw_line, dressed, selected
 from dalembert.report.look import LIGHT, plain
-from dalembert.report.needs import BandFitLike
 
 DASHES = {"lower": "solid", "upper": "dot"}
 
 
 def residual_bands(
-    fit: BandFitLike, channels: Sequence[str] | None = None, *, title: str = "Given and reproduced bands"
+    fit: BandFit, channels: Sequence[str] | None = None, *, title: str = "Given and reproduced bands"
 ) -> go.Figure:
     """Given bands filled, reproduced bounds dashed; below, reproduced minus given, lower bounds solid, upper dotted.
 
@@ -21,7 +21,7 @@ def residual_bands(
 
     Parameters
     ----------
-    fit : BandFitLike
+    fit : BandFit
     channels : sequence of str, optional
         Channels to draw, all if not given; they share an axis.
     title : str
@@ -42,7 +42,7 @@ def residual_bands(
     return dressed(figure, fit.bands, chosen, title, below="residual")
 
 
-def _channel(figure: go.Figure, fit: BandFitLike, column: int, colour: str) -> None:
+def _channel(figure: go.Figure, fit: BandFit, column: int, colour: str) -> None:
     at, name = fit.bands.coordinate.values, plain(fit.bands.channels[column])
     draw_band(figure, fit.bands, column, colour, legend=", given")
     for side, found in reproduced(fit).items():
@@ -54,7 +54,7 @@ def _channel(figure: go.Figure, fit: BandFitLike, column: int, colour: str) -> N
             draw_line(figure, at, series, f"{name} {word}, {side}", name, line, row=row)
 
 
-def reproduced(fit: BandFitLike) -> dict:
+def reproduced(fit: BandFit) -> dict:
     """Lower and upper bounds (samples, channels) as true runs give them, or the surrogate where there were none."""
     lower = fit.lower if fit.checked_lower is None else fit.checked_lower
     upper = fit.upper if fit.checked_upper is None else fit.checked_upper

@@ -7,16 +7,15 @@ from plotly.subplots import make_subplots
 from dalembert.report.digits import shown
 from dalembert.report.focus import size_label, unit_of
 from dalembert.report.look import LIGHT, plain, themed
-from dalembert.report.needs import OverParameterLike
-from dalembert.report.needs_frequency import CurveFamilyLike, ResonanceTrackLike
 from dalembert.report.prefixes import prefixed
 from dalembert.report.quantities import labelled
+from dalembert.vibration import CurveFamily, ResonanceTrack
 
 DECADES = 100
 """Ratio of the largest value to the smallest above which the axis of the parameter is logarithmic."""
 
 
-def family_peaks(family: CurveFamilyLike, dof: str, *, kind: str = "peak", title: str | None = None) -> go.Figure:
+def family_peaks(family: CurveFamily, dof: str, *, kind: str = "peak", title: str | None = None) -> go.Figure:
     """Height of the resonance peak over the parameter, the smallest marked; below, its frequency.
 
     Parameters
@@ -43,7 +42,7 @@ def family_peaks(family: CurveFamilyLike, dof: str, *, kind: str = "peak", title
     return _drawn(family, np.asarray(family.values)[order], heights, frequencies, dof, kind, title)
 
 
-def resonance_track(track: ResonanceTrackLike, *, title: str | None = None) -> go.Figure:
+def resonance_track(track: ResonanceTrack, *, title: str | None = None) -> go.Figure:
     """Height of a resonance peak over the parameter, the smallest marked; below, its frequency; gaps where it was lost.
 
     Parameters
@@ -59,13 +58,13 @@ def resonance_track(track: ResonanceTrackLike, *, title: str | None = None) -> g
     return _drawn(track, values, heights, frequencies, track.dof, track.kind, title)
 
 
-def value_text(over: OverParameterLike, value: float) -> str:
+def value_text(over: CurveFamily | ResonanceTrack, value: float) -> str:
     """A value of the parameter with its unit."""
     return f"{shown(float(value))} {plain(over.unit)}".rstrip()
 
 
 def _drawn(
-    over: OverParameterLike,
+    over: CurveFamily | ResonanceTrack,
     values: np.ndarray,
     heights: np.ndarray,
     frequencies: np.ndarray,

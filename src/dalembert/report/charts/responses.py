@@ -8,8 +8,8 @@ import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
 from dalembert.errors import InputError, unknown
+from dalembert.inverse import ExperimentFit, Fit
 from dalembert.report.look import LIGHT, plain, themed
-from dalembert.report.needs import ResponseLike
 from dalembert.report.quantities import labelled, quantity
 from dalembert.report.thin import thin
 
@@ -18,7 +18,7 @@ FEW = 200
 
 
 def responses(
-    fit: ResponseLike, channels: Sequence[str] | None = None, *, title: str = "Response and data"
+    fit: Fit | ExperimentFit, channels: Sequence[str] | None = None, *, title: str = "Response and data"
 ) -> go.Figure:
     """Computed responses as lines, data as circles, and below them computed minus measured.
 
@@ -58,7 +58,7 @@ def responses(
     return figure.update_layout(hovermode="x unified")
 
 
-def _channel(figure: go.Figure, fit: ResponseLike, column: int, colour: str) -> None:
+def _channel(figure: go.Figure, fit: Fit | ExperimentFit, column: int, colour: str) -> None:
     at, name = fit.data.coordinate.values, plain(fit.data.channels[column])
     taken = np.flatnonzero(fit.data.taken[:, column])
     measured, residual = fit.data.values[:, column], fit.residuals[:, column]

@@ -3,19 +3,19 @@
 import numpy as np
 import plotly.graph_objects as go
 
+from dalembert.inverse import BandFit, Fit
 from dalembert.report.charts.logarithm import logarithmic, positive
 from dalembert.report.look import LIGHT, plain, themed
-from dalembert.report.needs import IdentifiedLike
 
 
-def starts(fit: IdentifiedLike, *, title: str = "Starts and their ends") -> go.Figure:
+def starts(fit: Fit | BandFit, *, title: str = "Starts and their ends") -> go.Figure:
     """Waterfall: final fitness of every start, best first, each with a stem from where it started.
 
     A flat step of several starts is a minimum that many ways lead to.
 
     Parameters
     ----------
-    fit : FitLike or BandFitLike
+    fit : Fit or BandFit
     title : str
 
     Returns
@@ -53,10 +53,10 @@ def starts(fit: IdentifiedLike, *, title: str = "Starts and their ends") -> go.F
     return figure.update_yaxes(title="fitness", **logarithmic(figure))
 
 
-def ranked(fit: IdentifiedLike) -> list[int]:
+def ranked(fit: Fit | BandFit) -> list[int]:
     """Numbers of the starts, the lowest final fitness first, those that failed last."""
     return sorted(range(len(fit.starts)), key=lambda number: np.nan_to_num(fit.starts[number].fitness, nan=np.inf))
 
 
-def _first(fit: IdentifiedLike, number: int) -> float:
+def _first(fit: Fit | BandFit, number: int) -> float:
     return next((step.best for step in fit.history if step.start == number), np.nan)

@@ -4,18 +4,18 @@ import numpy as np
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
+from dalembert.inverse import BandFit, Fit
 from dalembert.report.charts.l_curve import accounts
 from dalembert.report.charts.logarithm import positive
 from dalembert.report.look import LIGHT, themed
-from dalembert.report.needs import IdentifiedLike
 
 
-def steps(fit: IdentifiedLike, *, title: str = "Steps of the best start") -> go.Figure:
+def steps(fit: Fit | BandFit, *, title: str = "Steps of the best start") -> go.Figure:
     """Residual before each step, weights chosen and taken, and agreement with the linear model, over the steps.
 
     Parameters
     ----------
-    fit : FitLike or BandFitLike
+    fit : Fit or BandFit
         With at least one step that has an account of its regularisation.
     title : str
 

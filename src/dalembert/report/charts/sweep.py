@@ -1,19 +1,20 @@
 """A response along one parameter, and its slope."""
 
+from typing import Any
+
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
 from dalembert.report.look import LIGHT, plain, themed
-from dalembert.report.needs import CurveLike
 from dalembert.report.quantities import derivative, labelled, quantity
 
 
-def sweep(curve: CurveLike, at: str = "", *, title: str | None = None) -> go.Figure:
+def sweep(curve: Any, at: str = "", *, title: str | None = None) -> go.Figure:
     """Responses against the values of one parameter; below, their derivatives where they are known.
 
     Parameters
     ----------
-    curve : CurveLike
+    curve : Any
         Values (samples,), responses and sensitivities (samples, channels).
     at : str
         The instant that is looked at, for the title, for example ``"time 0.5 s"``.

@@ -7,14 +7,14 @@ import plotly.graph_objects as go
 
 from dalembert.report.focus import foremost, size_label, unit_of
 from dalembert.report.look import LIGHT, plain, themed
-from dalembert.report.needs_frequency import FrequencyCurveLike, TimeComparisonLike
 from dalembert.report.prefixes import prefixed
 from dalembert.report.quantities import labelled
+from dalembert.vibration import FrequencyCurve, TimeComparison
 
 
 def time_comparison(
-    comparison: TimeComparisonLike,
-    curve: FrequencyCurveLike | None = None,
+    comparison: TimeComparison,
+    curve: FrequencyCurve | None = None,
     dofs: Sequence[str] | None = None,
     *,
     title: str = "Beside time integration",
@@ -67,7 +67,7 @@ def time_comparison(
     return figure.update_layout(showlegend=True)
 
 
-def compared_dofs(comparison: TimeComparisonLike, most: int = 4) -> tuple[str, ...]:
+def compared_dofs(comparison: TimeComparison, most: int = 4) -> tuple[str, ...]:
     """The degrees of freedom that move most in time, displacements before others."""
     sizes = dict(zip(comparison.dofs, np.nanmax(comparison.time, axis=0).tolist(), strict=True))
     own = {dof: size for dof, size in sizes.items() if unit_of(dof) == unit_of(comparison.dofs[0])}

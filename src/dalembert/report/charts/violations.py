@@ -3,22 +3,22 @@
 import numpy as np
 import plotly.graph_objects as go
 
+from dalembert.multibody import Trajectory
 from dalembert.report.charts.logarithm import logarithmic, positive
 from dalembert.report.look import LIGHT, themed
-from dalembert.report.needs import TrajectoryLike
 from dalembert.report.thin import largest_of_stretches
 
 LEVELS = {"position": "position (m)", "velocity": "velocity (m/s)", "acceleration": "acceleration (m/s²)"}
 
 
-def violations(trajectory: TrajectoryLike, *, title: str = "Constraint violations") -> go.Figure:
+def violations(trajectory: Trajectory, *, title: str = "Constraint violations") -> go.Figure:
     """Largest violation of a constraint over time at the three levels, on a logarithmic scale; zero is a gap.
 
     Of a long motion each point is the largest of a stretch, so that rounding noise does not fill the figure.
 
     Parameters
     ----------
-    trajectory : TrajectoryLike
+    trajectory : Trajectory
         With ``violations``: arrays (samples,), by level.
     title : str
 

@@ -3,19 +3,19 @@
 import numpy as np
 import plotly.graph_objects as go
 
+from dalembert.multibody import WorkPrecision
 from dalembert.report.charts.logarithm import logarithmic, positive
 from dalembert.report.look import LIGHT, plain, themed
-from dalembert.report.needs_integrators import WorkPrecisionLike
 
 SYMBOLS = ("circle", "square", "diamond", "triangle-up", "x", "star", "cross", "pentagon")
 
 
-def work_precision(found: WorkPrecisionLike, *, title: str = "Error against run time") -> go.Figure:
+def work_precision(found: WorkPrecision, *, title: str = "Error against run time") -> go.Figure:
     """Error of each run over its run time, both logarithmic, one line an integrator; no runs that ended early.
 
     Parameters
     ----------
-    found : WorkPrecisionLike
+    found : WorkPrecision
     title : str
 
     Returns

@@ -7,10 +7,10 @@ import numpy as np
 
 from dalembert.report import charts
 from dalembert.report.digits import shown
-from dalembert.report.needs_frequency import FrequencyCurveLike
 from dalembert.report.plot import Plot
 from dalembert.report.sections.findings import Findings
 from dalembert.report.table import Table, cell
+from dalembert.vibration import FrequencyCurve
 
 
 @dataclass(frozen=True)
@@ -18,7 +18,7 @@ class Balance(Findings):
     """Newton iterations, residuals and samples of the points."""
 
     heading: ClassVar[str] = "Diagnostics of the balance"
-    curve: FrequencyCurveLike
+    curve: FrequencyCurve
 
     @property
     def sentences(self) -> tuple[str, ...]:

@@ -4,14 +4,15 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from dalembert.inverse import BandFit, ParameterSet
 from dalembert.report.charts.methods import reference
 from dalembert.report.digits import counted, interval, shown
-from dalembert.report.needs import BandFitLike, ComparisonLike, ParameterSetLike, PropagationLike
 from dalembert.report.quantities import labelled
 from dalembert.report.sections.headline import MOST_VALUES, Fact, Headline, of_identified
+from dalembert.uncertainty import Comparison, Propagation
 
 
-def of_propagation(result: PropagationLike, title: str | None, notes: Sequence[str]) -> Headline:
+def of_propagation(result: Propagation, title: str | None, notes: Sequence[str]) -> Headline:
     """Headline of bounds of a response."""
     error = result.error
     facts = [
@@ -25,7 +26,7 @@ def of_propagation(result: PropagationLike, title: str | None, notes: Sequence[s
     return Headline(title or "Bounds of the response", verdict, result.success, result.status, facts, notes)
 
 
-def of_comparison(comparison: ComparisonLike, title: str | None, notes: Sequence[str]) -> Headline:
+def of_comparison(comparison: Comparison, title: str | None, notes: Sequence[str]) -> Headline:
     """Headline of methods compared on one box."""
     known = reference(comparison)
     facts = [
@@ -39,7 +40,7 @@ def of_comparison(comparison: ComparisonLike, title: str | None, notes: Sequence
     return Headline(title or "Methods compared", verdict, success, comparison.status, facts, notes)
 
 
-def of_band_fit(fit: BandFitLike, title: str | None, notes: Sequence[str]) -> Headline:
+def of_band_fit(fit: BandFit, title: str | None, notes: Sequence[str]) -> Headline:
     """Headline of intervals identified from bands."""
     values = [
         Fact(labelled(item.name, item.unit), interval(low, high))
@@ -55,7 +56,7 @@ def of_band_fit(fit: BandFitLike, title: str | None, notes: Sequence[str]) -> He
     return of_identified(fit, title or "Identified intervals", facts, notes)
 
 
-def of_set(found: ParameterSetLike, title: str | None, notes: Sequence[str]) -> Headline:
+def of_set(found: ParameterSet, title: str | None, notes: Sequence[str]) -> Headline:
     """Headline of a consistent set."""
     box = found.outer
     values = (

@@ -5,14 +5,15 @@ from typing import ClassVar
 
 import numpy as np
 
+from dalembert.intervals import Box
 from dalembert.report import charts
 from dalembert.report.look import plain
-from dalembert.report.needs import BoxLike, PropagationLike
 from dalembert.report.plot import Plot
 from dalembert.report.quantities import by_quantity, labelled, unit
 from dalembert.report.sections.samples import samples
 from dalembert.report.sections.section import Section
 from dalembert.report.table import Cell, Table, cell, noted
+from dalembert.uncertainty import Propagation
 
 MEANING = {
     "inner bound": "Runs of the model within the box reach both sides of the band; the true one may be wider",
@@ -28,7 +29,7 @@ class Bounds(Section):
 
     name: ClassVar[str] = "bounds"
     heading: ClassVar[str] = "Bounds"
-    result: PropagationLike
+    result: Propagation
 
     @property
     def plots(self) -> tuple[Plot, ...]:
@@ -77,8 +78,7 @@ class Bounds(Section):
     @property
     def reasons(self) -> tuple[str, ...]:
         """Why the error is unknown; empty where it is estimated."""
-        findings = getattr(self.result, "findings", ())
-        return tuple(finding.message for finding in findings if finding.code == "unknown-error")
+        return tuple(finding.message for finding in self.result.findings if finding.code == "unknown-error")
 
     @property
     def samples(self) -> Table | None:
@@ -92,7 +92,7 @@ def _percent(part: float) -> Cell:
     return Cell(float(part), f"{100 * part:.0f} %")
 
 
-def box_table(box: BoxLike, caption: str, name: str = "box") -> Table:
+def box_table(box: Box, caption: str, name: str = "box") -> Table:
     """Ends, middle and radius of each interval of a box."""
     middle, radius = (box.lower + box.upper) / 2, (box.upper - box.lower) / 2
     rows = [
@@ -102,7 +102,7 @@ def box_table(box: BoxLike, caption: str, name: str = "box") -> Table:
     return Table(name, caption, ("parameter", "lower", "upper", "middle", "radius"), rows)
 
 
-def at_corners(result: PropagationLike) -> np.ndarray | None:
+def at_corners(result: Propagation) -> np.ndarray | None:
     """Part of each channel's bounds that are taken at a corner of the box, (channels,); None where it is not known."""
     if result.at_lower is None or result.at_upper is None:
         return None

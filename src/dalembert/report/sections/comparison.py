@@ -2,13 +2,13 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
+from dalembert.inverse import ExperimentFit, Fit
 from dalembert.report import charts
 from dalembert.report.look import LIGHT, plain
-from dalembert.report.needs import FitLike, ResponseLike
 from dalembert.report.plot import Plot
 from dalembert.report.quantities import by_quantity, labelled, unit
 from dalembert.report.sections.samples import samples
@@ -26,7 +26,7 @@ class Comparison(Section):
 
     name: ClassVar[str] = "comparison"
     heading: ClassVar[str] = "Response and data"
-    fit: FitLike
+    fit: Fit
 
     @property
     def validation(self) -> str:
@@ -50,20 +50,19 @@ class Comparison(Section):
         return all_samples(self.fit, "responses")
 
 
-def validation(fit: FitLike) -> str:
+def validation(fit: Fit) -> str:
     """How what was not fitted is predicted, in a sentence; empty if all was fitted."""
-    told = getattr(fit, "validation", None)
-    return "" if told is None else str(told)
+    return "" if fit.validation is None else str(fit.validation)
 
 
-def misfits(fit: FitLike, experiment: str = "") -> dict[str, float]:
+def misfits(fit: Fit, experiment: str = "") -> dict[str, float]:
     """Return where the model begins to leave the data of an experiment, by channel."""
-    found = (item.values for item in getattr(fit, "findings", ()) if item.code == "model-misfit")
+    found = (item.values for item in fit.findings if item.code == "model-misfit")
     return {item["channel"]: item["at"] for item in found if item["experiment"] == experiment}
 
 
 def plots(
-    compared: ResponseLike, name: str, lead: str = "", misfits: Mapping[str, float] | None = None
+    compared: Fit | ExperimentFit, name: str, lead: str = "", misfits: Mapping[str, float] | None = None
 ) -> tuple[Plot, ...]:
     """A figure for each quantity, named ``name-1`` …, its title after ``lead``, with the places of ``misfits``."""
     channels = compared.data.channels
@@ -82,19 +81,16 @@ def plots(
     return tuple(found)
 
 
-def first_predicted(compared: ResponseLike) -> float | None:
+def first_predicted(compared: Fit | ExperimentFit) -> float | None:
     """Where the samples at the end that were not fitted begin; None where there are none, or only such."""
-    weights: Any = getattr(compared, "weights", None)
-    if weights is None:
-        return None
-    fitted = np.flatnonzero(np.any(np.asarray(weights) > 0, axis=1))
+    fitted = np.flatnonzero(np.any(compared.weights > 0, axis=1))
     along = compared.data.coordinate.values
     return (
         None if len(fitted) == 0 or fitted[-1] == len(along) - 1 else float(along[fitted[-1] : fitted[-1] + 2].mean())
     )
 
 
-def residual_cells(compared: ResponseLike) -> list[list[Cell]]:
+def residual_cells(compared: Fit | ExperimentFit) -> list[list[Cell]]:
     """Cells of each channel: its name, rms and largest residual, where that is, deviation of the data, and unit."""
     data = compared.data
     residuals = np.where(np.isfinite(compared.residuals), compared.residuals, 0.0)  # 0 where a value is missing
@@ -113,7 +109,7 @@ def residual_cells(compared: ResponseLike) -> list[list[Cell]]:
     ]
 
 
-def all_samples(compared: ResponseLike, name: str) -> Table | None:
+def all_samples(compared: Fit | ExperimentFit, name: str) -> Table | None:
     """Measured and computed samples, unless they are too many for a page."""
     data = compared.data
     series = {"measured": data.values, "computed": compared.response}

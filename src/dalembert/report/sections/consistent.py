@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import ClassVar
 
+from dalembert.inverse import ParameterSet
 from dalembert.report import charts
 from dalembert.report.charts.paving import planes
-from dalembert.report.needs import ParameterSetLike
 from dalembert.report.plot import Plot
 from dalembert.report.sections.bounds import box_table
 from dalembert.report.sections.section import Section
@@ -19,7 +19,7 @@ class Consistent(Section):
 
     name: ClassVar[str] = "consistent"
     heading: ClassVar[str] = "Consistent set"
-    found: ParameterSetLike
+    found: ParameterSet
     truth: Mapping[str, float] = field(default_factory=dict)
 
     @property

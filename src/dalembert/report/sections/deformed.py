@@ -8,9 +8,9 @@ import numpy as np
 from dalembert.report import charts
 from dalembert.report.charts.deformation import magnified
 from dalembert.report.digits import shown
-from dalembert.report.needs_frequency import DeformationLike
 from dalembert.report.plot import Plot
 from dalembert.report.sections.findings import Findings
+from dalembert.vibration import Deformation
 
 
 @dataclass(frozen=True)
@@ -18,7 +18,7 @@ class Deformed(Findings):
     """The deformed shape as a film, and a map of the interface where there are contacts."""
 
     heading: ClassVar[str] = "Deformed shape"
-    shape: DeformationLike
+    shape: Deformation
 
     @property
     def wide(self) -> tuple[Plot, ...]:

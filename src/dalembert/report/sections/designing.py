@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
+from dalembert.inverse import Designs
 from dalembert.report import charts
-from dalembert.report.needs_telling import DesignsLike
 from dalembert.report.plot import Plot
 from dalembert.report.quantities import labelled
 from dalembert.report.sections.section import Section
@@ -17,7 +17,7 @@ class Designing(Section):
 
     name: ClassVar[str] = "designing"
     heading: ClassVar[str] = "Designs"
-    designs: DesignsLike
+    designs: Designs
 
     @property
     def plots(self) -> tuple[Plot, ...]:

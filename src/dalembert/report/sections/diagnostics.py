@@ -7,11 +7,11 @@ from typing import ClassVar
 import numpy as np
 import plotly.graph_objects as go
 
+from dalembert.multibody import Trajectory
 from dalembert.report import charts
 from dalembert.report.charts.violations import LEVELS
 from dalembert.report.each import numbered
 from dalembert.report.look import plain
-from dalembert.report.needs import TrajectoryLike
 from dalembert.report.plot import Plot
 from dalembert.report.sections.headline import largest
 from dalembert.report.sections.section import Section
@@ -24,7 +24,7 @@ class Diagnostics(Section):
 
     name: ClassVar[str] = "diagnostics"
     heading: ClassVar[str] = "Diagnostics of the simulation"
-    trajectories: Mapping[str, TrajectoryLike]
+    trajectories: Mapping[str, Trajectory]
 
     @property
     def plots(self) -> tuple[Plot, ...]:
@@ -56,7 +56,7 @@ def _named(experiment: str, figure: go.Figure) -> go.Figure:
     return figure.update_layout(title_text=f"{plain(experiment)}: {title}") if experiment else figure
 
 
-def _rows(trajectory: TrajectoryLike) -> list[tuple[str, float, str]]:
+def _rows(trajectory: Trajectory) -> list[tuple[str, float, str]]:
     """Quantities, values and units."""
     counts = np.asarray(trajectory.newton_iterations)
     return [

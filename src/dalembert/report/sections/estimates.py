@@ -1,14 +1,14 @@
 """Table of the identified parameters."""
 
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
+from dalembert.inverse import Fit
 from dalembert.parameters import Parameter
 from dalembert.report import charts
 from dalembert.report.charts.parameters import on_bound
-from dalembert.report.needs import FitLike
 from dalembert.report.plot import Plot
 from dalembert.report.sections.section import Section
 from dalembert.report.table import Cell, Table, cell, noted
@@ -20,7 +20,7 @@ class Estimates(Section):
 
     name: ClassVar[str] = "estimates"
     heading: ClassVar[str] = "Parameters"
-    fit: FitLike
+    fit: Fit
 
     @property
     def table(self) -> Table:
@@ -34,11 +34,11 @@ class Estimates(Section):
             ],
             "standard deviation": _short(fit.deviations),
         }
-        plain = getattr(fit, "plain_deviations", fit.deviations)
+        plain = fit.plain_deviations
         if not np.array_equal(plain, fit.deviations, equal_nan=True):
             columns["for independent residuals"] = _short(plain)
-        bias = getattr(fit, "integration_bias", None)
-        if bias is not None and np.all(np.isfinite(bias)):
+        bias = fit.integration_bias
+        if np.all(np.isfinite(bias)):
             columns["bias by the integrator"] = _short(bias)
         columns |= {
             "unit": [cell(item.unit) for item in fit.parameters],
@@ -52,7 +52,7 @@ class Estimates(Section):
     @property
     def halves(self) -> Table | None:
         """Values of the first and of the second half of the records; None where they are not known."""
-        found: Any = getattr(self.fit, "halves", None)
+        found = self.fit.halves
         if found is None:
             return None
         columns: dict[str, list[Cell]] = {"parameter": [cell(item.name) for item in self.fit.parameters]}

@@ -4,8 +4,8 @@ import re
 from dataclasses import dataclass
 from typing import ClassVar
 
+from dalembert.inverse import ExperimentFit, Fit
 from dalembert.report.look import plain
-from dalembert.report.needs import ExperimentLike, FitLike
 from dalembert.report.plot import Plot
 from dalembert.report.sections.comparison import all_samples, misfits, plots, residual_cells, validation
 from dalembert.report.sections.section import Section
@@ -18,8 +18,8 @@ class Experiments(Section):
 
     name: ClassVar[str] = "experiments"
     heading: ClassVar[str] = "Experiments"
-    fit: FitLike
-    experiments: tuple[ExperimentLike, ...]
+    fit: Fit
+    experiments: tuple[ExperimentFit, ...]
 
     @property
     def validation(self) -> str:
@@ -61,6 +61,6 @@ class Experiments(Section):
                 found.append((f"Download all samples of {item.name} as CSV", table))
         return found
 
-    def _plots(self, item: ExperimentLike, number: int) -> tuple[Plot, ...]:
+    def _plots(self, item: ExperimentFit, number: int) -> tuple[Plot, ...]:
         lead = f"{plain(item.name)}{'' if item.fitted else ' (predicted)'}: "
         return plots(item, f"experiment-{number}", lead, misfits(self.fit, item.name))

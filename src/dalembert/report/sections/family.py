@@ -9,12 +9,12 @@ from dalembert.report import charts
 from dalembert.report.charts.resonance_peaks import value_text
 from dalembert.report.digits import shown
 from dalembert.report.focus import unit_of
-from dalembert.report.needs_frequency import CurveFamilyLike, FrequencyCurveLike
 from dalembert.report.plot import Plot
 from dalembert.report.prefixes import in_words
 from dalembert.report.quantities import labelled
 from dalembert.report.sections.findings import Findings
 from dalembert.report.table import Table, cell, noted
+from dalembert.vibration import CurveFamily, FrequencyCurve
 
 
 @dataclass(frozen=True)
@@ -22,7 +22,7 @@ class Family(Findings):
     """Curves with their envelope, peaks over the parameter, and a table of the peaks and what they gain."""
 
     heading: ClassVar[str] = "Responses over the parameter"
-    family: CurveFamilyLike
+    family: CurveFamily
     dofs: tuple[str, ...]
     kind: str = "peak"
 
@@ -101,7 +101,7 @@ class Family(Findings):
         return noted(Table(f"family-{place}", f"Peaks of {dof}", columns, rows))
 
 
-def best_curve(family: CurveFamilyLike, dof: str, kind: str) -> FrequencyCurveLike:
+def best_curve(family: CurveFamily, dof: str, kind: str) -> FrequencyCurve:
     """The curve with the smallest peak."""
     best = int(np.flatnonzero(np.asarray(family.values) == family.best(dof, kind))[0])
     curve = family.curves[best]

@@ -8,11 +8,11 @@ import numpy as np
 from dalembert.report import charts
 from dalembert.report.digits import shown
 from dalembert.report.focus import Look, marked, movers, size_label, unit_of, unstable
-from dalembert.report.needs_frequency import BackboneLike
 from dalembert.report.plot import Plot
 from dalembert.report.quantities import labelled
 from dalembert.report.sections.findings import Findings
 from dalembert.report.table import Table, cell
+from dalembert.vibration import Backbone
 
 MOST_NAMED = 4
 MOST_ROWS = 20
@@ -24,7 +24,7 @@ class ForcedResponse(Findings):
 
     heading: ClassVar[str] = "Forced response"
     look: Look
-    mode: BackboneLike | None = None
+    mode: Backbone | None = None
 
     @property
     def sentences(self) -> tuple[str, ...]:

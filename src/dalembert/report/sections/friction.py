@@ -10,10 +10,10 @@ from dalembert.report.charts.contact_states import shares
 from dalembert.report.digits import shown
 from dalembert.report.focus import Look, dissipation_of, of_contacts, of_springs
 from dalembert.report.look import plain
-from dalembert.report.needs_frequency import FrequencyCurveLike
 from dalembert.report.plot import Plot
 from dalembert.report.sections.findings import Findings
 from dalembert.report.table import Cell, Table, cell
+from dalembert.vibration import FrequencyCurve
 
 FEW_SPRINGS = 6
 
@@ -126,7 +126,7 @@ def _percent(part: float) -> str:
     return f"{shown(100 * part, digits=3)} %"
 
 
-def _at(curve: FrequencyCurveLike, point: int) -> str:
+def _at(curve: FrequencyCurve, point: int) -> str:
     return f"{shown(float(curve.frequencies[point]))} Hz"
 
 

@@ -5,10 +5,10 @@ from typing import ClassVar
 
 import numpy as np
 
+from dalembert.inverse import BandFit
 from dalembert.report import charts
 from dalembert.report.charts.residual_bands import reproduced
 from dalembert.report.look import plain
-from dalembert.report.needs import BandFitLike
 from dalembert.report.plot import Plot
 from dalembert.report.quantities import by_quantity, labelled, unit
 from dalembert.report.sections.samples import samples
@@ -22,7 +22,7 @@ class GivenBands(Section):
 
     name: ClassVar[str] = "comparison"
     heading: ClassVar[str] = "Bands"
-    fit: BandFitLike
+    fit: BandFit
 
     @property
     def plots(self) -> tuple[Plot, ...]:

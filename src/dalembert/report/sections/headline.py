@@ -2,14 +2,14 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from dalembert.findings import Finding
+from dalembert.inverse import BandFit, Fit
+from dalembert.multibody import Trajectory, WorkPrecision
 from dalembert.report.digits import counted, shown, with_deviation
-from dalembert.report.needs import FitLike, IdentifiedLike, SweepLike, TrajectoryLike
-from dalembert.report.needs_integrators import WorkPrecisionLike
 from dalembert.report.quantities import labelled
 from dalembert.report.sections.section import Section
 from dalembert.results import fixed_of
@@ -58,7 +58,7 @@ def fixed_facts(result: object) -> list[Fact]:
     return [Fact(f"{labelled(item.name, item.unit)}, fixed", shown(float(item.lower))) for item in fixed_of(result)]
 
 
-def of_fit(fit: FitLike, title: str | None, notes: Sequence[str]) -> Headline:
+def of_fit(fit: Fit, title: str | None, notes: Sequence[str]) -> Headline:
     """Headline of identified parameters."""
     values = [
         Fact(labelled(item.name, item.unit), with_deviation(value, deviation))
@@ -74,14 +74,14 @@ def of_fit(fit: FitLike, title: str | None, notes: Sequence[str]) -> Headline:
     return of_identified(fit, title or "Identified parameters", facts, notes)
 
 
-def of_identified(fit: IdentifiedLike, title: str, facts: Sequence[Fact], notes: Sequence[str]) -> Headline:
+def of_identified(fit: Fit | BandFit, title: str, facts: Sequence[Fact], notes: Sequence[str]) -> Headline:
     """Headline of something identified, with what speaks against it."""
-    doubts = tuple(doubt.message for doubt in getattr(fit, "doubts", ())) if fit.success else ()
+    doubts = tuple(doubt.message for doubt in fit.doubts) if fit.success else ()
     verdict = "not identified" if not fit.success else "identified, with doubts" if doubts else "identified"
     return Headline(title, verdict, fit.success, fit.status, facts, notes, doubts)
 
 
-def of_trajectory(trajectory: TrajectoryLike, title: str | None, notes: Sequence[str]) -> Headline:
+def of_trajectory(trajectory: Trajectory, title: str | None, notes: Sequence[str]) -> Headline:
     """Headline of a simulated motion."""
     times = np.asarray(trajectory.times)
     counts = np.asarray(trajectory.newton_iterations)
@@ -102,7 +102,7 @@ def of_trajectory(trajectory: TrajectoryLike, title: str | None, notes: Sequence
     return Headline(title or "Simulated motion", "simulated", True, status, facts, notes)
 
 
-def of_work_precision(found: WorkPrecisionLike, title: str | None, notes: Sequence[str]) -> Headline:
+def of_work_precision(found: WorkPrecision, title: str | None, notes: Sequence[str]) -> Headline:
     """Headline of integrators compared."""
     facts = [
         Fact("simulated", shown(found.end) + " s"),
@@ -114,7 +114,7 @@ def of_work_precision(found: WorkPrecisionLike, title: str | None, notes: Sequen
     return Headline(title or "Work and precision", verdict, found.success, found.status, facts, notes)
 
 
-def of_sweep(sweep: SweepLike, title: str | None, notes: Sequence[str]) -> Headline:
+def of_sweep(sweep: Any, title: str | None, notes: Sequence[str]) -> Headline:
     """Headline of a sweep."""
     facts = [Fact(f"values of {curve.parameter}", str(len(curve.values))) for curve in sweep.curves]
     names = ", ".join(curve.parameter for curve in sweep.curves)

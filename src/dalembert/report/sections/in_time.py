@@ -9,11 +9,11 @@ from dalembert.report import charts
 from dalembert.report.charts.time_comparison import compared_dofs
 from dalembert.report.digits import shown
 from dalembert.report.focus import unit_of
-from dalembert.report.needs_frequency import FrequencyCurveLike, TimeComparisonLike
 from dalembert.report.plot import Plot
 from dalembert.report.quantities import labelled
 from dalembert.report.sections.findings import Findings
 from dalembert.report.table import Table, cell, noted
+from dalembert.vibration import FrequencyCurve, TimeComparison
 
 
 @dataclass(frozen=True)
@@ -21,8 +21,8 @@ class InTime(Findings):
     """Points of the curve that were integrated in time, and how far harmonic balance is from them."""
 
     heading: ClassVar[str] = "Beside time integration"
-    comparison: TimeComparisonLike
-    curve: FrequencyCurveLike | None = None
+    comparison: TimeComparison
+    curve: FrequencyCurve | None = None
 
     @property
     def sentences(self) -> tuple[str, ...]:

@@ -5,8 +5,8 @@ from typing import ClassVar
 
 import numpy as np
 
+from dalembert.multibody import WorkPrecision
 from dalembert.report import charts
-from dalembert.report.needs_integrators import WorkPrecisionLike
 from dalembert.report.plot import Plot
 from dalembert.report.sections.section import Section
 from dalembert.report.table import Table, cell
@@ -18,7 +18,7 @@ class Integrators(Section):
 
     name: ClassVar[str] = "integrators"
     heading: ClassVar[str] = "Integrators"
-    found: WorkPrecisionLike
+    found: WorkPrecision
 
     @property
     def plots(self) -> tuple[Plot, ...]:

@@ -6,8 +6,8 @@ from typing import ClassVar
 
 import numpy as np
 
+from dalembert.inverse import BandFit
 from dalembert.report import charts
-from dalembert.report.needs import BandFitLike
 from dalembert.report.plot import Plot
 from dalembert.report.sections.section import Section
 from dalembert.report.table import Table, cell
@@ -22,7 +22,7 @@ class Intervals(Section):
 
     name: ClassVar[str] = "intervals"
     heading: ClassVar[str] = "Parameters"
-    fit: BandFitLike
+    fit: BandFit
     truth: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
     @property
@@ -61,7 +61,7 @@ class Intervals(Section):
         return (Plot("intervals", charts.intervals(self.fit, self.truth), caption),)
 
 
-def note(fit: BandFitLike, k: int) -> str:
+def note(fit: BandFit, k: int) -> str:
     """Whether an interval is one, or a single number as far as the bands tell."""
     if fit.radius[k] <= NONE * (fit.parameters.upper[k] - fit.parameters.lower[k]):
         return "a single number"

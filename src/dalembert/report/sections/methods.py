@@ -7,10 +7,10 @@ import numpy as np
 
 from dalembert.report import charts
 from dalembert.report.charts.methods import reference
-from dalembert.report.needs import ComparisonLike
 from dalembert.report.plot import Plot
 from dalembert.report.sections.section import Section
 from dalembert.report.table import Table, cell
+from dalembert.uncertainty import Comparison
 
 
 @dataclass(frozen=True)
@@ -19,7 +19,7 @@ class Methods(Section):
 
     name: ClassVar[str] = "methods"
     heading: ClassVar[str] = "Methods"
-    comparison: ComparisonLike
+    comparison: Comparison
 
     @property
     def plots(self) -> tuple[Plot, ...]:

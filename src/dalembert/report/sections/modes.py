@@ -5,10 +5,10 @@ from typing import ClassVar
 
 from dalembert.report import charts
 from dalembert.report.charts.mode_shapes import MOST
-from dalembert.report.needs_frequency import ModeShapesLike
 from dalembert.report.plot import Plot
 from dalembert.report.sections.findings import Findings
 from dalembert.report.table import Table, cell
+from dalembert.structure import ModeShapes
 
 
 @dataclass(frozen=True)
@@ -16,7 +16,7 @@ class Modes(Findings):
     """Pictures of the modes and a table of their frequencies."""
 
     heading: ClassVar[str] = "Mode shapes"
-    modes: ModeShapesLike
+    modes: ModeShapes
 
     @property
     def wide(self) -> tuple[Plot, ...]:

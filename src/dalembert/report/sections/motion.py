@@ -6,10 +6,11 @@ from typing import ClassVar
 
 import numpy as np
 
+from dalembert.data import Measurements
+from dalembert.multibody import Drawing, Trajectory
 from dalembert.report import charts
 from dalembert.report.each import numbered
 from dalembert.report.look import plain
-from dalembert.report.needs import DrawingLike, MeasurementsLike, TrajectoryLike
 from dalembert.report.plot import Plot
 from dalembert.report.sections.section import Section
 
@@ -20,7 +21,7 @@ MOST_PATHS = 3
 class Moving:
     """A drawing with the paths of points, and measured positions where there are any, each (samples, 2)."""
 
-    drawing: DrawingLike
+    drawing: Drawing
     paths: Mapping[str, np.ndarray]
     measured: Mapping[str, np.ndarray]
 
@@ -54,7 +55,7 @@ class Motion(Section):
         return f"Not drawn: {', '.join(self.left_out)}." if self.left_out else ""
 
 
-def motion(trajectory: TrajectoryLike, points: tuple[str, ...], data: MeasurementsLike | None) -> Moving:
+def motion(trajectory: Trajectory, points: tuple[str, ...], data: Measurements | None) -> Moving:
     """What is drawn of a trajectory: the paths of points, of the measured ones if none are named."""
     drawing = trajectory.drawing()
     crosses = {} if data is None else measured(data.channels, data.values)
@@ -63,7 +64,7 @@ def motion(trajectory: TrajectoryLike, points: tuple[str, ...], data: Measuremen
     return Moving(drawing, paths(trajectory, drawing, followed), crosses)
 
 
-def paths(trajectory: TrajectoryLike, drawing: DrawingLike, points: tuple[str, ...]) -> dict[str, np.ndarray]:
+def paths(trajectory: Trajectory, drawing: Drawing, points: tuple[str, ...]) -> dict[str, np.ndarray]:
     """Paths (samples, 2) of the points given by name; of the free ends of bodies, or else of joints, if none is."""
     if points:
         return {point: np.asarray(trajectory.channels([f"{point}.x", f"{point}.y"])) for point in points}
@@ -87,5 +88,5 @@ def measured(channels: Sequence[str], values: np.ndarray) -> dict[str, np.ndarra
     }
 
 
-def _size(drawing: DrawingLike) -> float:
+def _size(drawing: Drawing) -> float:
     return max((float(np.ptp(line.reshape(-1, 2), axis=0).max()) for line in drawing.lines.values()), default=1.0)

@@ -8,11 +8,11 @@ import numpy as np
 from dalembert.report import charts
 from dalembert.report.digits import shown
 from dalembert.report.focus import unit_of
-from dalembert.report.needs_frequency import BackboneLike
 from dalembert.report.plot import Plot
 from dalembert.report.quantities import labelled
 from dalembert.report.sections.findings import Findings
 from dalembert.report.table import Table, cell, noted
+from dalembert.vibration import Backbone
 
 STEADY = 1e-3
 """Change of the frequency, as part of it, below which there is none to tell."""
@@ -23,7 +23,7 @@ class NonlinearMode(Findings):
     """Frequency and damping over amplitude, with the energy of the mode and the force that keeps it going."""
 
     heading: ClassVar[str] = "Nonlinear mode"
-    mode: BackboneLike
+    mode: Backbone
 
     @property
     def sentences(self) -> tuple[str, ...]:

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from dalembert.report import charts
-from dalembert.report.needs_frequency import PeriodicMotionLike
 from dalembert.report.plot import Plot
 from dalembert.report.sections.findings import Findings
+from dalembert.vibration import PeriodicMotion
 
 
 @dataclass(frozen=True)
@@ -14,7 +14,7 @@ class Period(Findings):
     """Displacements over a period, and the loops of contacts and springs."""
 
     heading: ClassVar[str] = "Periodic motion"
-    motion: PeriodicMotionLike
+    motion: PeriodicMotion
 
     @property
     def wide(self) -> tuple[Plot, ...]:

@@ -6,10 +6,10 @@ from typing import ClassVar
 
 import numpy as np
 
+from dalembert.inverse import Prediction
 from dalembert.report import charts
 from dalembert.report.each import numbered
 from dalembert.report.look import plain
-from dalembert.report.needs_telling import PredictionLike
 from dalembert.report.plot import Plot
 from dalembert.report.quantities import by_quantity
 from dalembert.report.sections.section import Section
@@ -22,7 +22,7 @@ class Predicting(Section):
 
     name: ClassVar[str] = "predicting"
     heading: ClassVar[str] = "Prediction"
-    predictions: Mapping[str, PredictionLike]
+    predictions: Mapping[str, Prediction]
 
     @property
     def sentences(self) -> tuple[str, ...]:

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
+from dalembert.inverse import Profiles
 from dalembert.report import charts
-from dalembert.report.needs_telling import ProfilesLike
 from dalembert.report.plot import Plot
 from dalembert.report.sections.section import Section
 from dalembert.report.table import Table, cell
@@ -16,7 +16,7 @@ class Profiling(Section):
 
     name: ClassVar[str] = "profiling"
     heading: ClassVar[str] = "Profile likelihood"
-    profiles: ProfilesLike
+    profiles: Profiles
 
     @property
     def sentences(self) -> tuple[str, ...]:

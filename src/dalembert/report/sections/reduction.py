@@ -7,10 +7,10 @@ import numpy as np
 
 from dalembert.report import charts
 from dalembert.report.digits import shown
-from dalembert.report.needs_frequency import ReductionErrorsLike
 from dalembert.report.plot import Plot
 from dalembert.report.sections.findings import Findings
 from dalembert.report.table import Table, cell
+from dalembert.structure import ReductionErrors
 
 
 @dataclass(frozen=True)
@@ -18,7 +18,7 @@ class Reduction(Findings):
     """Frequencies and shapes of the reduced structure's modes beside those of the full one."""
 
     heading: ClassVar[str] = "Reduction"
-    errors: ReductionErrorsLike
+    errors: ReductionErrors
 
     @property
     def sentences(self) -> tuple[str, ...]:

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from dalembert.report.needs import CoordinateLike
+from dalembert.forward import Coordinate
 from dalembert.report.quantities import labelled
 from dalembert.report.table import Table, cell
 
@@ -12,9 +12,7 @@ MOST_ROWS = 5000
 """Numbers of a series up to which a page holds them."""
 
 
-def samples(
-    name: str, along: CoordinateLike, channels: Sequence[str], series: Mapping[str, np.ndarray]
-) -> Table | None:
+def samples(name: str, along: Coordinate, channels: Sequence[str], series: Mapping[str, np.ndarray]) -> Table | None:
     """Table of series (samples, channels), each with its word; None where they are too many for a page."""
     if max(values.size for values in series.values()) > MOST_ROWS:
         return None

@@ -3,11 +3,11 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
+from dalembert.inverse import BandFit, Fit
 from dalembert.report import charts
 from dalembert.report.charts.correlation import unknowns
 from dalembert.report.charts.l_curve import accounts
 from dalembert.report.charts.starts import ranked
-from dalembert.report.needs import IdentifiedLike
 from dalembert.report.plot import Plot
 from dalembert.report.sections.section import Section
 from dalembert.report.table import Table, cell
@@ -23,7 +23,7 @@ class Search(Section):
 
     name: ClassVar[str] = "search"
     heading: ClassVar[str] = "Search"
-    fit: IdentifiedLike
+    fit: Fit | BandFit
 
     @property
     def plots(self) -> tuple[Plot, ...]:
@@ -65,7 +65,7 @@ class Search(Section):
         return Table("starts", "Where each start ended, best first", columns, rows)
 
 
-def grew(fit: IdentifiedLike) -> bool:
+def grew(fit: Fit | BandFit) -> bool:
     """Whether the horizon of the first start grew: more was simulated than the one linearised run of a first step."""
     facts = fit.provenance
     asked = facts.get("horizon") == "growing" and facts.get("method", {}).get("name") in LEAST_SQUARES

@@ -5,8 +5,9 @@ from typing import ClassVar
 
 import numpy as np
 
+from dalembert.inverse import Fit
+from dalembert.inverse.shooting.nodes import Nodes
 from dalembert.report import charts
-from dalembert.report.needs import FitLike, NodesLike
 from dalembert.report.plot import Plot
 from dalembert.report.sections.section import Section
 from dalembert.report.table import Table, cell
@@ -18,8 +19,8 @@ class Shooting(Section):
 
     name: ClassVar[str] = "shooting"
     heading: ClassVar[str] = "Multiple shooting"
-    fit: FitLike
-    nodes: NodesLike
+    fit: Fit
+    nodes: Nodes
 
     @property
     def plots(self) -> tuple[Plot, ...]:
@@ -36,7 +37,7 @@ class Shooting(Section):
     @property
     def table(self) -> Table:
         nodes, named = self.nodes, any(self.nodes.experiments)
-        records = [self.fit, *getattr(self.fit, "experiments", ())]
+        records = [self.fit, *self.fit.experiments]
         along = records[-1].data.coordinate
         states = [f"{name} ({unit})" if unit else name for name, unit in zip(nodes.states, nodes.units, strict=True)]
         columns = ("sample", f"{along.name} ({along.unit})" if along.unit else along.name, *states, "largest gap")

@@ -1,10 +1,9 @@
 """Responses along one parameter at a time."""
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from dalembert.report import charts
-from dalembert.report.needs import CurveLike, SweepLike
 from dalembert.report.plot import Plot
 from dalembert.report.quantities import labelled
 from dalembert.report.sections.section import Section
@@ -17,7 +16,7 @@ class Sweeps(Section):
 
     name: ClassVar[str] = "sweeps"
     heading: ClassVar[str] = "Sweep"
-    sweep: SweepLike
+    sweep: Any
 
     @property
     def plots(self) -> tuple[Plot, ...]:
@@ -35,7 +34,7 @@ class Sweeps(Section):
         return tuple(_table(place, curve) for place, curve in enumerate(self.sweep.curves, start=1))
 
 
-def _table(place: int, curve: CurveLike) -> Table:
+def _table(place: int, curve: Any) -> Table:
     columns = [labelled(curve.parameter, curve.unit), *curve.channels]
     rows = [
         [cell(float(value)), *(cell(float(entry)) for entry in row)]

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
+from dalembert.inverse import BandFit, Fit
 from dalembert.report import charts
 from dalembert.report.charts.correlation import unknowns
-from dalembert.report.needs import IdentifiedLike
 from dalembert.report.plot import Plot
 from dalembert.report.sections.section import Section
 
@@ -19,9 +19,9 @@ class Telling(Section):
 
     name: ClassVar[str] = "telling"
     heading: ClassVar[str] = "What the data tell"
-    fit: IdentifiedLike
-    sentences: Sequence[str] = ()
-    spectrum: Plot | None = None
+    fit: Fit | BandFit
+    sentences: Sequence[str]
+    spectrum: Plot
 
     @property
     def beside(self) -> bool:
@@ -34,4 +34,4 @@ class Telling(Section):
             return ()
         pairs = "Near 1 or −1, the data tell a combination of the two parameters but not each of them."
         heat = Plot("correlation", charts.correlation(self.fit), pairs)
-        return (heat,) if self.spectrum is None else (heat, self.spectrum)
+        return heat, self.spectrum

@@ -2,13 +2,13 @@
 
 from collections.abc import Sequence
 
+from dalembert.inverse import Designs, Prediction, Profiles
 from dalembert.report.digits import counted, interval, shown
-from dalembert.report.needs_telling import DesignsLike, PredictionLike, ProfilesLike
 from dalembert.report.quantities import labelled
 from dalembert.report.sections.headline import MOST_VALUES, Fact, Headline
 
 
-def of_profiles(told: ProfilesLike, title: str | None, notes: Sequence[str]) -> Headline:
+def of_profiles(told: Profiles, title: str | None, notes: Sequence[str]) -> Headline:
     """Headline of profile likelihoods."""
     units = {item.name: item.unit for item in told.parameters}
     values = [
@@ -23,14 +23,14 @@ def of_profiles(told: ProfilesLike, title: str | None, notes: Sequence[str]) -> 
     return Headline(title or "Profile likelihood", verdict, told.success, told.status, facts, notes)
 
 
-def of_prediction(told: PredictionLike, title: str | None, notes: Sequence[str]) -> Headline:
+def of_prediction(told: Prediction, title: str | None, notes: Sequence[str]) -> Headline:
     """Headline of a prediction."""
     facts = [Fact("level", f"{100 * told.level:g} %"), Fact("channels", counted(len(told.channels)))]
     verdict = "predicted" if told.success else "not bounded"
     return Headline(title or "Predicted response", verdict, told.success, told.status, facts, notes)
 
 
-def of_designs(told: DesignsLike, title: str | None, notes: Sequence[str]) -> Headline:
+def of_designs(told: Designs, title: str | None, notes: Sequence[str]) -> Headline:
     """Headline of designs."""
     facts = [
         Fact("best sensors", ", ".join(told.sensors[0])),

@@ -9,12 +9,12 @@ from dalembert.report import charts
 from dalembert.report.charts.resonance_peaks import value_text
 from dalembert.report.digits import shown
 from dalembert.report.focus import unit_of
-from dalembert.report.needs_frequency import ResonanceTrackLike
 from dalembert.report.plot import Plot
 from dalembert.report.prefixes import in_words
 from dalembert.report.quantities import labelled
 from dalembert.report.sections.findings import Findings
 from dalembert.report.table import Table, cell, noted
+from dalembert.vibration import ResonanceTrack
 
 
 @dataclass(frozen=True)
@@ -22,7 +22,7 @@ class Tracks(Findings):
     """Height and frequency of the peak over the parameter."""
 
     heading: ClassVar[str] = "Resonance over the parameter"
-    track: ResonanceTrackLike
+    track: ResonanceTrack
 
     @property
     def sentences(self) -> tuple[str, ...]:

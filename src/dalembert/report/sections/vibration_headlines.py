@@ -7,24 +7,21 @@ import numpy as np
 from dalembert.report.charts.resonance_peaks import value_text
 from dalembert.report.digits import counted, shown
 from dalembert.report.focus import Look, unit_of
-from dalembert.report.needs_frequency import (
-    BackboneLike,
-    CurveFamilyLike,
-    DeformationLike,
-    FrequencyCurveLike,
-    ModeShapesLike,
-    PeriodicMotionLike,
-    ReductionErrorsLike,
-    ResonanceTrackLike,
-    TimeComparisonLike,
-)
 from dalembert.report.prefixes import in_words
 from dalembert.report.sections.headline import MOST_VALUES, Fact, Headline
+from dalembert.structure import ModeShapes, ReductionErrors
+from dalembert.vibration import (
+    Backbone,
+    CurveFamily,
+    Deformation,
+    FrequencyCurve,
+    PeriodicMotion,
+    ResonanceTrack,
+    TimeComparison,
+)
 
 
-def of_frequency_curve(
-    curve: FrequencyCurveLike, look: Look | None, title: str | None, notes: Sequence[str]
-) -> Headline:
+def of_frequency_curve(curve: FrequencyCurve, look: Look | None, title: str | None, notes: Sequence[str]) -> Headline:
     """Headline of a response over frequency."""
     found, points = int(curve.converged.sum()), len(curve.converged)
     low, high = (shown(float(end)) for end in (curve.frequencies.min(), curve.frequencies.max()))
@@ -47,7 +44,7 @@ def of_frequency_curve(
 
 
 def of_family(
-    family: CurveFamilyLike, dofs: tuple[str, ...], kind: str, title: str | None, notes: Sequence[str]
+    family: CurveFamily, dofs: tuple[str, ...], kind: str, title: str | None, notes: Sequence[str]
 ) -> Headline:
     """Headline of responses for several values of a parameter."""
     facts = [Fact("values", counted(len(family.values)))]
@@ -67,7 +64,7 @@ def of_family(
     return Headline(name, verdict, family.success, f"{family.status}.", facts, notes)
 
 
-def of_time_comparison(compared: TimeComparisonLike, title: str | None, notes: Sequence[str]) -> Headline:
+def of_time_comparison(compared: TimeComparison, title: str | None, notes: Sequence[str]) -> Headline:
     """Headline of points of a curve beside time integration."""
     found = np.asarray(compared.converged)
     most = float(np.nanmax(np.abs(compared.differences[found]), initial=0.0))
@@ -81,7 +78,7 @@ def of_time_comparison(compared: TimeComparisonLike, title: str | None, notes: S
     return Headline(title or "Beside time integration", verdict, bool(found.all()), late, facts, notes)
 
 
-def of_backbone(mode: BackboneLike, title: str | None, notes: Sequence[str]) -> Headline:
+def of_backbone(mode: Backbone, title: str | None, notes: Sequence[str]) -> Headline:
     """Headline of a nonlinear mode."""
     found, frequencies = np.asarray(mode.converged), np.asarray(mode.frequencies)
     ends = [shown(float(frequencies[found][end])) for end in (0, -1)] if found.any() else []
@@ -95,7 +92,7 @@ def of_backbone(mode: BackboneLike, title: str | None, notes: Sequence[str]) -> 
     return Headline(title or "Nonlinear mode", verdict, bool(found.all()), status, facts, notes)
 
 
-def of_track(track: ResonanceTrackLike, title: str | None, notes: Sequence[str]) -> Headline:
+def of_track(track: ResonanceTrack, title: str | None, notes: Sequence[str]) -> Headline:
     """Headline of a resonance over a parameter."""
     found = np.asarray(track.converged)
     facts = [Fact("values", counted(len(found))), Fact("points balanced", counted(int(np.sum(track.solves))))]
@@ -110,7 +107,7 @@ def of_track(track: ResonanceTrackLike, title: str | None, notes: Sequence[str])
     return Headline(title or f"Resonance over {track.parameter}", verdict, bool(found.all()), status, facts, notes)
 
 
-def of_deformation(shape: DeformationLike, title: str | None, notes: Sequence[str]) -> Headline:
+def of_deformation(shape: Deformation, title: str | None, notes: Sequence[str]) -> Headline:
     """Headline of a deformed shape."""
     facts = [
         Fact("frequency", f"{shown(shape.frequency)} Hz"),
@@ -121,7 +118,7 @@ def of_deformation(shape: DeformationLike, title: str | None, notes: Sequence[st
     return Headline(title or "Deformed shape", "computed", True, status, facts, notes)
 
 
-def of_modes(modes: ModeShapesLike, title: str | None, notes: Sequence[str]) -> Headline:
+def of_modes(modes: ModeShapes, title: str | None, notes: Sequence[str]) -> Headline:
     """Headline of free vibrations."""
     frequencies = [float(value) for value in modes.frequencies]
     facts = [Fact(f"mode {number}", f"{shown(value)} Hz") for number, value in enumerate(frequencies[:MOST_VALUES], 1)]
@@ -129,7 +126,7 @@ def of_modes(modes: ModeShapesLike, title: str | None, notes: Sequence[str]) -> 
     return Headline(title or "Modes", "computed", True, status, facts, notes)
 
 
-def of_reduction(errors: ReductionErrorsLike, title: str | None, notes: Sequence[str]) -> Headline:
+def of_reduction(errors: ReductionErrors, title: str | None, notes: Sequence[str]) -> Headline:
     """Headline of a reduction's errors."""
     facts = [
         Fact("modes compared", counted(len(errors.full))),
@@ -140,7 +137,7 @@ def of_reduction(errors: ReductionErrorsLike, title: str | None, notes: Sequence
     return Headline(title or "Reduction", "compared", True, status, facts, notes)
 
 
-def of_period(motion: PeriodicMotionLike, title: str | None, notes: Sequence[str]) -> Headline:
+def of_period(motion: PeriodicMotion, title: str | None, notes: Sequence[str]) -> Headline:
     """Headline of a periodic motion in time."""
     facts = [
         Fact("frequency", f"{shown(motion.frequency)} Hz"),
@@ -157,7 +154,7 @@ def _percent(part: float) -> str:
     return f"{shown(100 * float(part), digits=3)} %"
 
 
-def _largest(curve: FrequencyCurveLike, dof: str, kind: str) -> tuple[str, str]:
+def _largest(curve: FrequencyCurve, dof: str, kind: str) -> tuple[str, str]:
     peak = curve.peak(dof, kind)
     return f"peak of {dof}", f"{in_words(peak.amplitude, unit_of(dof), 5)} at {shown(peak.frequency)} Hz"
 

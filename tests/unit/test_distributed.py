@@ -138,9 +138,9 @@ def test_a_model_in_a_model_is_sent_without_what_it_computed(client):
     inner = tip({"theta1": (0.6, 1.0), "theta2": (0.4, 0.65)}, end=0.1)
     model = da.Sensors(inner, {inner.channels[0].name: da.Sensor(gain=(0.5, 2.0))})
     model.evaluate(np.array([[0.7, 0.5, 1.0]]))
-    assert "_shared" in vars(inner)
+    assert "shared" in vars(inner)
     sent = distributed.bare(model)
-    assert "_shared" not in vars(sent.model)
+    assert "shared" not in vars(sent.model)
     assert (sent.model.workers, inner.workers) == (1, cores())
 
 

@@ -77,15 +77,9 @@ class PythonModel:
             check_whole("PythonModel", "kept", kept, 0)
         samples = samples_of(samples, "PythonModel", "samples")
         given = tuple(Channel(entry) if isinstance(entry, str) else entry for entry in channels)
-        for name, value in (
-            ("function", function),
-            ("parameters", parameters),
-            ("channels", given),
-            ("coordinate", Coordinate(coordinate, unit, samples[:kept])),
-            ("derivative", derivative),
-            ("kept", kept),
-        ):
-            object.__setattr__(self, name, value)
+        along = Coordinate(coordinate, unit, samples[:kept])
+        checked = function, parameters, given, along, derivative, kept
+        vars(self).update(zip(self.__dataclass_fields__, checked, strict=True))
 
     @property
     def fingerprint(self) -> str:

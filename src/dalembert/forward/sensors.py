@@ -123,14 +123,9 @@ class Sensors:
         stamps = along.values if times is None else samples_of(times, "Sensors", "times")
         own = [entry for name, sensor in sensors.items() for entry in _unknowns(model, name, sensor)]
         own += [] if start is None else [_parameter(START, start, along.unit, 0.0)]
-        for name, value in (
-            ("model", model),
-            ("sensors", dict(sensors)),
-            ("parameters", Parameters((*model.parameters.declared, *own))),
-            ("coordinate", Coordinate(along.name, along.unit, stamps)),
-            ("start", start),
-        ):
-            object.__setattr__(self, name, value)
+        parameters = Parameters((*model.parameters.declared, *own))
+        given = model, dict(sensors), parameters, Coordinate(along.name, along.unit, stamps), start
+        vars(self).update(zip(self.__dataclass_fields__, given, strict=True))
         self._check_reach()
 
     @property

@@ -176,7 +176,7 @@ def _of_components(lowered: Lowered, along: Along) -> Iterator[tuple[str, np.nda
             owners = ", ".join(map(repr, dict.fromkeys(lowered.parts[kind])))
             yield f"a force of {owners} at t = {t:.6g} s", residual(lowered, model, x, v, a, float(t), kind)
     if along.readers:
-        values = along.readers.read(lowered, model, *states, times=along.times[along.samples])
+        values = along.readers.read(lowered, model, states, along.times[along.samples])
         for channel, column in zip(along.readers.channels, values.T, strict=True):
             yield f"the channel {channel.name!r}", column
 
@@ -253,8 +253,8 @@ def _check_channels(
 
     def read(shift: complex) -> np.ndarray:
         model, kind = (lowered.unperturbed, complex) if isinstance(shift, complex) else (lowered.real, float)
-        moved = (part[None].astype(kind) for part in (x + shift * dx, v + shift * dv, a))
-        return observer.read(lowered, model, *moved, times=np.array([t]))[0]
+        moved = [part[None].astype(kind) for part in (x + shift * dx, v + shift * dv, a)]
+        return observer.read(lowered, model, moved, np.array([t]))[0]
 
     lost = attempted(lambda: lost_step(read, 1.0))
     if lost:

@@ -1,5 +1,6 @@
 """Channels by name: what can be read off a motion."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -70,11 +71,9 @@ class Observer:
         own = [kind.kernel("outputs", dtype) for dtype in types for kind in kinds if kind is not None]
         return [*[outputs_history] * bool(own), *own, *(energy_kernels(lowered, derivatives) if None in kinds else [])]
 
-    def read(
-        self, lowered: Lowered, model: Model, x: np.ndarray, v: np.ndarray, a: np.ndarray, times: np.ndarray
-    ) -> np.ndarray:
-        """Values (samples, channels) from states (samples, N + 1), real or complex, at times in s (samples,)."""
-        x, v, a = (np.ascontiguousarray(array) for array in (x, v, a))
+    def read(self, lowered: Lowered, model: Model, states: Sequence[np.ndarray], times: np.ndarray) -> np.ndarray:
+        """Values (samples, channels) from states x, v and a (samples, N + 1), real or complex, at times in s."""
+        x, v, a = map(np.ascontiguousarray, states[:3])
         out = np.empty((len(x), len(self.channels)), dtype=x.dtype)
         for kind in dict.fromkeys(row.kind for row in self.rows):
             columns = [column for column, row in enumerate(self.rows) if row.kind is kind]
@@ -120,7 +119,7 @@ def beside(times: np.ndarray, side: int) -> np.ndarray:
     return np.maximum(times + side * 1e-9 * times[-1], 0.0) if len(times) else times
 
 
-def observer(system: System, lowered: Lowered, names: list[str] | tuple[str, ...]) -> Observer:
+def observer(system: System, lowered: Lowered, names: Sequence[str]) -> Observer:
     """Channels by name.
 
     Raises

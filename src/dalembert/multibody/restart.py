@@ -2,27 +2,22 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any, cast
 
 import numpy as np
 from scipy.linalg import null_space, qr
 
-from dalembert.errors import SolveError, told
-from dalembert.forward import Channel, Coordinate, Responses, StateChart
-from dalembert.forward.differences import COMPLEX_STEP, central_differences
-from dalembert.multibody.callbacks import in_complex_numbers
+from dalembert.errors import SolveError
+from dalembert.forward import Channel, StateChart
 from dalembert.multibody.components.planar.body import ANGLE, POSITION
 from dalembert.multibody.evaluate import constraint_jacobian, constraint_rates, residual
 from dalembert.multibody.fingerprint import fingerprint
-from dalembert.multibody.integrators.problem import Problem
-from dalembert.multibody.integrators.run import make_problem
 from dalembert.multibody.kernels.elementary import STEP
+from dalembert.multibody.kernels.model import Model
 from dalembert.multibody.lowered import Lowered
+from dalembert.multibody.motion_model import BuiltModel, MotionModel
 from dalembert.multibody.scales import scales
 from dalembert.parameters import Parameter, Parameters
-
-if TYPE_CHECKING:
-    from dalembert.multibody.time_response import TimeResponse
 
 _ANGLES_FIRST = 4.0
 """Weight of angles among the coordinates that are chosen: a pendulum's is independent at each of its positions."""
@@ -154,13 +149,15 @@ class Completion:
 
 
 @dataclass(frozen=True)
-class MotionSegment:
+class MotionSegment(MotionModel):
     """A segment of a mechanism's motion as a forward model.
 
     Parameters
     ----------
     model : TimeResponse
-        Of the motion; its begin is that of the segment.
+        Of the motion.
+    begin : float
+        Time of the signals at the beginning of the segment, s.
     times : array, shape (samples,)
         s, from the beginning of the segment.
     chart : StateChart or None
@@ -170,15 +167,15 @@ class MotionSegment:
         Numbers of the state that are channels behind those of the model.
     """
 
-    model: "TimeResponse"
+    model: BuiltModel
     begin: float
     times: np.ndarray
     chart: StateChart | None
     ends: StateChart | None
 
-    def __getstate__(self) -> dict[str, Any]:
-        """Without what was computed from the fields, which holds addresses of this process."""
-        return {name: value for name, value in vars(self).items() if name in self.__dataclass_fields__}
+    @property
+    def _built(self) -> BuiltModel:
+        return self.model
 
     @property
     def parameters(self) -> Parameters:
@@ -207,66 +204,13 @@ class MotionSegment:
         return (*self.model.channels, *(Channel(f"state {name}", unit) for name, unit in states))
 
     @property
-    def coordinate(self) -> Coordinate:
-        """The times of the samples."""
-        return Coordinate("time", "s", self.times)
-
-    @property
     def fingerprint(self) -> str:
         """Hash of the model, and of where the segment begins and ends."""
         charts = [
             None if one is None else (one.names, one.places.tolist(), one.near.tolist())
             for one in (self.chart, self.ends)
         ]
-        return fingerprint(self._shared.lowered, self.times, self.model.fingerprint, self.begin, charts)
-
-    def evaluate(self, vectors: np.ndarray) -> Responses:
-        """Responses of a batch; ``vectors`` (batch, parameters), values (batch, samples, channels)."""
-        vectors = self.parameters.batch(vectors)
-        values = np.full((len(vectors), len(self.times), len(self.channels)), np.nan)
-        failures: list[str | None] = [None] * len(vectors)
-        with in_complex_numbers(strict=False):
-            for row, vector in enumerate(vectors):
-                try:
-                    lowered = self._lower(vector)
-                except Exception as error:  # the user's builder raised: this sample's failure, not the batch's
-                    failures[row] = told(error)
-                    continue
-                (run,) = self.model.solver.integrate([lowered], (), self._problem, self.times[-1], logged=False)
-                failures[row] = run.reason
-                if run.reason is None:
-                    values[row] = self._read(lowered, lowered.real, run.states.x, run.states.v, run.states.a)
-        return Responses(values, tuple(failures))
-
-    def jacobian(self, vector: np.ndarray) -> np.ndarray:
-        """Exact derivative of the discrete response, (samples, channels, parameters)."""
-        return self.linearise(vector)[1]
-
-    def linearise(self, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Response (samples, channels) and its exact derivative (samples, channels, parameters), in one run."""
-        vector = self.parameters.real_vector(vector)
-        if self.model.derivative != COMPLEX_STEP:
-            return central_differences(self, vector)
-        self.model.prepare_derivatives()
-        with in_complex_numbers(strict=True):
-            lowered, perturbed = self._placed(vector)
-            active = [column for column, own in enumerate(perturbed) if self._changes(own)]
-            (run,) = self.model.solver.integrate(
-                [lowered], [perturbed[column] for column in active], self._problem, self.times[-1]
-            )
-        if run.reason:
-            raise SolveError(run.reason)
-        states = run.states
-        values = self._read(lowered, lowered.real, states.x, states.v, states.a)
-        jacobian = np.empty((*values.shape, len(vector)))
-        for column, own in enumerate(perturbed):
-            moved = [part.astype(complex) for part in states[:3]]
-            if column in active:
-                row = active.index(column)
-                moved = [part + 1j * STEP * slope[row] for part, slope in zip(moved, run.derivatives[:3], strict=True)]
-            response = self._read(own, own.complex_model, *moved)
-            jacobian[:, :, column] = np.imag(response) / (STEP * self.parameters.scale[column])
-        return values, jacobian
+        return fingerprint(self.model.shared, self.times, self.model.fingerprint, self.begin, charts)
 
     def check_derivatives(self, vector: np.ndarray) -> None:
         """Compare the complex step of the model with differences at a vector (parameters,)."""
@@ -276,28 +220,19 @@ class MotionSegment:
         """The same segment, cut to its first ``samples`` samples."""
         return replace(self, times=self.times[:samples])
 
-    @property
-    def _shared(self) -> Any:
-        return self.model.shared
-
-    @cached_property
-    def _problem(self) -> Problem:
-        return make_problem(self._shared.lowered, self.times)
-
     def _lower(self, vector: np.ndarray) -> Lowered:
-        own = vector[: len(self.model.parameters)]
         if self.chart is None:
-            return self.model.lowered_at(own, self.begin, closed=True)
+            return super()._lower(vector)
+        own = vector[: len(self.model.parameters)]
         lowered = self.model.lowered_at(own, self.begin, closed=False)
         return Completion.at(lowered, self.chart, vector[len(own) :]).applied(lowered, vector[len(own) :])
 
-    def _placed(self, vector: np.ndarray) -> tuple[Lowered, list[Lowered]]:
+    def _perturbed(self, vector: np.ndarray) -> tuple[Lowered, list[Lowered]]:
         """The arrays, and those moved by a complex step of each parameter, then of each number of the state."""
+        if self.chart is None:
+            return super()._perturbed(vector)
         number = len(self.model.parameters)
         own, numbers = vector[:number], vector[number:]
-        if self.chart is None:
-            lowered = self.model.lowered_at(own, self.begin, closed=True)
-            return lowered, [self.model.perturbed_at(own, column, self.begin, closed=True) for column in range(number)]
         placed, moved = self.model.placed(own, self.begin)
         completion = Completion.at(placed, self.chart, numbers)
         lowered, perturbed = completion.applied(placed, numbers), []
@@ -310,15 +245,10 @@ class MotionSegment:
             perturbed.append(completion.applied(placed, shifted))
         return lowered, perturbed
 
-    def _changes(self, perturbed: Lowered) -> bool:
-        """Whether the motion may depend on what was moved: initial angles do not matter to a later segment."""
-        arrays = (perturbed.x, perturbed.v, perturbed.signal_data, perturbed.knots, *perturbed.data.values())
-        return bool(perturbed.callbacks) or any(np.iscomplexobj(one) and np.any(np.imag(one)) for one in arrays)
-
-    def _read(self, lowered: Lowered, model: Any, x: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
+    def _read(self, lowered: Lowered, model: Model, states: Any) -> np.ndarray:
         """Channels of the model and numbers of the state, (samples, channels)."""
-        values = self._shared.observer.read(lowered, model, x, v, a, self.times)
+        values = super()._read(lowered, model, states)
         if self.ends is None:
             return values
-        n = lowered.structure.n
+        n, (x, v) = lowered.structure.n, states[:2]
         return np.concatenate([values, np.concatenate([x[:, :n], v[:, :n]], axis=1)[:, self.ends.places]], axis=1)

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from dalembert.arguments import is_number, takes_checked
-from dalembert.errors import InputError, SolveError, shown, unknown
+from dalembert.errors import InputError, shown, unknown
 from dalembert.kernels.preparation import prepare
 from dalembert.multibody.assemble import assembled, refuse_kinks, refuse_redundancy, refuse_unstable_start
 from dalembert.multibody.callbacks import in_complex_numbers
@@ -17,6 +17,7 @@ from dalembert.multibody.integrators.run import make_problem
 from dalembert.multibody.long_runs import MOST_STEPS, check_pace, check_steps, works
 from dalembert.multibody.lowered import Lowered
 from dalembert.multibody.lowering import lower
+from dalembert.multibody.observe import Observer
 from dalembert.multibody.system import System
 from dalembert.multibody.trajectory import Trajectory
 
@@ -83,11 +84,11 @@ def simulate(
         check_pace(lowered, chosen, end)
         problem = make_problem(lowered, grid)
         (result,) = chosen.integrate([lowered], (), problem, end)
-        if other := integrator(solver, end).instead(result.reason, end):
+        if other := integrator(solver, end).instead(result.reason):
             (second,) = other.integrate([lowered], (), problem, end)
             chosen, result = (chosen, result) if second.reason else (other, second)
     if result.reason:
-        raise SolveError(result.reason)
+        raise result.reason
     return Trajectory(system, lowered, chosen, result, np.searchsorted(grid, times))
 
 
@@ -144,10 +145,13 @@ def begin_time(where: str, begin: Any) -> float:
     return float(begin)
 
 
-def prepared(system: System, end: float, solver: Integrator, begin: float = 0.0) -> tuple[Lowered, Integrator]:
-    """The assembled mechanism and the integrator that suits it, once nothing speaks against the two."""
+def prepared(
+    system: System, end: float, solver: Integrator, begin: float = 0.0, readers: Observer | None = None
+) -> tuple[Lowered, Integrator]:
+    """Return the assembled mechanism and the integrator that suits it, compiled and checked; with its channels."""
     placed = lower(system, begin)
-    prepare([*placed.kernels(False), *solver.suiting(placed, end).kernels(placed.structure, False)])
+    kernels = [*placed.kernels(False), *solver.suiting(placed, end).kernels(placed.structure, False)]
+    prepare([*kernels, *(readers.kernels(placed, False) if readers else ())])
     lowered = assembled(system, placed=placed)
     refuse_unstable_start(system, lowered)
     solver = solver.suiting(lowered, end)

@@ -2,12 +2,12 @@
 
 import numpy as np
 
+from dalembert.errors import SolveError
 from dalembert.multibody.assemble import redundancy
 from dalembert.multibody.evaluate import constraint_jacobian
 from dalembert.multibody.lowered import Lowered
 from dalembert.multibody.scales import scales
 
-SINGULAR_POSITION = "singular position"
 _NEAR = 1e-3  # of the smallest singular value at the start
 _TAKES_PART = 0.1  # of the largest share of a constraint in the dependence
 _LARGEST = 2000  # constraints or coordinates up to which the singular values are computed
@@ -31,13 +31,17 @@ def dependent_joints(lowered: Lowered, x: np.ndarray, t: float) -> tuple[str, ..
     return tuple(sorted({structure.owners[n + row] for row in np.flatnonzero(shares > _TAKES_PART * shares.max())}))
 
 
-def named(lowered: Lowered, x: np.ndarray, t: float) -> str:
-    """Sentence for a run that ended at a singular position; empty in a regular one."""
+class SingularPositionError(SolveError):
+    """A run that ended where constraints lost independence."""
+
+
+def singular_position(lowered: Lowered, x: np.ndarray, t: float) -> SingularPositionError | None:
+    """Return the error of a run that ended at a singular position; None in a regular one."""
     joints = dependent_joints(lowered, x, t)
     if not joints:
-        return ""
-    return (
-        f"{SINGULAR_POSITION}: the joints {', '.join(map(repr, joints))} lose independence at t = {t:.6g} s, where "
+        return None
+    return SingularPositionError(
+        f"singular position: the joints {', '.join(map(repr, joints))} lose independence at t = {t:.6g} s, where "
         "their forces are not determined and the motion may branch. GeneralizedAlpha and RungeKutta4 pass such a "
         "position, if no step ends in it; or start from another one, or take a joint out"
     )

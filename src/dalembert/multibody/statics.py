@@ -46,7 +46,7 @@ class Equilibrium:
         """Values of channels, (channels,)."""
         still = np.zeros((1, len(self.x)))
         own = observer(self.system, self.lowered, names_of(names, "Equilibrium", "channels"))
-        return own.read(self.lowered, self.lowered.real, self.x[None], still, still, np.zeros(1))[0]
+        return own.read(self.lowered, self.lowered.real, (self.x[None], still, still), np.zeros(1))[0]
 
     def drawing(self, points: int = 8) -> Drawing:
         """Lines of the bodies and places of the joints, in one frame."""

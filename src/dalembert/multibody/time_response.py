@@ -2,33 +2,23 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from copy import copy
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Self
+from typing import Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from dalembert.arguments import names_of
-from dalembert.errors import InputError, ModelError, SolveError, require_known, told
+from dalembert.errors import InputError, ModelError, SolveError, require_known
 from dalembert.findings import Finding
-from dalembert.forward import Channel, Coordinate, Refinement, Responses, StateChart, ensemble, error_factor
-from dalembert.forward.builders import built, check_function, cores, inexact, restructured
-from dalembert.forward.complex_steps import Compared
-from dalembert.forward.differences import COMPLEX_STEP, DERIVATIVES, central_differences
-from dalembert.kernels.preparation import prepare
-from dalembert.multibody.assemble import assembled, refuse_kinks, refuse_redundancy, refuse_unstable_start
-from dalembert.multibody.callbacks import in_complex_numbers
-from dalembert.multibody.complex_steps import Along, check_closures, check_forces, check_numbers
+from dalembert.forward import Refinement, StateChart, error_factor
+from dalembert.forward.builders import check_function, cores
+from dalembert.forward.differences import COMPLEX_STEP, DERIVATIVES
 from dalembert.multibody.fingerprint import fingerprint
 from dalembert.multibody.integrators.integrator import Integrator
-from dalembert.multibody.integrators.problem import Problem
-from dalembert.multibody.integrators.run import Run, make_problem
-from dalembert.multibody.kernels.elementary import STEP
-from dalembert.multibody.long_runs import check_pace, check_steps
-from dalembert.multibody.lowered import Lowered
-from dalembert.multibody.lowering import lower
-from dalembert.multibody.observe import Observer, observer
+from dalembert.multibody.long_runs import check_steps
+from dalembert.multibody.motion_model import BuiltModel
 from dalembert.multibody.restart import MotionSegment, chart
 from dalembert.multibody.simulation import begin_time, checked, integrator, simulate
 from dalembert.multibody.skipped_samples import late_samples, skipped_samples
@@ -36,9 +26,11 @@ from dalembert.multibody.slip_rates import rubbing
 from dalembert.multibody.system import System
 from dalembert.parameters import Parameter, Parameters
 
+_MOST_STEPS = 1e9  # hours, even of the smallest mechanisms
+
 
 @dataclass(frozen=True)
-class TimeResponse:
+class TimeResponse(BuiltModel):
     """Channels of a mechanism at given times, as a function of parameters.
 
     Parameters
@@ -77,16 +69,6 @@ class TimeResponse:
     (2, 1, 1)
     """
 
-    builder: Callable[..., System]
-    parameters: Parameters
-    channel_names: tuple[str, ...]
-    times: np.ndarray
-    solver: Integrator
-    workers: int = field(default=1, compare=False)
-    derivative: str = COMPLEX_STEP
-    built_at: np.ndarray | None = field(default=None, compare=False)
-    begin: float = 0.0
-
     def __init__(
         self,
         builder: Callable[..., System],
@@ -109,32 +91,9 @@ class TimeResponse:
         check_function("TimeResponse", builder, [item.name for item in parameters.declared])
         solver = integrator(solver, float(times[-1]))
         check_steps("TimeResponse", solver, float(times[-1]), _MOST_STEPS)
-        for name, value in (
-            ("builder", builder),
-            ("parameters", parameters),
-            ("channel_names", channels),
-            ("times", times),
-            ("solver", solver),
-            ("workers", workers or cores()),
-            ("derivative", derivative),
-            ("built_at", None),
-            ("begin", begin_time("TimeResponse", begin)),
-        ):
-            object.__setattr__(self, name, value)
-
-    def __getstate__(self) -> dict[str, Any]:
-        """Without what was computed from the fields, which holds addresses of this process."""
-        return {name: value for name, value in vars(self).items() if name in self.__dataclass_fields__}
-
-    @property
-    def channels(self) -> tuple[Channel, ...]:
-        """Channels with their units."""
-        return self._observer.channels
-
-    @property
-    def coordinate(self) -> Coordinate:
-        """The times of the samples."""
-        return Coordinate("time", "s", self.times)
+        begin = begin_time("TimeResponse", begin)
+        given = builder, parameters, channels, times, solver, workers or cores(), derivative, None, begin
+        vars(self).update(zip(self.__dataclass_fields__, given, strict=True))
 
     @property
     def fingerprint(self) -> str:
@@ -145,77 +104,7 @@ class TimeResponse:
     def _fingerprint(self) -> str:
         differences = [self.derivative] * (self.derivative != COMPLEX_STEP)
         asked = self.parameters.identity, self.channel_names, self.solver, *differences
-        return fingerprint(self._shared.lowered, self.times, *asked)
-
-    def evaluate(self, vectors: np.ndarray) -> Responses:
-        """Responses of a batch over all cores; ``vectors`` (batch, parameters), values (batch, samples, channels).
-
-        A sample that fails is marked with its reason, and its values are NaN.
-        """
-        vectors = self.parameters.batch(vectors)
-        values = np.full((len(vectors), len(self.times), len(self.channel_names)), np.nan)
-        failures: list[str | None] = [None] * len(vectors)
-        shared = self._shared
-
-        def work(rows: np.ndarray) -> None:
-            samples: list[tuple[int, Lowered]] = []
-            for row in rows:
-                try:
-                    samples.append((row, self._lower(vectors[row])))
-                except Exception as error:  # the user's builder raised: this sample's failure, not the batch's
-                    failures[row] = told(error)
-            runs = self._runs([own for _, own in samples])
-            for (row, lowered), result in zip(samples, runs, strict=True):
-                failures[row] = result.reason
-                if result.reason is None:
-                    states = result.states
-                    values[row] = shared.observer.read(lowered, lowered.real, states.x, states.v, states.a, self.times)
-
-        parts = _parts(len(vectors), self.workers)
-        with in_complex_numbers(strict=False):
-            list(ensemble(work, parts, workers=self.workers))
-        return Responses(values, tuple(failures))
-
-    def jacobian(self, vector: np.ndarray) -> np.ndarray:
-        """Exact derivative of the discrete response, (samples, channels, parameters)."""
-        return self.linearise(vector)[1]
-
-    def linearise(self, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Response (samples, channels) and its exact derivative (samples, channels, parameters), in one run.
-
-        Raises
-        ------
-        InputError
-            Where the builder, or a function of the user's in the model, cannot run in complex numbers, or loses the
-            imaginary part.
-        SolveError
-            Where the solver could not go on.
-        """
-        vector = self.parameters.real_vector(vector)
-        if self.derivative != COMPLEX_STEP:
-            return central_differences(self, vector)
-        shared = self._shared
-        self._prepare(shared.lowered, shared.observer, derivatives=True)
-        with in_complex_numbers(strict=True):
-            lowered = self._lower(vector)
-            perturbed = [self._perturb(vector, column) for column in range(len(vector))]
-            (result,) = self.solver.integrate([lowered], perturbed, shared.problem, self.times[-1])
-        if result.reason:
-            raise SolveError(result.reason)
-        for name, own in zip(self.parameters.names, perturbed, strict=True):
-            for error in (*lowered.failures.inexact, *own.failures.inexact):
-                raise inexact(name, error) from error
-        self._check(vector, lowered, result)
-        states, slopes = result.states, result.derivatives
-        values = shared.observer.read(lowered, lowered.real, states.x, states.v, states.a, self.times)
-        jacobian = np.empty((*values.shape, len(vector)))
-        for column, own in enumerate(perturbed):
-            complex_state = [
-                real + 1j * STEP * slope[column] for real, slope in zip(states[:3], slopes[:3], strict=True)
-            ]
-            response = shared.observer.read(own, own.complex_model, *complex_state, times=self.times)
-            jacobian[:, :, column] = np.imag(response) / (STEP * self.parameters.scale[column])
-        return values, jacobian
+        return fingerprint(self.shared, self.times, *asked)
 
     def starting(self, values: Mapping[str, float]) -> "TimeResponse":
         """The same model, first built at these values of its parameters and not at their first guesses.
@@ -224,8 +113,6 @@ class TimeResponse:
         assembled at the first guesses can be identified from a start where it can.
         """
         own = copy(self)
-        for name in ("_observer", "_shared", "_fingerprint"):
-            vars(own).pop(name, None)
         vars(own)["built_at"] = self.parameters.real_vector({name: values[name] for name in self.parameters.names})
         return own
 
@@ -357,24 +244,6 @@ class TimeResponse:
         how = "at a tolerance 100 times tighter" if order is None else "at half the step"
         return Refinement(model, error_factor(order), how)
 
-    def system(self, vector: np.ndarray) -> System:
-        """The mechanism at a parameter vector (parameters,)."""
-        return built(self.builder, self.parameters.mapping(vector), System)
-
-    def check_derivatives(self, vector: np.ndarray) -> None:
-        """Compare the complex step with differences of the model's numbers at a vector (parameters,).
-
-        Nothing is simulated. The forces of functions of the user's are compared by the next derivative, along its
-        motion.
-
-        Raises
-        ------
-        InputError
-            With the parameter, the component and its number, where the builder drops the imaginary part.
-        """
-        if self.derivative == COMPLEX_STEP:
-            self._compared.once(vector, lambda thorough: check_numbers(self.builder, self.parameters, vector, thorough))
-
     def findings(self, vector: np.ndarray) -> tuple[Finding, ...]:
         """Findings on the mechanism at a parameter vector (parameters,), and on its motion where joints have friction.
 
@@ -397,127 +266,3 @@ class TimeResponse:
         )  # fmt: skip
         vars(own)["_compared"], vars(own)["built_at"] = self._compared, self.built_at
         return own
-
-    @cached_property
-    def _compared(self) -> Compared:
-        return Compared()
-
-    def _check(self, vector: np.ndarray, lowered: Lowered, run: Run) -> None:
-        """Compare the complex step with differences, where that was not done."""
-        if not self._compared.vectors:
-            self.check_derivatives(vector)
-        if not self._compared.functions:
-            at = Along(self._shared.observer, self.times, run.states, self.begin)
-            check_forces(lowered, at, self._shared.problem.scale)
-            check_closures(self.builder, self.parameters, vector, at)
-            self._compared.functions = True
-
-    @property
-    def _first_system(self) -> System:
-        """The mechanism that all samples share their structure with."""
-        return self.system(self.parameters.start if self.built_at is None else self.built_at)
-
-    @cached_property
-    def _observer(self) -> Observer:
-        """The channels of the mechanism as it is placed: joints may not be closed yet."""
-        system = self._first_system
-        return observer(system, lower(system, self.begin), self.channel_names)
-
-    @cached_property
-    def _shared(self) -> "_Shared":
-        system = self._first_system
-        placed = lower(system, self.begin)
-        self._prepare(placed, self._observer, derivatives=False)
-        lowered = assembled(system, placed=placed)
-        refuse_unstable_start(system, lowered)
-        if not self.solver.suiting(lowered, float(self.times[-1])).takes_redundancy:
-            refuse_redundancy(lowered)
-        refuse_kinks(lowered, float(self.times[-1]))
-        check_pace(lowered, self.solver.suiting(lowered, float(self.times[-1])), float(self.times[-1]))
-        return _Shared(lowered, make_problem(lowered, self.times), observer(system, lowered, self.channel_names))
-
-    def _prepare(self, lowered: Lowered, observer: Observer, derivatives: bool) -> None:
-        """Compile, or load, what the method needs."""
-        solver = self.solver.suiting(lowered, float(self.times[-1]))
-        kernels = lowered.kernels(derivatives), solver.kernels(lowered.structure, derivatives)
-        prepare([*kernels[0], *kernels[1], *observer.kernels(lowered, derivatives)])
-
-    def _runs(self, samples: Sequence[Lowered]) -> list[Run]:
-        if not samples:
-            return []
-        return self.solver.integrate(samples, (), self._shared.problem, self.times[-1], logged=False)
-
-    @property
-    def shared(self) -> "_Shared":
-        """What all samples share."""
-        return self._shared
-
-    def prepare_derivatives(self) -> None:
-        """Compile, or load, what sensitivities need."""
-        self._prepare(self._shared.lowered, self._shared.observer, derivatives=True)
-
-    def placed(self, vector: np.ndarray, begin: float) -> tuple[Lowered, tuple[Lowered, ...]]:
-        """Arrays of the mechanism as placed, and those moved along each parameter; kept for the last vector.
-
-        Segments of one motion share them, unless signals depend on when they begin.
-        """
-        moment = begin if len(self._shared.lowered.structure.signals) > 1 else 0.0
-        key = vector.tobytes(), moment
-        kept = vars(self).get("_placed")
-        if kept is None or kept[0] != key:
-            lowered = self.lowered_at(vector, moment, closed=False)
-            perturbed = tuple(self.perturbed_at(vector, column, moment, closed=False) for column in range(len(vector)))
-            kept = vars(self)["_placed"] = key, (lowered, perturbed)
-        return kept[1]
-
-    def lowered_at(self, vector: np.ndarray, begin: float, *, closed: bool) -> Lowered:
-        """Arrays of the mechanism at a parameter vector and a time of the signals; as placed if not ``closed``."""
-        system = self.system(vector)
-        return self._fit(assembled(system, begin=begin) if closed else lower(system, begin))
-
-    def perturbed_at(self, vector: np.ndarray, column: int, begin: float, *, closed: bool) -> Lowered:
-        """The arrays of :meth:`lowered_at`, moved by a complex step of the scale of one parameter."""
-        perturbed = vector.astype(complex)
-        perturbed[column] += 1j * STEP * self.parameters.scale[column]
-        given: dict[str, complex] = dict(self.parameters.mapping(vector))
-        given[self.parameters.names[column]] = complex(perturbed[column])
-        try:
-            system = built(self.builder, given, System)
-            return self._fit(assembled(system, perturbed=True, begin=begin) if closed else lower(system, begin))
-        except (TypeError, ModelError, np.exceptions.ComplexWarning) as error:
-            error = error.__cause__ if isinstance(error, ModelError) else error
-            if not isinstance(error, TypeError | np.exceptions.ComplexWarning):
-                raise
-            raise inexact(self.parameters.names[column], error) from error
-
-    def _lower(self, vector: np.ndarray) -> Lowered:
-        """Arrays of one sample, in the structure of the first."""
-        return self.lowered_at(vector, self.begin, closed=True)
-
-    def _perturb(self, vector: np.ndarray, column: int) -> Lowered:
-        """Arrays of the model along one parameter, moved by a complex step of its scale."""
-        return self.perturbed_at(vector, column, self.begin, closed=True)
-
-    def _fit(self, lowered: Lowered) -> Lowered:
-        structure = self._shared.lowered.structure
-        if not structure.same(lowered.structure):
-            raise restructured()
-        return replace(lowered, structure=structure)
-
-
-@dataclass(frozen=True)
-class _Shared:
-    """What all samples share, from the system where it is built first."""
-
-    lowered: Lowered
-    problem: Problem
-    observer: Observer
-
-
-def _parts(count: int, workers: int) -> list[np.ndarray]:
-    """Rows of a batch cut into parts: small enough that no worker waits long for another at the end."""
-    size = max(1, min(16, -(-count // (4 * workers))))
-    return [np.arange(begin, min(begin + size, count)) for begin in range(0, count, size)]
-
-
-_MOST_STEPS = 1e9  # hours, even of the smallest mechanisms

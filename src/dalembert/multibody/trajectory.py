@@ -69,12 +69,11 @@ class Trajectory:
         skipped = skipped_samples(self.system, self.solver.fixed_step, begin, float(self.run.times[-1]))
         if not joints:
             return (*self.system.findings, *skipped)
-        times, states = self.run.times, self.run.states
         readers = observer(self.system, self.lowered, [f"{name}.{own.channel}" for name, own in joints.items()])
         prepare(readers.kernels(self.lowered, False))
-        rates = readers.read(self.lowered, self.lowered.real, states.x, states.v, states.a, times)
+        rates = readers.read(self.lowered, self.lowered.real, self.run.states, self.run.times)
         unsuited = (
-            slip_findings(name, own, times, column, self.solver.fixed_step)
+            slip_findings(name, own, self.run.times, column, self.solver.fixed_step)
             for (name, own), column in zip(joints.items(), rates.T, strict=True)
         )
         return (*self.system.findings, *skipped, *chain.from_iterable(unsuited))
@@ -92,9 +91,9 @@ class Trajectory:
         InputError
             For an unknown name, with the nearest ones.
         """
-        states, own = self.states, observer(self.system, self.lowered, names_of(names, "Trajectory", "channels"))
+        own = observer(self.system, self.lowered, names_of(names, "Trajectory", "channels"))
         prepare(own.kernels(self.lowered, False))
-        return own.read(self.lowered, self.lowered.real, states.x, states.v, states.a, self.times)
+        return own.read(self.lowered, self.lowered.real, self.states, self.times)
 
     def reactions(self, joint: str) -> np.ndarray:
         """Force (N) along x and y and torque (N m) of a joint on its second side, (samples, 3)."""

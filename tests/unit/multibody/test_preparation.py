@@ -54,7 +54,7 @@ def test_what_is_called_was_prepared(case: str, monkeypatch: pytest.MonkeyPatch)
         assert kernel.symbol in prepared
         return OBJECTS.address(kernel)
 
-    for module in ("simulation", "time_response", "trajectory", "statics"):
+    for module in ("simulation", "motion_model", "trajectory", "statics"):
         monkeypatch.setattr(import_module(f"dalembert.multibody.{module}"), "prepare", prepare)
     monkeypatch.setattr(Compiled, "address", property(address))
     CASES[case]()

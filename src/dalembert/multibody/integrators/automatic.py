@@ -5,6 +5,7 @@ __all__ = ["Automatic"]
 from dataclasses import dataclass, replace
 
 from dalembert.arguments import limited
+from dalembert.errors import SolveError
 from dalembert.multibody.assemble import redundancy
 from dalembert.multibody.integrators.batch import Batch
 from dalembert.multibody.integrators.generalized_alpha import GeneralizedAlpha
@@ -14,7 +15,7 @@ from dalembert.multibody.integrators.radau_iia import RadauIIA
 from dalembert.multibody.integrators.run import Run
 from dalembert.multibody.integrators.stabilisation import Partitioning
 from dalembert.multibody.lowered import Lowered
-from dalembert.multibody.singular_positions import SINGULAR_POSITION
+from dalembert.multibody.singular_positions import SingularPositionError
 
 _FIRST = 1e-3  # of the motion: the first step of an adaptive one
 _MOST_STEPS = 20_000  # of an explicit method past a singular position
@@ -60,11 +61,9 @@ class Automatic(Integrator):
         """Return the same choice at a tolerance 100 times tighter."""
         return replace(self, tolerance=self.tolerance / 100), None
 
-    def instead(self, reason: str | None, end: float) -> Integrator | None:
+    def instead(self, reason: SolveError | None) -> Integrator | None:
         """The method for redundant constraints where a singular position stopped the run."""
-        if not (reason and reason.startswith(SINGULAR_POSITION)):
-            return None
-        return replace(self._redundant(), most_steps=_MOST_STEPS)
+        return replace(self._redundant(), most_steps=_MOST_STEPS) if isinstance(reason, SingularPositionError) else None
 
     def _redundant(self) -> OdeSolver:
         return OdeSolver("DOP853", self.tolerance, self.tolerance, Partitioning())
@@ -73,7 +72,7 @@ class Automatic(Integrator):
         """Runs by the integrator that suits the first sample; samples that it cannot finish run by another one."""
         runs = self.suiting(batch.samples[0], batch.end).run(batch)
         for number, run in enumerate(runs):
-            if other := self.instead(run.reason, batch.end):
+            if other := self.instead(run.reason):
                 (second,) = other.run(batch.only(number))
                 runs[number] = run if second.reason else second
         return runs

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from dalembert.errors import SolveError
 from dalembert.multibody.integrators.problem import Log, Problem
 from dalembert.multibody.integrators.run import Run
 from dalembert.multibody.kernels.elementary import STEP
@@ -77,7 +78,7 @@ class Batch:
         room = room if self.logged else 0
         return Log(np.zeros(4, dtype=np.int64), np.zeros(room, dtype=np.int64), np.zeros(room))
 
-    def result(self, reason: str | None, states: MotionState, derivatives: MotionState, log: Log) -> Run:
+    def result(self, reason: SolveError | None, states: MotionState, derivatives: MotionState, log: Log) -> Run:
         """Return what a run left, with the part of the log that it filled."""
         taken = min(int(log.counts[0]), len(log.ends))
         iterations, ends = log.iterations[:taken].copy(), log.ends[:taken].copy()

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dalembert.arguments import limited
-from dalembert.errors import require_known
+from dalembert.errors import SolveError, require_known
 from dalembert.kernels.kernel import Compiled, inlined, inner, kernel
 from dalembert.kernels.words import Address, Integers, Integers2, Reals2
 from dalembert.multibody.integrators.batch import Batch, restarts
@@ -140,7 +140,7 @@ class GeneralizedAlpha(Integrator):
         ends = self.step_ends(end, lowered.jumps)
         return 100_000 if ends is None else max(len(ends) + 1, 100_000)
 
-    def _explain(self, lowered: Lowered, status: int, time: float, unknown: int) -> str:
+    def _explain(self, lowered: Lowered, status: int, time: float, unknown: int) -> SolveError:
         cut_down = f"the step of {self.step:g} s was cut down {'' if self.adaptive else 'to 1/256 '}for it"
         return explain(lowered, status, time, unknown, cut_down, self.most_steps)
 

@@ -10,6 +10,7 @@ from typing import Any, cast
 import numpy as np
 
 from dalembert.arguments import Checked
+from dalembert.errors import SolveError
 from dalembert.kernels.kernel import Compiled
 from dalembert.multibody.integrators.batch import Batch, make_batch, smooth_stretches
 from dalembert.multibody.integrators.problem import Problem
@@ -80,7 +81,7 @@ class Integrator(Checked, ABC):
             return None
         return replace(cast(Any, self), step=self.fixed_step / 2), self.convergence
 
-    def instead(self, reason: str | None, end: float) -> "Integrator | None":
+    def instead(self, reason: SolveError | None) -> "Integrator | None":
         """The integrator to try where the suiting one stopped for a ``reason``; None but for one that chooses."""
         return None
 

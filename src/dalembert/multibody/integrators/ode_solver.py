@@ -10,7 +10,7 @@ from scipy import integrate as scipy_integrate
 from scipy.sparse import block_diag
 
 from dalembert.arguments import limited
-from dalembert.errors import InputError, require_known
+from dalembert.errors import InputError, SolveError, require_known
 from dalembert.kernels.kernel import Compiled
 from dalembert.multibody.integrators.batch import Batch
 from dalembert.multibody.integrators.completion import kernels
@@ -21,7 +21,7 @@ from dalembert.multibody.integrators.problem import DONE, TOO_MANY_STEPS
 from dalembert.multibody.integrators.run import Run, explain
 from dalembert.multibody.integrators.stabilisation import Projection, Stabilisation, posed
 from dalembert.multibody.kernels.motion import MotionState, resting
-from dalembert.multibody.singular_positions import named
+from dalembert.multibody.singular_positions import singular_position
 from dalembert.multibody.structure import Structure
 
 EXPLICIT, IMPLICIT = ("RK45", "DOP853"), ("Radau", "BDF", "LSODA")
@@ -106,42 +106,41 @@ class OdeSolver(Integrator):
 
     def _run(self, own: Field, edges: np.ndarray) -> Run:
         """The motion of one sample."""
-        times = own.problem.times
-        shape = len(times), own.width
+        shape = len(own.problem.times), own.width
         out, dout = resting(*shape), resting(own.count, *shape)
         ends: list[float] = []
         due, reason = 0, None
-        for begin, end in pairwise(edges):
-            own.within = 0.5 * (begin + end)
-            own.choose(begin)
-            if (status := own.complete(begin, projected=False)) != DONE:
-                reason = explain(own.lowered, status, begin, 0, "the motion begins there")
-                break
-            while due < len(times) and times[due] <= begin and not ends:
-                own.record(out, dout, due)
-                due += 1
-            reason, due = self._stretch(own, begin, end, out, dout, due, ends)
-            if reason is not None:
-                break
+        try:
+            for begin, end in pairwise(edges):
+                own.within = 0.5 * (begin + end)
+                own.choose(begin)
+                if (status := own.complete(begin, projected=False)) != DONE:
+                    raise explain(own.lowered, status, begin, 0, "the motion begins there")
+                while due < len(own.problem.times) and own.problem.times[due] <= begin and not ends:
+                    own.record(out, dout, due)
+                    due += 1
+                due = self._stretch(own, begin, end, out, dout, due, ends)
+        except SolveError as error:
+            reason = error
         counts = np.array([len(ends), 0, own.evaluations, 0])
-        return Run(reason, times, out, dout, counts, np.zeros(len(ends), dtype=np.int64), np.array(ends))
+        return Run(reason, own.problem.times, out, dout, counts, np.zeros(len(ends), dtype=np.int64), np.array(ends))
 
     def _stretch(
         self, own: Field, begin: float, end: float, out: MotionState, dout: MotionState, due: int, ends: list[float]
-    ) -> tuple[str | None, int]:
-        """One smooth stretch: why it ended early, and the number of the next output."""
+    ) -> int:
+        """Run one smooth stretch, and return the number of the next output."""
         times, solver, short = own.problem.times, self._solver(own, begin, end), 0
         while solver.status == "running":
             if len(ends) >= self.most_steps:
-                return explain(own.lowered, TOO_MANY_STEPS, solver.t, 0, "", self.most_steps), due
+                raise explain(own.lowered, TOO_MANY_STEPS, solver.t, 0, "", self.most_steps)
             with np.errstate(all="ignore"):  # a step that is too long may overflow before it is cut down
                 message = solver.step()
             if solver.status == "failed":
-                return self._explain(own, solver.t, message), due
+                raise self._explain(own, solver.t, message)
             reached = min(solver.t, end)
             short = short + 1 if solver.step_size < _SHORT * (end - begin) else 0
-            if short == _STUCK and (singular := named(own.lowered, own.unknowns, reached)):
-                return singular, due
+            if short == _STUCK and (singular := singular_position(own.lowered, own.unknowns, reached)):
+                raise singular
             last = due
             while last < len(times) and times[last] <= reached * (1 + 1e-14):
                 last += 1
@@ -151,18 +150,18 @@ class OdeSolver(Integrator):
                 assert path is not None
                 own.put(path(min(times[number], reached)))
                 if (status := own.complete(times[number], projected=True)) != DONE:
-                    return self._explain(own, times[number], str(status)), due
+                    raise self._explain(own, times[number], str(status))
                 own.record(out, dout, number)
             due = last
             own.put(solver.y)
             if own.moves or own.choose(reached):
                 if own.complete(reached, projected=True) != DONE:
-                    return self._explain(own, reached, "the state does not come back to the constraints"), due
+                    raise self._explain(own, reached, "the state does not come back to the constraints")
                 solver = self._moved(solver, own, end)
         if not own.moves:
             own.put(solver.y)
             own.complete(end, projected=True)
-        return None, due
+        return due
 
     def _solver(self, own: Field, begin: float, end: float, first_step: float | None = None):
         """SciPy's object for the rest of a stretch."""
@@ -192,13 +191,13 @@ class OdeSolver(Integrator):
             solver.f = own.rates()
         return solver
 
-    def _explain(self, own: Field, time: float, message: str | None) -> str:
+    def _explain(self, own: Field, time: float, message: str | None) -> SolveError:
         if own.lowered.failures.errors:
             return explain(own.lowered, DONE, time, 0, "")
-        if singular := named(own.lowered, own.unknowns, time):
+        if singular := singular_position(own.lowered, own.unknowns, time):
             return singular
         why = f"{message[0].lower()}{message[1:].rstrip('.')}" if message else "no reason was given"
-        return (
+        return SolveError(
             f"OdeSolver: {self.method} could not go on at t = {time:.6g} s ({why}); if the model is stiff take an "
             "implicit method (Radau, BDF) or GeneralizedAlpha, else loosen relative_tolerance or start from another "
             "position: near a singular one the accelerations grow without bound"

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from dalembert.arguments import limited
-from dalembert.errors import InputError
+from dalembert.errors import InputError, SolveError
 from dalembert.kernels.kernel import Compiled
 from dalembert.multibody.integrators.batch import Batch
 from dalembert.multibody.integrators.consistent import accelerate_along
@@ -22,7 +22,7 @@ from dalembert.multibody.integrators.radau_workspace import Settings, workspace
 from dalembert.multibody.integrators.run import Run, cut_down, explain
 from dalembert.multibody.kernels.motion import resting
 from dalembert.multibody.lowered import Lowered
-from dalembert.multibody.singular_positions import named
+from dalembert.multibody.singular_positions import singular_position
 from dalembert.multibody.structure import Structure
 
 _ROOM = 100_000  # steps whose Newton counts are kept, where their number is not known before
@@ -128,18 +128,22 @@ class RadauIIA(Integrator):
             lowered.dissipates,
         )
 
-    def _explain(self, lowered: Lowered, status: int, time: float, unknown: int, least: float, x: np.ndarray) -> str:
-        shortened = "the step was cut down for it" if self.step is None else cut_down(self.step)
+    def _explain(
+        self, lowered: Lowered, status: int, time: float, unknown: int, least: float, x: np.ndarray
+    ) -> SolveError:
+        if singular := singular_position(lowered, x, time):
+            return singular
         if status == INEXACT and not lowered.failures.errors:
-            return named(lowered, x, time) or self._explain_inexact(time, least)
-        return named(lowered, x, time) or explain(lowered, status, time, unknown, shortened, self.most_steps)
+            return self._explain_inexact(time, least)
+        shortened = "the step was cut down for it" if self.step is None else cut_down(self.step)
+        return explain(lowered, status, time, unknown, shortened, self.most_steps)
 
-    def _explain_inexact(self, time: float, least: float) -> str:
+    def _explain_inexact(self, time: float, least: float) -> SolveError:
         floor = least * self.tolerance
         enough = max(_FINEST, 10.0 ** np.ceil(np.log10(_ABOVE * floor)))
         rounded = enough <= _ROUNDED
         cause = "by rounding, or by a load" if rounded else "by a load"
-        return (
+        return SolveError(
             f"no step meets tolerance = {self.tolerance:g} at t = {time:.6g} s: its estimated error is {floor:.1e} or "
             f"more, {cause} that jumps or grows without bound; "
             + (f"use tolerance = {enough:g} or more, or check the loads" if rounded else "check the loads")

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dalembert.errors import SolveError
 from dalembert.multibody.integrators.problem import DIVERGED, SINGULAR, TOO_MANY_STEPS, Problem, Reduced
 from dalembert.multibody.kernels.motion import MotionState
 from dalembert.multibody.lowered import Lowered
@@ -16,7 +17,7 @@ class Run:
 
     Parameters
     ----------
-    reason : str or None
+    reason : SolveError or None
         Why the run ended early.
     times : array (samples,)
     states : MotionState of arrays (samples, N + 1)
@@ -27,7 +28,7 @@ class Run:
         Newton iterations of each step, and the step's end, s.
     """
 
-    reason: str | None
+    reason: SolveError | None
     times: np.ndarray
     states: MotionState
     derivatives: MotionState
@@ -51,25 +52,22 @@ def cut_down(step: float) -> str:
     return f"the step of {step:g} s was cut down to 1/256 for it"
 
 
-def explain(lowered: Lowered, status: int, time: float, unknown: int, step: str, most_steps: int = 0) -> str:
-    """Sentence for a run that ended early; ``step`` tells the step that was too long."""
+def explain(lowered: Lowered, status: int, time: float, unknown: int, step: str, most_steps: int = 0) -> SolveError:
+    """Return the error of a run that ended early; ``step`` describes the step that was too long."""
     owner = lowered.structure.owners[min(unknown, lowered.structure.size - 1)]
     if lowered.failures.errors:
         error = lowered.failures.errors[0]
-        return f"a function of the user's failed near t = {time:.6g} s: {type(error).__name__}: {error}"
-    if status == SINGULAR:
-        return (
-            f"the equations of motion became singular at t = {time:.6g} s, at component {owner!r}: redundant "
-            "constraints, a massless part, or a singular position; start from another position or take a constraint out"
-        )
-    if status == TOO_MANY_STEPS:
-        return f"the adaptive step reached most_steps = {most_steps} at t = {time:.6g} s; raise tolerance or most_steps"
-    if status == DIVERGED:
-        return (
-            f"the motion grew without bound before t = {time:.6g} s: {step}, too long for an explicit method on the "
-            "fastest vibration of the model; take a smaller step, or an implicit method such as GeneralizedAlpha"
-        )
-    return (
+        return SolveError(f"a function of the user's failed near t = {time:.6g} s: {type(error).__name__}: {error}")
+    why = {
+        SINGULAR: f"the equations of motion became singular at t = {time:.6g} s, at component {owner!r}: redundant "
+        "constraints, a massless part, or a singular position; start from another position or take a constraint out",
+        TOO_MANY_STEPS: f"the adaptive step reached most_steps = {most_steps} at t = {time:.6g} s; raise tolerance or "
+        "most_steps",
+        DIVERGED: f"the motion grew without bound before t = {time:.6g} s: {step}, too long for an explicit method on "
+        "the fastest vibration of the model; take a smaller step, or an implicit method such as GeneralizedAlpha",
+    }
+    unsolved = (
         f"Newton's iteration did not converge at t = {time:.6g} s, worst at component {owner!r}, though {step}; "
         "take a smaller step, or check the component's stiffness, loads and dimensions"
     )
+    return SolveError(why.get(status, unsolved))

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dalembert.arguments import limited
+from dalembert.errors import SolveError
 from dalembert.kernels.kernel import Compiled
 from dalembert.multibody.integrators.batch import Batch
 from dalembert.multibody.integrators.consistent import accelerate_along
@@ -91,5 +92,5 @@ class Variational(Integrator):
         """Energy at the start with its derivatives, and what keeps it: here nothing does."""
         return 0.0, np.zeros(len(perturbed)), no_balance(len(start.x))
 
-    def _explain(self, lowered: Lowered, status: int, time: float, unknown: int) -> str:
+    def _explain(self, lowered: Lowered, status: int, time: float, unknown: int) -> SolveError:
         return explain(lowered, status, time, unknown, cut_down(self.step))

@@ -1,0 +1,277 @@
+"""What models of motions share: batches of motions, responses with exact derivatives, and arrays of parameters."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from dalembert.errors import ModelError, told
+from dalembert.forward import Channel, Coordinate, ForwardModel, Responses, ensemble
+from dalembert.forward.builders import built, inexact, restructured
+from dalembert.forward.complex_steps import Compared
+from dalembert.forward.differences import COMPLEX_STEP, central_differences
+from dalembert.kernels.preparation import prepare
+from dalembert.multibody.assemble import assembled
+from dalembert.multibody.callbacks import in_complex_numbers
+from dalembert.multibody.complex_steps import Along, check_closures, check_forces, check_numbers
+from dalembert.multibody.integrators.integrator import Integrator
+from dalembert.multibody.integrators.problem import Problem
+from dalembert.multibody.integrators.run import Run, make_problem
+from dalembert.multibody.kernels.elementary import STEP
+from dalembert.multibody.kernels.model import Model
+from dalembert.multibody.long_runs import check_pace
+from dalembert.multibody.lowered import Lowered
+from dalembert.multibody.lowering import lower
+from dalembert.multibody.observe import Observer, observer
+from dalembert.multibody.simulation import prepared
+from dalembert.multibody.system import System
+from dalembert.parameters import Parameters
+
+
+class MotionModel(ABC):
+    """A forward model each of whose responses is read off one motion."""
+
+    parameters: Parameters
+    channels: tuple[Channel, ...]
+    times: np.ndarray
+    begin: float
+    fingerprint: str
+
+    @abstractmethod
+    def first(self, samples: int) -> ForwardModel:
+        """The same model, cut to its first ``samples`` samples."""
+
+    @property
+    @abstractmethod
+    def _built(self) -> "BuiltModel":
+        """The model whose builder, solver and channels serve."""
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Without what was computed from the fields, which holds addresses of this process."""
+        return {name: value for name, value in vars(self).items() if name in self.__dataclass_fields__}  # type: ignore[attr-defined]
+
+    @property
+    def coordinate(self) -> Coordinate:
+        """The times of the samples."""
+        return Coordinate("time", "s", self.times)
+
+    @cached_property
+    def _problem(self) -> Problem:
+        return make_problem(self._built.shared, self.times)
+
+    def evaluate(self, vectors: np.ndarray) -> Responses:
+        """Responses of a batch over all cores; ``vectors`` (batch, parameters), values (batch, samples, channels).
+
+        A sample that fails is marked with its reason, and its values are NaN.
+        """
+        vectors = self.parameters.batch(vectors)
+        values = np.full((len(vectors), len(self.times), len(self.channels)), np.nan)
+        failures: list[str | None] = [None] * len(vectors)
+        solver, workers, problem = self._built.solver, self._built.workers, self._problem
+
+        def work(rows: np.ndarray) -> None:
+            samples: dict[int, Lowered] = {}
+            for row in rows:
+                try:
+                    samples[row] = self._lower(vectors[row])
+                except Exception as error:  # the user's builder raised: this sample's failure, not the batch's
+                    failures[row] = told(error)
+            if samples:
+                runs = solver.integrate([*samples.values()], (), problem, self.times[-1], logged=False)
+                for (row, lowered), run in zip(samples.items(), runs, strict=True):
+                    if run.reason:
+                        failures[row] = str(run.reason)
+                    else:
+                        values[row] = self._read(lowered, lowered.real, run.states)
+
+        with in_complex_numbers(strict=False):
+            list(ensemble(work, _parts(len(vectors), workers), workers=workers))
+        return Responses(values, tuple(failures))
+
+    def jacobian(self, vector: np.ndarray) -> np.ndarray:
+        """Exact derivative of the discrete response, (samples, channels, parameters)."""
+        return self.linearise(vector)[1]
+
+    def linearise(self, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Response (samples, channels) and its exact derivative (samples, channels, parameters), in one run.
+
+        Raises
+        ------
+        InputError
+            Where the builder, or a function of the user's in the model, cannot run in complex numbers, or loses the
+            imaginary part.
+        SolveError
+            Where the solver could not go on.
+        """
+        vector = self.parameters.real_vector(vector)
+        if self._built.derivative != COMPLEX_STEP:
+            return central_differences(self, vector)
+        self._built.prepare_derivatives()
+        with in_complex_numbers(strict=True):
+            lowered, perturbed = self._perturbed(vector)
+            active = [column for column, own in enumerate(perturbed) if _moves(own)]
+            directions = [perturbed[column] for column in active]
+            (run,) = self._built.solver.integrate([lowered], directions, self._problem, self.times[-1])
+        if run.reason:
+            raise run.reason
+        for name, own in zip(self.parameters.names, perturbed, strict=True):
+            for error in (*lowered.failures.inexact, *own.failures.inexact):
+                raise inexact(name, error) from error
+        self._compare(vector, lowered, run)
+        values = self._read(lowered, lowered.real, run.states)
+        jacobian = np.empty((*values.shape, len(vector)))
+        for column, own in enumerate(perturbed):
+            states = [part.astype(complex) for part in run.states[:3]]
+            if column in active:
+                slopes = (part[active.index(column)] for part in run.derivatives[:3])
+                states = [state + 1j * STEP * slope for state, slope in zip(states, slopes, strict=True)]
+            response = self._read(own, own.complex_model, states)
+            jacobian[:, :, column] = np.imag(response) / (STEP * self.parameters.scale[column])
+        return values, jacobian
+
+    def _lower(self, vector: np.ndarray) -> Lowered:
+        """Arrays of one sample, in the structure of the first."""
+        return self._built.lowered_at(vector, self.begin, closed=True)
+
+    def _perturbed(self, vector: np.ndarray) -> tuple[Lowered, list[Lowered]]:
+        """The arrays, and those moved by a complex step of the scale of each parameter."""
+        lowered, columns = self._lower(vector), range(len(vector))
+        return lowered, [self._built.perturbed_at(vector, column, self.begin, closed=True) for column in columns]
+
+    def _read(self, lowered: Lowered, model: Model, states: Any) -> np.ndarray:
+        """Channels of states x, v and a (samples, N + 1), (samples, channels)."""
+        return self._built.observer.read(lowered, model, states, self.times)
+
+    def _compare(self, vector: np.ndarray, lowered: Lowered, run: Run) -> None:
+        """Compare the complex step with differences along a motion, where that is due: here it is not."""
+        return
+
+
+@dataclass(frozen=True)
+class BuiltModel(MotionModel):
+    """A model of motions whose mechanism a function builds from parameters."""
+
+    builder: Callable[..., System]
+    parameters: Parameters
+    channel_names: tuple[str, ...]
+    times: np.ndarray
+    solver: Integrator
+    workers: int = field(default=1, compare=False)
+    derivative: str = COMPLEX_STEP
+    built_at: np.ndarray | None = field(default=None, compare=False)
+    begin: float = 0.0
+
+    @property
+    def _built(self) -> "BuiltModel":
+        return self
+
+    @property
+    def channels(self) -> tuple[Channel, ...]:
+        """Channels with their units."""
+        return self.observer.channels
+
+    def system(self, vector: np.ndarray) -> System:
+        """The mechanism at a parameter vector (parameters,)."""
+        return built(self.builder, self.parameters.mapping(vector), System)
+
+    @cached_property
+    def first_system(self) -> System:
+        """The mechanism that all samples share their structure with."""
+        return self.system(self.parameters.start if self.built_at is None else self.built_at)
+
+    @cached_property
+    def observer(self) -> Observer:
+        """The channels, of the mechanism as it is placed: joints may not be closed yet."""
+        return observer(self.first_system, lower(self.first_system, self.begin), self.channel_names)
+
+    @cached_property
+    def shared(self) -> Lowered:
+        """Arrays where the mechanism is built first: all samples share their structure."""
+        end = float(self.times[-1])
+        lowered, solver = prepared(self.first_system, end, self.solver, self.begin, self.observer)
+        check_pace(lowered, solver, end)
+        return lowered
+
+    def prepare_derivatives(self) -> None:
+        """Compile, or load, what sensitivities need."""
+        solver = self.solver.suiting(self.shared, float(self.times[-1]))
+        kernels = self.shared.kernels(True), solver.kernels(self.shared.structure, True)
+        prepare([*kernels[0], *kernels[1], *self.observer.kernels(self.shared, True)])
+
+    def check_derivatives(self, vector: np.ndarray) -> None:
+        """Compare the complex step with differences of the model's numbers at a vector (parameters,).
+
+        Nothing is simulated. The forces of functions of the user's are compared by the next derivative, along its
+        motion.
+
+        Raises
+        ------
+        InputError
+            With the parameter, the component and its number, where the builder drops the imaginary part.
+        """
+        if self.derivative == COMPLEX_STEP:
+            self._compared.once(vector, lambda thorough: check_numbers(self.builder, self.parameters, vector, thorough))
+
+    @cached_property
+    def _compared(self) -> Compared:
+        return Compared()
+
+    def _compare(self, vector: np.ndarray, lowered: Lowered, run: Run) -> None:
+        if not self._compared.vectors:
+            self.check_derivatives(vector)
+        if not self._compared.functions:
+            at = Along(self.observer, self.times, run.states, self.begin)
+            check_forces(lowered, at, self._problem.scale)
+            check_closures(self.builder, self.parameters, vector, at)
+            self._compared.functions = True
+
+    def placed(self, vector: np.ndarray, begin: float) -> tuple[Lowered, tuple[Lowered, ...]]:
+        """Arrays of the mechanism as placed, and those moved along each parameter; kept for the last vector.
+
+        Segments of one motion share them, unless signals depend on when they begin.
+        """
+        moment = begin if len(self.shared.structure.signals) > 1 else 0.0
+        key = vector.tobytes(), moment
+        kept = vars(self).get("_placed")
+        if kept is None or kept[0] != key:
+            lowered = self.lowered_at(vector, moment, closed=False)
+            perturbed = tuple(self.perturbed_at(vector, column, moment, closed=False) for column in range(len(vector)))
+            kept = vars(self)["_placed"] = key, (lowered, perturbed)
+        return kept[1]
+
+    def lowered_at(self, vector: np.ndarray, begin: float, *, closed: bool) -> Lowered:
+        """Arrays of the mechanism at a parameter vector and a time of the signals; as placed if not ``closed``."""
+        system = self.system(vector)
+        return self._fit(assembled(system, begin=begin) if closed else lower(system, begin))
+
+    def perturbed_at(self, vector: np.ndarray, column: int, begin: float, *, closed: bool) -> Lowered:
+        """The arrays of :meth:`lowered_at`, moved by a complex step of the scale of one parameter."""
+        name, value = self.parameters.names[column], complex(vector[column], STEP * self.parameters.scale[column])
+        try:
+            system = built(self.builder, self.parameters.mapping(vector) | {name: value}, System)
+            return self._fit(assembled(system, perturbed=True, begin=begin) if closed else lower(system, begin))
+        except (TypeError, ModelError, np.exceptions.ComplexWarning) as error:
+            cause = error.__cause__ if isinstance(error, ModelError) else error
+            if not isinstance(cause, TypeError | np.exceptions.ComplexWarning):
+                raise
+            raise inexact(name, cause) from cause
+
+    def _fit(self, lowered: Lowered) -> Lowered:
+        if not self.shared.structure.same(lowered.structure):
+            raise restructured()
+        return replace(lowered, structure=self.shared.structure)
+
+
+def _moves(perturbed: Lowered) -> bool:
+    """Whether the motion may depend on what was moved: initial angles do not matter to a later segment."""
+    arrays = (perturbed.x, perturbed.v, perturbed.signal_data, perturbed.knots, *perturbed.data.values())
+    return bool(perturbed.callbacks) or any(np.iscomplexobj(one) and np.any(np.imag(one)) for one in arrays)
+
+
+def _parts(count: int, workers: int) -> list[np.ndarray]:
+    """Rows of a batch cut into parts: small enough that no worker waits long for another at the end."""
+    size = max(1, min(16, -(-count // (4 * workers))))
+    return [np.arange(begin, min(begin + size, count)) for begin in range(0, count, size)]

@@ -5,15 +5,14 @@ from dalembert.structure.damping import Modal, Rayleigh
 from dalembert.structure.dofs import Dofs
 from dalembert.structure.eigenmodes import EigenModes, eigenmodes, similarity
 from dalembert.structure.joining import combine, pairs, tie
-from dalembert.structure.lumped import lumped
 from dalembert.structure.material import Material
-from dalembert.structure.mode_shapes import ModeShapes, mode_shapes
-from dalembert.structure.node_motion import node_motion
+from dalembert.structure.mode_shapes import ModeShapes, mode_shapes, node_motion
 from dalembert.structure.nodes import Nodes
 from dalembert.structure.patched_plate import Patch, foot_pairs, patched_plate
 from dalembert.structure.plate import plate
 from dalembert.structure.read_structure import read_structure, write_structure
 from dalembert.structure.solid import box, solid
+from dalembert.structure.springs import lumped
 from dalembert.structure.structure import Structure
 
 __all__ = [

@@ -1,18 +1,21 @@
-"""Finite elements: the library of their shape functions, and the assembly of element matrices.
+"""Finite elements: the library of their shape functions, the sizes of meshes, the assembly of element matrices.
 
 The shape functions, meshes and quadratures are scikit-fem's. Its own assembly evaluates a form once for each pair of
 local functions, 3,600 times for a brick of 20 nodes; products of the arrays of all elements at once are faster.
 """
 
+from collections.abc import Sequence
 from importlib import import_module
 from typing import Any
 
 import numpy as np
 from scipy.sparse import coo_array, csc_array
 
-from dalembert.errors import InputError
+from dalembert.arguments import is_number, is_whole
+from dalembert.errors import InputError, shown
 
 PACKAGES = {"skfem": "scikit-fem"}
+_COUNTS = {2: "two", 3: "three"}
 
 
 def library(name: str, what: str) -> Any:
@@ -29,6 +32,28 @@ def library(name: str, what: str) -> Any:
         raise InputError(
             f"{what}: {PACKAGES.get(name, name)} is needed and not installed; run: pip install 'dalembert[fem]'"
         ) from None
+
+
+def require_lengths(where: str, what: str, given: Sequence, count: int) -> None:
+    """Refuse lengths that are not ``count`` positive numbers.
+
+    Raises
+    ------
+    InputError
+    """
+    if len(given) != count or not all(is_number(one) and np.real(one) > 0 for one in given):
+        raise InputError(f"{where}: {what} is {shown(given)}; expected {_COUNTS[count]} positive numbers in m")
+
+
+def require_counts(where: str, given: Sequence, count: int) -> None:
+    """Refuse numbers of elements that are not ``count`` positive whole numbers.
+
+    Raises
+    ------
+    InputError
+    """
+    if len(given) != count or not all(is_whole(one) and one > 0 for one in given):
+        raise InputError(f"{where}: elements is {shown(given)}; expected {_COUNTS[count]} positive whole numbers")
 
 
 def assemble(local: np.ndarray, dofs: np.ndarray, size: int) -> csc_array:

@@ -6,14 +6,14 @@ from contextvars import ContextVar
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from scipy.sparse import csc_array, issparse
+from scipy.sparse import csc_array
 
 from dalembert.arguments import takes_checked
 from dalembert.errors import InputError
 from dalembert.structure.dofs import Dofs
-from dalembert.structure.eigenmodes import DENSE, all_modes, eigenmodes, lanczos, real_part, similarity
+from dalembert.structure.eigenmodes import DENSE, all_modes, dense, eigenmodes, lanczos, real_part, similarity
 from dalembert.structure.factorise import factorise
-from dalembert.structure.structure import Matrix, Structure, block
+from dalembert.structure.structure import Matrix, Structure, block, changed
 
 NEIGHBOURS = 0.01
 """Modes whose frequencies differ by less, relative, share their shapes when a reduction is judged."""
@@ -190,15 +190,9 @@ def craig_bampton(structure: Structure, masters: str | Sequence[str], modes: int
 
     names = [structure.dofs.names[row] for row in held] + [f"mode {number}.q" for number in range(1, count + 1)]
     return ReducedStructure(
-        reduced(structure.mass),
-        reduced(structure.stiffness),
-        Dofs(tuple(names)),
-        None if structure.damping is None else reduced(structure.damping),
-        structure.nodes,
-        None if structure.loss is None else reduced(structure.loss),
-        basis=basis,
-        full_dofs=structure.dofs,
-    )
+        dofs=Dofs(tuple(names)), nodes=structure.nodes, basis=basis, full_dofs=structure.dofs,
+        **changed(structure, reduced),
+    )  # fmt: skip
 
 
 def _basis(structure: Structure, held: np.ndarray, inner: np.ndarray, count: int) -> np.ndarray:
@@ -209,7 +203,7 @@ def _basis(structure: Structure, held: np.ndarray, inner: np.ndarray, count: int
     if len(inner):
         own = block(stiffness, inner)
         solve = factorise(own, "craig_bampton: the stiffness with the masters held", "; clamp it or add masters")
-        basis[inner, : len(held)] = -solve(_dense(block(stiffness, inner, held)))
+        basis[inner, : len(held)] = -solve(dense(block(stiffness, inner, held)))
         own_mass = block(mass, inner)
         if len(inner) <= max(DENSE, 2 * count):
             shapes = all_modes(own_mass, own)[1][:, :count]
@@ -220,7 +214,3 @@ def _basis(structure: Structure, held: np.ndarray, inner: np.ndarray, count: int
             shapes = np.zeros((len(inner), 0))
         basis[inner, len(held) :] = shapes
     return basis
-
-
-def _dense(matrix: Matrix) -> np.ndarray:
-    return matrix.toarray() if issparse(matrix) else matrix

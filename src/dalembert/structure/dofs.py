@@ -53,8 +53,14 @@ class Dofs:
     def __len__(self) -> int:
         return len(self.names)
 
-    def index(self, name: str) -> int:
+    def index(self, name: str, where: str = "") -> int:
         """Return the row of a degree of freedom. A node that has only one may be named alone.
+
+        Parameters
+        ----------
+        name : str
+        where : str
+            What needs it, for errors.
 
         Raises
         ------
@@ -68,9 +74,10 @@ class Dofs:
             return own[0]
         if own:
             raise InputError(
-                f"the node {name!r} has the degrees of freedom {', '.join(self.names[row] for row in own)}; name one"
+                f"{where}{': ' * bool(where)}the node {name!r} has the degrees of freedom "
+                f"{', '.join(self.names[row] for row in own)}; name one"
             )
-        raise InputError(unknown("degree of freedom", name, self.names))
+        raise InputError(unknown("degree of freedom", name, self.names, where))
 
     def rows(self, names: Iterable[str]) -> list[int]:
         """Return the rows of several degrees of freedom. A node alone means all that it has.

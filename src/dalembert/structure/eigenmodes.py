@@ -115,14 +115,18 @@ def similarity(shapes: np.ndarray, others: np.ndarray, mass: Matrix) -> np.ndarr
 
 def real_part(matrix: Matrix) -> Matrix:
     """Return the real part of a dense or sparse matrix."""
-    return matrix.real if np.iscomplexobj(matrix.data if issparse(matrix) else matrix) else matrix
+    return matrix.real if np.iscomplexobj(matrix) else matrix
+
+
+def dense(matrix: Matrix) -> np.ndarray:
+    """Return a matrix that is not sparse."""
+    return matrix.toarray() if issparse(matrix) else matrix
 
 
 def all_modes(mass: Matrix, stiffness: Matrix) -> tuple[np.ndarray, np.ndarray]:
     """Squares of all angular frequencies, ascending, and shapes, by dense matrices."""
-    m, k = (matrix.toarray() if issparse(matrix) else matrix for matrix in (mass, stiffness))
     try:
-        return eigh(k, m)
+        return eigh(dense(stiffness), dense(mass))
     except np.linalg.LinAlgError:
         raise InputError(
             "eigenmodes: the mass matrix is not positive definite; give all degrees of freedom a mass"

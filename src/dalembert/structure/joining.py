@@ -11,7 +11,7 @@ from dalembert.arguments import takes_checked
 from dalembert.errors import InputError
 from dalembert.structure.dofs import Dofs
 from dalembert.structure.nodes import Nodes
-from dalembert.structure.structure import Matrix, Structure
+from dalembert.structure.structure import MATRICES, Matrix, Structure, changed, known_nodes
 
 Pairs = tuple[tuple[str, str], ...]
 
@@ -41,10 +41,7 @@ def combine(parts: Mapping[str, Structure]) -> Structure:
     if not structures:
         raise InputError("combine: there are no parts; expected at least one")
 
-    def whole(name: str) -> csc_array:
-        return csc_array(block_diag([csc_array(getattr(one, name)) for one in structures], format="csc"))
-
-    def optional(name: str) -> csc_array | None:
+    def whole(name: str) -> csc_array | None:
         matrices = [getattr(one, name) for one in structures]
         if all(one is None for one in matrices):
             return None
@@ -52,9 +49,7 @@ def combine(parts: Mapping[str, Structure]) -> Structure:
         return csc_array(block_diag([csc_array(one) for one in given], format="csc"))
 
     names = tuple(f"{part}/{name}" for part, one in parts.items() for name in one.dofs.names)
-    return Structure(
-        whole("mass"), whole("stiffness"), Dofs(names), optional("damping"), _nodes(parts), optional("loss")
-    )
+    return Structure(dofs=Dofs(names), nodes=_nodes(parts), **{name: whole(name) for name in MATRICES})
 
 
 @takes_checked()
@@ -79,7 +74,7 @@ def pairs(structure: Structure, first: str, second: str, tolerance: float) -> Pa
     InputError
         For an unknown set, a structure without nodes, or a node of the first set without a partner of its own.
     """
-    nodes = _with_nodes(structure, "pairs")
+    nodes = known_nodes(structure, "pairs")
     ours, theirs = nodes.members(first), nodes.members(second)
     distances, nearest = KDTree(nodes.places[nodes.rows(theirs)]).query(nodes.places[nodes.rows(ours)])
     far = np.flatnonzero(distances > tolerance)
@@ -136,21 +131,7 @@ def tie(structure: Structure, joined: Sequence[tuple[str, str]]) -> Structure:
         rows = {name: row for row, name in enumerate(nodes.names)}
         own = np.array([rows[keeper.get(name, name)] for name in nodes.names], dtype=int)
         nodes = replace(nodes, sets=sets, faces=None if nodes.faces is None else own[nodes.faces])
-    return replace(
-        structure,
-        mass=tied(structure.mass),
-        stiffness=tied(structure.stiffness),
-        dofs=Dofs(names),
-        damping=None if structure.damping is None else tied(structure.damping),
-        loss=None if structure.loss is None else tied(structure.loss),
-        nodes=nodes,
-    )
-
-
-def _with_nodes(structure: Structure, where: str) -> Nodes:
-    if structure.nodes is None:
-        raise InputError(f"{where}: the structure does not say where its nodes are; give it nodes=Nodes(...)")
-    return structure.nodes
+    return replace(structure, dofs=Dofs(names), nodes=nodes, **changed(structure, tied))
 
 
 def _nodes(parts: Mapping[str, Structure]) -> Nodes | None:

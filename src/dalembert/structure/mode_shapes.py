@@ -1,4 +1,4 @@
-"""Mode shapes at the nodes of a structure, for drawing."""
+"""Motion of nodes from that of degrees of freedom, and mode shapes, for drawing."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
@@ -8,12 +8,14 @@ import numpy as np
 from dalembert.contents import Contents
 from dalembert.errors import InputError
 from dalembert.results import Result
+from dalembert.structure.craig_bampton import ReducedStructure
 from dalembert.structure.eigenmodes import EigenModes
-from dalembert.structure.node_motion import known_nodes, node_motion
-from dalembert.structure.structure import Structure
+from dalembert.structure.structure import Structure, known_nodes
 
 if TYPE_CHECKING:
     from xarray import Dataset
+
+AXES = ("x", "y", "z")
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,11 +98,51 @@ def mode_shapes(structure: Structure, modes: EigenModes) -> ModeShapes:
             "mode_shapes: the shapes are complex; expected those of the undamped structure, which `eigenmodes` finds, "
             "whose nodes move in phase"
         )
-    nodes, motion = known_nodes(structure), node_motion(structure, modes.shapes)
+    nodes, motion = known_nodes(structure, "mode_shapes"), node_motion(structure, modes.shapes)
     kept, faces = drawn_nodes(motion, nodes.faces)
     shapes = np.moveaxis(motion[kept], -1, 0)
     largest = np.linalg.norm(shapes, axis=2).max(axis=1)
     return ModeShapes(modes.frequencies, nodes.places[kept], faces, shapes / largest[:, None, None])
+
+
+def node_motion(structure: Structure, motion: np.ndarray) -> np.ndarray:
+    """Displacements of all nodes along x, y and z; 0 where a node has no such degree of freedom, since it is clamped.
+
+    Parameters
+    ----------
+    structure : Structure
+        With nodes; a reduced one gives back the motion of the full one.
+    motion : array, shape (Structure.size, ...)
+        Of the structure's degrees of freedom.
+
+    Returns
+    -------
+    array, shape (nodes, 3, ...)
+
+    Raises
+    ------
+    InputError
+        For a structure that does not say where its nodes are.
+
+    Examples
+    --------
+    >>> from dalembert.structure import Dofs, Nodes
+    >>> nodes = Nodes(("a", "b"), np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]]))
+    >>> bar = Structure(np.eye(2), np.eye(2), Dofs(("b.z", "b.x")), nodes=nodes)
+    >>> node_motion(bar, np.array([3.0, 4.0])).tolist()
+    [[0.0, 0.0, 0.0], [4.0, 0.0, 3.0]]
+    """
+    nodes = known_nodes(structure, "node_motion")
+    dofs = structure.dofs
+    if isinstance(structure, ReducedStructure):
+        dofs, motion = structure.full_dofs, structure.expand(motion)
+    places = {name: row for row, name in enumerate(nodes.names)}
+    result = np.zeros((len(nodes.names), len(AXES), *np.shape(motion)[1:]))
+    for row, name in enumerate(dofs.names):
+        node, _, axis = name.rpartition(".")
+        if axis in AXES and node in places:
+            result[places[node], AXES.index(axis)] = motion[row]
+    return result
 
 
 def drawn_nodes(motion: np.ndarray, faces: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:

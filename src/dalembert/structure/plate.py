@@ -8,8 +8,7 @@ from scipy.sparse import csc_array
 
 from dalembert.arguments import takes_checked
 from dalembert.errors import InputError
-from dalembert.structure.assembly import assemble, library
-from dalembert.structure.counts import require_counts, require_lengths
+from dalembert.structure.assembly import assemble, library, require_counts, require_lengths
 from dalembert.structure.dofs import Dofs
 from dalembert.structure.material import Material
 from dalembert.structure.nodes import Nodes
@@ -61,10 +60,8 @@ def plate(size: Sequence[float], thickness: Any, material: Material, elements: S
     >>> float(eigenmodes(steel, 1).frequencies[0].round(2))
     89.97
     """
-    for name, values, unit in (("size", size, " m"), ("thickness", (thickness,), " m"), ("elements", elements, "")):
-        for value in values:
-            if not value.real > 0:
-                raise InputError(f"plate: {name} is {value}{unit}; expected a positive number")
+    if not thickness.real > 0:
+        raise InputError(f"plate: thickness is {thickness} m; expected a positive number")
     require_lengths("plate", "size", size, 2)
     require_counts("plate", elements, 2)
     skfem = library("skfem", "plate")

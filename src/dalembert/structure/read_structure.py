@@ -97,8 +97,7 @@ def read_structure(
     for role in ("mass", "stiffness"):
         if role not in aligned:
             raise InputError(f"read_structure: no file is given for the {role}; expected files for mass and stiffness")
-    real = _split(aligned)
-    return Structure(real["mass"], real["stiffness"], Dofs(rows), damping=real.get("damping"), loss=real.get("loss"))
+    return Structure(dofs=Dofs(rows), **_split(aligned))
 
 
 def write_structure(structure: Structure, path: str | Path) -> None:

@@ -9,8 +9,7 @@ from scipy.spatial import KDTree
 
 from dalembert.arguments import takes_checked
 from dalembert.errors import DataError, InputError, require_known, shown, told, unknown
-from dalembert.structure.assembly import assemble, library
-from dalembert.structure.counts import require_counts, require_lengths
+from dalembert.structure.assembly import assemble, library, require_counts, require_lengths
 from dalembert.structure.dofs import Dofs
 from dalembert.structure.material import Material
 from dalembert.structure.nodes import Nodes

@@ -1,18 +1,55 @@
-"""Springs and dampers between degrees of freedom of a structure."""
+"""Springs and dampers between degrees of freedom of a structure, and structures of masses with them."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from scipy.sparse import csc_array, issparse
 
-from dalembert.arguments import is_number
-from dalembert.errors import InputError, shown
+from dalembert.arguments import is_number, takes_checked
+from dalembert.errors import InputError, shown, unknown
+from dalembert.structure.dofs import DIRECTIONS, Dofs
 from dalembert.structure.structure import Matrix, Structure, checked_factor
 
 Spring = tuple[str, str | None, complex, complex] | tuple[str, str | None, complex, complex, complex]
 """First and second degree of freedom (None for the ground), stiffness in N/m, damping in N s/m, maybe a loss factor."""
+
+
+@takes_checked("springs")
+def lumped(masses: Mapping[str, float | complex], springs: Sequence[Spring]) -> Structure:
+    """A structure of masses that move along x, and springs with dampers between them or to the ground.
+
+    Parameters
+    ----------
+    masses : mapping of str to float
+        kg, by name; the degree of freedom of the mass ``"a"`` is ``"a.x"``, or ``"a"`` for short. A mass that moves
+        along several axes is given for each of them: ``"a.x"``, ``"a.y"``.
+    springs : sequence of (first, second, stiffness, damping) or (first, second, stiffness, damping, loss factor)
+        Names of two masses (None for the ground), N/m and N s/m; the loss factor η of hysteretic damping is 0 if not
+        given: the spring then has the complex stiffness k (1 + i η) under harmonic motion.
+
+    Raises
+    ------
+    InputError
+        For a spring on a mass that is not there.
+
+    Examples
+    --------
+    >>> chain = lumped({"a": 1.0, "b": 2.0}, [("a", None, 3.0, 0.1), ("a", "b", 1.0, 0.0)])
+    >>> chain.stiffness.tolist(), chain.dofs.names
+    ([[4.0, -1.0], [-1.0, 1.0]], ('a.x', 'b.x'))
+    """
+    if not isinstance(springs, Sequence):
+        raise InputError(f"lumped: springs is {shown(springs)}; expected a list, such as [('a', None, 3.0, 0.1)]")
+    names = list(masses)
+    for number, spring in enumerate(springs):
+        for end in spring[:2] if isinstance(spring, Sequence) else ():
+            if end is not None and end not in masses:
+                raise InputError(unknown("mass", end, names, f"lumped: spring {number + 1}"))
+    dofs = Dofs(tuple(name if name.rpartition(".")[2] in DIRECTIONS else f"{name}.x" for name in names))
+    mass = np.diag(np.array(list(masses.values()), dtype=np.result_type(float, *masses.values())))
+    return with_springs(Structure(mass, np.zeros(mass.shape), dofs, np.zeros(mass.shape)), springs)
 
 
 def with_springs(structure: Structure, springs: Sequence[Spring]) -> Structure:
@@ -44,7 +81,7 @@ def with_springs(structure: Structure, springs: Sequence[Spring]) -> Structure:
         first, second = spring[:2]
         for end, sign in ((first, 1.0), (second, -1.0)):
             if end is not None:
-                rows[_row(structure, end, number), number] += sign
+                rows[structure.dofs.index(end, f"spring {number + 1}"), number] += sign
     ends = csc_array(rows) if issparse(structure.stiffness) else rows
     stiffness, damping, factors = (np.array(sizes) for sizes in zip(*numbers, strict=True))
 
@@ -74,10 +111,3 @@ def _numbers(spring: Any, number: int) -> tuple[complex, complex, complex]:
         raise InputError(f"{where} connects {first!r} with itself; expected two ends, None for the ground")
     factor = checked_factor(f"{where}: the loss factor", numbers[2]) if len(numbers) == 3 else 0.0
     return numbers[0], numbers[1], factor
-
-
-def _row(structure: Structure, dof: str, number: int) -> int:
-    try:
-        return structure.dofs.index(dof)
-    except InputError as error:
-        raise InputError(f"spring {number + 1}: {error}") from None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -156,11 +156,8 @@ class Structure:
         kept = np.flatnonzero(out)
         return replace(
             self,
-            mass=block(self.mass, kept),
-            stiffness=block(self.stiffness, kept),
             dofs=Dofs(tuple(self.dofs.names[row] for row in kept)),
-            damping=None if self.damping is None else block(self.damping, kept),
-            loss=None if self.loss is None else block(self.loss, kept),
+            **changed(self, lambda matrix: block(matrix, kept)),
         )
 
     def with_damping(self, damping: Rayleigh | Modal | Matrix) -> Structure:
@@ -206,6 +203,19 @@ class Structure:
         if np.ndim(loss) == 0 and not issparse(loss):
             loss = checked_factor("with_loss: the loss factor", loss) * self.stiffness
         return replace(self, loss=loss)
+
+
+def changed(structure: Structure, change: Callable[[Matrix], Matrix]) -> dict[str, Matrix]:
+    """Return the matrices of a structure by name, each after a change."""
+    given = {name: getattr(structure, name) for name in MATRICES}
+    return {name: change(matrix) for name, matrix in given.items() if matrix is not None}
+
+
+def known_nodes(structure: Structure, where: str) -> Nodes:
+    """Return the nodes of a structure. Refuse a structure without positions of nodes, naming the caller."""
+    if structure.nodes is None:
+        raise InputError(f"{where}: the structure does not say where its nodes are; give it nodes=Nodes(...)")
+    return structure.nodes
 
 
 def checked_factor(what: str, factor: Any) -> Any:

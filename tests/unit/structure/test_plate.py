@@ -56,9 +56,12 @@ def test_derivatives_run_through_material_and_thickness() -> None:
 @pytest.mark.parametrize(
     ("make", "sentence"),
     [
-        (lambda: plate((0.4, -0.3), 2e-3, STEEL), "plate: size is -0.3 m; expected a positive number"),
+        (lambda: plate((0.4, -0.3), 2e-3, STEEL), "plate: size is (0.4, -0.3); expected two positive numbers in m"),
         (lambda: plate((0.4, 0.3), 0.0, STEEL), "plate: thickness is 0.0 m; expected a positive number"),
-        (lambda: plate((0.4, 0.3), 2e-3, STEEL, (0, 2)), "plate: elements is 0; expected a positive number"),
+        (
+            lambda: plate((0.4, 0.3), 2e-3, STEEL, (0, 2)),
+            "plate: elements is (0, 2); expected two positive whole numbers",
+        ),
         (lambda: Material(-1.0, 0.3, 1.0), "Material: youngs_modulus is -1 Pa; expected a positive number"),
         (lambda: Material(1.0, 0.3, 0.0), "Material: density is 0 kg/m^3; expected a positive number"),
         (

@@ -22,6 +22,7 @@ from scipy.sparse.linalg import splu
 
 from dalembert.errors import ModelError, SolveError, listed
 from dalembert.structure import Structure
+from dalembert.structure.eigenmodes import real_part
 from dalembert.vibration.balance.coordinates import Coordinates
 from dalembert.vibration.balance.free_motions import FLOATING, free_motions, moving_names
 
@@ -122,10 +123,10 @@ class Condensation:
     ) -> None:
         self.orders = np.array(orders, dtype=float)
         size: int = structure.size
-        matrices = [_real(structure.stiffness), _real(structure.mass)]
-        matrices.append(matrices[0] * 0.0 if structure.damping is None else _real(structure.damping))
+        matrices = [real_part(structure.stiffness), real_part(structure.mass)]
+        matrices.append(matrices[0] * 0.0 if structure.damping is None else real_part(structure.damping))
         if structure.loss is not None:
-            matrices.append(_real(structure.loss))
+            matrices.append(real_part(structure.loss))
         retained, interior = coordinates.retained, coordinates.interior
         dense = size <= DENSE or not issparse(structure.stiffness)
         self.retained, self.back = retained.toarray(), interior.toarray() if dense else interior
@@ -349,10 +350,6 @@ def _dynamic(blocks: list[Any], s: Any) -> Any:
 
 def _two_sided(left: Any, matrix: Any, right: Any) -> Any:
     return left.T @ (matrix @ right)
-
-
-def _real(matrix: Any) -> Any:
-    return matrix.real if np.iscomplexobj(matrix) else matrix
 
 
 def _times_columns(matrix: Any, columns: np.ndarray) -> np.ndarray:

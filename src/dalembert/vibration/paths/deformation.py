@@ -7,8 +7,8 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 
 from dalembert.errors import InputError
-from dalembert.structure.mode_shapes import drawn_nodes
-from dalembert.structure.node_motion import known_nodes, node_motion
+from dalembert.structure.mode_shapes import drawn_nodes, node_motion
+from dalembert.structure.structure import known_nodes
 from dalembert.vibration.balance.equations import Equations
 from dalembert.vibration.balance.fourier import synthesis
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
@@ -101,7 +101,7 @@ def deformation(system: VibrationSystem, curve: FrequencyCurve, point: int | Non
     >>> shape.coefficients.shape, shape.frequency
     ((25, 3, 3), 110.0)
     """
-    nodes = known_nodes(system.structure)
+    nodes = known_nodes(system.structure, "deformation")
     found = np.flatnonzero(curve.converged)
     chosen = _largest(curve) if point is None else point
     if chosen not in found:

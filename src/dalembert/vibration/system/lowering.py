@@ -151,7 +151,7 @@ def lower(system: VibrationSystem) -> Lowered:
         else:
             laws.add(element)
     for force in system.forces:
-        _place(system.structure, force.dof, "a force")
+        system.structure.dofs.index(force.dof, "a force")
     blocks = tuple(
         FrictionBlock(*key, np.array([own for own, _, _ in entries]), np.array([at for _, at, _ in entries]),
                       np.array([numbers for _, _, numbers in entries]))
@@ -180,16 +180,16 @@ class _Rows:
         """Row of a contact along one of its directions."""
         sign, axis = (-1.0 if direction.startswith("-") else 1.0), direction.removeprefix("-")
         where = f"contact {element.name!r}"
-        entries = {_place(self.structure, f"{element.first}.{axis}", where): sign}
+        entries = {self.structure.dofs.index(f"{element.first}.{axis}", where): sign}
         if element.second is not None:
-            entries[_place(self.structure, f"{element.second}.{axis}", where)] = -sign
+            entries[self.structure.dofs.index(f"{element.second}.{axis}", where)] = -sign
         return self.add(f"{element.name}.{axis}", entries)
 
     def between(self, name: str, first: str, second: str | None, where: str) -> int:
         """Row of the difference of two degrees of freedom."""
-        entries = {_place(self.structure, first, where): 1.0}
+        entries = {self.structure.dofs.index(first, where): 1.0}
         if second is not None:
-            end = _place(self.structure, second, where)
+            end = self.structure.dofs.index(second, where)
             if end in entries:
                 raise InputError(
                     f"{where} is between {first!r} and itself; expected two degrees of freedom, or one and the ground"
@@ -253,13 +253,6 @@ class _Laws:
 def _real(block: Any) -> Any:
     """A block with the real parts of its numbers."""
     return replace(block, numbers=np.ascontiguousarray(np.real(block.numbers), dtype=float))
-
-
-def _place(structure: Structure, dof: str, where: str) -> int:
-    try:
-        return structure.dofs.index(dof)
-    except InputError as error:
-        raise InputError(f"{where}: {error}") from None
 
 
 def _directions(element: FrictionContact) -> tuple[str, ...]:

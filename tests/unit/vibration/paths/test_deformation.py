@@ -84,7 +84,7 @@ def _row(system):
 def test_a_structure_without_places_is_refused():
     system = two_masses()
     curve = frequency_response(system, np.array([0.1]), HarmonicBalance(harmonics=3, samples=128))
-    sentence = "the structure does not say where its nodes are, so its motion cannot be drawn; give it nodes=Nodes(...)"
+    sentence = "deformation: the structure does not say where its nodes are; give it nodes=Nodes(...)"
     with pytest.raises(InputError, match=says(sentence)):
         deformation(system, curve)
 

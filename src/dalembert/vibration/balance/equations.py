@@ -1,6 +1,6 @@
 """Equations of harmonic balance of a system, solved at any frequency."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 
@@ -12,7 +12,7 @@ from dalembert.vibration.balance.cold_start import by_force
 from dalembert.vibration.balance.condensation import Condensation, Point, norm
 from dalembert.vibration.balance.fourier import Fourier
 from dalembert.vibration.balance.harmonic_balance import AUTOMATIC, MOST_SAMPLES, HarmonicBalance
-from dalembert.vibration.balance.newton import Plane, Solution, correct
+from dalembert.vibration.balance.newton import Plane, Solution, correct, scale_of
 from dalembert.vibration.laws.law_block import LawBlock
 from dalembert.vibration.laws.sampled_sums import forces_from_rest
 from dalembert.vibration.preparation import prepare_balance
@@ -68,20 +68,21 @@ class Equations:
 
         Where nothing holds a mean position, few samples may leave a mean force that more of them remove.
         """
+
+        def finer(found: Solution) -> Solution:
+            balance, near = self.balance(2 * found.samples), (found.unknowns, found.omega)
+            return correct(balance, self.condensation, self.method, *near, plane, found.point)
+
         solution = correct(self.balance(samples), self.condensation, self.method, unknowns, omega, plane, point)
         while solution.error <= self.method.sampling and not solution.converged and self._doubles(solution):
-            finer = self.balance(2 * solution.samples)
-            near, before = (solution.unknowns, solution.omega), solution.error
-            solution = correct(finer, self.condensation, self.method, *near, plane, solution.point)
+            before, solution = solution.error, finer(solution)
             if not solution.converged and solution.error > before / 2:  # what is left is not of the samples
                 break
         while solution.converged:
             solution = replace(solution, sampling_error=self._sampling_error(solution))
             if solution.sampling_error <= self.method.sampling or not self._doubles(solution):
                 break
-            finer = self.balance(2 * solution.samples)
-            found = (solution.unknowns, solution.omega)
-            better = correct(finer, self.condensation, self.method, *found, plane, solution.point)
+            better = finer(solution)
             solution = replace(better, iterations=solution.iterations + better.iterations)
         return solution
 
@@ -90,30 +91,30 @@ class Equations:
 
         With little varying force contacts stick, so that this is the way of a friction limit from infinity to its own.
         """
-        point, samples = self.condensation.at(omega), self.method.first_samples
-        balance = self.balance(samples)
+        point, best = self.condensation.at(omega), None
+        for guess in self._guesses(point):
+            found = self.solve(guess, omega, self.method.first_samples, point=point)
+            if found.converged:
+                return found
+            best = found if best is None or found.error < best.error else best
+        assert best is not None  # there is always a first guess
+        return best
+
+    def _guesses(self, point: Point) -> Iterator[np.ndarray]:
+        """Yield guesses of a first point; the later ones are made if those before lead to no solution."""
+        balance = self.balance(self.method.first_samples)
         pressed = any(block.normal and block.kind == ELASTIC for block in self.lowered.blocks)
-        best = self.solve(balance.stuck(point) if pressed else np.zeros(balance.shape), omega, samples, point=point)
-        if best.converged:
-            return best
+        yield balance.stuck(point) if pressed else np.zeros(balance.shape)
         try:
             free = np.linalg.solve(point.stiffness, point.force[:, :, None])[:, :, 0]
         except np.linalg.LinAlgError:  # springs without a linear part hold the structure
             free = (np.linalg.pinv(point.stiffness) @ point.force[:, :, None])[:, :, 0]
         moved = balance.series.coefficients(free)
-        other = self.solve(moved, omega, samples, point=point)
-        if other.converged:
-            return other
-        best = min(best, other, key=lambda one: one.error)
+        yield moved
         if self.method.halvings:
-            loaded = self.solve(by_force(balance, self.method, point), omega, samples, point=point)
-            if loaded.converged:
-                return loaded
-            best = min(best, loaded, key=lambda one: one.error)
-        if not any(block.normal and block.kind != ELASTIC for block in self.lowered.blocks):
-            return best
-        touching = self.solve(balance.touching(moved), omega, samples, point=point)
-        return touching if touching.converged else min(best, touching, key=lambda one: one.error)
+            yield by_force(balance, self.method, point)
+        if any(block.normal and block.kind != ELASTIC for block in self.lowered.blocks):
+            yield balance.touching(moved)
 
     def once(self, what: str, solution: Solution, compute: Callable[[], np.ndarray]) -> np.ndarray:
         """Return a named quantity of a solution. It is stored where solutions are."""
@@ -130,7 +131,7 @@ class Equations:
     def _relative(balance: Balance, solution: Solution) -> float:
         """Residual of a balance at a solution of another one, as part of the forces."""
         evaluation = balance.at(solution.point, solution.unknowns)
-        return norm(evaluation.residual) / (solution.point.load + norm(evaluation.forces) or 1.0)
+        return norm(evaluation.residual) / scale_of(solution.point, evaluation)
 
 
 def equations(

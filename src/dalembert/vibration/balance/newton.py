@@ -5,8 +5,10 @@ the residual keeps it from jumping between the sides.
 """
 
 import math
-from dataclasses import dataclass
-from typing import Protocol
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 
@@ -83,30 +85,53 @@ class Solution:
     point: Point
     evaluation: Evaluation
     tangent: Tangent
-    iterations: int
-    error: float
-    converged: bool
-    samples: int
+    iterations: int = 0
+    error: float = np.nan
+    converged: bool = False
+    samples: int = 0
     sampling_error: float = np.nan
+
+    @cached_property
+    def scale(self) -> float:
+        """Size of the forces that are in balance."""
+        return scale_of(self.point, self.evaluation)
+
+    @property
+    def rounding(self) -> float:
+        """Residual, as part of the forces, that rounding leaves."""
+        return min(ROUNDING * self.point.stiffest * norm(self.unknowns) / self.scale, VERIFIED)
 
     def rate(self) -> np.ndarray:
         """dU/dω along the path, (q, coefficients)."""
         return -self.tangent.solve(self.tangent.slope[:, :, None], COARSE)[:, :, 0]
 
 
-@dataclass(frozen=True)
-class _Place:
-    """A trial."""
+def scale_of(point: Point, evaluation: Evaluation) -> float:
+    """Return the size of the forces that are in balance, of which residuals are parts."""
+    return point.load + norm(evaluation.forces) or 1.0
 
-    unknowns: np.ndarray
-    omega: float
-    point: Point
-    evaluation: Evaluation
-    tangent: Tangent | None
-    scale: float
-    floor: float
-    distance: float
-    error: float
+
+class Trial(Protocol):
+    """A place in Newton's method."""
+
+    @property
+    def error(self) -> float: ...
+
+
+AnyTrial = TypeVar("AnyTrial", bound=Trial)
+
+
+def line_search(trial: Callable[[float], AnyTrial], error: float) -> AnyTrial | None:
+    """Return the trial at the longest part of a step that reduces the error, else the best one; None if none is finite.
+
+    A part p is long enough with a reduction to :math:`1 - p/10` of the error (Armijo's rule).
+    """
+    trials = []
+    for part in DAMPINGS:
+        trials.append(trial(part))
+        if trials[-1].error <= (1 - 0.1 * part) * error:
+            break
+    return min((one for one in trials if np.isfinite(one.error)), key=lambda one: one.error, default=None)
 
 
 def correct(
@@ -120,48 +145,33 @@ def correct(
 ) -> Solution:
     """Solve by Newton's method from a guess, at ω or on a plane. ``point`` is the structure at ω if it is known."""
 
-    def place(unknowns: np.ndarray, omega: float, point: Point | None, step: bool = True) -> _Place:
+    def place(unknowns: np.ndarray, omega: float, point: Point | None, step: bool = True) -> Solution:
         point = condensation.at(omega) if point is None else point
-        evaluation, tangent = evaluated(balance, point, unknowns) if step else (balance.at(point, unknowns), None)
-        scale = point.load + norm(evaluation.forces) or 1.0
-        floor = ROUNDING * point.stiffest * norm(unknowns)
+        found: Any = balance.linearised(point, unknowns) if step else (balance.at(point, unknowns), None)
         distance = 0.0 if plane is None else plane.distance(unknowns, omega)
-        error = math.hypot(norm(evaluation.residual) / scale, distance)
-        return _Place(unknowns, omega, point, evaluation, tangent, scale, floor / scale, distance, error)
+        error = math.hypot(norm(found[0].residual) / scale_of(point, found[0]), distance)
+        return Solution(omega, unknowns, point, *found, error=error, samples=balance.series.samples)
+
+    def moved(at: Solution, step: tuple[np.ndarray, float], part: float) -> Solution:
+        # Most steps go all the way; after one that does not, the Jacobian is made only where the search ends.
+        known = at.point if plane is None else None
+        return place(at.unknowns + part * step[0], at.omega + part * step[1], known, step=part == 1.0)
 
     at, converged = place(unknowns, omega, point), False
     errors = [at.error]
     while True:
-        converged = at.error <= max(method.tolerance, min(at.floor, VERIFIED))
+        converged = at.error <= max(method.tolerance, at.rounding)
         if converged or len(errors) > method.iterations or _stalls(errors):
             break
         step = _step(at, plane)
         if step is None:
             break
-        trials = []
-        for part in DAMPINGS:
-            moved, turned = at.unknowns + part * step[0], at.omega + part * step[1]
-            # Most steps go all the way; after one that does not, the Jacobian is made only where the search ends.
-            trials.append(place(moved, turned, at.point if plane is None else None, step=part == 1.0))
-            if trials[-1].error <= (1 - 0.1 * part) * at.error:
-                break
-        finite = [trial for trial in trials if np.isfinite(trial.error)]
-        if not finite:
+        best = line_search(partial(moved, at, step), at.error)
+        if best is None:
             break
-        at = min(finite, key=lambda trial: trial.error)
-        at = at if at.tangent is not None else place(at.unknowns, at.omega, at.point)
+        at = best if best.tangent is not None else place(best.unknowns, best.omega, best.point)
         errors.append(at.error)
-    assert at.tangent is not None
-    return Solution(
-        at.omega, at.unknowns, at.point, at.evaluation, at.tangent, len(errors) - 1, at.error, converged,
-        balance.series.samples,
-    )  # fmt: skip
-
-
-def evaluated(balance: Balance, point: Point, unknowns: np.ndarray) -> tuple[Evaluation, Tangent]:
-    """Residual and forces at unknowns, with the tangent."""
-    tangent = balance.tangent(point, unknowns)
-    return balance.at(point, unknowns, tangent), tangent
+    return replace(at, iterations=len(errors) - 1, converged=converged)
 
 
 def _stalls(errors: list[float]) -> bool:
@@ -171,15 +181,15 @@ def _stalls(errors: list[float]) -> bool:
     return len(errors) > PATIENCE and min(errors[-PATIENCE:]) > PROGRESS * min(errors[:-PATIENCE])
 
 
-def _step(at: _Place, plane: Plane | None) -> tuple[np.ndarray, float] | None:
+def _step(at: Solution, plane: Plane | None) -> tuple[np.ndarray, float] | None:
     """Newton's step of U and ω; None where the matrix is singular."""
     residual = at.evaluation.residual
-    assert at.tangent is not None
     try:
         if plane is not None:
             scales = plane.size, plane.width, at.scale
             top = -residual / at.scale
-            change, turned = bordered(at.tangent, plane.direction, scales, top, -at.distance, COARSE)
+            distance = plane.distance(at.unknowns, at.omega)
+            change, turned = bordered(at.tangent, plane.direction, scales, top, -distance, COARSE)
             return change * plane.size, turned * plane.width
         return -at.tangent.solve(residual[:, :, None], COARSE)[:, :, 0], 0.0
     except np.linalg.LinAlgError:

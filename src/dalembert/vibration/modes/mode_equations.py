@@ -10,19 +10,22 @@ of all coordinates, ω, ξ = 2 ζ ω and the amplitude; the first harmonic of on
 cosine and no sine, and a plane across the path tells one motion from the next.
 """
 
+import hashlib
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import cast
 
 import numpy as np
 from scipy.linalg import eig
 
 from dalembert.errors import InputError, SolveError
+from dalembert.forward import Checkpoint
 from dalembert.vibration.balance.equations import Equations
 from dalembert.vibration.balance.fourier import Fourier
 from dalembert.vibration.balance.harmonic_balance import AUTOMATIC, MOST_SAMPLES
-from dalembert.vibration.balance.newton import DAMPINGS, ROUNDING
+from dalembert.vibration.balance.newton import ROUNDING, line_search
 from dalembert.vibration.balance.uncondensed import Local, Uncondensed
+from dalembert.vibration.system.fingerprint import fingerprint
 
 
 @dataclass(frozen=True)
@@ -228,16 +231,14 @@ class ModeEquations:
                 step = np.linalg.solve(self._jacobian(system, at, plane), -at.residual)
             except np.linalg.LinAlgError:
                 break
-            trials = []
-            for part in DAMPINGS:
-                trials.append(self._at(system, plane.moved(at.motion, part * step), plane))
-                if trials[-1].error <= (1 - 0.1 * part) * at.error:
-                    break
-            finite = [trial for trial in trials if np.isfinite(trial.error)]
-            if not finite:
+            best = line_search(partial(self._moved, system, plane, at.motion, step), at.error)
+            if best is None:
                 break
-            at, iterations = min(finite, key=lambda trial: trial.error), iterations + 1
+            at, iterations = best, iterations + 1
         return replace(at.motion, iterations=iterations, error=at.error, converged=converged, samples=samples)
+
+    def _moved(self, system: Uncondensed, plane: Plane, motion: FreeMotion, step: np.ndarray, part: float) -> _Trial:
+        return self._at(system, plane.moved(motion, part * step), plane)
 
     def _jacobian(self, system: Uncondensed, at: _Trial, plane: Plane) -> np.ndarray:
         """Of the residual by Y, log ω, ξ and log a in the scales of the plane."""
@@ -267,6 +268,59 @@ class ModeEquations:
         matrix[:, :count] *= plane.scale
         matrix[-1] = plane.direction
         return matrix
+
+
+@dataclass(frozen=True)
+class RecordedModes(ModeEquations):
+    """Equations of a mode that read motions and directions from a checkpoint, and add new ones to it.
+
+    A path goes from one motion to the next, so it takes the same way again, bit for bit.
+
+    Parameters
+    ----------
+    checkpoint : Checkpoint
+    """
+
+    checkpoint: Checkpoint
+
+    def solve(self, guess: FreeMotion, plane: Plane, samples: int) -> FreeMotion:
+        solve = super().solve
+
+        def compute() -> tuple[np.ndarray, ...]:
+            found = solve(guess, plane, samples)
+            return _numbers(found), np.array(
+                [found.iterations, found.error, found.converged, found.samples], dtype=float
+            )
+
+        asked = _numbers(guess), plane.direction, _numbers(plane.at), np.array([plane.scale, samples])
+        place, how = self.checkpoint.once(self._key(*asked), compute)
+        iterations, error, converged, own = how.tolist()
+        omega, growth, size = place[-3:].tolist()
+        harmonics = place[:-3].reshape(guess.harmonics.shape)
+        return FreeMotion(harmonics, omega, growth, size, int(iterations), error, bool(converged), int(own))
+
+    def direction(self, motion: FreeMotion, before: np.ndarray) -> np.ndarray:
+        direction = super().direction
+        key = self._key(_numbers(motion), before, np.array([motion.samples]))
+        return self.checkpoint.once(key, lambda: (direction(motion, before),))[0]
+
+    def _key(self, *asked: np.ndarray) -> bytes:
+        """Hash of all that an answer depends on."""
+        return hashlib.sha256(self._system + b"".join(map(np.ndarray.tobytes, asked))).digest()
+
+    @cached_property
+    def _system(self) -> bytes:
+        return b"nonlinear mode" + fingerprint(self.problem.lowered, self.problem.method, self.row).encode()
+
+
+def _numbers(motion: FreeMotion) -> np.ndarray:
+    """Harmonics, ω, ξ and amplitude of a motion."""
+    return np.append(motion.harmonics, [motion.omega, motion.growth, motion.size])
+
+
+def recorded_modes(problem: Equations, row: int, checkpoint: Checkpoint | None) -> ModeEquations:
+    """Return the equations of a mode with its motions in a checkpoint, or as they are without one."""
+    return ModeEquations(problem, row) if checkpoint is None else RecordedModes(problem, row, checkpoint)
 
 
 def _block(matrix: np.ndarray, system: Uncondensed, place: int) -> np.ndarray:

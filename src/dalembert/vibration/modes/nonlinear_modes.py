@@ -11,8 +11,7 @@ from dalembert.forward import Checkpoint
 from dalembert.vibration.balance.equations import Equations, equations
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.modes.backbone import Backbone
-from dalembert.vibration.modes.mode_equations import FreeMotion, Linear, ModeEquations, Plane
-from dalembert.vibration.modes.recorded_modes import recorded_modes
+from dalembert.vibration.modes.mode_equations import FreeMotion, Linear, ModeEquations, Plane, recorded_modes
 from dalembert.vibration.paths.continuation import EASY, MOST_POINTS, SHORTEST, STEADY
 from dalembert.vibration.storage import versions
 from dalembert.vibration.system.system import StaticForce, VibrationSystem

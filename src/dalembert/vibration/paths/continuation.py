@@ -1,9 +1,9 @@
 """Continuation of responses over frequency: from one given frequency to the next, or along the curve past its folds."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from itertools import islice
-from typing import Protocol, cast
+from typing import Protocol, TypeVar, cast
 
 import numpy as np
 from scipy.optimize import brentq
@@ -31,6 +31,7 @@ MOST_AROUND = 500
 STILL = 1e-3
 """Motion, as part of what the forces would cause on the stiffness of the structure alone, that counts as none."""
 MOST_POINTS = 20_000
+Found = TypeVar("Found")
 
 
 class Problem(Protocol):
@@ -247,11 +248,7 @@ class Path:
 
 
 def _sign(known: Solution, direction: np.ndarray, width: float, size: float) -> float:
-    return orientation(known.tangent, direction, (size, width, _scale(known)))
-
-
-def _scale(known: Solution) -> float:
-    return known.point.load + norm(known.evaluation.forces) or 1.0
+    return orientation(known.tangent, direction, (size, width, known.scale))
 
 
 def _size(known: Solution) -> float:
@@ -262,7 +259,7 @@ def _size(known: Solution) -> float:
 def direction_at(known: Solution, before: np.ndarray, width: float, size: float | None = None) -> np.ndarray:
     """Return the unit tangent of the curve in scaled unknowns, in the sense of the one before."""
     size = size or _size(known)
-    change, turned = bordered(known.tangent, before, (size, width, _scale(known)), np.zeros_like(known.unknowns), 1.0)
+    change, turned = bordered(known.tangent, before, (size, width, known.scale), np.zeros_like(known.unknowns), 1.0)
     tangent = np.append(change, turned)
     return tangent / np.linalg.norm(tangent)
 
@@ -275,18 +272,29 @@ def _on_border(before: Solution, after: Solution, border: float) -> tuple[np.nda
 
 def _fold(equations: Problem, path: Path, step: float) -> Solution | None:
     """Return the fold within a step: the point at which the last component of the direction is zero."""
-    tried: dict[float, Solution] = {}
 
-    def turning(length: float) -> float:
-        if length == 0.0:
-            return float(path.direction[-1])
+    def turning(length: float) -> tuple[Solution, float]:
         solution, direction = path.step(equations, length)
-        tried[length] = solution
-        return float("nan") if direction is None else float(direction[-1])
+        return solution, float("nan") if direction is None else float(direction[-1])
+
+    return zero_between(turning, step, {0.0: (path.known, float(path.direction[-1]))}, 1e-6 * step)
+
+
+def zero_between(
+    trial: Callable[[float], tuple[Found, float]], end: float, tried: dict[float, tuple[Found, float]], tolerance: float
+) -> Found | None:
+    """Return what a trial between 0 and an end gives where its value is zero; None if a trial gives no value.
+
+    ``tried`` gets all trials, and has those that are known.
+    """
+
+    def value(part: float) -> float:
+        if part not in tried:
+            tried[part] = trial(part)
+        return tried[part][1]
 
     try:
-        length = float(cast(float, brentq(turning, 0.0, step, xtol=1e-6 * step)))
-    except (ValueError, RuntimeError):  # a step in between was not found
+        value(part := float(cast(float, brentq(value, 0.0, end, xtol=tolerance))))
+    except (ValueError, RuntimeError):  # a point in between was not found, or lies on another branch
         return None
-    solution = tried.get(length)
-    return solution if solution is not None else path.step(equations, length)[0]
+    return tried[part][0]

@@ -13,7 +13,7 @@ from dalembert.contents import Contents
 from dalembert.forward import Checkpoint
 from dalembert.vibration.balance.condensation import Point
 from dalembert.vibration.balance.equations import Equations
-from dalembert.vibration.balance.newton import Plane, Solution, evaluated
+from dalembert.vibration.balance.newton import Plane, Solution
 from dalembert.vibration.paths.curve import FrequencyCurve
 from dalembert.vibration.system.fingerprint import fingerprint
 
@@ -60,7 +60,7 @@ class RecordedEquations(Equations):
         """Return a solution from its stored values."""
         omega, iterations, error, converged, samples, sampling_error = numbers.tolist()
         point = self.condensation.at(omega)
-        evaluation, tangent = evaluated(self.balance(int(samples)), point, unknowns)
+        evaluation, tangent = self.balance(int(samples)).linearised(point, unknowns)
         return Solution(
             omega, unknowns, point, evaluation, tangent, int(iterations), error, bool(converged), int(samples),
             sampling_error,

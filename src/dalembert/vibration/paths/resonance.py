@@ -8,10 +8,8 @@ From one value of the parameter to the next the solution is corrected on a plane
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
-from typing import cast
 
 import numpy as np
-from scipy.optimize import brentq
 
 from dalembert.arguments import numbers_of, takes_checked
 from dalembert.errors import InputError
@@ -22,7 +20,7 @@ from dalembert.vibration.balance.fourier import synthesis
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.balance.newton import Plane, Solution
 from dalembert.vibration.paths.amplitudes import Amplitude
-from dalembert.vibration.paths.continuation import Path, direction_at
+from dalembert.vibration.paths.continuation import Path, direction_at, zero_between
 from dalembert.vibration.paths.curve import FrequencyCurve
 from dalembert.vibration.paths.frequency_response import ARC_LENGTH, frequency_response, response_of, restarted
 from dalembert.vibration.paths.recorded import recorded
@@ -243,32 +241,28 @@ class _Climber:
                 continue
             beyond = self._rise(own, ahead, onward, path.size, width)
             if beyond < 0:
-                peak, spent = self._narrowed(own, path, (rise, beyond), length)
+                peak, spent = self._narrowed(own, path, ahead, (rise, beyond), length)
                 return peak, count + spent
             solution, direction, rise = ahead, direction_at(ahead, onward, width), beyond
             length = min(LONGEST, 2 * length)
         return None, MOST_STEPS
 
     def _narrowed(
-        self, own: Equations, path: Path, rises: tuple[float, float], length: float
+        self, own: Equations, path: Path, ahead: Solution, rises: tuple[float, float], length: float
     ) -> tuple[_Peak | None, int]:
         """Return the peak between the ends of a step: a zero of the slope of the amplitude."""
-        tried: dict[float, Solution] = {}
 
-        def rise(part: float) -> float:
-            if part in (0.0, length):
-                return rises[int(part > 0)]
+        def rise(part: float) -> tuple[Solution, float]:
             solution, onward = path.step(own, part)
-            tried[part] = solution
-            return float("nan") if onward is None else self._rise(own, solution, onward, path.size, path.width)
+            value = float("nan") if onward is None else self._rise(own, solution, onward, path.size, path.width)
+            return solution, value
 
-        try:
-            part = float(cast(float, brentq(rise, 0.0, length, xtol=NARROW)))
-        except (ValueError, RuntimeError):  # a step in between was not found
-            return None, len(tried)
-        solution = tried[part] if part in tried else path.step(own, part)[0]
+        tried = {0.0: (path.known, rises[0]), length: (ahead, rises[1])}
+        solution = zero_between(rise, length, tried, NARROW)
+        if solution is None:
+            return None, len(tried) - 2
         amplitude = float(self.size.of(response_of(own, solution)[self.row]))
-        return _Peak(np.nan, own, solution, amplitude, (rises[1] - rises[0]) / length), len(tried)
+        return _Peak(np.nan, own, solution, amplitude, (rises[1] - rises[0]) / length), len(tried) - 2
 
     def _rise(self, own: Equations, solution: Solution, direction: np.ndarray, size: float, width: float) -> float:
         """Derivative of the logarithm of the amplitude along the path."""

@@ -2,14 +2,12 @@
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import cast
 
 import numpy as np
-from scipy.optimize import brentq
 
 from dalembert.vibration.balance.equations import Equations
 from dalembert.vibration.balance.newton import Plane, Solution
-from dalembert.vibration.paths.continuation import PathPoint
+from dalembert.vibration.paths.continuation import PathPoint, zero_between
 from dalembert.vibration.stability.stability import Exponents, exponents, remembers
 
 FOLD, TORUS, DOUBLING, BRANCH = "fold", "torus", "period doubling", "branch point"
@@ -127,25 +125,17 @@ def _located(
     rank = _rank(own, other)
     if len(own.values) <= rank or len(other.values) <= rank:
         return None
-    tried: dict[float, tuple[Solution, Exponents]] = {0.0: before, 1.0: after}
     size = float(np.linalg.norm(last.unknowns - first.unknowns)) or 1.0
     width = abs(last.omega - first.omega) or 1.0
     chord = np.append((last.unknowns - first.unknowns).ravel() / size, (last.omega - first.omega) / width)
 
-    def growth(part: float) -> float:
-        if part not in tried:
-            guess = first.unknowns + part * (last.unknowns - first.unknowns)
-            omega = first.omega + part * (last.omega - first.omega)
-            plane = Plane(chord / np.linalg.norm(chord), guess, omega, size, width)
-            solution = problem.solve(guess, omega, max(first.samples, last.samples), plane)
-            if not solution.converged:
-                return float("nan")
-            tried[part] = solution, exponents(problem, solution)
-        values = tried[part][1].values
-        return float(values[rank].real) if len(values) > rank else float("nan")
+    def growth(part: float) -> tuple[tuple[Solution, Exponents], float]:
+        guess = first.unknowns + part * (last.unknowns - first.unknowns)
+        omega = first.omega + part * (last.omega - first.omega)
+        plane = Plane(chord / np.linalg.norm(chord), guess, omega, size, width)
+        solution = problem.solve(guess, omega, max(first.samples, last.samples), plane)
+        found = exponents(problem, solution) if solution.converged else Exponents(np.zeros(0))
+        return (solution, found), float(found.values[rank].real) if len(found.values) > rank else float("nan")
 
-    try:
-        part = float(cast(float, brentq(growth, 0.0, 1.0, xtol=PLACED)))
-    except (ValueError, RuntimeError):  # a point in between was not found, or lies on another branch
-        return None
-    return tried.get(part)
+    ends = {part: (one, float(one[1].values[rank].real)) for part, one in ((0.0, before), (1.0, after))}
+    return zero_between(growth, 1.0, ends, PLACED)

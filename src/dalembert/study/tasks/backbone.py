@@ -68,7 +68,7 @@ class BackboneTask(Task):
         return needs_structure(file, "backbone")
 
     def plan(self, study: "Study") -> str:
-        from dalembert.vibration.system.hysteretic import require_viscous
+        from dalembert.vibration.system.requirements import require_viscous
 
         table = study.table
         with placed("[backbone]"):

@@ -185,7 +185,7 @@ class FrequencyResponseTask(Task):
 
     def plan(self, study: "Study") -> str:
         from dalembert.vibration.paths.amplitudes import Amplitude
-        from dalembert.vibration.system.hysteretic import require_viscous
+        from dalembert.vibration.system.requirements import require_viscous
 
         table, problem = study.table, study.equations()
         for key, what in VISCOUS.items():

@@ -18,8 +18,8 @@ from dalembert.vibration.balance.balance import Balance, Evaluation
 from dalembert.vibration.balance.condensation import Condensation
 from dalembert.vibration.balance.fourier import Fourier
 from dalembert.vibration.balance.tangents import DenseTangent
-from dalembert.vibration.system.hysteretic import require_viscous
 from dalembert.vibration.system.lowering import ELASTIC, Lowered
+from dalembert.vibration.system.requirements import require_viscous
 
 REMEMBERING = "displacement"
 

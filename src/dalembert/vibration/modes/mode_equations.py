@@ -25,7 +25,6 @@ from dalembert.vibration.balance.fourier import Fourier
 from dalembert.vibration.balance.harmonic_balance import AUTOMATIC, MOST_SAMPLES
 from dalembert.vibration.balance.newton import ROUNDING, line_search
 from dalembert.vibration.balance.uncondensed import Local, Uncondensed
-from dalembert.vibration.system.fingerprint import fingerprint
 
 
 @dataclass(frozen=True)
@@ -310,7 +309,7 @@ class RecordedModes(ModeEquations):
 
     @cached_property
     def _system(self) -> bytes:
-        return b"nonlinear mode" + fingerprint(self.problem.lowered, self.problem.method, self.row).encode()
+        return b"nonlinear mode" + self.problem.lowered.fingerprint(self.problem.method, self.row).encode()
 
 
 def _numbers(motion: FreeMotion) -> np.ndarray:

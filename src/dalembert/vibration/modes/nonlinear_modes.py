@@ -5,7 +5,7 @@ from dataclasses import asdict, replace
 
 import numpy as np
 
-from dalembert.arguments import numbers_of, takes_checked
+from dalembert.arguments import takes_checked
 from dalembert.errors import InputError
 from dalembert.forward import Checkpoint
 from dalembert.vibration.balance.equations import Equations, equations
@@ -14,6 +14,7 @@ from dalembert.vibration.modes.backbone import Backbone
 from dalembert.vibration.modes.mode_equations import FreeMotion, Linear, ModeEquations, Plane, recorded_modes
 from dalembert.vibration.paths.continuation import EASY, MOST_POINTS, SHORTEST, STEADY
 from dalembert.vibration.storage import versions
+from dalembert.vibration.system.requirements import positive_numbers
 from dalembert.vibration.system.system import StaticForce, VibrationSystem
 from dalembert.vibration.threads import one_thread
 
@@ -90,12 +91,7 @@ def backbone(
     ([1.342, 1.028, 1.0], [0.0, 0.053, 0.001])
     """
     method = method or HarmonicBalance()
-    sizes = np.atleast_1d(numbers_of(amplitudes, "backbone", "amplitudes"))
-    if sizes.ndim != 1 or not len(sizes) or not np.all(np.isfinite(sizes) & (sizes > 0)):
-        raise InputError(f"backbone: the amplitudes are {amplitudes}; expected positive numbers in m")
-    ends = isinstance(amplitudes, tuple)
-    if ends and (len(sizes) != 2 or sizes[0] == sizes[1]):
-        raise InputError(f"backbone: the ends are {amplitudes}; expected two different amplitudes in m")
+    sizes = positive_numbers(amplitudes, "backbone", "amplitudes", "m")
     with one_thread():
         free = _without_harmonic_forces(equations(system, method, residuals=False))
         linear = ModeEquations(free, -1).linear(mode)
@@ -103,7 +99,7 @@ def backbone(
         row = int(np.abs(linear.shape).argmax()) if dof is None else names.index(dof)
         own, start = recorded_modes(free, row, checkpoint), _scaled(linear, row, names.names[row])
         first = _first(own, start, float(sizes[0]))
-        if ends:
+        if isinstance(amplitudes, tuple):
             found = list(_along(own, first, float(sizes[0]), float(sizes[1])))
         else:
             found = list(_at_sizes(own, first, sizes, start.rest))

@@ -1,8 +1,10 @@
 """The response of a vibrating system over frequency as a forward model."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from copy import copy
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -23,7 +25,6 @@ from dalembert.vibration.paths.continuation import at_frequencies
 from dalembert.vibration.paths.curve import FrequencyCurve
 from dalembert.vibration.paths.frequency_response import frequency_response, response_of
 from dalembert.vibration.system.complex_steps import check_laws, check_numbers
-from dalembert.vibration.system.fingerprint import fingerprint
 from dalembert.vibration.system.lowering import Lowered, lower
 from dalembert.vibration.system.system import VibrationSystem
 from dalembert.vibration.threads import one_thread
@@ -94,16 +95,10 @@ class FrequencyResponse:
             raise InputError("FrequencyResponse: no channels were given; name at least one, such as 'm2 peak'")
         parameters = Parameters.of(parameters)
         check_function("FrequencyResponse", builder, [item.name for item in parameters.declared])
-        for name, value in (
-            ("builder", builder),
-            ("parameters", parameters),
-            ("channel_names", channels),
-            ("frequencies", frequencies),
-            ("method", method or HarmonicBalance()),
-            ("workers", workers or cores()),
-            ("derivative", derivative),
-        ):
-            object.__setattr__(self, name, value)
+        vars(self).update(
+            builder=builder, parameters=parameters, channel_names=channels, frequencies=frequencies,
+            method=method or HarmonicBalance(), workers=workers or cores(), derivative=derivative,
+        )  # fmt: skip
 
     @property
     def channels(self) -> tuple[Channel, ...]:
@@ -124,7 +119,7 @@ class FrequencyResponse:
     def _fingerprint(self) -> str:
         differences = [self.derivative] * (self.derivative != COMPLEX_STEP)
         asked = self.parameters.identity, self.channel_names, *differences
-        return fingerprint(lower(self.system(self.parameters.start)), self.method, *asked)
+        return lower(self.system(self.parameters.start)).fingerprint(self.method, *asked)
 
     def evaluate(self, vectors: np.ndarray) -> Responses:
         """Responses of a batch over all cores; ``vectors`` (batch, parameters), values (batch, samples, channels).
@@ -183,12 +178,7 @@ class FrequencyResponse:
 
     def first(self, samples: int) -> "FrequencyResponse":
         """The same model, cut to its first ``samples`` frequencies."""
-        own = FrequencyResponse(
-            self.builder, self.parameters, self.channel_names, self.frequencies[:samples], self.method, self.workers,
-            self.derivative,
-        )  # fmt: skip
-        vars(own)["_compared"] = self._compared
-        return own
+        return self._but(frequencies=self.frequencies[:samples])
 
     def part(self, share: float) -> "tuple[FrequencyResponse, float]":
         """The same model at about a share of its frequencies, the first ones, and that share."""
@@ -200,16 +190,14 @@ class FrequencyResponse:
         method = self.method.refined()
         if method is None:
             return None
-        model = FrequencyResponse(
-            self.builder,
-            self.parameters,
-            self.channel_names,
-            self.frequencies,
-            method,
-            self.workers,
-            self.derivative,
-        )
-        return Refinement(model, error_factor(None), f"with {method.harmonics} harmonics")
+        return Refinement(self._but(method=method), error_factor(None), f"with {method.harmonics} harmonics")
+
+    def _but(self, **changes: Any) -> "FrequencyResponse":
+        """The same model with other frequencies or another method, whose derivatives need no second comparison."""
+        own = copy(self)
+        vars(own).update(changes, _compared=self._compared)
+        vars(own).pop("_fingerprint", None)
+        return own
 
     def system(self, vector: np.ndarray) -> VibrationSystem:
         """The system at a parameter vector (parameters,)."""

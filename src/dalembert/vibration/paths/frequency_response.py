@@ -2,11 +2,11 @@
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict, dataclass
-from typing import NamedTuple
+from typing import Any
 
 import numpy as np
 
-from dalembert.arguments import numbers_of, takes_checked
+from dalembert.arguments import takes_checked
 from dalembert.errors import InputError, unknown
 from dalembert.forward import Checkpoint
 from dalembert.vibration.balance.equations import Equations, equations
@@ -19,8 +19,8 @@ from dalembert.vibration.paths.curve import FrequencyCurve
 from dalembert.vibration.paths.recorded import recorded
 from dalembert.vibration.stability.bifurcations import Judged, judged, unjudged
 from dalembert.vibration.storage import versions
-from dalembert.vibration.system.hysteretic import require_viscous
 from dalembert.vibration.system.lowering import Lowered
+from dalembert.vibration.system.requirements import positive_numbers, require_force, require_viscous
 from dalembert.vibration.system.system import VibrationSystem
 from dalembert.vibration.threads import one_thread
 
@@ -127,16 +127,8 @@ def frequency_response(
     """
     method = method or HarmonicBalance()
     ends = isinstance(frequencies, tuple)
-    if not system.forces:
-        raise InputError(
-            "frequency_response: no force acts on the system, so that it stands still; add a HarmonicForce, or use "
-            "backbone for motions without force"
-        )
-    omegas = 2 * np.pi * np.atleast_1d(numbers_of(frequencies, "frequency_response", "frequencies"))
-    if omegas.ndim != 1 or not len(omegas) or not np.all(np.isfinite(omegas) & (omegas > 0)):
-        raise InputError(f"frequency_response: the frequencies are {frequencies}; expected positive numbers in Hz")
-    if ends and (len(omegas) != 2 or omegas[0] == omegas[1]):
-        raise InputError(f"frequency_response: the ends are {frequencies}; expected two different frequencies in Hz")
+    require_force(system.forces, "frequency_response")
+    omegas = 2 * np.pi * positive_numbers(frequencies, "frequency_response", "frequencies", "Hz")
     if continuation not in (NATURAL, ARC_LENGTH):
         raise InputError(unknown("continuation", continuation, (NATURAL, ARC_LENGTH), "frequency_response"))
     if continuation == ARC_LENGTH and not ends:
@@ -213,22 +205,23 @@ def _curve(
     top: Solution | None = None
     dofs = tuple(lowered.structure.dofs.names[row] for row in rows)
     for one in points:
-        records.append(_Record.of(problem, one, rows))
+        records.append(_kept(problem, one, rows))
         lost.append(unconverged(problem, one.found.solution))
         top = largest(top, one.found.solution) if check else None
         if on_point is not None:
             given, omega = settings["frequencies"] == "given", one.found.solution.omega
             come = len(records) / len(omegas) if given else (omega - omegas[0]) / (omegas[1] - omegas[0])
             done = float(max(done, min(come, 1.0)))
-            on_point(FollowedPoint(records[-1].frequencies, records[-1].response, dofs, done))
-    kept = {name: np.array([getattr(one, name) for one in records]) for name in _Record._fields if name != "marker"}
+            on_point(FollowedPoint(records[-1]["frequencies"], records[-1]["response"], dofs, done))
+    markers = [one.pop("marker") for one in records]
+    kept = {name: np.array([one[name] for one in records]) for name in records[0]}
     return FrequencyCurve(
         dofs=dofs,
         coordinates=lowered.row_names,
         contacts=lowered.contacts,
         orders=problem.method.orders,
         **{**kept, "stable": kept["stable"].astype(np.int8)},
-        markers=tuple((one.marker, number) for number, one in enumerate(records) if one.marker),
+        markers=tuple((marker, number) for number, marker in enumerate(markers) if marker),
         provenance={**versions(), "method": asdict(problem.method), **settings},
         findings=(
             *unconverged_findings(len(records), filter(None, lost)),
@@ -238,49 +231,32 @@ def _curve(
     )
 
 
-class _Record(NamedTuple):
-    """Values of a point that a curve keeps, by the names of its arrays. Matrices of some megabytes are not kept."""
+def _kept(problem: Equations, one: Judged, rows: np.ndarray) -> dict[str, Any]:
+    """What a curve keeps of a point, by the names of its arrays; the response in some rows of the structure.
 
-    frequencies: float
-    unknowns: np.ndarray
-    iterations: int
-    residuals: float
-    converged: bool
-    fold: bool
-    samples: int
-    sampling_errors: float
-    stable: int
-    marker: str
-    response: np.ndarray
-    displacements: np.ndarray
-    forces: np.ndarray
-    states: np.ndarray
-
-    @classmethod
-    def of(cls, problem: Equations, one: Judged, rows: np.ndarray) -> "_Record":
-        """Of a point, with the response in some rows of the structure."""
-        solution = one.found.solution
-        return cls(
-            solution.omega / (2 * np.pi), solution.unknowns, solution.iterations, solution.error, solution.converged,
-            one.found.fold, solution.samples, solution.sampling_error, one.stable, one.marker,
-            *_read(problem, solution, rows),
-        )  # fmt: skip
-
-
-def _read(
-    problem: Equations, solution: Solution, rows: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Return the response, the elements' displacements and forces, and the states of the contacts."""
-    balance, lowered = problem.balance(solution.samples), problem.lowered
+    Matrices of some megabytes are not kept.
+    """
+    solution, lowered, defined = one.found.solution, problem.lowered, 1.0 if one.found.solution.converged else np.nan
     states = np.zeros((len(lowered.contacts), PHASES), dtype=np.uint8)
     instants = np.arange(PHASES) * solution.samples // PHASES
     for block, own in zip(lowered.blocks, solution.evaluation.states, strict=True):
         np.maximum.at(states, block.contacts, own[:, instants])
-    response = response_of(problem, solution)[rows]
-    displacements, forces = balance.displacements(solution.unknowns), solution.evaluation.forces
-    if not solution.converged:
-        response, displacements, forces = (np.full_like(array, np.nan) for array in (response, displacements, forces))
-    return response, displacements, forces, states
+    return {
+        "frequencies": solution.omega / (2 * np.pi),
+        "unknowns": solution.unknowns,
+        "iterations": solution.iterations,
+        "residuals": solution.error,
+        "converged": solution.converged,
+        "fold": one.found.fold,
+        "samples": solution.samples,
+        "sampling_errors": solution.sampling_error,
+        "stable": one.stable,
+        "marker": one.marker,
+        "response": response_of(problem, solution)[rows] * defined,
+        "displacements": problem.balance(solution.samples).displacements(solution.unknowns) * defined,
+        "forces": solution.evaluation.forces * defined,
+        "states": states,
+    }
 
 
 def response_of(problem: Equations, solution: Solution) -> np.ndarray:

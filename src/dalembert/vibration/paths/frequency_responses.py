@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from dalembert.arguments import numbers_of, takes_checked
+from dalembert.arguments import takes_checked
 from dalembert.errors import DalembertError, InputError, SolveError, StorageError, told
 from dalembert.forward import Checkpoint, Executor, ensemble
 from dalembert.forward.builders import check_function
@@ -19,8 +19,8 @@ from dalembert.vibration.paths.curve import FrequencyCurve
 from dalembert.vibration.paths.curve_family import CurveFamily
 from dalembert.vibration.paths.frequency_response import FollowedPoint, frequency_response
 from dalembert.vibration.paths.recorded import keep_curve, kept_curve
-from dalembert.vibration.system.fingerprint import fingerprint
 from dalembert.vibration.system.lowering import lower
+from dalembert.vibration.system.requirements import values_of
 from dalembert.vibration.system.system import VibrationSystem
 from dalembert.vibration.threads import one_thread
 
@@ -95,9 +95,7 @@ def frequency_responses(
     (2.0, [0.0, 0.59, 0.85, 0.72])
     """
     check_function("frequency_responses", builder, [parameter])
-    given = numbers_of(values, "frequency_responses", "values")
-    if given.ndim != 1 or not len(given):
-        raise InputError(f"frequency_responses: the values of {parameter} are {values}; expected one or more numbers")
+    given = values_of(values, "frequency_responses", parameter)
     one = _One(builder, parameter, frequencies, method or HarmonicBalance(), options)
     stopped = Event()
 
@@ -179,5 +177,5 @@ class _One:
         start = self.options.get("start")
         begin = b"" if start is None else start[0].unknowns[start[1]].tobytes()
         ends, along = isinstance(self.frequencies, tuple), np.asarray(self.frequencies, dtype=float)
-        told = fingerprint(lower(self.system(value)).real, self.method, ends, sorted(settings.items()))
+        told = lower(self.system(value)).real.fingerprint(self.method, ends, sorted(settings.items()))
         return hashlib.sha256(b"curve" + told.encode() + along.tobytes() + begin).digest()

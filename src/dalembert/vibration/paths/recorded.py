@@ -15,7 +15,6 @@ from dalembert.vibration.balance.condensation import Point
 from dalembert.vibration.balance.equations import Equations
 from dalembert.vibration.balance.newton import Plane, Solution
 from dalembert.vibration.paths.curve import FrequencyCurve
-from dalembert.vibration.system.fingerprint import fingerprint
 
 
 @dataclass(frozen=True)
@@ -75,7 +74,7 @@ class RecordedEquations(Equations):
 
     @cached_property
     def _system(self) -> bytes:
-        return b"harmonic balance" + fingerprint(self.lowered, self.method).encode()
+        return b"harmonic balance" + self.lowered.fingerprint(self.method).encode()
 
 
 def recorded(problem: Equations, checkpoint: Checkpoint | None) -> Equations:

@@ -11,7 +11,7 @@ from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 
-from dalembert.arguments import numbers_of, takes_checked
+from dalembert.arguments import takes_checked
 from dalembert.errors import InputError
 from dalembert.forward import Checkpoint
 from dalembert.forward.builders import check_function
@@ -26,6 +26,7 @@ from dalembert.vibration.paths.frequency_response import ARC_LENGTH, frequency_r
 from dalembert.vibration.paths.recorded import recorded
 from dalembert.vibration.paths.resonance_track import ResonanceTrack
 from dalembert.vibration.storage import versions
+from dalembert.vibration.system.requirements import values_of
 from dalembert.vibration.system.system import VibrationSystem
 from dalembert.vibration.threads import one_thread
 
@@ -104,10 +105,8 @@ def track_resonance(
     >>> track.amplitudes.round(2).tolist(), track.best()
     ([3.63, 3.68, 5.79], 2.0)
     """
-    method, numbers = method or HarmonicBalance(), numbers_of(values, "track_resonance", "values")
+    method, numbers = method or HarmonicBalance(), values_of(values, "track_resonance", parameter)
     check_function("track_resonance", builder, [parameter])
-    if numbers.ndim != 1 or not len(numbers) or not np.all(np.isfinite(numbers)):
-        raise InputError(f"track_resonance: the values of {parameter!r} are {values}; expected one or more numbers")
 
     def problem(value: float) -> Equations:
         return recorded(equations(builder(**{parameter: value}), method), checkpoint)

@@ -1,5 +1,6 @@
 """From a vibrating system to arrays: the rows that its elements see, their numbers, its loads."""
 
+import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -121,6 +122,26 @@ class Lowered:
     def real(self) -> "Lowered":
         """The same without the parts that are directions of derivatives."""
         return replace(self, blocks=tuple(map(_real, self.blocks)), laws=tuple(map(_real, self.laws)))
+
+    def fingerprint(self, method: object, *more: object) -> str:
+        """Hash of a system's matrices, forces and elements, of the method, and of what else there is.
+
+        Laws of the user's are told by some of their values.
+        """
+        own = self.structure
+        digest = hashlib.sha256(repr((*more, method)).encode())
+        digest.update(repr((own.dofs.names, self.row_names, self.contacts, self.forces)).encode())
+        optional = [matrix for matrix in (own.damping, own.loss) if matrix is not None]
+        for matrix in (own.mass, own.stiffness, *optional, self.matrix):
+            digest.update(np.asarray(matrix @ np.linspace(0.5, 1.5, own.size)).tobytes())
+        for block in self.blocks:
+            digest.update(repr((block.kind, block.tangents, block.normal)).encode() + block.numbers.tobytes())
+        for block in self.laws:
+            digest.update(repr((block.law.digest, block.states, block.names)).encode() + block.numbers.tobytes())
+        for rows, element in self.functions:
+            probe = np.linspace(-1.0, 1.0, 7 * len(rows)).reshape(len(rows), 7)
+            digest.update(np.asarray(element.law(probe)[0]).tobytes())
+        return digest.hexdigest()
 
 
 def lower(system: VibrationSystem) -> Lowered:

@@ -13,7 +13,6 @@ from dalembert.forward import Checkpoint, ensemble
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.paths.curve import FrequencyCurve
 from dalembert.vibration.storage import Over, VibrationResult
-from dalembert.vibration.system.fingerprint import fingerprint
 from dalembert.vibration.system.lowering import lower
 from dalembert.vibration.system.system import VibrationSystem
 from dalembert.vibration.threads import one_thread
@@ -148,15 +147,13 @@ def compare_in_time(
         return sizes, np.array([motion.periods, motion.residual, motion.converged], dtype=float)
 
     balance = HarmonicBalance(**curve.provenance["method"])
-    asked = (
-        b"" if checkpoint is None else fingerprint(lower(system).real, balance, method, way, kind, curve.dofs).encode()
-    )
+    asked = "" if checkpoint is None else lower(system).real.fingerprint(balance, method, way, kind, curve.dofs)
 
     def once(point: int) -> Sequence[np.ndarray]:
         if checkpoint is None:
             return run(point)
-        start = (own[point].tobytes() for own in (curve.unknowns, curve.frequencies, curve.samples))
-        return checkpoint.once(hashlib.sha256(b"in time" + asked + b"".join(start)).digest(), lambda: run(point))
+        start = b"".join(own[point].tobytes() for own in (curve.unknowns, curve.frequencies, curve.samples))
+        return checkpoint.once(hashlib.sha256(b"in time" + asked.encode() + start).digest(), lambda: run(point))
 
     with one_thread():
         sizes, how = zip(*ensemble(once, chosen.tolist()), strict=True)

@@ -19,8 +19,8 @@ from dalembert.vibration.balance.condensation import COUPLED, DENSE
 from dalembert.vibration.balance.fourier import Fourier
 from dalembert.vibration.laws.friction_law import NORMAL, TANGENTIAL
 from dalembert.vibration.laws.user_element import UserElement
-from dalembert.vibration.system.hysteretic import require_viscous
 from dalembert.vibration.system.lowering import ELASTIC, Lowered
+from dalembert.vibration.system.requirements import require_viscous
 from dalembert.vibration.system.system import StaticForce
 from dalembert.vibration.time.elements import Elements, Ruled
 from dalembert.vibration.time.steps import Modes, Scheme

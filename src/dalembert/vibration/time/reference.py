@@ -5,9 +5,7 @@ from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 
 import numpy as np
-import scipy
 
-import dalembert
 from dalembert.arguments import takes_checked
 from dalembert.errors import InputError, SolveError, unknown
 from dalembert.vibration.balance.equations import equations
@@ -16,7 +14,9 @@ from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.paths.curve import FrequencyCurve
 from dalembert.vibration.paths.frequency_response import observed, response_of, restarted
 from dalembert.vibration.preparation import prepare_time
+from dalembert.vibration.storage import versions
 from dalembert.vibration.system.lowering import lower
+from dalembert.vibration.system.requirements import require_force
 from dalembert.vibration.system.system import VibrationSystem
 from dalembert.vibration.threads import one_thread
 from dalembert.vibration.time.elements import Elements, Instant, Reaction, react, reaction, settle
@@ -24,7 +24,7 @@ from dalembert.vibration.time.lowering import InTime, Users
 from dalembert.vibration.time.newmark import Newmark
 from dalembert.vibration.time.periodic_motion import PeriodicMotion
 from dalembert.vibration.time.shooting import shoot
-from dalembert.vibration.time.steps import LOST, Modes, Record, Scheme, State, advance
+from dalembert.vibration.time.steps import LOST, Modes, Record, Scheme, State, go_through, room
 
 LONG_RUN, SHOOTING = "long run", "shooting"
 WARMING = 5
@@ -88,11 +88,7 @@ def steady_state(
     method = method or Newmark()
     if not (np.isfinite(frequency) and frequency > 0):
         raise InputError(f"steady_state: the frequency is {frequency}; expected a positive number in Hz")
-    if not system.forces:
-        raise InputError(
-            "steady_state: no force acts on the system, so that it stands still; add a HarmonicForce, or use backbone "
-            "for motions without force"
-        )
+    require_force(system.forces, "steady_state")
     if way not in (LONG_RUN, SHOOTING):
         raise InputError(unknown("way", way, (LONG_RUN, SHOOTING), "steady_state"))
     lowered = lower(system).real
@@ -107,7 +103,6 @@ def steady_state(
     record = Record(*(np.roll(own, 1, axis=0) for own in ended.record))
     summed = np.zeros((method.steps_per_period, len(lowered.row_names)))
     np.add.at(summed.T, problem.places, record.forces.T)
-    versions = {"version": dalembert.__version__, "numpy": np.__version__, "scipy": scipy.__version__}
     return PeriodicMotion(
         dofs=tuple(lowered.structure.dofs.names[row] for row in rows),
         coordinates=lowered.row_names,
@@ -121,7 +116,7 @@ def steady_state(
         periods=ended.periods,
         residual=ended.change,
         converged=ended.change <= method.tolerance,
-        provenance={**versions, "method": asdict(method), "way": way},
+        provenance={**versions(), "method": asdict(method), "way": way},
     )
 
 
@@ -188,9 +183,10 @@ class _Run:
             np.zeros((steps, len(self.problem.lowered.contacts)), dtype=np.uint8),
         )  # fmt: skip
         state = State(*(own.copy() for own in state))
-        status, count, change = advance(
-            modes, elements, self._users.address, self._scheme, state, self.problem.omega, most, tolerance, record
-        )
+        status, count, change = go_through(
+            modes, elements, self._users.address, self._scheme, state, self.problem.omega, most, tolerance, record,
+            self._reaction(), room(modes, state),
+        )  # fmt: skip
         if self.failures:
             raise self.failures[0]
         if status == LOST:

@@ -21,7 +21,7 @@ from dalembert.kernels.kernel import inner, kernel
 from dalembert.kernels.words import Address, Bytes2, Reals, Reals2
 from dalembert.vibration.dense import apply, assign, dot, invert, size_of
 from dalembert.vibration.laws.friction_law import LOAD, NORMAL
-from dalembert.vibration.time.elements import Elements, Instant, Reaction, answer, reaction
+from dalembert.vibration.time.elements import Elements, Instant, Reaction, answer
 
 STEADY, MOVING, LOST = 0, 1, 2
 """How a run ends: periodic, not yet, or at a step that Newton's method cannot take."""
@@ -113,25 +113,11 @@ class Room(NamedTuple):
     largest: Reals
 
 
-def _room(modes: Modes, state: State) -> Room:
+def room(modes: Modes, state: State) -> Room:
+    """Room for steps from a state."""
     rows, n = modes.seen.shape
-    return Room(
-        gemv=gemv(),
-        u=np.zeros(rows),
-        rate=np.zeros(rows),
-        start=np.zeros(rows),
-        residual=np.zeros(rows),
-        change=np.zeros(rows),
-        matrix=np.zeros((rows, rows)),
-        inverse=np.zeros((rows, rows)),
-        history=np.zeros(n),
-        pull=np.zeros(n),
-        first_q=np.zeros(n),
-        first_v=np.zeros(n),
-        first_z=np.zeros_like(state.sliders),
-        first_states=np.zeros_like(state.states),
-        largest=np.zeros_like(state.states),
-    )
+    vectors = *np.zeros((5, rows)), *np.zeros((2, rows, rows)), *np.zeros((4, n))
+    return Room._make([gemv(), *vectors, np.zeros_like(state.sliders), *np.zeros((2, len(state.states)))])
 
 
 @inner
@@ -270,6 +256,7 @@ def go_through(
     modes: Modes, elements: Elements, users: Address, scheme: Scheme, state: State, omega: float, most: int,
     tolerance: float, record: Record, reaction: Reaction, room: Room,
 ) -> tuple[int, int, float]:  # fmt: skip
+    """Go through periods until one changes nothing, in place; how it ended, periods or step, change of the last one."""
     steps, change = len(modes.force), np.inf
     apply(room.gemv, modes.seen, state.modes[0], room.u)
     for period in range(most):
@@ -294,20 +281,3 @@ def go_through(
         if change <= tolerance:
             return STEADY, period + 1, change
     return MOVING, most, change
-
-
-def advance(
-    modes: Modes,
-    elements: Elements,
-    users: int,
-    scheme: Scheme,
-    state: State,
-    omega: float,
-    most: int,
-    tolerance: float,
-    record: Record,
-) -> tuple[int, int, float]:
-    """Go through periods until one changes nothing, in place; how it ended, periods or step, change of the last one."""
-    answers = reaction(len(modes.seen), elements, record.states.shape[1])
-    room = _room(modes, state)
-    return go_through(modes, elements, users, scheme, state, omega, most, tolerance, record, answers, room)

@@ -114,7 +114,7 @@ def test_where_there_is_no_curve_at_all_the_first_reason_is_raised() -> None:
         frequency_responses(damped, "preload", [-2.0, -1.0], FREQUENCIES, METHOD)
     with pytest.raises(
         InputError,
-        match=says("frequency_responses: the values of preload are []; expected one or more numbers"),
+        match=says("frequency_responses: the values of 'preload' are []; expected one or more numbers"),
     ):
         frequency_responses(damped, "preload", [], FREQUENCIES, METHOD)
 

@@ -21,7 +21,6 @@ from dalembert.vibration import (
     frequency_response,
     steady_state,
 )
-from dalembert.vibration.system.fingerprint import fingerprint
 from dalembert.vibration.system.lowering import lower
 
 METHOD = HarmonicBalance(3)
@@ -68,7 +67,7 @@ def test_a_loss_of_zero_is_none() -> None:
 
 
 def test_checkpoints_of_other_losses_are_told_apart() -> None:
-    names = {fingerprint(lower(system(eta)), METHOD) for eta in (0.0, 0.05, 0.06)}
+    names = {lower(system(eta)).fingerprint(METHOD) for eta in (0.0, 0.05, 0.06)}
     assert len(names) == 3
 
 

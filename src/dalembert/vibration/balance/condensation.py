@@ -87,14 +87,12 @@ class Point:
     def free_motions(self) -> np.ndarray:
         """Mean motions (q, motions) that the stiffness does not resist. Contacts may hold them."""
         if "free motions" not in self.shared:
-            self.shared["free motions"] = self._free_motions()
+            found = np.zeros((self.stiffness.shape[1], 0))
+            if len(self.frequencies) and self.frequencies[0] == 0 and len(found):
+                values, vectors = np.linalg.eigh(np.real(self.stiffness[0]))
+                found = vectors[:, values <= FLOATING * self.stiffest]
+            self.shared["free motions"] = found
         return self.shared["free motions"]
-
-    def _free_motions(self) -> np.ndarray:
-        if not len(self.frequencies) or self.frequencies[0] != 0 or not self.stiffness.shape[1]:
-            return np.zeros((self.stiffness.shape[1], 0))
-        values, vectors = np.linalg.eigh(np.real(self.stiffness[0]))
-        return vectors[:, values <= FLOATING * self.stiffest]
 
     @property
     def held(self) -> bool:
@@ -130,7 +128,7 @@ class Condensation:
         retained, interior = coordinates.retained, coordinates.interior
         dense = size <= DENSE or not issparse(structure.stiffness)
         self.retained, self.back = retained.toarray(), interior.toarray() if dense else interior
-        inner = [_two_sided(self.back, matrix, self.back) for matrix in matrices]
+        inner = [self.back.T @ (matrix @ self.back) for matrix in matrices]
         if dense and interior.shape[1]:
             inner = self._modal(inner)
         self.inner: list[Any] = [block if dense else csc_array(block) for block in inner]
@@ -196,7 +194,9 @@ class Condensation:
             return
         moved = np.asarray(self.back @ motions)
         size = np.abs(moved).max(axis=1)
-        mass = np.linalg.eigvalsh(motions.T @ _times_columns(self.inner[1], motions))
+        inner = self.inner[1]
+        moving = inner[:, None] * motions if inner.ndim == 1 else np.asarray(inner @ motions)
+        mass = np.linalg.eigvalsh(motions.T @ moving)
         coupled = np.abs(self.across[0] @ motions).max(initial=0.0)
         if mass[0] <= FLOATING * abs(self.inner[1]).max() or coupled > DECOUPLED * abs(self.outer[0]).max(initial=1.0):
             raise ModelError(
@@ -346,15 +346,6 @@ def _dynamic(blocks: list[Any], s: Any) -> Any:
         s = s.reshape(-1, *[1] * mass.ndim)
     result = stiffness - s**2 * mass + 1j * s * damping
     return result + 1j * np.sign(s) * loss[0] if loss else result
-
-
-def _two_sided(left: Any, matrix: Any, right: Any) -> Any:
-    return left.T @ (matrix @ right)
-
-
-def _times_columns(matrix: Any, columns: np.ndarray) -> np.ndarray:
-    """A matrix (l, l), or its diagonal (l,), times columns (l, columns)."""
-    return matrix[:, None] * columns if matrix.ndim == 1 else np.asarray(matrix @ columns)
 
 
 def _resonance(s: np.ndarray, where: str) -> SolveError:

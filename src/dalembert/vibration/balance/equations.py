@@ -1,20 +1,23 @@
 """Equations of harmonic balance of a system, solved at any frequency."""
 
+import hashlib
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
+from itertools import islice
 
 import numpy as np
 
 from dalembert.errors import InputError
+from dalembert.forward import Checkpoint
 from dalembert.vibration.balance.balance import Balance
-from dalembert.vibration.balance.cold_start import by_force
 from dalembert.vibration.balance.condensation import Condensation, Point, norm
 from dalembert.vibration.balance.fourier import Fourier
 from dalembert.vibration.balance.harmonic_balance import AUTOMATIC, MOST_SAMPLES, HarmonicBalance
 from dalembert.vibration.balance.newton import Plane, Solution, correct, scale_of
 from dalembert.vibration.laws.law_block import LawBlock
 from dalembert.vibration.laws.sampled_sums import forces_from_rest
+from dalembert.vibration.paths.continuation import along
 from dalembert.vibration.preparation import prepare_balance
 from dalembert.vibration.system.lowering import ELASTIC, Lowered, lower
 from dalembert.vibration.system.system import StaticForce, VibrationSystem
@@ -32,10 +35,15 @@ class Equations:
     lowered : Lowered
         Real.
     method : HarmonicBalance
+    checkpoint : Checkpoint, optional
+        From which solutions are read, and to which new ones are added. A path goes from one solution to the next, so it
+        takes the same way again, bit for bit. Where a solution is known, its forces and its Jacobian are evaluated
+        once, in place of once an iteration.
     """
 
     lowered: Lowered
     method: HarmonicBalance
+    checkpoint: Checkpoint | None = None
     _balances: dict[int, Balance] = field(default_factory=dict, repr=False, compare=False)
 
     @cached_property
@@ -57,17 +65,28 @@ class Equations:
         return self._balances[samples]
 
     def solve(
-        self,
-        unknowns: np.ndarray,
-        omega: float,
-        samples: int,
-        plane: Plane | None = None,
-        point: Point | None = None,
+        self, unknowns: np.ndarray, omega: float, samples: int, plane: Plane | None = None, point: Point | None = None
     ) -> Solution:
         """Solve the equations by Newton's method from a guess. Samples are doubled until they suffice.
 
         Where nothing holds a mean position, few samples may leave a mean force that more of them remove.
         """
+        fresh = partial(self._solved, unknowns, omega, samples, plane, point)
+        if self.checkpoint is None:
+            return fresh()
+        made: list[Solution] = []
+
+        def compute() -> tuple[np.ndarray, np.ndarray]:
+            made.append(found := fresh())
+            numbers = (found.omega, found.iterations, found.error, found.converged, found.samples, found.sampling_error)
+            return found.unknowns, np.array(numbers, dtype=float)
+
+        values, numbers = self.checkpoint.once(self._key(unknowns, omega, samples, plane), compute)
+        return made[0] if made else self._restored(values, *numbers.tolist())
+
+    def _solved(
+        self, unknowns: np.ndarray, omega: float, samples: int, plane: Plane | None, point: Point | None
+    ) -> Solution:
 
         def finer(found: Solution) -> Solution:
             balance, near = self.balance(2 * found.samples), (found.unknowns, found.omega)
@@ -118,25 +137,48 @@ class Equations:
 
     def once(self, what: str, solution: Solution, compute: Callable[[], np.ndarray]) -> np.ndarray:
         """Return a named quantity of a solution. It is stored where solutions are."""
-        return compute()
+        if self.checkpoint is None:
+            return compute()
+        key = what.encode() + self._key(solution.unknowns, solution.omega, solution.samples, None)
+        return self.checkpoint.once(key, lambda: (compute(),))[0]
+
+    def _restored(
+        self, unknowns: np.ndarray, omega: float, iterations: float, error: float, converged: float, samples: float,
+        sampling_error: float,
+    ) -> Solution:  # fmt: skip
+        """Return a solution from its stored values."""
+        point = self.condensation.at(omega)
+        evaluation, tangent = self.balance(int(samples)).linearised(point, unknowns)
+        return Solution(
+            omega, unknowns, point, evaluation, tangent, int(iterations), error, bool(converged), int(samples),
+            sampling_error,
+        )  # fmt: skip
+
+    def _key(self, unknowns: np.ndarray, omega: float, samples: int, plane: Plane | None) -> bytes:
+        """Hash of all that a solution depends on."""
+        asked = [np.array([omega, samples]), unknowns]
+        if plane is not None:
+            asked += [plane.direction, plane.unknowns, np.array([plane.omega, plane.size, plane.width])]
+        return hashlib.sha256(self._system + b"".join(map(np.ndarray.tobytes, asked))).digest()
+
+    @cached_property
+    def _system(self) -> bytes:
+        return b"harmonic balance" + self.lowered.fingerprint(self.method).encode()
 
     def _doubles(self, solution: Solution) -> bool:
         """Whether more samples may be taken."""
         return self.method.samples == AUTOMATIC and solution.samples < MOST_SAMPLES
 
     def _sampling_error(self, solution: Solution) -> float:
-        return self._relative(self.balance(2 * solution.samples), solution)
-
-    @staticmethod
-    def _relative(balance: Balance, solution: Solution) -> float:
-        """Residual of a balance at a solution of another one, as part of the forces."""
-        evaluation = balance.at(solution.point, solution.unknowns)
+        """Residual with twice the samples, as part of the forces."""
+        evaluation = self.balance(2 * solution.samples).at(solution.point, solution.unknowns)
         return norm(evaluation.residual) / scale_of(solution.point, evaluation)
 
 
 def equations(
     system: VibrationSystem,
     method: HarmonicBalance,
+    checkpoint: Checkpoint | None = None,
     *,
     residuals: bool = True,
     stability: bool = False,
@@ -148,6 +190,8 @@ def equations(
     ----------
     system : VibrationSystem
     method : HarmonicBalance
+    checkpoint : Checkpoint, optional
+        Where solutions are stored.
     residuals, stability, derivatives : bool
         What is computed in addition to residuals with their Jacobians: residuals alone (:meth:`Equations.solve` needs
         them), the stability of solutions by the time map, derivatives with respect to parameters.
@@ -163,7 +207,64 @@ def equations(
     if method.odd_only:
         _require_symmetry(lowered)
     prepare_balance(lowered, method.events, residuals=residuals, stability=stability, derivatives=derivatives)
-    return Equations(lowered, method)
+    return Equations(lowered, method, checkpoint)
+
+
+FIRST_LOAD = 0.01
+"""Part of the force at the start of the path, at which pressed contacts stick."""
+RESOLUTION = 0.1
+"""Resolution of the path, whose points are not kept."""
+MOST_STEPS = 120
+"""Points after which continuation stops."""
+
+
+@dataclass(frozen=True)
+class Loading:
+    """The equations at one frequency, with the part of the varying forces as the parameter in place of the frequency.
+
+    Static forces act from the beginning: they may be what presses the contacts.
+
+    Parameters
+    ----------
+    balance : Balance
+    method : HarmonicBalance
+    point : Point
+        At the frequency, with all of the force.
+    """
+
+    balance: Balance
+    method: HarmonicBalance
+    point: Point
+
+    def at(self, load: float) -> Point:
+        """The structure with a part of the varying forces, and its derivatives by that."""
+        varying = np.where(self.point.frequencies[:, None] > 0, self.point.force, 0.0)
+        return replace(
+            self.point, slope=np.zeros_like(self.point.slope),
+            force=self.point.force + (load - 1.0) * varying, force_slope=varying, rate=0.0,
+        )  # fmt: skip
+
+    def solve(self, unknowns: np.ndarray, load: float, samples: int, plane: Plane | None = None) -> Solution:
+        """Newton's method from a guess."""
+        return correct(self.balance, self, self.method, unknowns, load, plane)
+
+    def first(self, load: float) -> Solution:
+        """Return the solution from closed contacts that stick."""
+        return self.solve(self.balance.stuck(self.at(load)), load, self.balance.series.samples)
+
+    def last(self) -> np.ndarray:
+        """Return the unknowns at the end of the path over the force: at full force if the path reaches it."""
+        unknowns = np.zeros(self.balance.shape)
+        # A path may turn back, through none of the force even, before it comes to all of it.
+        for found in islice(along(self, -1.0, 1.0, self.first(FIRST_LOAD)), MOST_STEPS):
+            if found.solution.converged:
+                unknowns = found.solution.unknowns
+        return unknowns
+
+
+def by_force(balance: Balance, method: HarmonicBalance, point: Point) -> np.ndarray:
+    """Return unknowns at a frequency by continuation from rest over the force."""
+    return Loading(balance, replace(method, resolution=RESOLUTION), point).last()
 
 
 def _require_symmetry(lowered: Lowered) -> None:

@@ -6,6 +6,12 @@ from dalembert.arguments import Checked, limited
 from dalembert.errors import InputError
 
 AUTOMATIC = "automatic"
+MOST_HARMONICS = 1000
+"""Far more than a friction contact needs; their tangents would fill the memory of any machine."""
+MOST_GIVEN = 1_000_000
+"""Samples of a period, for the same reason."""
+MOST_SAMPLES = 8192
+"""Where the automatic doubling ends."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +58,7 @@ class HarmonicBalance(Checked):
     dalembert.errors.InputError: HarmonicBalance: samples is 16, too few for 9 harmonics. Use at least 19
     """
 
-    harmonics: int = 9
+    harmonics: int = limited(9, least=1, most=MOST_HARMONICS)
     odd_only: bool = False
     samples: int | str = AUTOMATIC
     events: bool = True
@@ -63,10 +69,6 @@ class HarmonicBalance(Checked):
     resolution: float = limited(0.02, above=0, below=1)
 
     def __post_init__(self) -> None:
-        if not 1 <= self.harmonics <= MOST_HARMONICS:
-            raise InputError(
-                f"HarmonicBalance: {self.harmonics} harmonics were asked for; expected 1 to {MOST_HARMONICS}"
-            )
         needed = 2 * self.harmonics + 1
         if isinstance(self.samples, str):
             if self.samples != AUTOMATIC:
@@ -98,11 +100,3 @@ class HarmonicBalance(Checked):
     def first_samples(self) -> int:
         """Samples to begin with: a power of two, eight and more for the shortest wave, where they are chosen."""
         return self.samples if isinstance(self.samples, int) else max(64, 1 << (8 * self.harmonics - 1).bit_length())
-
-
-MOST_HARMONICS = 1000
-"""Far more than a friction contact needs; their tangents would fill the memory of any machine."""
-MOST_GIVEN = 1_000_000
-"""Samples of a period, for the same reason."""
-MOST_SAMPLES = 8192
-"""Where the automatic doubling ends."""

@@ -1,7 +1,9 @@
 """Causes of points that are not converged, and motions that nothing holds."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -26,41 +28,50 @@ class Unconverged:
         Hz.
     residual : float
         As part of the forces.
-    motion : str
-        Coordinates that move where no contact balances their mean force and the structure has no stiffness; empty for
-        other causes.
-    force : float
-        This mean force, N.
-    element : str
-        Element whose function has no finite force where Newton's method goes; empty for other causes.
-    resonance : bool
-        Whether the structure resonates here without damping.
+    code : str
+        Of the finding on its cause; empty if the cause is not known.
+    values : dict
+        Of the finding.
+    cause, advice : str
     """
 
     frequency: float
     residual: float
-    motion: str = ""
-    force: float = 0.0
-    element: str = ""
-    resonance: bool = False
+    code: str = ""
+    values: dict[str, Any] = field(default_factory=dict)
+    cause: str = ""
+    advice: str = ""
 
 
 def unconverged(problem: Equations, solution: Solution) -> Unconverged | None:
     """Return the cause if a point is not converged."""
     if solution.converged:
         return None
-    frequency, residual = float(solution.omega) / (2 * np.pi), solution.evaluation.residual
-    motions = solution.point.free_motions
+    found = partial(Unconverged, float(solution.omega) / (2 * np.pi), solution.error)
+    residual, motions = solution.evaluation.residual, solution.point.free_motions
     along = motions.T @ residual[:, 0]
-    largest = max(LEFT * float(np.linalg.norm(residual)), VERIFIED * solution.point.load)
-    if not np.linalg.norm(along) > largest:
-        return Unconverged(
-            frequency, solution.error, element=_not_finite(problem, solution), resonance=_resonates(solution)
+    force = float(np.linalg.norm(along))
+    if force > max(LEFT * float(np.linalg.norm(residual)), VERIFIED * solution.point.load):
+        balance = problem.balance(solution.samples)
+        moved = np.abs(balance.displacements((motions @ along)[:, None])[:, 0])
+        rows = np.flatnonzero(moved > MOVING * moved.max())[:NAMED]
+        motion = listed([repr(balance.lowered.row_names[row]) for row in rows])
+        return found(
+            "unbalanced-mean",
+            {"motion": motion, "force": force},
+            f"no contact balances a mean force of {force:.3g} N along {motion}, where the structure has no stiffness.",
+            "The static forces exceed the limit of friction, or no static force presses the contact. Change them or "
+            "the preload, or hold the structure by a spring.",
         )
-    balance = problem.balance(solution.samples)
-    moved = np.abs(balance.displacements((motions @ along)[:, None])[:, 0])
-    names = [repr(balance.lowered.row_names[row]) for row in np.flatnonzero(moved > MOVING * moved.max())]
-    return Unconverged(frequency, solution.error, listed(names[:NAMED]), float(np.linalg.norm(along)))
+    if element := _not_finite(problem, solution):
+        cause = f"the function of {element!r} returns forces that are not finite."
+        return found(
+            "force-not-finite", {"element": element}, cause, "Let it return finite forces at all displacements."
+        )
+    if _resonates(solution):
+        cause = "the structure resonates without damping, and no element limits its motion."
+        return found("undamped-resonance", {}, cause, "Give it damping, or choose another frequency.")
+    return found()
 
 
 def _not_finite(problem: Equations, solution: Solution) -> str:
@@ -95,28 +106,10 @@ def unconverged_findings(points: int, lost: Iterable[Unconverged]) -> tuple[Find
     if not lost:
         return ()
     count = f"{len(lost)} of {points} points were not found."
-    for one in lost:
-        if one.motion:
-            values = {"points": len(lost), "frequency": one.frequency, "motion": one.motion, "force": one.force}
-            message = (
-                f"{count} At {one.frequency:.6g} Hz no contact balances a mean force of {one.force:.3g} N along "
-                f"{one.motion}, where the structure has no stiffness."
-            )
-            advice = (
-                "The static forces exceed the limit of friction, or no static force presses the contact. Change "
-                "them or the preload, or hold the structure by a spring."
-            )
-            return (Finding("unbalanced-mean", "error", values, message, advice),)
-    for one in lost:
-        where, values = f"{count} At {one.frequency:.6g} Hz", {"points": len(lost), "frequency": one.frequency}
-        if one.element:
-            message = f"{where} the function of {one.element!r} returns forces that are not finite."
-            advice = "Let it return finite forces at all displacements."
-            return (Finding("force-not-finite", "error", {**values, "element": one.element}, message, advice),)
-        if one.resonance:
-            message = f"{where} the structure resonates without damping, and no element limits its motion."
-            advice = "Give it damping, or choose another frequency."
-            return (Finding("undamped-resonance", "error", values, message, advice),)
+    known = sorted((one for one in lost if one.code), key=lambda one: one.code != "unbalanced-mean")
+    if known:
+        one, values = known[0], {"points": len(lost), "frequency": known[0].frequency, **known[0].values}
+        return (Finding(one.code, "error", values, f"{count} At {one.frequency:.6g} Hz {one.cause}", one.advice),)
     worst = max(lost, key=lambda one: one.residual)
     values = {"points": len(lost), "frequency": worst.frequency, "residual": worst.residual}
     message = f"{count} The largest residual is {worst.residual:.1e} of the forces, at {worst.frequency:.6g} Hz."

@@ -11,6 +11,7 @@ cosine and no sine, and a plane across the path tells one motion from the next.
 """
 
 import hashlib
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import cast
@@ -19,7 +20,6 @@ import numpy as np
 from scipy.linalg import eig
 
 from dalembert.errors import InputError, SolveError
-from dalembert.forward import Checkpoint
 from dalembert.vibration.balance.equations import Equations
 from dalembert.vibration.balance.fourier import Fourier
 from dalembert.vibration.balance.harmonic_balance import AUTOMATIC, MOST_SAMPLES
@@ -98,7 +98,11 @@ class _Trial:
 
 @dataclass(frozen=True)
 class ModeEquations:
-    """The equations of a nonlinear mode, whose amplitude is measured at a row of the structure."""
+    """The equations of a nonlinear mode, whose amplitude is measured at a row of the structure.
+
+    Motions and directions are read from the problem's checkpoint, if it has one, and new ones added to it. A path goes
+    from one motion to the next, so it takes the same way again, bit for bit.
+    """
 
     problem: Equations
     row: int
@@ -159,6 +163,30 @@ class ModeEquations:
 
     def solve(self, guess: FreeMotion, plane: Plane, samples: int) -> FreeMotion:
         """Newton's method on a plane across the path, with as many samples as it needs, and at least those given."""
+
+        def compute() -> tuple[np.ndarray, np.ndarray]:
+            found = self._solved(guess, plane, samples)
+            how = [found.iterations, found.error, found.converged, found.samples]
+            return _numbers(found), np.array(how, dtype=float)
+
+        place, how = self._once(compute, _numbers(guess), plane.direction, _numbers(plane.at), [plane.scale, samples])
+        iterations, error, converged, own = how.tolist()
+        omega, growth, size = place[-3:].tolist()
+        harmonics = place[:-3].reshape(guess.harmonics.shape)
+        return FreeMotion(harmonics, omega, growth, size, int(iterations), error, bool(converged), int(own))
+
+    def _once(self, compute: Callable[[], Sequence[np.ndarray]], *asked: np.ndarray | list) -> Sequence[np.ndarray]:
+        """Return what depends on arrays, from the checkpoint where it is known."""
+        if self.problem.checkpoint is None:
+            return compute()
+        key = b"nonlinear mode" + self._system + b"".join(np.asarray(own, dtype=float).tobytes() for own in asked)
+        return self.problem.checkpoint.once(hashlib.sha256(key).digest(), compute)
+
+    @cached_property
+    def _system(self) -> bytes:
+        return self.problem.lowered.fingerprint(self.problem.method, self.row).encode()
+
+    def _solved(self, guess: FreeMotion, plane: Plane, samples: int) -> FreeMotion:
         method = self.problem.method
         motion = self._corrected(guess, plane, samples)
         while motion.converged and method.samples == AUTOMATIC and motion.samples < MOST_SAMPLES:
@@ -170,6 +198,9 @@ class ModeEquations:
 
     def direction(self, motion: FreeMotion, before: np.ndarray) -> np.ndarray:
         """Unit tangent of the path at a motion, to the same side as a direction before."""
+        return self._once(lambda: (self._direction(motion, before),), _numbers(motion), before, [motion.samples])[0]
+
+    def _direction(self, motion: FreeMotion, before: np.ndarray) -> np.ndarray:
         plane = Plane(before, motion, self.scale(motion))
         system = self.system(motion.samples)
         matrix = self._jacobian(system, self._at(system, motion, plane), plane)
@@ -269,57 +300,9 @@ class ModeEquations:
         return matrix
 
 
-@dataclass(frozen=True)
-class RecordedModes(ModeEquations):
-    """Equations of a mode that read motions and directions from a checkpoint, and add new ones to it.
-
-    A path goes from one motion to the next, so it takes the same way again, bit for bit.
-
-    Parameters
-    ----------
-    checkpoint : Checkpoint
-    """
-
-    checkpoint: Checkpoint
-
-    def solve(self, guess: FreeMotion, plane: Plane, samples: int) -> FreeMotion:
-        solve = super().solve
-
-        def compute() -> tuple[np.ndarray, ...]:
-            found = solve(guess, plane, samples)
-            return _numbers(found), np.array(
-                [found.iterations, found.error, found.converged, found.samples], dtype=float
-            )
-
-        asked = _numbers(guess), plane.direction, _numbers(plane.at), np.array([plane.scale, samples])
-        place, how = self.checkpoint.once(self._key(*asked), compute)
-        iterations, error, converged, own = how.tolist()
-        omega, growth, size = place[-3:].tolist()
-        harmonics = place[:-3].reshape(guess.harmonics.shape)
-        return FreeMotion(harmonics, omega, growth, size, int(iterations), error, bool(converged), int(own))
-
-    def direction(self, motion: FreeMotion, before: np.ndarray) -> np.ndarray:
-        direction = super().direction
-        key = self._key(_numbers(motion), before, np.array([motion.samples]))
-        return self.checkpoint.once(key, lambda: (direction(motion, before),))[0]
-
-    def _key(self, *asked: np.ndarray) -> bytes:
-        """Hash of all that an answer depends on."""
-        return hashlib.sha256(self._system + b"".join(map(np.ndarray.tobytes, asked))).digest()
-
-    @cached_property
-    def _system(self) -> bytes:
-        return b"nonlinear mode" + self.problem.lowered.fingerprint(self.problem.method, self.row).encode()
-
-
 def _numbers(motion: FreeMotion) -> np.ndarray:
     """Harmonics, ω, ξ and amplitude of a motion."""
     return np.append(motion.harmonics, [motion.omega, motion.growth, motion.size])
-
-
-def recorded_modes(problem: Equations, row: int, checkpoint: Checkpoint | None) -> ModeEquations:
-    """Return the equations of a mode with its motions in a checkpoint, or as they are without one."""
-    return ModeEquations(problem, row) if checkpoint is None else RecordedModes(problem, row, checkpoint)
 
 
 def _block(matrix: np.ndarray, system: Uncondensed, place: int) -> np.ndarray:

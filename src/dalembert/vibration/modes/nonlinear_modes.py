@@ -1,19 +1,21 @@
 r"""Nonlinear modes: periodic motions without force, over their amplitude."""
 
-from collections.abc import Iterator, Sequence
-from dataclasses import asdict, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
 from dalembert.arguments import takes_checked
 from dalembert.errors import InputError
 from dalembert.forward import Checkpoint
+from dalembert.units import unit_of
 from dalembert.vibration.balance.equations import Equations, equations
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
-from dalembert.vibration.modes.backbone import Backbone
-from dalembert.vibration.modes.mode_equations import FreeMotion, Linear, ModeEquations, Plane, recorded_modes
+from dalembert.vibration.modes.mode_equations import FreeMotion, Linear, ModeEquations, Plane
+from dalembert.vibration.paths.amplitudes import Amplitude, observed_column
 from dalembert.vibration.paths.continuation import EASY, MOST_POINTS, SHORTEST, STEADY
-from dalembert.vibration.storage import versions
+from dalembert.vibration.storage import ConvergedResult, Over, versions
 from dalembert.vibration.system.requirements import positive_numbers
 from dalembert.vibration.system.system import StaticForce, VibrationSystem
 from dalembert.vibration.threads import one_thread
@@ -26,6 +28,91 @@ RETRACED = 1e-3
 """Relative difference of frequencies below which a path has returned to its start."""
 SAME = 0.7
 """Cosine of the angle between two motions, weighted by the mass, below which they belong to different modes."""
+Points = Annotated[np.ndarray, Over(("point",))]
+
+
+@dataclass(frozen=True, eq=False)
+class Backbone(ConvergedResult):
+    """Frequency, damping and shape of a nonlinear mode over its amplitude, as :func:`backbone` returns them.
+
+    Parameters
+    ----------
+    mode : int
+        Its number among the linear modes of the system at rest, from 1.
+    dof : str
+        Degree of freedom by which the amplitude is measured.
+    dofs : tuple of str
+    orders : tuple of int
+        Harmonics; the coefficients are the mean, if it is kept, then a cosine and a sine for each other one.
+    amplitudes : array, shape (points,)
+        Of the first harmonic of ``dof``, m.
+    frequencies : array, shape (points,)
+        Hz; NaN, as what follows, where a point was not found.
+    damping : array, shape (points,)
+        Damping ratios.
+    energies : array, shape (points,)
+        Largest kinetic energies of the period, J.
+    forces : array, shape (points,)
+        Amplitudes of a force on ``dof`` that a quarter of a period ahead of it keeps the motion going, N.
+    shapes : array, shape (points, dofs, coefficients)
+        The motions, m.
+    iterations : array of int, shape (points,)
+    residuals : array, shape (points,)
+        As part of the forces.
+    converged : array of bool, shape (points,)
+    samples : array of int, shape (points,)
+        Of a period.
+    provenance : mapping
+        Versions, method, settings.
+    """
+
+    FORMAT: ClassVar[str] = "dalembert backbone 1"
+
+    mode: int
+    dof: str
+    dofs: tuple[str, ...]
+    orders: tuple[int, ...]
+    amplitudes: Annotated[np.ndarray, Over(("point",), lambda own: unit_of(own.dof))]
+    frequencies: Annotated[np.ndarray, Over(("point",), "Hz")]
+    damping: Points
+    energies: Annotated[np.ndarray, Over(("point",), "J")]
+    forces: Annotated[np.ndarray, Over(("point",), "N")]
+    shapes: Annotated[np.ndarray, Over(("point", "dof", "coefficient"), "m")]
+    iterations: Points
+    residuals: Points
+    converged: Points
+    samples: Points
+    provenance: Mapping[str, Any]
+
+    def amplitude(self, dof: str, kind: str = "peak") -> np.ndarray:
+        """Size of the motion of a degree of freedom, m, (points,): ``"peak"``, ``"rms"`` or ``"harmonic 1"`` and so on.
+
+        Raises
+        ------
+        InputError
+            For another kind, or an unknown degree of freedom.
+        """
+        return Amplitude(kind, self.orders).of(self.shapes[:, observed_column(self.dofs, dof)])
+
+    def summary(self) -> str:
+        """A few lines: points, and the ranges of frequency, damping and energy."""
+        found = self.converged
+        lines = [f"mode {self.mode} at {found.sum()} of {len(self)} amplitudes of {self.dof}"]
+        if found.any():
+            ranges = [
+                f"{name} {values[found].min():.6g} to {values[found].max():.6g}{unit}"
+                for name, values, unit in (
+                    ("amplitudes", self.amplitudes, f" {unit_of(self.dof)}"),
+                    ("frequencies", self.frequencies, " Hz"),
+                    ("damping ratios", self.damping, ""),
+                    ("energies", self.energies, " J"),
+                )
+            ]
+            lines.append(", ".join(ranges))
+        if not found.all():
+            lost = ", ".join(f"{value:.6g} {unit_of(self.dof)}" for value in self.amplitudes[~found][:5])
+            lines.append(f"not found: {lost}")
+        return "\n".join(lines)
 
 
 @takes_checked("amplitudes")
@@ -93,11 +180,11 @@ def backbone(
     method = method or HarmonicBalance()
     sizes = positive_numbers(amplitudes, "backbone", "amplitudes", "m")
     with one_thread():
-        free = _without_harmonic_forces(equations(system, method, residuals=False))
+        free = _without_harmonic_forces(equations(system, method, checkpoint, residuals=False))
         linear = ModeEquations(free, -1).linear(mode)
         names = free.lowered.structure.dofs
         row = int(np.abs(linear.shape).argmax()) if dof is None else names.index(dof)
-        own, start = recorded_modes(free, row, checkpoint), _scaled(linear, row, names.names[row])
+        own, start = ModeEquations(free, row), _scaled(linear, row, names.names[row])
         first = _first(own, start, float(sizes[0]))
         if isinstance(amplitudes, tuple):
             found = list(_along(own, first, float(sizes[0]), float(sizes[1])))
@@ -108,7 +195,7 @@ def backbone(
 
 def _without_harmonic_forces(problem: Equations) -> Equations:
     static = tuple(force for force in problem.lowered.forces if isinstance(force, StaticForce))
-    return Equations(replace(problem.lowered, forces=static), problem.method)
+    return replace(problem, lowered=replace(problem.lowered, forces=static), _balances={})
 
 
 def _scaled(linear: Linear, row: int, name: str) -> Linear:

@@ -186,20 +186,19 @@ class FrequencyCurve(VibrationResult):
     def status(self) -> str:
         """How many points were found, in a sentence, and which were not, with residuals as part of the forces."""
         text = f"{int(self.converged.sum())} of {len(self)} points found"
-        worst = ", ".join(f"{value:.6g} Hz ({error:.1e})" for value, error in self._lost()[:5])
+        lost = zip(self.frequencies[~self.converged][:5], self.residuals[~self.converged], strict=False)
+        worst = ", ".join(f"{value:.6g} Hz ({error:.1e})" for value, error in lost)
         return f"{text}; not found, with residuals as part of the forces: {worst}" if worst else text
 
     def summary(self) -> str:
         """Return some lines: points, iterations, samples, and the largest responses."""
-        found, lines = int(self.converged.sum()), []
-        lines.append(
-            f"{found} of {len(self)} points found between {self.frequencies.min():.6g} and "
-            f"{self.frequencies.max():.6g} Hz, {self.iterations.mean():.2f} Newton iterations a point"
-        )
-        if found < len(self):
-            worst = ", ".join(f"{value:.6g} Hz ({error:.1e})" for value, error in self._lost()[:5])
-            lines.append(f"not found, with residuals as part of the forces: {worst}")
-        if found:
+        count, *lost = self.status.split("; ")
+        lines = [
+            f"{count} between {self.frequencies.min():.6g} and {self.frequencies.max():.6g} Hz, "
+            f"{self.iterations.mean():.2f} Newton iterations a point",
+            *lost,
+        ]
+        if self.converged.any():
             lines.append(
                 f"{self.samples.max()} samples of a period; twice as many change the forces by up to "
                 f"{np.nanmax(self.sampling_errors):.1e}"
@@ -224,7 +223,3 @@ class FrequencyCurve(VibrationResult):
         if "stable" not in arrays:  # written before curves kept their stability
             arrays["stable"] = np.full(len(arrays["fold"]), -1, dtype=np.int8)
             settings["markers"] = tuple(("fold", int(point)) for point in np.flatnonzero(arrays["fold"]))
-
-    def _lost(self) -> list[tuple[float, float]]:
-        lost = ~self.converged
-        return list(zip(self.frequencies[lost].tolist(), self.residuals[lost].tolist(), strict=True))

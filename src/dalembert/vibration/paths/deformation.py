@@ -113,7 +113,9 @@ def deformation(system: VibrationSystem, curve: FrequencyCurve, point: int | Non
     resting = {element.name: element.first for element in system.elements if isinstance(element, FrictionContact)}
     placed = [name for name in curve.contacts if resting[name] in nodes.names]
     rows = [curve.contacts.index(name) for name in placed]
-    energies = [sum(curve.dissipated(row)[chosen] for row in curve.coordinates if _owner(row) == one) for one in placed]
+    owners = [row.rpartition(".")[0] for row in curve.coordinates]
+    taken = [curve.dissipated(row)[chosen] for row in curve.coordinates]
+    energies = [sum(own for own, owner in zip(taken, owners, strict=True) if owner == one) for one in placed]
     return Deformation(
         frequency=float(curve.frequencies[chosen]),
         orders=curve.orders,
@@ -147,7 +149,3 @@ def _response(system: VibrationSystem, curve: FrequencyCurve, point: int) -> np.
     at = problem.condensation.at(2 * np.pi * float(curve.frequencies[point]))
     retained = balance.series.phasors(unknowns)
     return balance.series.coefficients(problem.condensation.full(retained, at.interior(retained)))
-
-
-def _owner(coordinate: str) -> str:
-    return coordinate.rpartition(".")[0]

@@ -1,6 +1,6 @@
 """The response of a vibrating system over frequency."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -16,7 +16,6 @@ from dalembert.vibration.balance.truncation import largest, truncation_findings
 from dalembert.vibration.balance.unconverged import free_findings, unconverged, unconverged_findings
 from dalembert.vibration.paths.continuation import across, at_frequencies, natural
 from dalembert.vibration.paths.curve import FrequencyCurve
-from dalembert.vibration.paths.recorded import recorded
 from dalembert.vibration.stability.bifurcations import Judged, judged, unjudged
 from dalembert.vibration.storage import versions
 from dalembert.vibration.system.lowering import Lowered
@@ -139,7 +138,7 @@ def frequency_response(
     if stability:
         require_viscous(system.structure, "stability and Floquet multipliers")
     with one_thread():
-        problem = recorded(equations(system, method, stability=stability), checkpoint)
+        problem = equations(system, method, checkpoint, stability=stability)
         return _followed(problem, omegas, settings, observe, start, stability, check, on_point)
 
 
@@ -161,8 +160,35 @@ def _followed(
     else:
         follow = across if settings["continuation"] == ARC_LENGTH else natural
         found = follow(problem, float(omegas[0]), float(omegas[1]), known)
-    points = judged(problem, found, located=not given) if stability else unjudged(found)
-    return _curve(problem, points, observed(problem.lowered, observe), settings, omegas, check, on_point)
+    rows = observed(problem.lowered, observe)
+    lowered, records, lost, done = problem.lowered, [], [], 0.0
+    top: Solution | None = None
+    dofs = tuple(lowered.structure.dofs.names[row] for row in rows)
+    for one in judged(problem, found, located=not given) if stability else unjudged(found):
+        records.append(_kept(problem, one, rows))
+        lost.append(unconverged(problem, one.found.solution))
+        top = largest(top, one.found.solution) if check else None
+        if on_point is not None:
+            omega = one.found.solution.omega
+            come = len(records) / len(omegas) if given else (omega - omegas[0]) / (omegas[1] - omegas[0])
+            done = float(max(done, min(come, 1.0)))
+            on_point(FollowedPoint(records[-1]["frequencies"], records[-1]["response"], dofs, done))
+    markers = [one.pop("marker") for one in records]
+    kept = {name: np.array([one[name] for one in records]) for name in records[0]}
+    return FrequencyCurve(
+        dofs=dofs,
+        coordinates=lowered.row_names,
+        contacts=lowered.contacts,
+        orders=problem.method.orders,
+        **{**kept, "stable": kept["stable"].astype(np.int8)},
+        markers=tuple((marker, number) for number, marker in enumerate(markers) if marker),
+        provenance={**versions(), "method": asdict(problem.method), **settings},
+        findings=(
+            *unconverged_findings(len(records), filter(None, lost)),
+            *free_findings(problem),
+            *(() if top is None else truncation_findings(problem, top)),
+        ),
+    )
 
 
 def restarted(problem: Equations, curve: FrequencyCurve, point: int, where: str) -> Solution:
@@ -190,45 +216,6 @@ def observed(lowered: Lowered, names: Sequence[str] | None) -> np.ndarray:
         return np.arange(structure.size)
     forced = [structure.dofs.index(force.dof) for force in lowered.forces]
     return np.unique([*forced, *lowered.matrix.nonzero()[1]]).astype(int)
-
-
-def _curve(
-    problem: Equations,
-    points: Iterable[Judged],
-    rows: np.ndarray,
-    settings: dict,
-    omegas: np.ndarray,
-    check: bool,
-    on_point: OnPoint | None,
-) -> FrequencyCurve:
-    lowered, records, lost, done = problem.lowered, [], [], 0.0
-    top: Solution | None = None
-    dofs = tuple(lowered.structure.dofs.names[row] for row in rows)
-    for one in points:
-        records.append(_kept(problem, one, rows))
-        lost.append(unconverged(problem, one.found.solution))
-        top = largest(top, one.found.solution) if check else None
-        if on_point is not None:
-            given, omega = settings["frequencies"] == "given", one.found.solution.omega
-            come = len(records) / len(omegas) if given else (omega - omegas[0]) / (omegas[1] - omegas[0])
-            done = float(max(done, min(come, 1.0)))
-            on_point(FollowedPoint(records[-1]["frequencies"], records[-1]["response"], dofs, done))
-    markers = [one.pop("marker") for one in records]
-    kept = {name: np.array([one[name] for one in records]) for name in records[0]}
-    return FrequencyCurve(
-        dofs=dofs,
-        coordinates=lowered.row_names,
-        contacts=lowered.contacts,
-        orders=problem.method.orders,
-        **{**kept, "stable": kept["stable"].astype(np.int8)},
-        markers=tuple((marker, number) for number, marker in enumerate(markers) if marker),
-        provenance={**versions(), "method": asdict(problem.method), **settings},
-        findings=(
-            *unconverged_findings(len(records), filter(None, lost)),
-            *free_findings(problem),
-            *(() if top is None else truncation_findings(problem, top)),
-        ),
-    )
 
 
 def _kept(problem: Equations, one: Judged, rows: np.ndarray) -> dict[str, Any]:

@@ -1,6 +1,7 @@
 """Responses over frequency for several values of a parameter: over this machine's cores, or on a cluster."""
 
 import hashlib
+import json
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass
@@ -11,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from dalembert.arguments import takes_checked
+from dalembert.contents import Contents
 from dalembert.errors import DalembertError, InputError, SolveError, StorageError, told
 from dalembert.forward import Checkpoint, Executor, ensemble
 from dalembert.forward.builders import check_function
@@ -18,7 +20,6 @@ from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.paths.curve import FrequencyCurve
 from dalembert.vibration.paths.curve_family import CurveFamily
 from dalembert.vibration.paths.frequency_response import FollowedPoint, frequency_response
-from dalembert.vibration.paths.recorded import keep_curve, kept_curve
 from dalembert.vibration.system.lowering import lower
 from dalembert.vibration.system.requirements import values_of
 from dalembert.vibration.system.system import VibrationSystem
@@ -161,15 +162,25 @@ class _One:
     def recall(self, checkpoint: Checkpoint, value: float) -> FrequencyCurve | None:
         """The whole curve, where a checkpoint holds it."""
         try:
-            return kept_curve(checkpoint, self._key(value))
+            known = checkpoint.recall(self._key(value))
         except Exception:  # a system that cannot be made is told when its turn comes
             return None
+        if known is None:
+            return None
+        text, *arrays = known
+        told = json.loads(text.tobytes())
+        variables = dict(zip(told["variables"], zip(told["variables"].values(), arrays, strict=True), strict=True))
+        return FrequencyCurve.from_xarray(Contents(variables, attributes=told["attributes"]).to_xarray())
 
     def keep(self, checkpoint: Checkpoint, value: float, found: CurveOrError) -> None:
-        """Keep a whole curve."""
+        """Keep a whole curve, with the seconds that it took."""
         curve, _, seconds = found
         if curve is not None:
-            keep_curve(checkpoint, self._key(value), curve, seconds)
+            contents = curve.contents()
+            over = {name: dimensions for name, (dimensions, *_) in contents.variables.items()}
+            text = json.dumps({"variables": over, "attributes": dict(contents.attributes)}).encode()
+            arrays = (values for _, values, *_ in contents.variables.values())
+            checkpoint.keep(self._key(value), (np.frombuffer(text, np.uint8), *arrays), seconds)
 
     def _key(self, value: float) -> bytes:
         """Hash of all that the curve depends on."""

@@ -6,8 +6,9 @@ place is bracketed by steps of arc length, so that a peak beside a fold is found
 From one value of the parameter to the next the solution is corrected on a plane across the path.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from dalembert.arguments import takes_checked
 from dalembert.errors import InputError
 from dalembert.forward import Checkpoint
 from dalembert.forward.builders import check_function
+from dalembert.units import unit_of
 from dalembert.vibration.balance.equations import Equations, equations
 from dalembert.vibration.balance.fourier import synthesis
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
@@ -23,9 +25,7 @@ from dalembert.vibration.paths.amplitudes import Amplitude
 from dalembert.vibration.paths.continuation import Path, direction_at, zero_between
 from dalembert.vibration.paths.curve import FrequencyCurve
 from dalembert.vibration.paths.frequency_response import ARC_LENGTH, frequency_response, response_of, restarted
-from dalembert.vibration.paths.recorded import recorded
-from dalembert.vibration.paths.resonance_track import ResonanceTrack
-from dalembert.vibration.storage import versions
+from dalembert.vibration.storage import ConvergedResult, Over, versions
 from dalembert.vibration.system.requirements import values_of
 from dalembert.vibration.system.system import VibrationSystem
 from dalembert.vibration.threads import one_thread
@@ -39,6 +39,72 @@ BEYOND = 1.5
 MOST_STEPS = 60
 NARROW = 1e-6
 """Length along the path to which a peak is found."""
+Values = Annotated[np.ndarray, Over(("value",))]
+
+
+@dataclass(frozen=True, eq=False)
+class ResonanceTrack(ConvergedResult):
+    """The peak of a response over a parameter, as :func:`track_resonance` returns it.
+
+    Parameters
+    ----------
+    parameter, unit : str
+    dof, kind : str
+        Degree of freedom, and kind of amplitude, whose peak was followed.
+    values : array, shape (values,)
+        Of the parameter.
+    frequencies : array, shape (values,)
+        Hz; NaN where the peak was not found.
+    amplitudes : array, shape (values,)
+        m.
+    solves : array of int, shape (values,)
+        Points that were balanced on the way.
+    converged : array of bool, shape (values,)
+    provenance : mapping
+        Versions, method, settings.
+    """
+
+    FORMAT: ClassVar[str] = "dalembert resonance track 1"
+
+    parameter: str
+    unit: str
+    dof: str
+    kind: str
+    values: Annotated[np.ndarray, Over(("value",), lambda own: own.unit)]
+    frequencies: Annotated[np.ndarray, Over(("value",), "Hz")]
+    amplitudes: Annotated[np.ndarray, Over(("value",), lambda own: unit_of(own.dof))]
+    solves: Annotated[np.ndarray, Over(("value",))]
+    converged: Annotated[np.ndarray, Over(("value",))]
+    provenance: Mapping[str, Any]
+
+    def best(self) -> float:
+        """The value with the smallest peak.
+
+        Raises
+        ------
+        InputError
+            Where no peak was found.
+        """
+        if not self.converged.any():
+            raise InputError("no peak was found, so none is the smallest; begin nearer to it, or with a whole curve")
+        return float(self.values[np.nanargmin(self.amplitudes)])
+
+    def summary(self) -> str:
+        """Return some lines: converged peaks, the smallest and the largest, and the number of solutions."""
+        found = self.converged
+        lines = [
+            f"{found.sum()} of {len(self)} peaks found of {self.dof} ({self.kind}), by {self.solves.sum()} solutions"
+        ]
+        if found.any():
+            ends = ("smallest", np.nanargmin(self.amplitudes)), ("largest", np.nanargmax(self.amplitudes))
+            for word, place in ends:
+                peak = f"{self.amplitudes[place]:.6g} {unit_of(self.dof)} at {self.frequencies[place]:.6g} Hz"
+                where = f"{self.parameter} is {self.values[place]:.6g} {self.unit}".rstrip()
+                lines.append(f"{word} {peak}, where {where}")
+        if not found.all():
+            lost = ", ".join(f"{value:.6g}" for value in self.values[~found][:5])
+            lines.append(f"not found where {self.parameter} is {lost} {self.unit}".rstrip())
+        return "\n".join(lines)
 
 
 @takes_checked("values")
@@ -109,11 +175,12 @@ def track_resonance(
     check_function("track_resonance", builder, [parameter])
 
     def problem(value: float) -> Equations:
-        return recorded(equations(builder(**{parameter: value}), method), checkpoint)
+        return equations(builder(**{parameter: value}), method, checkpoint)
 
     with one_thread():
         first, size = problem(float(numbers[0])), Amplitude(kind, method.orders)
-        name = _name(first, dof)
+        names = first.lowered.structure.dofs
+        name = names.names[row := names.index(dof)]
         curve = start
         if not isinstance(curve, FrequencyCurve):
             system = builder(**{parameter: float(numbers[0])})
@@ -121,7 +188,6 @@ def track_resonance(
                 system, curve, method, continuation=ARC_LENGTH, observe=[name], check=False, checkpoint=checkpoint
             )
         begin = restarted(first, curve, _top(curve, name, size), "track_resonance")
-        row = first.lowered.structure.dofs.index(name)
         peaks = list(_followed(problem, _Climber(row, size), numbers, _Peak(float(numbers[0]), first, begin)))
     solves = np.array([count for _, count in peaks])
     solves[0] += 1 if isinstance(start, FrequencyCurve) else 1 + len(curve)
@@ -138,13 +204,6 @@ def track_resonance(
         converged=np.array([one is not None for one, _ in peaks]),
         provenance={**versions(), "method": asdict(method)},
     )
-
-
-def _name(problem: Equations, dof: str) -> str:
-    """Return the full name of a degree of freedom. A node with only one may be named alone."""
-    names = problem.lowered.structure.dofs
-    own = [name for name in names.names if name.rpartition(".")[0] == dof]
-    return names.names[names.index(own[0] if len(own) == 1 else dof)]
 
 
 def _top(curve: FrequencyCurve, name: str, size: Amplitude) -> int:

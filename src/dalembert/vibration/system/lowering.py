@@ -1,10 +1,9 @@
 """From a vibrating system to arrays: the rows that its elements see, their numbers, its loads."""
 
 import hashlib
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from scipy.sparse import csc_array
@@ -13,9 +12,8 @@ from dalembert.errors import InputError, ModelError
 from dalembert.structure import Structure
 from dalembert.vibration.balance.coordinates import Coordinates, coordinates
 from dalembert.vibration.balance.fourier import Fourier
-from dalembert.vibration.laws.contacts import ElasticSlider, FrictionContact, Iwan, Number, Rigid
+from dalembert.vibration.laws.contacts import ElasticSlider, FrictionContact, Rigid
 from dalembert.vibration.laws.element import LawElement
-from dalembert.vibration.laws.law import Law
 from dalembert.vibration.laws.law_block import LawBlock
 from dalembert.vibration.laws.user_element import UserElement
 from dalembert.vibration.system.system import HarmonicForce, StaticForce, VibrationSystem
@@ -102,7 +100,8 @@ class Lowered:
 
     def loads(self, series: Fourier) -> np.ndarray:
         """Coefficients of the forces on all degrees of freedom, (n, coefficients)."""
-        result = np.zeros((self.structure.size, series.count), dtype=np.result_type(float, *_values(self.forces)))
+        values = [value for force in self.forces for value in vars(force).values() if not isinstance(value, str)]
+        result = np.zeros((self.structure.size, series.count), dtype=np.result_type(float, *values))
         for force in self.forces:
             order = 0 if isinstance(force, StaticForce) else force.harmonic
             if order not in series.orders:
@@ -156,30 +155,44 @@ def lower(system: VibrationSystem) -> Lowered:
     """
     rows, names = _Rows(system.structure), []
     cells: dict[tuple[str, int, bool], list[tuple[list[int], int, list]]] = {}
-    functions, laws = [], _Laws(rows)
+    laws: dict[tuple, list[tuple[LawElement, list[int]]]] = {}
+    functions = []
     for element in system.elements:
+        where = f"element {element.name!r}"
         if isinstance(element, FrictionContact):
-            own = [rows.contact(element, direction) for direction in _directions(element)]
-            key = _kind(element.law), len(element.tangential), element.normal is not None
+            normal = [element.normal] if element.normal is not None else []
+            own = [rows.contact(element, direction) for direction in (*element.tangential, *normal)]
+            kind = element.law.kind if isinstance(element.law, Rigid) else ELASTIC
+            key = kind, len(element.tangential), bool(normal)
             for numbers in _numbers(element, own, rows):
                 cells.setdefault(key, []).append((own, len(names), numbers))
             names.append(element.name)
         elif isinstance(element, UserElement):
-            where = f"element {element.name!r}"
-            functions.append(
-                (np.array([rows.between(f"{element.name}.{dof}", dof, None, where) for dof in element.dofs]), element)
-            )
+            own = [rows.between(f"{element.name}.{dof}", dof, None, where) for dof in element.dofs]
+            functions.append((np.array(own), element))
         else:
-            laws.add(element)
+            single = len(element.ends) == 1
+            own = [
+                rows.between(element.name if single else f"{element.name}.{first}", first, second, where)
+                for first, second in element.ends
+            ]
+            key = type(element), element.law, element.events, element.states, len(own), tuple(element.numbers)
+            laws.setdefault(key, []).append((element, own))
     for force in system.forces:
         system.structure.dofs.index(force.dof, "a force")
     blocks = tuple(
-        FrictionBlock(*key, np.array([own for own, _, _ in entries]), np.array([at for _, at, _ in entries]),
-                      np.array([numbers for _, _, numbers in entries]))
+        FrictionBlock(*key, *(np.array(column) for column in zip(*entries, strict=True)))
         for key, entries in cells.items()
+    )
+    ruled = tuple(
+        LawBlock(
+            entries[0][0], tuple(element.name for element, _ in entries), np.array([own for _, own in entries]),
+            np.array([list(element.numbers.values()) for element, _ in entries]),
+        )
+        for entries in laws.values()
     )  # fmt: skip
     return Lowered(
-        system.structure, tuple(system.forces), tuple(rows.names), rows.matrix(), tuple(names), blocks, laws.blocks,
+        system.structure, tuple(system.forces), tuple(rows.names), rows.matrix(), tuple(names), blocks, ruled,
         tuple(functions),
     )  # fmt: skip
 
@@ -192,31 +205,26 @@ class _Rows:
         self.names: list[str] = []
         self.entries: list[dict[int, float]] = []
 
-    def add(self, name: str, entries: dict[int, float]) -> int:
-        self.names.append(name)
-        self.entries.append(entries)
-        return len(self.names) - 1
-
     def contact(self, element: FrictionContact, direction: str) -> int:
         """Row of a contact along one of its directions."""
         sign, axis = (-1.0 if direction.startswith("-") else 1.0), direction.removeprefix("-")
-        where = f"contact {element.name!r}"
-        entries = {self.structure.dofs.index(f"{element.first}.{axis}", where): sign}
-        if element.second is not None:
-            entries[self.structure.dofs.index(f"{element.second}.{axis}", where)] = -sign
-        return self.add(f"{element.name}.{axis}", entries)
+        second = None if element.second is None else f"{element.second}.{axis}"
+        name, where = f"{element.name}.{axis}", f"contact {element.name!r}"
+        return self.between(name, f"{element.first}.{axis}", second, where, sign)
 
-    def between(self, name: str, first: str, second: str | None, where: str) -> int:
-        """Row of the difference of two degrees of freedom."""
-        entries = {self.structure.dofs.index(first, where): 1.0}
+    def between(self, name: str, first: str, second: str | None, where: str, sign: float = 1.0) -> int:
+        """Row of the difference of two degrees of freedom, times a sign."""
+        entries = {self.structure.dofs.index(first, where): sign}
         if second is not None:
             end = self.structure.dofs.index(second, where)
             if end in entries:
                 raise InputError(
                     f"{where} is between {first!r} and itself; expected two degrees of freedom, or one and the ground"
                 )
-            entries[end] = -1.0
-        return self.add(name, entries)
+            entries[end] = -sign
+        self.names.append(name)
+        self.entries.append(entries)
+        return len(self.names) - 1
 
     def matrix(self) -> csc_array:
         rows = [row for row, entries in enumerate(self.entries) for _ in entries]
@@ -236,74 +244,21 @@ class _Rows:
         return 1 / sum(1 / stiffness for stiffness in stiffnesses)
 
 
-class _Entry(NamedTuple):
-    element: LawElement
-    rows: list[int]
-    numbers: list[Number]
-
-
-class _Laws:
-    """Elements with a law, by what they have in common."""
-
-    def __init__(self, rows: _Rows) -> None:
-        self._rows = rows
-        self._blocks: dict[tuple[type[LawElement], Law, Law | None, int, int, tuple[str, ...]], list[_Entry]] = {}
-
-    def add(self, element: LawElement) -> None:
-        """Add the rows and the numbers of an element."""
-        own, where = [], f"element {element.name!r}"
-        for first, second in element.ends:
-            name = element.name if len(element.ends) == 1 else f"{element.name}.{first}"
-            own.append(self._rows.between(name, first, second, where))
-        numbers = element.numbers
-        key = type(element), element.law, element.events, element.states, len(own), tuple(numbers)
-        self._blocks.setdefault(key, []).append(_Entry(element, own, list(numbers.values())))
-
-    @property
-    def blocks(self) -> tuple[LawBlock, ...]:
-        return tuple(
-            LawBlock(
-                entries[0].element, tuple(entry.element.name for entry in entries),
-                np.array([entry.rows for entry in entries]),
-                np.array([entry.numbers for entry in entries]).reshape(len(entries), len(names)),
-            )
-            for (*_, names), entries in self._blocks.items()
-        )  # fmt: skip
-
-
 def _real(block: Any) -> Any:
     """A block with the real parts of its numbers."""
     return replace(block, numbers=np.ascontiguousarray(np.real(block.numbers), dtype=float))
 
 
-def _directions(element: FrictionContact) -> tuple[str, ...]:
-    return (*element.tangential, *([element.normal] if element.normal is not None else []))
-
-
-def _kind(law: object) -> str:
-    return law.kind if isinstance(law, Rigid) else ELASTIC
-
-
 def _numbers(element: FrictionContact, own: list[int], rows: _Rows) -> list[list]:
     """Numbers of the cells of a contact."""
     law = element.law
+    if isinstance(law, Rigid):
+        penalties = [law.penalty if law.penalty is not None else rows.penalty(row) for row in (own[0], own[-1])]
+        return [[*penalties, law.gap, element.friction, element.preload]]
+    normal = law.normal_stiffness if law.normal_stiffness is not None else 0.0
     if isinstance(law, ElasticSlider):
-        normal = law.normal_stiffness if law.normal_stiffness is not None else 0.0
         return [[law.tangential_stiffness, normal, law.gap, element.friction, element.preload]]
-    if isinstance(law, Iwan):
-        normal = law.normal_stiffness if law.normal_stiffness is not None else 0.0
-        return [
-            [stiffness, share * normal, law.gap, element.friction, share * element.preload]
-            for stiffness, share in zip(law.stiffnesses, law.shares, strict=True)
-        ]
-    tangential = law.penalty if law.penalty is not None else rows.penalty(own[0])
-    normal = law.penalty if law.penalty is not None else rows.penalty(own[-1])
-    return [[tangential, normal, law.gap, element.friction, element.preload]]
-
-
-def _values(forces: Sequence[HarmonicForce | StaticForce]) -> list:
     return [
-        value
-        for force in forces
-        for value in ((force.value,) if isinstance(force, StaticForce) else (force.amplitude, force.phase))
+        [stiffness, share * normal, law.gap, element.friction, share * element.preload]
+        for stiffness, share in zip(law.stiffnesses, law.shares, strict=True)
     ]

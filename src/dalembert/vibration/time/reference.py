@@ -1,10 +1,12 @@
 """Periodic motions by integration in time: a reference for harmonic balance that shares its laws of contact alone."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
+from typing import Any, NamedTuple, cast
 
 import numpy as np
+from scipy.sparse.linalg import LinearOperator, gmres
 
 from dalembert.arguments import takes_checked
 from dalembert.errors import InputError, SolveError, unknown
@@ -23,7 +25,6 @@ from dalembert.vibration.time.elements import Elements, Instant, Reaction, react
 from dalembert.vibration.time.lowering import InTime, Users
 from dalembert.vibration.time.newmark import Newmark
 from dalembert.vibration.time.periodic_motion import PeriodicMotion
-from dalembert.vibration.time.shooting import shoot
 from dalembert.vibration.time.steps import LOST, Modes, Record, Scheme, State, go_through, room
 
 LONG_RUN, SHOOTING = "long run", "shooting"
@@ -118,6 +119,66 @@ def steady_state(
         converged=ended.change <= method.tolerance,
         provenance={**versions(), "method": asdict(method), "way": way},
     )
+
+
+Period = Callable[[np.ndarray], tuple[np.ndarray, float]]
+"""Gives the state a period after a state, and the size of the change."""
+PARTS = (1.0, 0.5, 0.25, 0.125)
+"""Parts of a Newton step that are tried before a plain period is."""
+DIFFERENCE = 1e-7
+"""Step of the differences, as part of the state."""
+DIRECTIONS = 60
+"""Most directions of a Newton step."""
+
+
+class Shot(NamedTuple):
+    """A state, and the periods that were gone through to find it."""
+
+    state: np.ndarray
+    periods: int
+
+
+def shoot(period: Period, state: np.ndarray, tolerance: float, most: int) -> Shot:
+    """A state (unknowns,) that a period returns to, from a guess; a state with the least change if there is none.
+
+    Parameters
+    ----------
+    period : callable
+    state : array, shape (unknowns,)
+        In scales in which its parts are comparable.
+    tolerance : float
+        Of the change.
+    most : int
+        Periods.
+    """
+    (after, change), run = period(state), 1
+    while change > tolerance and run < most:
+        off, calls = after - state, []
+        step, _ = gmres(
+            _slope(period, state, after), -off, rtol=1e-4, restart=min(DIRECTIONS, len(state)), maxiter=1,
+            callback=calls.append, callback_type="pr_norm",
+        )  # fmt: skip
+        run += len(calls) + 2
+        for part in PARTS:
+            place = state + part * step
+            (end, moved), run = period(place), run + 1
+            if np.linalg.norm(end - place) < (1 - 0.1 * part) * np.linalg.norm(off):
+                state, after, change = place, end, moved
+                break
+        else:
+            state, (after, change), run = after, period(after), run + 1
+    return Shot(state, run)
+
+
+def _slope(period: Period, state: np.ndarray, after: np.ndarray) -> Any:
+    """Derivative of what a period changes, as an operator on directions."""
+    size = float(np.linalg.norm(after)) or 1.0
+
+    def along(direction: np.ndarray) -> np.ndarray:
+        step = DIFFERENCE * size / (float(np.linalg.norm(direction)) or 1.0)
+        return (period(state + step * direction)[0] - after) / step - direction
+
+    return cast(Any, LinearOperator)((len(state), len(state)), matvec=along, dtype=float)
 
 
 @dataclass(frozen=True)

@@ -36,6 +36,8 @@ class Dofs:
     (1, 2)
     """
 
+    IN_WORDS = "Dofs, such as Dofs(('A.x', 'B.x'))"
+
     names: tuple[str, ...]
 
     def __post_init__(self) -> None:

@@ -26,6 +26,11 @@ class NamedMatrix:
 Matrices = dict[str, NamedMatrix]
 
 
+def _named(matrix: Any) -> NamedMatrix:
+    """A matrix without names of its rows."""
+    return NamedMatrix(csc_array(matrix) if issparse(matrix) else matrix)
+
+
 def npz(path: Path) -> Matrices:
     """Arrays of an NPZ file; sparse ones are NAME.data, NAME.indices and NAME.indptr by columns; dofs names rows."""
     with np.load(path, allow_pickle=False) as held:
@@ -47,7 +52,7 @@ def matrix_market(path: Path) -> Matrices:
     if not first.startswith(b"%%MatrixMarket"):
         return _abaqus(path)
     matrix = guarded(path, "Matrix Market", "scipy.io", "mmread")
-    return {path.stem: NamedMatrix(csc_array(matrix) if issparse(matrix) else matrix)}
+    return {path.stem: _named(matrix)}
 
 
 def _abaqus(path: Path) -> Matrices:
@@ -56,11 +61,8 @@ def _abaqus(path: Path) -> Matrices:
     rows, columns = ([_dof(*one) for one in table[:, at : at + 2].astype(int)] for at in (0, 2))
     dofs = tuple(dict.fromkeys(rows + columns))
     places = {name: place for place, name in enumerate(dofs)}
-    return {
-        path.stem: NamedMatrix(
-            completed([places[name] for name in rows], [places[name] for name in columns], table[:, 4], len(dofs)), dofs
-        )
-    }
+    own, other = ([places[name] for name in names] for names in (rows, columns))
+    return {path.stem: NamedMatrix(completed(own, other, table[:, 4], len(dofs)), dofs)}
 
 
 def calculix(path: Path) -> Matrices:
@@ -86,7 +88,7 @@ def mat(path: Path) -> Matrices:
         raise DataError(f"{path}: it is a MAT file of version 7.3; save it in MATLAB with save(..., '-v7')")
     held = {name: value for name, value in version_5(path).items() if not name.startswith("__")}
     return {
-        name: NamedMatrix(csc_array(value) if issparse(value) else value)
+        name: _named(value)
         for name, value in held.items()
         if issparse(value) or (isinstance(value, np.ndarray) and value.ndim == 2)
     }
@@ -95,7 +97,7 @@ def mat(path: Path) -> Matrices:
 def op4(path: Path) -> Matrices:
     """Matrices of Nastran's OUTPUT4, by pyYeti; their rows have no names."""
     held = _pyyeti("op4", path, "OP4 files").load(str(path), sparse=None)
-    return {name: NamedMatrix(csc_array(matrix) if issparse(matrix) else matrix) for name, (matrix, *_) in held.items()}
+    return {name: _named(matrix) for name, (matrix, *_) in held.items()}
 
 
 def dmig(path: Path) -> Matrices:

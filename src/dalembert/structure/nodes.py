@@ -37,6 +37,8 @@ class Nodes:
     ('b', ('b',))
     """
 
+    IN_WORDS = "Nodes"
+
     names: tuple[str, ...]
     places: np.ndarray
     sets: Mapping[str, tuple[str, ...]] = field(default_factory=dict)

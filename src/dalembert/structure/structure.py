@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from scipy.sparse import csc_array, issparse
 
-from dalembert.arguments import is_number, names_of
+from dalembert.arguments import Checked, is_number, names_of
 from dalembert.errors import InputError, shown
 from dalembert.structure.damping import Modal, Rayleigh
 from dalembert.structure.dofs import Dofs
@@ -30,7 +30,7 @@ FAINT = 1e-20
 
 
 @dataclass(frozen=True, eq=False)
-class Structure:
+class Structure(Checked):
     r"""A linear structure :math:`M \ddot x + C \dot x + K x = f`, perhaps with hysteretic damping.
 
     Hysteretic (structural) damping is a loss matrix D: the dynamic stiffness at :math:`\omega > 0` is
@@ -73,7 +73,10 @@ class Structure:
     loss: Matrix | None = None
 
     def __post_init__(self) -> None:
-        self._check_names()
+        if not self.size:
+            raise InputError(
+                "Structure: there are no degrees of freedom, perhaps all are clamped; expected at least one"
+            )
         for name in MATRICES:
             matrix = getattr(self, name)
             if matrix is None and name in OPTIONAL:
@@ -100,16 +103,6 @@ class Structure:
         self._require_positive("mass", "kg")
         if self.loss is not None:
             self._require_positive("loss", "N/m")
-
-    def _check_names(self) -> None:
-        if not isinstance(self.dofs, Dofs):
-            raise InputError(f"Structure: dofs is {shown(self.dofs)}; expected Dofs, such as Dofs(('A.x', 'B.x'))")
-        if not isinstance(self.nodes, Nodes | None):
-            raise InputError(f"Structure: nodes is {shown(self.nodes)}; expected Nodes")
-        if not self.size:
-            raise InputError(
-                "Structure: there are no degrees of freedom, perhaps all are clamped; expected at least one"
-            )
 
     def _require_positive(self, name: str, unit: str) -> None:
         """Refuse a negative diagonal entry."""

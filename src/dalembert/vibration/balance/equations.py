@@ -71,7 +71,7 @@ class Equations:
 
         Where nothing holds a mean position, few samples may leave a mean force that more of them remove.
         """
-        fresh = partial(self._solved, unknowns, omega, samples, plane, point)
+        fresh = partial(self.newton, unknowns, omega, samples, plane, point)
         if self.checkpoint is None:
             return fresh()
         made: list[Solution] = []
@@ -84,15 +84,16 @@ class Equations:
         values, numbers = self.checkpoint.once(self._key(unknowns, omega, samples, plane), compute)
         return made[0] if made else self._restored(values, *numbers.tolist())
 
-    def _solved(
+    def newton(
         self, unknowns: np.ndarray, omega: float, samples: int, plane: Plane | None, point: Point | None
     ) -> Solution:
+        """Solve as :meth:`solve` does, without a look at the checkpoint."""
 
         def finer(found: Solution) -> Solution:
             balance, near = self.balance(2 * found.samples), (found.unknowns, found.omega)
-            return correct(balance, self.condensation, self.method, *near, plane, found.point)
+            return correct(balance, self.condensation.at, self.method, *near, plane, found.point)
 
-        solution = correct(self.balance(samples), self.condensation, self.method, unknowns, omega, plane, point)
+        solution = correct(self.balance(samples), self.condensation.at, self.method, unknowns, omega, plane, point)
         while solution.error <= self.method.sampling and not solution.converged and self._doubles(solution):
             before, solution = solution.error, finer(solution)
             if not solution.converged and solution.error > before / 2:  # what is left is not of the samples
@@ -246,7 +247,7 @@ class Loading:
 
     def solve(self, unknowns: np.ndarray, load: float, samples: int, plane: Plane | None = None) -> Solution:
         """Newton's method from a guess."""
-        return correct(self.balance, self, self.method, unknowns, load, plane)
+        return correct(self.balance, self.at, self.method, unknowns, load, plane)
 
     def first(self, load: float) -> Solution:
         """Return the solution from closed contacts that stick."""

@@ -28,12 +28,6 @@ VERIFIED = 1e-8
 """Residual, as part of the forces, above which no rounding is an excuse: nothing is balanced there."""
 
 
-class Condensed(Protocol):
-    """A condensed structure at each value of the parameter of a path, ω or another."""
-
-    def at(self, omega: float, /) -> Point: ...
-
-
 @dataclass(frozen=True)
 class Plane:
     """A plane across a path in scaled unknowns: direction · (y - place) = 0, with y = (U/size, ω/width).
@@ -136,17 +130,21 @@ def line_search(trial: Callable[[float], AnyTrial], error: float) -> AnyTrial | 
 
 def correct(
     balance: Balance,
-    condensation: Condensed,
+    structure: Callable[[float], Point],
     method: HarmonicBalance,
     unknowns: np.ndarray,
     omega: float,
     plane: Plane | None = None,
     point: Point | None = None,
 ) -> Solution:
-    """Solve by Newton's method from a guess, at ω or on a plane. ``point`` is the structure at ω if it is known."""
+    """Solve by Newton's method from a guess, at ω or on a plane.
+
+    ``structure`` returns the condensed structure at a value of ω, or of another parameter of the path; ``point`` is
+    that at ω if it is known.
+    """
 
     def place(unknowns: np.ndarray, omega: float, point: Point | None, step: bool = True) -> Solution:
-        point = condensation.at(omega) if point is None else point
+        point = structure(omega) if point is None else point
         found: Any = balance.linearised(point, unknowns) if step else (balance.at(point, unknowns), None)
         distance = 0.0 if plane is None else plane.distance(unknowns, omega)
         error = math.hypot(norm(found[0].residual) / scale_of(point, found[0]), distance)

@@ -165,7 +165,7 @@ class ModeEquations:
         """Newton's method on a plane across the path, with as many samples as it needs, and at least those given."""
 
         def compute() -> tuple[np.ndarray, np.ndarray]:
-            found = self._solved(guess, plane, samples)
+            found = self.newton(guess, plane, samples)
             how = [found.iterations, found.error, found.converged, found.samples]
             return _numbers(found), np.array(how, dtype=float)
 
@@ -186,7 +186,8 @@ class ModeEquations:
     def _system(self) -> bytes:
         return self.problem.lowered.fingerprint(self.problem.method, self.row).encode()
 
-    def _solved(self, guess: FreeMotion, plane: Plane, samples: int) -> FreeMotion:
+    def newton(self, guess: FreeMotion, plane: Plane, samples: int) -> FreeMotion:
+        """Solve as :meth:`solve` does, without a look at the checkpoint."""
         method = self.problem.method
         motion = self._corrected(guess, plane, samples)
         while motion.converged and method.samples == AUTOMATIC and motion.samples < MOST_SAMPLES:
@@ -198,9 +199,10 @@ class ModeEquations:
 
     def direction(self, motion: FreeMotion, before: np.ndarray) -> np.ndarray:
         """Unit tangent of the path at a motion, to the same side as a direction before."""
-        return self._once(lambda: (self._direction(motion, before),), _numbers(motion), before, [motion.samples])[0]
+        return self._once(lambda: (self.tangent(motion, before),), _numbers(motion), before, [motion.samples])[0]
 
-    def _direction(self, motion: FreeMotion, before: np.ndarray) -> np.ndarray:
+    def tangent(self, motion: FreeMotion, before: np.ndarray) -> np.ndarray:
+        """As :meth:`direction`, without a look at the checkpoint."""
         plane = Plane(before, motion, self.scale(motion))
         system = self.system(motion.samples)
         matrix = self._jacobian(system, self._at(system, motion, plane), plane)

@@ -10,7 +10,7 @@ from dalembert.arguments import takes_checked
 from dalembert.errors import InputError
 from dalembert.forward import Checkpoint
 from dalembert.units import unit_of
-from dalembert.vibration.balance.equations import Equations, equations
+from dalembert.vibration.balance.equations import equations
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.modes.mode_equations import FreeMotion, Linear, ModeEquations, Plane
 from dalembert.vibration.paths.amplitudes import Amplitude, observed_column
@@ -180,7 +180,9 @@ def backbone(
     method = method or HarmonicBalance()
     sizes = positive_numbers(amplitudes, "backbone", "amplitudes", "m")
     with one_thread():
-        free = _without_harmonic_forces(equations(system, method, checkpoint, residuals=False))
+        driven = equations(system, method, checkpoint, residuals=False)
+        static = tuple(force for force in driven.lowered.forces if isinstance(force, StaticForce))
+        free = replace(driven, lowered=replace(driven.lowered, forces=static), _balances={})
         linear = ModeEquations(free, -1).linear(mode)
         names = free.lowered.structure.dofs
         row = int(np.abs(linear.shape).argmax()) if dof is None else names.index(dof)
@@ -191,11 +193,6 @@ def backbone(
         else:
             found = list(_at_sizes(own, first, sizes, start.rest))
         return _kept(own, mode, found)
-
-
-def _without_harmonic_forces(problem: Equations) -> Equations:
-    static = tuple(force for force in problem.lowered.forces if isinstance(force, StaticForce))
-    return replace(problem, lowered=replace(problem.lowered, forces=static), _balances={})
 
 
 def _scaled(linear: Linear, row: int, name: str) -> Linear:

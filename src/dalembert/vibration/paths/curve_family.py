@@ -64,9 +64,8 @@ class CurveFamily(Result):
         InputError
             For another kind, or a degree of freedom that was not observed.
         """
-        none = Peak(float("nan"), float("nan"))
-        found = (None if one is None or not one.converged.any() else one.peak(dof, kind) for one in self.curves)
-        return tuple(none if peak is None else peak for peak in found)
+        found = (one.peak(dof, kind) if one is not None and one.converged.any() else None for one in self.curves)
+        return tuple(peak or Peak(float("nan"), float("nan")) for peak in found)
 
     def best(self, dof: str, kind: str = "peak") -> float:
         """Return the value whose curve has the smallest peak.

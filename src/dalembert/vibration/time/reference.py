@@ -207,10 +207,6 @@ class _Run:
     def _arrays(self) -> tuple[Modes, Elements]:
         return self.problem.arrays(self._scheme)
 
-    @property
-    def _modes(self) -> Modes:
-        return self._arrays[0]
-
     @cached_property
     def _scheme(self) -> Scheme:
         return self.method.scheme(self.problem.omega)
@@ -278,14 +274,14 @@ class _Run:
         size = float(np.linalg.norm(warm.state.modes[:2] / [[1.0], [self.problem.omega]])) or 1.0
         widest = float(np.abs(warm.record.displacements).max(initial=0.0)) or 1.0
         each = size * self.problem.omega ** np.array([0.0, 1.0, 2.0, 2.0])
-        modes, states = np.repeat(each, len(self._modes.mass)), np.abs(warm.state.states)
+        modes, states = np.repeat(each, len(self.problem.spectral.mass)), np.abs(warm.state.states)
         return np.concatenate([modes, np.full(warm.state.sliders.size, widest), np.where(states > 0, states, 1.0)])
 
     def _flat(self, state: State, scale: np.ndarray) -> np.ndarray:
         return np.concatenate([own.ravel() for own in state]) / scale
 
     def _state(self, flat: np.ndarray, scale: np.ndarray) -> State:
-        modes, cells = 4 * len(self._modes.mass), 2 * len(self.problem.elements.tangents)
+        modes, cells = 4 * len(self.problem.spectral.mass), 2 * len(self.problem.elements.tangents)
         own, sliders, states = np.split(flat * scale, [modes, modes + cells])
         return State(own.reshape(4, -1), sliders.reshape(-1, 2), states)
 

@@ -76,7 +76,7 @@ def test_given_amplitudes_do_not_jump_to_another_mode() -> None:
 
 @pytest.mark.parametrize("amplitudes", [(0.1, 10.0), np.geomspace(0.1, 10.0, 8)], ids=["path", "given"])
 def test_a_mode_that_was_interrupted_goes_on_where_it_was(amplitudes, tmp_path: Path, monkeypatch) -> None:
-    solve, turn, places, left = ModeEquations.solve, ModeEquations.direction, [], [5]
+    solve, turn, places, left = ModeEquations.newton, ModeEquations.tangent, [], [5]
 
     def limited(own: ModeEquations, guess, plane, samples: int):
         places.append(guess.harmonics.tobytes() + plane.direction.tobytes() + bytes([samples.bit_length()]))
@@ -90,8 +90,8 @@ def test_a_mode_that_was_interrupted_goes_on_where_it_was(amplitudes, tmp_path: 
         return turn(own, motion, before)
 
     undisturbed = backbone(two_masses(), amplitudes, 1, METHOD).to_xarray()
-    monkeypatch.setattr(ModeEquations, "solve", limited)
-    monkeypatch.setattr(ModeEquations, "direction", turned)
+    monkeypatch.setattr(ModeEquations, "newton", limited)
+    monkeypatch.setattr(ModeEquations, "tangent", turned)
     with pytest.raises(KeyboardInterrupt), Checkpoint(tmp_path / "checkpoint") as checkpoint:
         backbone(two_masses(), amplitudes, 1, METHOD, checkpoint=checkpoint)
     left[0] = 10_000

@@ -82,7 +82,7 @@ def test_a_peak_that_is_not_found_is_marked_and_the_track_goes_on() -> None:
 
 def test_a_track_that_was_interrupted_goes_on_where_it_was(tmp_path: Path, monkeypatch) -> None:
     asked = rubbing, "preload", [2.0, 4.0, 8.0], (0.1, 0.3), METHOD
-    solve, calls, left = Equations.solve, [], []
+    solve, calls, left = Equations.newton, [], []
 
     def limited(own: Equations, *given, **more):
         calls.append(own)
@@ -90,7 +90,7 @@ def test_a_track_that_was_interrupted_goes_on_where_it_was(tmp_path: Path, monke
             raise KeyboardInterrupt
         return solve(own, *given, **more)
 
-    monkeypatch.setattr(Equations, "solve", limited)
+    monkeypatch.setattr(Equations, "newton", limited)
     left.append(0)
     undisturbed, once = track_resonance(*asked, dof="m").to_xarray(), len(calls)
     calls.clear()

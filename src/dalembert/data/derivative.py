@@ -6,7 +6,7 @@ import numpy as np
 from numpy.polynomial.legendre import legder, legval, legvander
 
 from dalembert.arguments import takes_checked
-from dalembert.data.measurements import Measurements
+from dalembert.data.record import Record
 from dalembert.data.stretches import stretches
 from dalembert.errors import DataError, InputError, unknown
 
@@ -60,7 +60,7 @@ class Derivative:
 
 @takes_checked()
 def derivative(
-    data: Measurements,
+    data: Record,
     channel: str,
     *,
     order: int = 1,
@@ -102,6 +102,7 @@ def derivative(
     Examples
     --------
     >>> times = np.linspace(0, 1, 101)
+    >>> from dalembert.data import Measurements
     >>> data = Measurements.of(times, {"x": np.sin(3 * times)}, deviations=1e-6)
     >>> found = derivative(data, "x")
     >>> bool(np.max(np.abs(found.values - 3 * np.cos(3 * times))) < 5 * found.error), found.error < 1e-3

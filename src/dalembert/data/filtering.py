@@ -6,7 +6,7 @@ import numpy as np
 from scipy.signal import butter, sosfiltfilt
 
 from dalembert.arguments import is_real, is_whole
-from dalembert.data.measurements import TURN, Measurements
+from dalembert.data.record import TURN, Record, Recorded
 from dalembert.data.stretches import gaps, stretches
 from dalembert.errors import DataError
 
@@ -14,7 +14,7 @@ ORDER = 4  # of the Butterworth filter, which runs forward and back
 _EVEN = 0.05  # of the distance of samples: how far one of them may differ
 
 
-def filtered(data: Measurements, cutoff: float) -> Measurements:
+def filtered(data: Recorded, cutoff: float) -> Recorded:
     """Measurements without what is faster than a cutoff frequency (Hz); see `Measurements.filtered`."""
     along = _times(data)
     if not is_real(cutoff) or not 0 < cutoff < np.inf:
@@ -42,7 +42,7 @@ def filtered(data: Measurements, cutoff: float) -> Measurements:
     return replace(data, values=np.where(data.wrapping, turned, values), deviations=deviations, missing=missing)
 
 
-def decimated(data: Measurements, factor: int, cutoff: float | None) -> Measurements:
+def decimated(data: Recorded, factor: int, cutoff: float | None) -> Recorded:
     """Every ``factor``-th sample of filtered measurements; see `Measurements.decimated`."""
     along = _times(data)
     if not is_whole(factor) or factor < 1:
@@ -66,7 +66,7 @@ def decimated(data: Measurements, factor: int, cutoff: float | None) -> Measurem
     return replace(slow, coordinate=replace(slow.coordinate, values=along[rows]), values=values, sampled=sampled)
 
 
-def _times(data: Measurements) -> np.ndarray:
+def _times(data: Record) -> np.ndarray:
     along = data.coordinate
     if along.unit != "s":
         raise DataError(f"the samples lie along the {along.name} in {along.unit}; a low-pass filter needs times")

@@ -7,18 +7,19 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from dalembert.arguments import names_of
-from dalembert.data.labels import by_name, check_labels, coordinate_of, cut, digest, real_numbers, table_of
+from dalembert.data.derivative import derivative
+from dalembert.data.filtering import decimated, filtered
+from dalembert.data.labels import by_name, coordinate_of, real_numbers, table_of
+from dalembert.data.record import Record
+from dalembert.data.resampling import resampled
 from dalembert.errors import DataError, shown, unknown
 from dalembert.forward import Coordinate
 
-MISSING = ("refuse", "leave-out")
-TURN = 2 * np.pi
-FIRST = "first"
 SAME = 1e-9  # part of the span below which two times are the same
 
 
 @dataclass(frozen=True, eq=False)
-class Measurements:
+class Measurements(Record):
     """Measured channels along a coordinate, usually time.
 
     Parameters
@@ -49,45 +50,6 @@ class Measurements:
     InputError
         For channels or ``wraps`` that are not names.
     """
-
-    coordinate: Coordinate
-    channels: tuple[str, ...]
-    values: np.ndarray
-    deviations: np.ndarray | None = None
-    missing: str = "refuse"
-    wraps: tuple[str, ...] = ()
-    origin: str = ""
-    sampled: np.ndarray | None = None
-
-    def __post_init__(self) -> None:
-        for name, value in (
-            ("coordinate", coordinate_of(self.coordinate)),
-            ("channels", names_of(self.channels, "Measurements", "channels")),
-            ("values", real_numbers(self.values, "values")),
-            ("deviations", None if self.deviations is None else real_numbers(self.deviations, "deviations")),
-            ("wraps", names_of(self.wraps, "Measurements", "wraps")),
-        ):
-            object.__setattr__(self, name, value)
-        check_labels(self.coordinate, self.channels, values=self.values)
-        if self.sampled is not None and np.shape(self.sampled) != self.values.shape:
-            raise DataError(f"sampled of shape {np.shape(self.sampled)} was given; expected {self.values.shape}")
-        if self.missing not in MISSING:
-            raise DataError(unknown("word", str(self.missing), MISSING, "missing"))
-        for name in self.wraps:
-            if name not in self.channels:
-                raise DataError(unknown("channel", name, self.channels, "wraps"))
-        if self.deviations is not None:
-            self._check_deviations(self.deviations)
-
-    def _check_deviations(self, deviations: np.ndarray) -> None:
-        if deviations.shape != (len(self.channels),):
-            raise DataError(
-                f"deviations of shape {deviations.shape} were given; expected ({len(self.channels)},), "
-                f"one a channel: {', '.join(self.channels)}"
-            )
-        for name, deviation in zip(self.channels, deviations, strict=True):
-            if not (np.isfinite(deviation) and deviation > 0):
-                raise DataError(f"channel {name!r}: its deviation is {deviation}; expected a positive number")
 
     @classmethod
     def of(
@@ -126,95 +88,6 @@ class Measurements:
             names_of(wraps, "Measurements", "wraps"),
         )  # fmt: skip
 
-    @property
-    def present(self) -> np.ndarray:
-        """Mask of the values that were measured, shape (samples, channels)."""
-        return np.isfinite(self.values)
-
-    @property
-    def taken(self) -> np.ndarray:
-        """Mask of the samples that each channel's sensor takes, measured or lost, shape (samples, channels)."""
-        return np.ones(self.values.shape, dtype=bool) if self.sampled is None else np.asarray(self.sampled, dtype=bool)
-
-    @property
-    def wrapping(self) -> np.ndarray:
-        """Mask of the channels that wrap, shape (channels,)."""
-        return np.isin(self.channels, self.wraps)
-
-    @property
-    def continuous(self) -> np.ndarray:
-        """The values, shape (samples, channels), wrapping channels without their jumps by whole turns."""
-        values = self.values.copy()
-        for column in np.flatnonzero(self.wrapping):
-            there = self.present[:, column]
-            values[there, column] = np.unwrap(values[there, column])
-        return values
-
-    def difference(self, response: np.ndarray) -> np.ndarray:
-        """Response − values, both (..., samples, channels); NaN where a value is missing.
-
-        In wrapping channels less the nearest number of whole turns, so that it lies within ±π:
-
-        >>> Measurements.of([0.0], {"angle": [3.1]}, wraps=["angle"]).difference(np.array([[-3.1]])).round(6).item()
-        0.083185
-        """
-        difference = response - self.values
-        if not self.wraps:
-            return difference
-        return np.where(self.wrapping, difference - TURN * np.rint(difference / TURN), difference)
-
-    def since(self, start: float | str) -> "Measurements":
-        """The same samples, with times that count from ``start``, or from the first sample if that is ``"first"``.
-
-        A model's motion begins at time 0, and few records do.
-
-        Raises
-        ------
-        DataError
-            For another word.
-
-        Examples
-        --------
-        >>> data = Measurements.of([48.2, 48.3, 48.4], {"x": [0.0, 1.0, 2.0]})
-        >>> data.since("first").coordinate.values.round(9).tolist(), data.since(48.0).coordinate.values[0].round(9)
-        ([0.0, 0.1, 0.2], np.float64(0.2))
-        """
-        along = self.coordinate
-        shifted = replace(along, values=along.values - beginning(along.values, start))
-        return replace(self, coordinate=shifted)
-
-    def first(self, samples: int) -> "Measurements":
-        """The first ``samples`` samples."""
-        return self._rows(slice(samples), cut(self.coordinate, samples))
-
-    def between(self, begin: float, end: float) -> "Measurements":
-        """The samples from ``begin`` to ``end`` of the coordinate, both included.
-
-        Raises
-        ------
-        DataError
-            If there are none.
-        """
-        along = self.coordinate.values
-        return self._picked((along >= begin) & (along <= end), f"from {begin:.10g} to {end:.10g}")
-
-    def every(self, step: int) -> "Measurements":
-        """Every ``step``-th sample, the first one among them; the others' information is lost.
-
-        Raises
-        ------
-        DataError
-            For a step below 1, and for channels with different time stamps, of which some would be lost.
-        """
-        if step < 1:
-            raise DataError(f"every {step} samples; expected at least 1")
-        if step > 1 and not self.taken.all():
-            raise DataError(
-                f"every {step} samples of channels with different time stamps; decimate them, or thin each record "
-                "before they are merged"
-            )
-        return self._picked(np.arange(len(self.values)) % step == 0, "")
-
     def filtered(self, cutoff: float) -> "Measurements":
         """The channels without what is faster than a cutoff frequency, without delay.
 
@@ -245,8 +118,6 @@ class Measurements:
         >>> bool(np.abs(data.values[200:-200, 0] - slow[200:-200]).max() < 1e-3), data.deviations.round(3)
         (True, array([0.027]))
         """
-        from dalembert.data.filtering import filtered
-
         return filtered(self, cutoff)
 
     def decimated(self, factor: int, cutoff: float | None = None) -> "Measurements":
@@ -270,22 +141,7 @@ class Measurements:
         >>> len(data.values), round(float(data.coordinate.values[1]), 6)
         (200, 0.01)
         """
-        from dalembert.data.filtering import decimated
-
         return decimated(self, factor, cutoff)
-
-    def _picked(self, mask: np.ndarray, what: str) -> "Measurements":
-        along = self.coordinate
-        if not np.any(mask):
-            raise DataError(
-                f"no sample lies {what}; the {along.name} runs from {along.values[0]:.10g} to {along.values[-1]:.10g} "
-                f"{along.unit}"
-            )
-        return self._rows(mask, Coordinate(along.name, along.unit, along.values[mask]))
-
-    def _rows(self, rows: slice | np.ndarray, along: Coordinate) -> "Measurements":
-        sampled = None if self.sampled is None else self.sampled[rows]
-        return replace(self, coordinate=along, values=self.values[rows], sampled=sampled)
 
     def resampled(self, samples: ArrayLike, *, gap: float | None = None) -> "Measurements":
         """The channels at other samples of the coordinate, by cubic splines through the values.
@@ -317,8 +173,6 @@ class Measurements:
         >>> data.resampled([0.0, 0.4, 0.8]).values.round(12).tolist()
         [[0.0], [0.16], [0.64]]
         """
-        from dalembert.data.resampling import resampled
-
         return resampled(self, np.array(samples, dtype=float), gap)
 
     def with_derivative(
@@ -344,8 +198,6 @@ class Measurements:
         >>> data.channels, bool(np.max(np.abs(data.values[:, 1] - 2 * times)) < 5 * data.deviations[1])
         (('x', 'vx'), True)
         """
-        from dalembert.data.derivative import derivative
-
         found = derivative(self, channel, order=order, window=window, degree=degree, gap=gap)
         deviations = self.deviations
         if deviations is not None:
@@ -354,28 +206,6 @@ class Measurements:
         taken = self.taken[:, [*range(len(self.channels)), self.channels.index(channel)]]
         sampled = None if self.sampled is None else taken
         return replace(self, channels=(*self.channels, name), values=values, deviations=deviations, sampled=sampled)
-
-    @property
-    def fingerprint(self) -> str:
-        """Hash of all that the measurements say."""
-        arrays = [self.values] if self.deviations is None else [self.values, self.deviations]
-        arrays += [self.wrapping] if self.wraps else []
-        return digest(self.coordinate, self.channels, *arrays)
-
-
-def beginning(along: np.ndarray, start: float | str) -> float:
-    """The time of a record (samples,) at which the motion begins: a number, or its first one.
-
-    Raises
-    ------
-    DataError
-        For another word.
-    """
-    if isinstance(start, str):
-        if start != FIRST:
-            raise DataError(f"start is {start!r}; expected {FIRST!r}, or the time at which the motion begins")
-        return float(along[0])
-    return float(start)
 
 
 def merged(parts: Sequence[Measurements]) -> Measurements:

@@ -10,8 +10,9 @@ from numpy.typing import ArrayLike
 from dalembert.data.columns import Trial, trial_label
 from dalembert.data.format import Request
 from dalembert.data.known_formats import columns_in, trial_labels
-from dalembert.data.measurements import FIRST, Measurements
+from dalembert.data.measurements import Measurements
 from dalembert.data.opening import errors_with_file
+from dalembert.data.record import FIRST
 from dalembert.data.text_layout import AUTO
 
 

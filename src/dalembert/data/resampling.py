@@ -6,7 +6,7 @@ import numpy as np
 from scipy.interpolate import make_interp_spline
 
 from dalembert.data.labels import check_labels
-from dalembert.data.measurements import TURN, Measurements
+from dalembert.data.record import TURN, Recorded
 from dalembert.data.stretches import stretches
 from dalembert.errors import DataError
 from dalembert.forward import Coordinate
@@ -15,7 +15,7 @@ CLOSE = 1e-9
 """Samples as close as this part of the coordinate's span are the same."""
 
 
-def resampled(data: Measurements, samples: np.ndarray, gap: float | None = None) -> Measurements:
+def resampled(data: Recorded, samples: np.ndarray, gap: float | None = None) -> Recorded:
     """Measurements at other samples (new samples,), by splines between the gaps of each channel."""
     along = data.coordinate
     given = Coordinate(along.name, along.unit, np.atleast_1d(samples))

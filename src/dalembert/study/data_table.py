@@ -19,7 +19,7 @@ from pydantic import (
 
 from dalembert.arguments import is_whole
 from dalembert.data.known_formats import known_formats
-from dalembert.data.measurements import FIRST, beginning
+from dalembert.data.record import FIRST, beginning
 from dalembert.errors import unknown
 from dalembert.forward.sensors import START
 from dalembert.parameters import Parameter

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import numpy as np
 
-from dalembert.data.measurements import TURN
+from dalembert.data.record import TURN
 from dalembert.errors import ClusterError, StorageError, told
 from dalembert.findings import Finding
 from dalembert.forward import refined

@@ -6,7 +6,7 @@ from itertools import product
 
 import numpy as np
 
-from dalembert.data.measurements import TURN
+from dalembert.data.record import TURN
 from dalembert.inverse.events import Paved
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.surrogates import surrogate_of

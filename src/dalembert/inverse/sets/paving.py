@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dalembert.data.measurements import TURN
+from dalembert.data.record import TURN
 from dalembert.surrogate import ChebyshevPolynomial, bounds
 
 AS_THEY_ARE = 1e9

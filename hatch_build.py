@@ -17,7 +17,7 @@ class KernelHook(BuildHookInterface):
         if version == "editable" or os.environ.get("DALEMBERT_KERNELS") != "1":
             return
         sys.path.insert(0, str(Path(self.root) / "src"))
-        from dalembert.kernels.packaged import build
+        from dalembert.kernels.everything import build
 
         for path in build(Path(self.root) / "build" / "kernels", self._progress):
             build_data["force_include"][str(path)] = f"dalembert/kernels/{path.name}"

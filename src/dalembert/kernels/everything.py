@@ -1,10 +1,15 @@
 """All kernels of the package: for compiling ahead, and for the object file of a wheel."""
 
-from collections.abc import Iterator
+import json
+import platform
+from collections.abc import Callable, Iterator
 from importlib import import_module
+from pathlib import Path
 from pkgutil import walk_packages
 
+from dalembert.kernels.compiler import optimised, target_machine
 from dalembert.kernels.kernel import Compiled
+from dalembert.kernels.packaged import FAMILIES, source_digest
 
 _HOMES = ("dalembert.multibody", "dalembert.vibration", "dalembert.surrogate")
 
@@ -26,3 +31,25 @@ def _kernels_of(module: object) -> Iterator[Compiled]:
             yield value
         elif hasattr(value, "all_kernels") and not isinstance(value, type):  # a kind of component
             yield from value.all_kernels()
+
+
+def build(folder: Path, progress: Callable[[int, int, str], None] = lambda *_: None) -> list[Path]:
+    """Write the object of all kernels and what is to be known of it: ``kernels.o`` and ``kernels.json``."""
+    own = FAMILIES[platform.machine()]
+    kernels, whole = package_kernels(), None
+    for count, kernel in enumerate(kernels, 1):
+        module = optimised(*kernel.entry, cpu=own.cpu)
+        if whole is None:
+            whole = module
+        else:
+            whole.link_in(module)
+        progress(count, len(kernels), kernel.symbol)
+    about = {
+        "machine": platform.machine(), "cpu": own.cpu, "sources": source_digest(),
+        "symbols": [kernel.symbol for kernel in kernels],
+    }  # fmt: skip
+    folder.mkdir(parents=True, exist_ok=True)
+    paths = [folder / "kernels.o", folder / "kernels.json"]
+    paths[0].write_bytes(target_machine(own.cpu).emit_object(whole))
+    paths[1].write_text(json.dumps(about, indent=1))
+    return paths

@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 import llvmlite
 import llvmlite.binding as ll
@@ -19,12 +19,30 @@ import llvmlite.binding as ll
 from dalembert.kernels.digest import file_digest
 from dalembert.kernels.packaged import packaged
 
-if TYPE_CHECKING:
-    from dalembert.kernels.kernel import Compiled
-
 _UNUSED = 30 * 86400  # s after which a cached object is removed
 _DAY = 86400
 FOLDER = "DALEMBERT_CACHE_DIR"  # environment variable
+
+
+class Compilable(Protocol):
+    """A kernel, as objects see it."""
+
+    symbol: str
+    in_python: bool
+
+    @property
+    def digest(self) -> Any:
+        """Digest of its sources, a text."""
+        ...
+
+    @property
+    def needs(self) -> Any:
+        """List of the kernels that it calls."""
+        ...
+
+    def object_code(self) -> bytes:
+        """Compile it."""
+        ...
 
 
 def cache_root() -> Path:
@@ -51,12 +69,12 @@ def cache_folder() -> Path:
     return cache_root() / "kernels" / hashlib.sha256("\n".join(parts).encode()).hexdigest()[:16]
 
 
-def cached_path(kernel: "Compiled") -> Path:
+def cached_path(kernel: Compilable) -> Path:
     """Where the object of a kernel is kept."""
     return cache_folder() / f"{kernel.symbol}-{kernel.digest}.o"
 
 
-def read_cached(kernel: "Compiled") -> bytes | None:
+def read_cached(kernel: Compilable) -> bytes | None:
     """The object of a kernel, if it is kept."""
     path = cached_path(kernel)
     try:
@@ -76,7 +94,7 @@ def is_writable() -> bool:
     return os.access(cache_folder(), os.W_OK)
 
 
-def keep(kernel: "Compiled", code: bytes) -> None:
+def keep(kernel: Compilable, code: bytes) -> None:
     """Keep an object for later processes, unless the folder cannot be written."""
     with suppress(OSError):
         write_object(cached_path(kernel), code)
@@ -125,23 +143,23 @@ class Objects:
                 self._load(own.code)
                 self._loaded.update(own.symbols)
 
-    def missing(self, kernels: Iterable["Compiled"]) -> list["Compiled"]:
+    def missing(self, kernels: Iterable[Any]) -> list[Any]:
         """Kernels that must be compiled, among these and those that they call."""
         with self._lock:
             return [kernel for kernel in self._reached(kernels) if self._code(kernel) is None]
 
-    def make(self, kernel: "Compiled") -> bytes:
+    def make(self, kernel: Compilable) -> bytes:
         """Compile a kernel, and keep it."""
         code = kernel.object_code()
         keep(kernel, code)
         self.add(kernel, code)
         return code
 
-    def add(self, kernel: "Compiled", code: bytes) -> None:
+    def add(self, kernel: Compilable, code: bytes) -> None:
         """Take an object that was compiled elsewhere."""
         self._codes[kernel.symbol] = code
 
-    def address(self, kernel: "Compiled") -> int:
+    def address(self, kernel: Compilable) -> int:
         """Address of a kernel, which is loaded, or compiled, with those that it calls."""
         with self._lock:
             for other in reversed(self._reached([kernel])):
@@ -151,10 +169,10 @@ class Objects:
                 self._codes.pop(other.symbol, None)
             return self._engine.get_function_address(kernel.symbol)
 
-    def _reached(self, kernels: Iterable["Compiled"]) -> list["Compiled"]:
+    def _reached(self, kernels: Iterable[Compilable]) -> list[Compilable]:
         """Kernels that are not loaded among these and those that they call; callers first."""
         self._load_package()
-        reached: dict[str, Compiled] = {}
+        reached: dict[str, Compilable] = {}
         ahead = list(kernels)
         while ahead:
             kernel = ahead.pop()
@@ -164,7 +182,7 @@ class Objects:
                 ahead += kernel.needs
         return list(reached.values())
 
-    def _code(self, kernel: "Compiled") -> bytes | None:
+    def _code(self, kernel: Compilable) -> bytes | None:
         if kernel.symbol not in self._codes and (code := read_cached(kernel)) is not None:
             self._codes[kernel.symbol] = code
         return self._codes.get(kernel.symbol)

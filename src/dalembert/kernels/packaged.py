@@ -7,14 +7,13 @@ Python nor the Numba version. It is used if it was made from the present sources
 import hashlib
 import json
 import platform
-from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
 import llvmlite.binding as ll
 
-_HERE = Path(__file__).parent
+HERE = Path(__file__).parent
 _HOMES = ("kernels", "multibody", "vibration", "surrogate")  # folders of the package that hold kernels
 
 
@@ -43,8 +42,8 @@ def source_digest() -> str:
     """Digest of the package's files that hold kernels."""
     digest = hashlib.sha256()
     for home in _HOMES:
-        for path in sorted((_HERE.parent / home).rglob("*.py")):
-            digest.update(path.relative_to(_HERE.parent).as_posix().encode() + path.read_bytes())
+        for path in sorted((HERE.parent / home).rglob("*.py")):
+            digest.update(path.relative_to(HERE.parent).as_posix().encode() + path.read_bytes())
     return digest.hexdigest()
 
 
@@ -60,35 +59,10 @@ def family() -> Family | None:
 @cache
 def packaged() -> Packaged | None:
     """The object of this installation, if there is one that fits."""
-    about = _HERE / "kernels.json"
+    about = HERE / "kernels.json"
     if not about.exists() or family() is None:
         return None
     said = json.loads(about.read_text())
     if said["machine"] != platform.machine() or said["sources"] != source_digest():
         return None
-    return Packaged(frozenset(said["symbols"]), (_HERE / "kernels.o").read_bytes())
-
-
-def build(folder: Path, progress: Callable[[int, int, str], None] = lambda *_: None) -> list[Path]:
-    """Write the object of all kernels and what is to be known of it: ``kernels.o`` and ``kernels.json``."""
-    from dalembert.kernels.compiler import optimised, target_machine
-    from dalembert.kernels.everything import package_kernels
-
-    own = FAMILIES[platform.machine()]
-    kernels, whole = package_kernels(), None
-    for count, kernel in enumerate(kernels, 1):
-        module = optimised(*kernel.entry, cpu=own.cpu)
-        if whole is None:
-            whole = module
-        else:
-            whole.link_in(module)
-        progress(count, len(kernels), kernel.symbol)
-    about = {
-        "machine": platform.machine(), "cpu": own.cpu, "sources": source_digest(),
-        "symbols": [kernel.symbol for kernel in kernels],
-    }  # fmt: skip
-    folder.mkdir(parents=True, exist_ok=True)
-    paths = [folder / "kernels.o", folder / "kernels.json"]
-    paths[0].write_bytes(target_machine(own.cpu).emit_object(whole))
-    paths[1].write_text(json.dumps(about, indent=1))
-    return paths
+    return Packaged(frozenset(said["symbols"]), (HERE / "kernels.o").read_bytes())

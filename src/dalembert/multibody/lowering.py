@@ -5,7 +5,7 @@ an ensemble; what depends on numbers is in `Lowered`.
 """
 
 from collections.abc import Callable, Mapping, Sequence, ValuesView
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from dalembert.errors import InputError, ModelError, shown
 from dalembert.multibody.callbacks import Callback, Failures, force_callback, signal_callback
 from dalembert.multibody.carried_rates import carried_rates, stated
 from dalembert.multibody.components.fields import Number
+from dalembert.multibody.components.lowering import Pair
 from dalembert.multibody.components.planar import markers
 from dalembert.multibody.components.planar.body import Body, Marker
 from dalembert.multibody.components.points import Ground, GroundPoint, Place, Point, Side
@@ -25,21 +26,6 @@ from dalembert.multibody.system import System
 
 _ABSENT = -1
 _ROUNDING = 1e-14  # relative, of differences of times
-
-
-class Pair(NamedTuple):
-    """Two markers as kernels see them, and how they are placed at the start.
-
-    ``angles`` of both; ``relative``: position of b against a, in the axes of a.
-    """
-
-    slots: list[int | None]
-    data: list[Number]
-    integers: list[int]
-    distance: Number
-    rest_angle: Number
-    angles: tuple[Number, Number]
-    relative: tuple[Number, Number]
 
 
 class _Numbers:
@@ -60,7 +46,7 @@ class _Numbers:
         return np.concatenate(self._parts)
 
 
-class Lowering:
+class SystemLowering:
     """Collects the rows of the kernels while the components write them."""
 
     def __init__(self, system: System, begin: float = 0.0) -> None:
@@ -127,7 +113,7 @@ class Lowering:
     def signal(self, course: Course) -> int:
         """Number of a function of time."""
         signal = as_signal(course)
-        kind, data, knots = signal.lower(self)
+        kind, data, knots = signal.lower()
         first = len(self._callbacks) if kind == signal_kinds.CUSTOM else self._signal_data.count
         if isinstance(signal, Custom):
             functions = signal.function, signal.rate, signal.second
@@ -205,7 +191,7 @@ class Lowering:
         parts = [("system", system), *((f"{type(part).__name__} {part.name!r}", part) for part in components)]
         for owner, part in parts:
             for name, value in vars(part).items():
-                numbers = value.lower(self)[1] if isinstance(value, Signal) else value
+                numbers = value.lower()[1] if isinstance(value, Signal) else value
                 if not _finite(list(vars(value).values()) if isinstance(value, GroundPoint) else numbers):
                     raise ModelError(f"{owner}: {name} is {value}; expected finite numbers")
 
@@ -289,7 +275,7 @@ def lower(system: System, begin: float = 0.0) -> Lowered:
     if not isinstance(system, System):
         own = "; give its system, in which the bodies are placed as they begin" if hasattr(system, "system") else ""
         raise InputError(f"{shown(system)} was given as the mechanism; expected a System{own}")
-    return Lowering(system, begin).run()
+    return SystemLowering(system, begin).run()
 
 
 def _finite(value: object) -> bool:

@@ -2,62 +2,29 @@
 
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
-from typing import Annotated, Any
+from typing import Any
 
 from pydantic import (
-    AfterValidator,
-    BeforeValidator,
-    Field,
-    PlainValidator,
-    WithJsonSchema,
     create_model,
     model_validator,
 )
 
 from dalembert.study.catalogue import Words, balance, kind_names
 from dalembert.study.components import buildable_table
-from dalembert.study.data_table import BandsTable, DataTable
-from dalembert.study.experiments import ExperimentTable, SensorTable, expanded, wrong_experiments
-from dalembert.study.inputs import InputTable, wrong_inputs
-from dalembert.study.model_table import ModelTable, model_table
-from dalembert.study.parameters import ParameterTable, check_names, read_constants
+from dalembert.study.experiments import wrong_experiments
+from dalembert.study.inputs import wrong_inputs
+from dalembert.study.model_table import model_table
 from dalembert.study.solvers import solver
-from dalembert.study.table import Name, StudyTable, problem
+from dalembert.study.study_file import StudyFile
+from dalembert.study.table import StudyTable, problem
 from dalembert.study.tasks import TASKS
 
 
-class About(StudyTable):
-    """What the study is called."""
-
-    name: Name | None = Field(None, description="name of the run folder; the file's if not given")
-    title: str = Field("", description="heading of the report")
-    description: str = Field("", description="what the study is for, and what must come out")
-
-
-class StudyFile(StudyTable):
+class CheckedStudyFile(StudyFile):
     """A study: a model, and one task."""
 
-    study: About = Field(default_factory=lambda: About.model_validate({}))
-    constants: Annotated[
-        dict[str, Any],
-        PlainValidator(read_constants),
-        BeforeValidator(check_names),
-        WithJsonSchema({"type": "object", "additionalProperties": {"type": ["number", "string"]}}),
-    ] = Field({}, description="named numbers: '400 mm', or expressions of parameters and of constants before them")
-    parameters: Annotated[dict[str, ParameterTable], BeforeValidator(check_names)] = {}
-    model: ModelTable
-    solver: Any = None
-    harmonic_balance: Any = None
-    data: DataTable | None = None
-    bands: BandsTable | None = None
-    experiments: Annotated[list[ExperimentTable], AfterValidator(expanded)] = Field(
-        [], description="several experiments in place of [data]"
-    )
-    inputs: dict[str, InputTable] = Field({}, description="measured inputs that drive the model, by name")
-    sensors: dict[str, SensorTable] = Field({}, description="what is not known of the sensors, by channel")
-
     @model_validator(mode="after")
-    def _check(self) -> "StudyFile":
+    def _check(self) -> "CheckedStudyFile":
         both = sorted(set(self.parameters) & set(self.constants))
         if both:
             raise problem(f"{', '.join(both)} is both a parameter and a constant; give each name once")
@@ -73,13 +40,11 @@ class StudyFile(StudyTable):
 
     @property
     def vibrates(self) -> bool:
-        """Whether the model is a structure over frequency, and not a mechanism in time."""
         told = self.harmonic_balance is not None or any(TASKS[name].of_structures for name in self.tasks)
         return self.model.is_structure or (self.model.function is not None and told)
 
     @property
     def tasks(self) -> Mapping[str, StudyTable]:
-        """The tables of tasks that the file has, by name; exactly one once it is checked."""
         return {name: table for name in TASKS if (table := getattr(self, name, None)) is not None}
 
 
@@ -101,7 +66,7 @@ def _wrong_settings(file: StudyFile) -> list[str]:
 
 
 @lru_cache(maxsize=16)
-def study_file(words: Words = None) -> type[StudyFile]:
+def study_file(words: Words = None) -> type[CheckedStudyFile]:
     """The study file with all tables and kinds that there are, or with those that words name.
 
     Most of the kinds take some time to be imported and to be made tables of, and a document uses few of them.
@@ -114,7 +79,7 @@ def study_file(words: Words = None) -> type[StudyFile]:
         fields["solver"] = (solver(words) | None, None)
     if words is None or "harmonic_balance" in words:
         fields["harmonic_balance"] = (buildable_table(balance()) | None, None)
-    return create_model("Study", __base__=StudyFile, __doc__=StudyFile.__doc__, **fields)
+    return create_model("Study", __base__=CheckedStudyFile, __doc__=CheckedStudyFile.__doc__, **fields)
 
 
 def words_of(document: Mapping[str, Any]) -> frozenset[str]:

@@ -3,21 +3,41 @@
 __all__ = ["Ground", "GroundPoint", "Point"]
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import Any, Protocol
 
 from dalembert.arguments import Checked
 from dalembert.errors import ModelError
 from dalembert.multibody.components.fields import Number
 
-if TYPE_CHECKING:
-    from dalembert.multibody.components.planar.body import Body
+
+class Carrier(Protocol):
+    """What has points: a body."""
+
+    @property
+    def name(self) -> str:
+        """Of the body."""
+        ...
+
+    @property
+    def turns(self) -> bool:
+        """Whether it has a direction."""
+        ...
+
+    @property
+    def rigid(self) -> bool:
+        """Whether the distances of its points never change."""
+        ...
+
+    def marker(self, point: str) -> Any:
+        """The marker of a point."""
+        ...
 
 
 @dataclass(frozen=True)
 class Point:
     """A named point of a body."""
 
-    body: "Body"
+    body: Carrier
     name: str
 
     IN_WORDS = "a point of a body such as rod.end"

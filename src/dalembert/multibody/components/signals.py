@@ -6,7 +6,7 @@ from abc import abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -16,9 +16,6 @@ from dalembert.errors import InputError, require_known
 from dalembert.multibody.components.fields import Number
 from dalembert.multibody.kernels import signals as kinds
 
-if TYPE_CHECKING:
-    from dalembert.multibody.lowering import Lowering
-
 
 @dataclass(frozen=True)
 class Signal(Checked):
@@ -27,7 +24,7 @@ class Signal(Checked):
     IN_WORDS = "a function of time such as Harmonic(amplitude, angular_frequency)"
 
     @abstractmethod
-    def lower(self, lowering: "Lowering") -> "tuple[int, Numbers, Numbers]":
+    def lower(self) -> "tuple[int, Numbers, Numbers]":
         """Kind, numbers and knots, as the kernels keep them."""
 
     @property
@@ -52,7 +49,7 @@ class Constant(Signal):
 
     value: Number
 
-    def lower(self, lowering: "Lowering") -> "tuple[int, Numbers, Numbers]":
+    def lower(self) -> "tuple[int, Numbers, Numbers]":
         return kinds.CONSTANT, [self.value], []
 
 
@@ -68,7 +65,7 @@ class Step(Signal):
         if not self.start < self.end:
             raise InputError(f"Step: start is {self.start} s and end is {self.end} s; expected start before end")
 
-    def lower(self, lowering: "Lowering") -> "tuple[int, Numbers, Numbers]":
+    def lower(self) -> "tuple[int, Numbers, Numbers]":
         return kinds.STEP, [self.value], [float(self.start), float(self.end)]
 
     @property
@@ -85,7 +82,7 @@ class Harmonic(Signal):
     phase: Number = field(default=0.0, metadata={"unit": "rad"})
     offset: Number = 0.0
 
-    def lower(self, lowering: "Lowering") -> "tuple[int, Numbers, Numbers]":
+    def lower(self) -> "tuple[int, Numbers, Numbers]":
         return kinds.HARMONIC, [self.amplitude, self.angular_frequency, self.phase, self.offset], []
 
 
@@ -95,7 +92,7 @@ class Polynomial(Signal):
 
     coefficients: Sequence[Number]
 
-    def lower(self, lowering: "Lowering") -> "tuple[int, Numbers, Numbers]":
+    def lower(self) -> "tuple[int, Numbers, Numbers]":
         return kinds.POLYNOMIAL, list(self.coefficients), []
 
 
@@ -219,7 +216,7 @@ class Table(Signal):
         steep = slopes > 1e-6 * np.ptp(values)
         return tuple(float(end + np.real(self.delay)) for end in ends[steep])
 
-    def lower(self, lowering: "Lowering") -> "tuple[int, Numbers, Numbers]":
+    def lower(self) -> "tuple[int, Numbers, Numbers]":
         times, values = np.asarray(self.times, dtype=float), np.asarray(self.values)
         values = values if np.iscomplexobj(values) else values.astype(float)
         head = [self.scale, self.offset, self.delay, float(self.integrals)]
@@ -283,7 +280,7 @@ class Custom(Signal):
     rate: Callable[[float], Any] | None = None
     second: Callable[[float], Any] | None = None
 
-    def lower(self, lowering: "Lowering") -> "tuple[int, Numbers, Numbers]":
+    def lower(self) -> "tuple[int, Numbers, Numbers]":
         return kinds.CUSTOM, [], []
 
 

@@ -5,14 +5,12 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from dalembert.kernels.kernel import BlockKernel, Compiled
+from dalembert.multibody.kernels.declaration import Declaration
 
-if TYPE_CHECKING:
-    from dalembert.multibody.kernels.kind import Kind
-
-_PLAIN: ContextVar[dict["Kind", list[BaseException]]] = ContextVar("plain kinds", default={})  # noqa: B039 - never written
+_PLAIN: ContextVar[dict[Declaration, list[BaseException]]] = ContextVar("plain kinds", default={})  # noqa: B039 - never written
 
 
 @contextmanager
@@ -73,7 +71,7 @@ class PlainKernel(Compiled):
             self._errors.append(error)
 
 
-def plain(kind: "Kind", kernel: BlockKernel) -> PlainKernel | None:
+def plain(kind: Declaration, kernel: BlockKernel) -> PlainKernel | None:
     """The kernel in plain Python, if the kind is to run so here."""
     errors = _PLAIN.get().get(kind)
     return None if errors is None else PlainKernel(kernel, errors)

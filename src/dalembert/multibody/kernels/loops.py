@@ -1,31 +1,29 @@
 """Kernels of a kind: loops over the components of a block, around the functions of the kind."""
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from dalembert.kernels.kernel import BlockKernel, inlined
 from dalembert.kernels.views import complexes, complexes2, integers, integers2, local, reals, reals2, records
+from dalembert.multibody.kernels.declaration import Declaration
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.records import TANGENT, Inputs, block_at, call_at
-
-if TYPE_CHECKING:
-    from dalembert.multibody.kernels.kind import Kind
 
 
 def arithmetic(dtype: type) -> tuple[Any, Any]:
     return (complexes, complexes2) if dtype is complex else (reals, reals2)
 
 
-def made(loop: Callable[[Any, Any], None], kind: "Kind", role: str, dtype: type) -> BlockKernel:
+def made(loop: Callable[[Any, Any], None], kind: Declaration, role: str, dtype: type) -> BlockKernel:
     return BlockKernel(loop, f"dal_kind_{kind.name}_{role}_{dtype.__name__}", (kind, role, dtype))
 
 
-def residual(kind: "Kind", dtype: type) -> BlockKernel:
+def residual(kind: Declaration, dtype: type) -> BlockKernel:
     """Add the residuals; in complex numbers, by the call's mode, the tangent instead."""
     return _complex(kind) if dtype is complex else _real(kind)
 
 
-def _real(kind: "Kind") -> BlockKernel:
+def _real(kind: Declaration) -> BlockKernel:
     function, width = kind.residual_function, kind.width
     numbers, whole = records(kind.number_record(float)), records(kind.integer_record)
     local_x, local_v, local_a, local_r = (local(float, width) for _ in range(4))
@@ -60,7 +58,7 @@ def _no_tangent(x, p, m, by_x, by_a, matrix):
     pass
 
 
-def _complex(kind: "Kind") -> BlockKernel:
+def _complex(kind: Declaration) -> BlockKernel:
     function, width = kind.residual_function, kind.width
     known, formula = kind.known or _never, kind.tangent or _no_tangent
     numbers, whole = records(kind.number_record(complex)), records(kind.integer_record)
@@ -126,7 +124,7 @@ def _complex(kind: "Kind") -> BlockKernel:
     return made(loop, kind, "residual", complex)
 
 
-def rates(kind: "Kind", dtype: type) -> BlockKernel:
+def rates(kind: Declaration, dtype: type) -> BlockKernel:
     """Fill the first and second time derivatives of the constraints."""
     view, view2 = arithmetic(dtype)
     function, width, coordinates, multipliers = kind.rates_function, kind.width, kind.coordinates, kind.multipliers
@@ -156,7 +154,7 @@ def rates(kind: "Kind", dtype: type) -> BlockKernel:
     return made(loop, kind, "rates", dtype)
 
 
-def energy(kind: "Kind", dtype: type) -> BlockKernel:
+def energy(kind: Declaration, dtype: type) -> BlockKernel:
     """Add kinetic energy, potential energy and power."""
     view, view2 = arithmetic(dtype)
     function, width = kind.energy_function, kind.width
@@ -183,7 +181,7 @@ def energy(kind: "Kind", dtype: type) -> BlockKernel:
     return made(loop, kind, "energy", dtype)
 
 
-def outputs(kind: "Kind", dtype: type) -> BlockKernel:
+def outputs(kind: Declaration, dtype: type) -> BlockKernel:
     """Fill the outputs of the components, (count, outputs), at the call's ``r``."""
     view, view2 = arithmetic(dtype)
     function: Any = kind.observe
@@ -208,6 +206,6 @@ def outputs(kind: "Kind", dtype: type) -> BlockKernel:
     return made(loop, kind, "outputs", dtype)
 
 
-MAKERS: dict[str, Callable[["Kind", type], BlockKernel]] = {
+MAKERS: dict[str, Callable[[Declaration, type], BlockKernel]] = {
     "residual": residual, "rates": rates, "energy": energy, "outputs": outputs,
 }  # fmt: skip

@@ -4,25 +4,23 @@ A node is a component of a kind that has a chart: coordinates, and the internal 
 """
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from dalembert.kernels.kernel import BlockKernel
 from dalembert.kernels.views import complexes, complexes2, integers, integers2, local, reals, reals2, records
 from dalembert.multibody.kernels.charts import projecting, spreading
+from dalembert.multibody.kernels.declaration import Declaration
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.loops import arithmetic, made
 from dalembert.multibody.kernels.records import TANGENT, Inputs, block_at, call_at
 
-if TYPE_CHECKING:
-    from dalembert.multibody.kernels.kind import Kind
 
-
-def reduced(kind: "Kind", dtype: type) -> BlockKernel:
+def reduced(kind: Declaration, dtype: type) -> BlockKernel:
     """Add the residuals N^T r, without internal constraints; in complex numbers, by the call's mode, the tangent."""
     return _complex(kind) if dtype is complex else _real(kind)
 
 
-def _real(kind: "Kind") -> BlockKernel:
+def _real(kind: Declaration) -> BlockKernel:
     function, width, narrow = kind.residual_function, kind.width, kind.reduced_width
     coordinates, increments = kind.coordinates, kind.increments
     project, others = projecting(kind.parts), width - coordinates
@@ -53,7 +51,7 @@ def _real(kind: "Kind") -> BlockKernel:
     return made(loop, kind, "reduced", float)
 
 
-def _complex(kind: "Kind") -> BlockKernel:
+def _complex(kind: Declaration) -> BlockKernel:
     function, width, narrow = kind.residual_function, kind.width, kind.reduced_width
     coordinates, increments = kind.coordinates, kind.increments
     project, spread, others = projecting(kind.parts), spreading(kind.parts), width - coordinates
@@ -114,17 +112,17 @@ def _complex(kind: "Kind") -> BlockKernel:
     return made(loop, kind, "reduced", complex)
 
 
-def spread(kind: "Kind", dtype: type) -> BlockKernel:
+def spread(kind: Declaration, dtype: type) -> BlockKernel:
     """Fill the changes N(x) delta of the nodes' coordinates."""
     return _nodes(kind, dtype, "spread")
 
 
-def change(kind: "Kind", dtype: type) -> BlockKernel:
+def change(kind: Declaration, dtype: type) -> BlockKernel:
     """Fill what the increments -by_x delta change in the nodes' coordinates, divided by -by_x."""
     return _nodes(kind, dtype, "change")
 
 
-def _nodes(kind: "Kind", dtype: type, role: str) -> BlockKernel:
+def _nodes(kind: Declaration, dtype: type, role: str) -> BlockKernel:
     view, _ = arithmetic(dtype)
     function: Any = getattr(kind.chart, role)
     finite = role == "change"
@@ -151,7 +149,7 @@ def _nodes(kind: "Kind", dtype: type, role: str) -> BlockKernel:
     return made(loop, kind, role, dtype)
 
 
-def restore(kind: "Kind", dtype: type) -> BlockKernel:
+def restore(kind: Declaration, dtype: type) -> BlockKernel:
     """Fill what moves the nodes' coordinates onto the internal constraints, divided by -by_x."""
     view, _ = arithmetic(dtype)
     function: Any = kind.chart.restore if kind.chart else None
@@ -176,6 +174,6 @@ def restore(kind: "Kind", dtype: type) -> BlockKernel:
     return made(loop, kind, "restore", dtype)
 
 
-MAKERS: dict[str, Callable[["Kind", type], BlockKernel]] = {
+MAKERS: dict[str, Callable[[Declaration, type], BlockKernel]] = {
     "reduced": reduced, "spread": spread, "change": change, "restore": restore,
 }  # fmt: skip

@@ -3,13 +3,13 @@
 __all__ = ["AncfBeam"]
 
 from dataclasses import InitVar, dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from dalembert.errors import InputError, require_known
 from dalembert.findings import Finding
 from dalembert.multibody.components.fields import Number, number, pair, require, require_not_negative
+from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar import markers
 from dalembert.multibody.components.planar.ancf import Ancf
 from dalembert.multibody.components.planar.body import Marker, with_points
@@ -17,9 +17,6 @@ from dalembert.multibody.components.planar.continuum_beam import CONTINUUM
 from dalembert.multibody.components.planar.slenderness import continuum_findings
 from dalembert.multibody.components.planar.structural_beam import STRUCTURAL
 from dalembert.multibody.components.points import Place
-
-if TYPE_CHECKING:
-    from dalembert.multibody.lowering import Lowering
 
 LAWS = ("plane-stress", "plane-strain", "uncoupled")
 FORMULATIONS = ("structural", "continuum")
@@ -135,7 +132,7 @@ class AncfBeam(Ancf):
             nu = nu / (1 - nu)
         return 10 * (1 + nu) / (12 + 11 * nu)
 
-    def lower(self, lowering: "Lowering", first: int) -> None:
+    def lower(self, lowering: Lowering, first: int) -> None:
         h, area = self.length / self.elements, self.height * self.width
         mass, square = self.density * area * h, self.height**2 / 12
         c11, c12, shear = self.stiffnesses

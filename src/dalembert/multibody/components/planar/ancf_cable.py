@@ -3,21 +3,18 @@
 __all__ = ["AncfCable"]
 
 from dataclasses import InitVar, dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from dalembert.findings import Finding
 from dalembert.multibody.components.fields import Number, number, pair, require, require_not_negative
+from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar import markers
 from dalembert.multibody.components.planar.ancf import Ancf
 from dalembert.multibody.components.planar.body import Marker, with_points
 from dalembert.multibody.components.planar.cable_element import CABLE
 from dalembert.multibody.components.planar.slenderness import cable_findings
 from dalembert.multibody.components.points import Place
-
-if TYPE_CHECKING:
-    from dalembert.multibody.lowering import Lowering
 
 
 @with_points("start", "end")
@@ -74,7 +71,7 @@ class AncfCable(Ancf):
         k = 4 * self._node(point)
         return Marker(markers.NODE, (k, k + 1, k + 2, k + 3), (0.0, 0.0, 0.0))
 
-    def lower(self, lowering: "Lowering", first: int) -> None:
+    def lower(self, lowering: Lowering, first: int) -> None:
         h = self.length / self.elements
         area = self.height * self.width
         data = [

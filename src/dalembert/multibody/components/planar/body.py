@@ -5,7 +5,7 @@ __all__ = ["Body"]
 from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,10 +13,8 @@ from dalembert.arguments import Checked
 from dalembert.errors import require_known
 from dalembert.findings import Finding
 from dalembert.multibody.components.fields import Number
+from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.points import Place, Point
-
-if TYPE_CHECKING:
-    from dalembert.multibody.lowering import Lowering
 
 POSITION, GRADIENT, ANGLE = "position", "gradient", "angle"
 
@@ -72,7 +70,7 @@ class Body(Checked):
         """Names of the points."""
 
     @abstractmethod
-    def lower(self, lowering: "Lowering", first: int) -> None:
+    def lower(self, lowering: Lowering, first: int) -> None:
         """Write the rows of the kernels; ``first`` is the body's first coordinate."""
 
     @abstractmethod

@@ -3,10 +3,10 @@
 __all__ = ["Bushing"]
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number, number, require_not_negative
+from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar import pairs
 from dalembert.multibody.components.planar.load import Load
 from dalembert.multibody.components.planar.markers import direction, spin, twist
@@ -21,9 +21,6 @@ from dalembert.multibody.components.planar.pairs import (
 from dalembert.multibody.components.points import Side, require_direction
 from dalembert.multibody.kernels.elementary import wrapped
 from dalembert.multibody.kernels.kind import Kind
-
-if TYPE_CHECKING:
-    from dalembert.multibody.lowering import Lowering
 
 
 @inlined
@@ -140,7 +137,7 @@ class Bushing(Load):
         names = [f"{kind}_{axis}" for kind in ("stiffness", "damping") for axis in ("x", "y", "angle")]
         require_not_negative(f"bushing {self.name!r}", **{name: getattr(self, name) for name in names})
 
-    def lower(self, lowering: "Lowering") -> None:
+    def lower(self, lowering: Lowering) -> None:
         require_direction(f"bushing {self.name!r}", "a spring, or a rigid body", self.a, self.b)
         pair = lowering.pair(self.a, self.b, self.name)
         laws = [getattr(self, name) for name in BUSHING.numbers[9:]]

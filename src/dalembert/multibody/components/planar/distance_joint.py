@@ -3,21 +3,18 @@
 __all__ = ["DistanceJoint"]
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from dalembert.errors import ModelError
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number, number, require
+from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar import pairs
 from dalembert.multibody.components.planar.joint import OUTPUTS, Joint, observe_joint
 from dalembert.multibody.components.planar.pairs import push_pair, separation
 from dalembert.multibody.kernels.elementary import root
 from dalembert.multibody.kernels.kind import Kind
-
-if TYPE_CHECKING:
-    from dalembert.multibody.lowering import Lowering
 
 
 @inlined
@@ -75,7 +72,7 @@ class DistanceJoint(Joint):
         if self.length is not None:
             require(f"distance joint {self.name!r}", length=self.length)
 
-    def lower(self, lowering: "Lowering") -> None:
+    def lower(self, lowering: Lowering) -> None:
         pair = lowering.pair(self.a, self.b, self.name)
         length = pair.distance if self.length is None else self.length
         if not np.real(length) > 0:

@@ -3,17 +3,14 @@
 __all__ = ["FixedJoint"]
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from dalembert.kernels.kernel import inlined
+from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar import pairs
 from dalembert.multibody.components.planar.joint import OUTPUTS, Joint, observe_joint
 from dalembert.multibody.components.planar.pairs import push_pair, relative_angle, separation, twist_pair
 from dalembert.multibody.kernels.elementary import sin_cos
 from dalembert.multibody.kernels.kind import Kind
-
-if TYPE_CHECKING:
-    from dalembert.multibody.lowering import Lowering
 
 
 @inlined
@@ -60,7 +57,7 @@ class FixedJoint(Joint):
 
     kind = FIXED
 
-    def lower(self, lowering: "Lowering") -> None:
+    def lower(self, lowering: Lowering) -> None:
         pair = lowering.pair(self.a, self.b, self.name)
         self._oriented()
         self._add(lowering, pair, [pair.rest_angle])

@@ -3,18 +3,15 @@
 __all__ = ["Force"]
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import number
+from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar.load import Load
 from dalembert.multibody.components.planar.markers import direction, push, velocity
 from dalembert.multibody.components.points import Side, require_direction
 from dalembert.multibody.components.signals import Course
 from dalembert.multibody.kernels.kind import Kind
-
-if TYPE_CHECKING:
-    from dalembert.multibody.lowering import Lowering
 
 
 @inlined
@@ -73,7 +70,7 @@ class Force(Load):
 
     kind = FORCE
 
-    def lower(self, lowering: "Lowering") -> None:
+    def lower(self, lowering: Lowering) -> None:
         if self.follower:
             require_direction(f"follower force {self.name!r}", "a force that does not follow, or a rigid body", self.at)
         pair = lowering.pair(self.at, None, self.name)

@@ -3,20 +3,17 @@
 __all__ = ["GearJoint"]
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from dalembert.errors import InputError, ModelError
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number, number
+from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar import pairs
 from dalembert.multibody.components.planar.joint import OUTPUTS, Joint, observe_joint
 from dalembert.multibody.components.planar.markers import angle
 from dalembert.multibody.kernels.kind import Kind
-
-if TYPE_CHECKING:
-    from dalembert.multibody.lowering import Lowering
 
 
 @inlined
@@ -80,7 +77,7 @@ class GearJoint(Joint):
         if not (np.isfinite(np.real(self.ratio)) and np.real(self.ratio) != 0):
             raise InputError(f"gear joint {self.name!r}: ratio is {self.ratio}; expected a number other than zero")
 
-    def lower(self, lowering: "Lowering") -> None:
+    def lower(self, lowering: Lowering) -> None:
         pair = lowering.pair(self.a, self.b, self.name)
         self._oriented("rigid bodies")
         if pair.integers[2]:

@@ -5,18 +5,16 @@ __all__ = ["Joint"]
 from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 from dalembert.arguments import Checked
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number
+from dalembert.multibody.components.lowering import Lowering, Pair
 from dalembert.multibody.components.planar.friction import Smoothing
 from dalembert.multibody.components.planar.pairs import relative_angle, relative_spin
 from dalembert.multibody.components.points import Side, require_direction
 from dalembert.multibody.kernels.kind import Kind
-
-if TYPE_CHECKING:
-    from dalembert.multibody.lowering import Lowering, Pair
 
 OUTPUTS = (("angle", "rad"), ("rate", "rad/s"), ("force_x", "N"), ("force_y", "N"), ("torque", "N*m"))
 
@@ -37,11 +35,11 @@ class Joint(Checked):
         return None
 
     @abstractmethod
-    def lower(self, lowering: "Lowering") -> None:
+    def lower(self, lowering: Lowering) -> None:
         """Write the rows of the kernels."""
 
     def _add(
-        self, lowering: "Lowering", pair: "Pair", numbers: Sequence[Number] = (), integers: Sequence[int] = ()
+        self, lowering: Lowering, pair: Pair, numbers: Sequence[Number] = (), integers: Sequence[int] = ()
     ) -> list[int | None]:
         """Add the joint with the numbers and integers that follow those of its markers; its unknowns."""
         index = pair.slots + lowering.multipliers(self.name, self.kind.multipliers)

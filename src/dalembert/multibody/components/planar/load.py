@@ -4,13 +4,11 @@ __all__ = ["Load"]
 
 from abc import abstractmethod
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 from dalembert.arguments import Checked
+from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.kernels.kind import Kind
-
-if TYPE_CHECKING:
-    from dalembert.multibody.lowering import Lowering
 
 
 @dataclass(frozen=True)
@@ -22,5 +20,5 @@ class Load(Checked):
     kind: ClassVar[Kind]
 
     @abstractmethod
-    def lower(self, lowering: "Lowering") -> None:
+    def lower(self, lowering: Lowering) -> None:
         """Write the rows of the kernels."""

@@ -3,16 +3,13 @@
 __all__ = ["Motor"]
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from dalembert.errors import InputError
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import number
+from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar.motor_law import Drive, drive_kind
 from dalembert.multibody.components.signals import Course
-
-if TYPE_CHECKING:
-    from dalembert.multibody.lowering import Lowering
 
 
 @inlined
@@ -102,7 +99,7 @@ class Motor(Drive):
             raise InputError(f"{owner}: a voltage was given without a resistance; give the resistance in ohm")
         self._check(owner)
 
-    def lower(self, lowering: "Lowering") -> None:
+    def lower(self, lowering: Lowering) -> None:
         command = self.current if self.voltage is None else self.voltage
         assert command is not None
         number = lowering.signal(command)

@@ -2,13 +2,14 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from dalembert.errors import InputError, ModelError
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number, number, require, require_not_negative
+from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar import pairs
 from dalembert.multibody.components.planar.load import Load
 from dalembert.multibody.components.planar.pairs import (
@@ -21,9 +22,6 @@ from dalembert.multibody.components.points import Side, require_direction
 from dalembert.multibody.components.signals import Course
 from dalembert.multibody.kernels.elementary import exponential, logarithm, root, tanh
 from dalembert.multibody.kernels.kind import Kind
-
-if TYPE_CHECKING:
-    from dalembert.multibody.lowering import Lowering
 
 NUMBERS = ("torque_constant", "resistance", "back_emf", "limit", "ratio", "log_efficiency", "slip", "inertia")
 INTEGERS = ("limited", "by_current", "enabled")
@@ -156,7 +154,7 @@ class Drive(Load):
             raise InputError(f"{owner}: efficiency is {np.real(self.efficiency):g}; expected a number in (0, 1]")
 
     def _add(
-        self, lowering: "Lowering", owner: str, numbers: list[Number], integers: list[int], *, by_current: bool = False
+        self, lowering: Lowering, owner: str, numbers: list[Number], integers: list[int], *, by_current: bool = False
     ) -> None:
         """Write the row, with the numbers and integers of the command."""
         require_direction(owner, "a force, or a rigid body", self.a, self.b)

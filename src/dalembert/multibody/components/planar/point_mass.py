@@ -3,19 +3,16 @@
 __all__ = ["PointMass"]
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number, number, pair, require
+from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar import markers
 from dalembert.multibody.components.planar.body import POSITION, Body, Marker, with_points
 from dalembert.multibody.components.points import Place
 from dalembert.multibody.kernels.kind import Kind
-
-if TYPE_CHECKING:
-    from dalembert.multibody.lowering import Lowering
 
 
 @inlined
@@ -87,7 +84,7 @@ class PointMass(Body):
     def marker(self, point: str) -> Marker:
         return Marker(markers.MASS, (0, 1, None, None), (0.0, 0.0, 0.0))
 
-    def lower(self, lowering: "Lowering", first: int) -> None:
+    def lower(self, lowering: Lowering, first: int) -> None:
         lowering.add(POINT_MASS, [first, first + 1], [self.mass, *lowering.gravity])
 
     def outline(self, coordinates: np.ndarray, points: int) -> np.ndarray:

@@ -3,10 +3,10 @@
 __all__ = ["PrescribedMotion"]
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from dalembert.errors import InputError, require_known
 from dalembert.kernels.kernel import inlined
+from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar import pairs
 from dalembert.multibody.components.planar.joint import OUTPUTS, Joint, observe_joint
 from dalembert.multibody.components.planar.pairs import push_pair, relative_angle, separation, twist_pair
@@ -14,9 +14,6 @@ from dalembert.multibody.components.signals import Course, Step, Table, as_signa
 from dalembert.multibody.kernels.elementary import wrapped
 from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.kernels.time_inputs import signal
-
-if TYPE_CHECKING:
-    from dalembert.multibody.lowering import Lowering
 
 _X, _Y, _ANGLE = range(3)
 _COORDINATES = {"x": _X, "y": _Y, "angle": _ANGLE}
@@ -102,7 +99,7 @@ class PrescribedMotion(Joint):
                 "mechanism can follow; expected a smooth function of time, such as a cubic Table or a Polynomial"
             )
 
-    def lower(self, lowering: "Lowering") -> None:
+    def lower(self, lowering: Lowering) -> None:
         pair = lowering.pair(self.a, self.b, self.name)
         if self.coordinate == "angle":
             self._oriented()

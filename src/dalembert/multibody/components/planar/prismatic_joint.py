@@ -3,10 +3,10 @@
 __all__ = ["PrismaticJoint"]
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number, number, require
+from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar import friction, pairs
 from dalembert.multibody.components.planar.joint import OUTPUTS, Joint, observe_joint
 from dalembert.multibody.components.planar.markers import direction, twist
@@ -19,9 +19,6 @@ from dalembert.multibody.components.planar.pairs import (
 )
 from dalembert.multibody.kernels.elementary import root, sin_cos
 from dalembert.multibody.kernels.kind import Kind
-
-if TYPE_CHECKING:
-    from dalembert.multibody.lowering import Lowering
 
 
 @inlined
@@ -167,7 +164,7 @@ class PrismaticJoint(Joint):
             return None
         return friction.Smoothing("sliding_velocity", "slip_velocity", self.slip_velocity, "m/s")
 
-    def lower(self, lowering: "Lowering") -> None:
+    def lower(self, lowering: Lowering) -> None:
         pair = lowering.pair(self.a, self.b, self.name)
         self._oriented()
         index = self._add(lowering, pair, [pair.rest_angle, self.angle])

@@ -3,20 +3,17 @@
 __all__ = ["RevoluteJoint"]
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from dalembert.errors import InputError
 from dalembert.kernels.kernel import inlined, inner
 from dalembert.multibody.components.fields import Number, number, require, require_not_negative
+from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar import friction, pairs
 from dalembert.multibody.components.planar.joint import OUTPUTS, Joint, observe_joint
 from dalembert.multibody.components.planar.markers import GROUND, RIGID
 from dalembert.multibody.components.planar.pairs import push_pair, relative_spin, separation, twist_pair
 from dalembert.multibody.kernels.elementary import root
 from dalembert.multibody.kernels.kind import Kind
-
-if TYPE_CHECKING:
-    from dalembert.multibody.lowering import Lowering
 
 
 @inlined
@@ -168,7 +165,7 @@ class RevoluteJoint(Joint):
     def smoothing(self) -> friction.Smoothing | None:
         return friction.Smoothing("rate", "slip_rate", self.slip_rate, "rad/s") if friction.rubs(self) else None
 
-    def lower(self, lowering: "Lowering") -> None:
+    def lower(self, lowering: Lowering) -> None:
         pair = lowering.pair(self.a, self.b, self.name)
         index = self._add(lowering, pair)
         if friction.coefficients(self):

@@ -2,18 +2,15 @@
 
 from abc import abstractmethod
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number
+from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar import markers
 from dalembert.multibody.components.planar.body import ANGLE, POSITION, Body, Marker, turned
 from dalembert.multibody.kernels.kind import Kind
-
-if TYPE_CHECKING:
-    from dalembert.multibody.lowering import Lowering
 
 
 @inlined
@@ -69,7 +66,7 @@ class Rigid(Body):
     def marker(self, point: str) -> Marker:
         return Marker(markers.RIGID, (0, 1, 2, None), (*self.local(point), 0.0))
 
-    def lower(self, lowering: "Lowering", first: int) -> None:
+    def lower(self, lowering: Lowering, first: int) -> None:
         lowering.add(RIGID, [first, first + 1, first + 2], [*self.inertias, *lowering.gravity])
 
     def outline(self, coordinates: np.ndarray, points: int) -> np.ndarray:

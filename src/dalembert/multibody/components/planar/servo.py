@@ -3,18 +3,15 @@
 __all__ = ["Servo"]
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from dalembert.errors import InputError
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number, number, require, require_not_negative
+from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar.motor_law import Drive, clipped, drive_kind
 from dalembert.multibody.components.planar.pairs import relative_angle, relative_spin
 from dalembert.multibody.components.signals import Course
 from dalembert.multibody.kernels.elementary import wrapped
-
-if TYPE_CHECKING:
-    from dalembert.multibody.lowering import Lowering
 
 
 @inlined
@@ -95,7 +92,7 @@ class Servo(Drive):
             require(owner, dead_band=self.dead_band)
         self._check(owner)
 
-    def lower(self, lowering: "Lowering") -> None:
+    def lower(self, lowering: Lowering) -> None:
         assert self.goal is not None
         assert self.kp is not None
         band = 1.0 if self.dead_band is None else self.dead_band

@@ -3,18 +3,15 @@
 __all__ = ["Spring"]
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number, number, require_not_negative
+from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar.load import Load
 from dalembert.multibody.components.planar.pairs import push_pair, separation, separation_rate
 from dalembert.multibody.components.planar.spring_law import spring_kind, tension
 from dalembert.multibody.components.points import Side
 from dalembert.multibody.kernels.elementary import root
-
-if TYPE_CHECKING:
-    from dalembert.multibody.lowering import Lowering
 
 _TINY = 1e-30  # keeps the direction of a spring of no length defined, m^2
 
@@ -74,7 +71,7 @@ class Spring(Load):
         if self.free_length is not None:
             require_not_negative(f"spring {self.name!r}", free_length=self.free_length)
 
-    def lower(self, lowering: "Lowering") -> None:
+    def lower(self, lowering: Lowering) -> None:
         pair = lowering.pair(self.a, self.b, self.name)
         free = pair.distance if self.free_length is None else self.free_length
         numbers = [*pair.data, free, self.stiffness, self.damping, self.cubic]

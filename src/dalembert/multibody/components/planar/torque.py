@@ -3,19 +3,16 @@
 __all__ = ["Torque"]
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import number
+from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar import pairs
 from dalembert.multibody.components.planar.load import Load
 from dalembert.multibody.components.planar.pairs import relative_spin, twist_pair
 from dalembert.multibody.components.points import Side, require_direction
 from dalembert.multibody.components.signals import Course
 from dalembert.multibody.kernels.kind import Kind
-
-if TYPE_CHECKING:
-    from dalembert.multibody.lowering import Lowering
 
 
 @inlined
@@ -60,7 +57,7 @@ class Torque(Load):
 
     kind = TORQUE
 
-    def lower(self, lowering: "Lowering") -> None:
+    def lower(self, lowering: Lowering) -> None:
         require_direction(f"torque {self.name!r}", "a force, or a rigid body", self.at, self.against)
         pair = lowering.pair(self.at, self.against, self.name)
         lowering.add(TORQUE, pair.slots, pair.data, [*pair.integers, lowering.signal(self.torque)])

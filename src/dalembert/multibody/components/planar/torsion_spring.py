@@ -3,18 +3,15 @@
 __all__ = ["TorsionSpring"]
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number, number
+from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar.load import Load
 from dalembert.multibody.components.planar.pairs import relative_angle, relative_spin, twist_pair
 from dalembert.multibody.components.planar.spring_law import spring_kind, tension
 from dalembert.multibody.components.points import Side, require_direction
 from dalembert.multibody.kernels.elementary import wrapped
-
-if TYPE_CHECKING:
-    from dalembert.multibody.lowering import Lowering
 
 
 @inlined
@@ -61,7 +58,7 @@ class TorsionSpring(Load):
 
     kind = TORSION_SPRING
 
-    def lower(self, lowering: "Lowering") -> None:
+    def lower(self, lowering: Lowering) -> None:
         require_direction(f"torsion spring {self.name!r}", "a spring, or a rigid body", self.a, self.b)
         pair = lowering.pair(self.a, self.b, self.name)
         free = pair.rest_angle if self.free_angle is None else self.free_angle

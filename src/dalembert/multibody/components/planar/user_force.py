@@ -8,20 +8,18 @@ __all__ = ["UserForce"]
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from dalembert.kernels.kernel import inlined
 from dalembert.kernels.views import call_with, stack
 from dalembert.multibody.callbacks import ANSWER, GIVEN
+from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar import pairs
 from dalembert.multibody.components.planar.load import Load
 from dalembert.multibody.components.planar.markers import angle, position, spin, velocity
 from dalembert.multibody.components.planar.pairs import push_pair, twist_pair
 from dalembert.multibody.components.points import Side
 from dalembert.multibody.kernels.kind import Kind
-
-if TYPE_CHECKING:
-    from dalembert.multibody.lowering import Lowering
 
 _TIME = 0  # signal that holds the time
 
@@ -95,7 +93,7 @@ class UserForce(Load):
 
     kind = USER_FORCE
 
-    def lower(self, lowering: "Lowering") -> None:
+    def lower(self, lowering: Lowering) -> None:
         pair = lowering.pair(self.at, self.against, self.name)
         integers = [*pair.integers, lowering.callback(self.function, self.name)]
         lowering.add(USER_FORCE, pair.slots, pair.data, integers)

@@ -1,0 +1,190 @@
+"""What a kind of component declares: columns, properties, and functions that kernels loop over components."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from dalembert.errors import ModelError
+from dalembert.multibody.kernels.charts import Chart, flat
+from dalembert.multibody.kernels.constraints import power_of, rates_of, residual_of
+
+
+@dataclass(frozen=True, eq=False)
+class Declaration:
+    """A kind of component as its file declares it: its data columns, its properties, and its functions.
+
+    Functions get local vectors ``x v a`` (coordinates, then multipliers), the component's numbers ``p`` and integers
+    ``m`` by the names of their columns, and ``inputs`` (signals and callbacks). They are compiled for real and for
+    complex numbers. What they may call are functions under :func:`dalembert.kernels.kernel.inner`.
+
+    Parameters
+    ----------
+    name : str
+    coordinates, multipliers : int
+        Local ones.
+    numbers, integers : tuple of str
+        Columns.
+    reactions : int
+        Multipliers of a joint that the component depends on; its local unknowns behind the coordinates.
+    residual : function (x, v, a, p, m, inputs, r), optional
+        Adds to ``r`` (zero before) what the component adds to the left side of the equations of motion.
+    constraint : function (x, p, m, inputs, g), optional
+        Fills ``g`` (multipliers,), which are zero where the joint is closed. Its time derivatives and the constraint
+        forces follow by automatic differentiation; a signal's value is ``signal(inputs, number)``.
+    forces : function (x, p, m, r), optional
+        Adds the constraint forces J^T lambda by a formula, where that is faster; lambda stand in ``x`` behind the
+        coordinates. A test holds it to the automatic ones.
+    energy : function (x, v, p, m, inputs) -> (kinetic, potential, power), optional
+        Energies in J, and the power in W of what is not conservative. Without it, the power of all its forces.
+    tangent : function (x, p, m, by_x, by_a, matrix), optional
+        Fills the local matrix by_x dr/dx + by_a dr/da, where ``known`` says that it holds; multipliers by 1.
+    known : function (p, m) -> bool, optional
+        Where the formula of ``tangent`` holds.
+    outputs : tuple of (name, unit)
+    observe : function (x, v, a, p, m, inputs, out), optional
+        Fills the outputs.
+    observes_inputs : bool
+        Whether the outputs depend on signals, which are evaluated only then.
+    lengths : tuple of str
+        Columns that count to the extent of a mechanism, m.
+    gravity : tuple of str
+        Columns of the gravity that acts on the component.
+    chart : Chart, optional
+        Of a kind whose constraints are the internal ones of its coordinates: how increments change these. Integrators
+        that support it solve for the increments, without these constraints and their multipliers.
+    charts : tuple of Chart
+        Those of the coordinates, one after the other, `flat` ones between them; none if all are flat.
+    dissipates : bool, str or tuple of str
+        Whether a force depends on velocities; or the columns of which any entry that is not zero says so.
+    driven, loads : bool
+        Whether a prescribed motion, or a load, may do work.
+    holds : bool
+        Whether a component on the ground keeps the mechanism from moving freely, as joints and springs do. It then has
+        the columns ``a_kind b_kind`` (integers) and ``a_x a_y b_x b_y`` of two markers.
+    holds_frame : bool
+        Whether it then holds the direction of a ground point, not only the point.
+    """
+
+    name: str
+    coordinates: int
+    numbers: tuple[str, ...]
+    integers: tuple[str, ...] = ()
+    multipliers: int = 0
+    reactions: int = 0
+    residual: Callable[..., Any] | None = None
+    constraint: Callable[..., Any] | None = None
+    forces: Callable[..., Any] | None = None
+    energy: Callable[..., Any] | None = None
+    tangent: Callable[..., Any] | None = None
+    known: Callable[..., Any] | None = None
+    outputs: tuple[tuple[str, str], ...] = ()
+    observe: Callable[..., Any] | None = None
+    observes_inputs: bool = False
+    lengths: tuple[str, ...] = ()
+    gravity: tuple[str, ...] = ()
+    chart: Chart | None = None
+    charts: tuple[Chart, ...] = ()
+    dissipates: bool | str | tuple[str, ...] = False
+    driven: bool = False
+    loads: bool = False
+    holds: bool = False
+    holds_frame: bool = True
+
+    def __post_init__(self) -> None:
+        sizes = [chart.size for chart in self.parts]
+        if sum(sizes) != self.coordinates:
+            raise ModelError(
+                f"kind {self.name!r}: its charts have {' + '.join(map(str, sizes))} coordinates, the kind has "
+                f"{self.coordinates}. Add flat(size) for coordinates without internal constraints"
+            )
+
+    @property
+    def parts(self) -> tuple[Chart, ...]:
+        """Charts of all coordinates."""
+        return (self.chart,) if self.chart is not None else self.charts or (flat(self.coordinates),)
+
+    @property
+    def width(self) -> int:
+        """Local unknowns."""
+        return self.coordinates + self.multipliers + self.reactions
+
+    @property
+    def increments(self) -> int:
+        """Local increments of the coordinates."""
+        return sum(chart.increments for chart in self.parts)
+
+    @property
+    def reduced_width(self) -> int:
+        """Local rows of the reduced system."""
+        return self.increments + self.multipliers + self.reactions
+
+    @property
+    def is_flat(self) -> bool:
+        """Whether increments are simply those of the coordinates."""
+        return all(chart.is_flat for chart in self.parts)
+
+    @property
+    def takes_reactions(self) -> bool:
+        """Whether a force depends on a joint's multipliers, so that the equations of motion are nonlinear in them."""
+        return self.reactions > 0
+
+    @cached_property
+    def integer_record(self) -> np.dtype:
+        return np.dtype([(name, "i8") for name in self.integers or ("unused",)])
+
+    def number_record(self, dtype: type) -> np.dtype:
+        return np.dtype([(name, "c16" if dtype is complex else "f8") for name in self.numbers or ("unused",)])
+
+    def columns(self, names: tuple[str, ...]) -> list[int]:
+        """Positions of columns of numbers."""
+        return [self.numbers.index(name) for name in names]
+
+    def dissipative(self, numbers: np.ndarray) -> bool:
+        """Whether a force of components with these numbers (count, -) depends on velocities."""
+        if isinstance(self.dissipates, bool):
+            return self.dissipates
+        names = (self.dissipates,) if isinstance(self.dissipates, str) else self.dissipates
+        return bool(np.any(numbers[:, self.columns(names)]))
+
+    def has(self, role: str) -> bool:
+        """Whether the kind has kernels of this role."""
+        return {
+            "residual": self.residual is not None or self.constraint is not None,
+            "rates": self.constraint is not None,
+            "energy": self.energy is not None or self.residual is not None,
+            "outputs": self.observe is not None,
+            "reduced": self.chart is None and not self.is_flat,
+            "spread": self.chart is not None,
+            "change": self.chart is not None,
+            "restore": self.chart is not None,
+        }[role]
+
+    @cached_property
+    def residual_function(self) -> Callable[..., Any]:
+        """What fills the local residual: forces, then constraints."""
+        if self.constraint is not None:
+            return residual_of(self.constraint, self.forces, self.coordinates, self.multipliers)
+        assert self.residual is not None, self.name
+        return self.residual
+
+    @cached_property
+    def rates_function(self) -> Callable[..., Any]:
+        """What fills the time derivatives of the constraints."""
+        assert self.constraint is not None, self.name
+        return rates_of(self.constraint, self.multipliers)
+
+    @cached_property
+    def energy_function(self) -> Callable[..., Any]:
+        """What returns energies and power; without a function of the kind's, all that its forces do is power."""
+        if self.energy is not None:
+            return self.energy
+        assert self.residual is not None, self.name
+        return power_of(self.residual, self.width)
+
+    @property
+    def source(self) -> Callable[..., Any]:
+        """A function of the file that defines the kind."""
+        return self.residual or self.constraint or self.observe  # type: ignore[return-value] - one of them is there

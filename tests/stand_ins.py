@@ -90,7 +90,9 @@ def fit(
     parameters = Parameters((Parameter(names[0], 0.6, 1.0, unit="rad"), Parameter(names[1], 0.4, 0.65, unit="rad")))
     fitness = [1.9e-3 if start % 3 else 0.41 for start in range(starts)]
     history = tuple(
-        SimpleNamespace(start=start, iteration=step, simulations=9 * start + step + 1, best=best, values=None)
+        SimpleNamespace(
+            start=start, iteration=step, simulations=9 * start + step + 1, best=best, regularised=None, gap=None
+        )
         for start in range(starts)
         for step, best in enumerate(fitness[start] + (8 + start) * 10.0 ** -np.arange(9))
     )

@@ -14,6 +14,7 @@ from typing import Any
 
 SOURCES = Path(__file__).parents[1] / "src"
 PACKAGE = "dalembert.multibody"
+CHARTS = "dalembert.report.charts"
 FOLDERS = ("components", "integrators")
 BASES = ("Body", "Joint", "Load", "Signal", "Integrator")
 
@@ -132,6 +133,7 @@ def generated(sources: Path) -> dict[Path, str]:
         package / "component_index.py": index(homes, kinds),
         package / "__init__.pyi": f"{STUB}{stub(top)}\n__version__: str\n",
         package / "multibody" / "__init__.pyi": STUB + stub(own),
+        package / "report" / "charts" / "__init__.pyi": STUB + stub(listed(sources, CHARTS)),
     }
 
 

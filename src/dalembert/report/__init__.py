@@ -5,7 +5,7 @@ from dalembert.report.gather import figures
 from dalembert.report.look import dark
 from dalembert.report.page import report
 from dalembert.report.registry import sections_of
-from dalembert.report.sections.part import Part
+from dalembert.report.section import Part
 from dalembert.report.table import Table, cell
 
 __all__ = ["Part", "Table", "cell", "charts", "dark", "figures", "report", "sections_of"]

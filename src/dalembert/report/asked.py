@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, fields
 from typing import Any, TypeVar
 
 from dalembert.errors import InputError, shown, unknown
-from dalembert.report.sections.section import Section
+from dalembert.report.section import Section
 
 Kind = TypeVar("Kind")
 

@@ -3,14 +3,14 @@
 from dataclasses import replace
 
 from dalembert.report.asked import Asked
+from dalembert.report.headline import Headline, fixed_facts
+from dalembert.report.provenance import provenance
 from dalembert.report.registry import registered_sections
-from dalembert.report.sections.headline import Headline, fixed_facts
-from dalembert.report.sections.provenance import Provenance
-from dalembert.report.sections.section import Section
+from dalembert.report.section import Section
 
 
-def contents(result: object, asked: Asked) -> list[Section]:
-    """Sections of a report in reading order; the first is the headline.
+def contents(result: object, asked: Asked) -> tuple[Headline, *tuple[Section, ...]]:
+    """Sections of a report in reading order.
 
     Raises
     ------
@@ -20,9 +20,12 @@ def contents(result: object, asked: Asked) -> list[Section]:
     first, *others = registered_sections(result, asked)
     asked.refuse_others()
     if not isinstance(first, Headline):
-        title = asked.title or type(result).__name__
-        first, others = Headline(title, "", True, "", (), asked.notes), [first, *others]
-    first = replace(first, findings=tuple(getattr(result, "findings", ())), facts=[*first.facts, *fixed_facts(result)])
-    facts = getattr(result, "provenance", {})
-    after = [Provenance(facts, asked.study)] if facts or asked.study else []
-    return [first, *others, *asked.sections, *after]
+        first, others = Headline(title=type(result).__name__), [first, *others]
+    headline = replace(
+        first,
+        title=asked.title or first.title,
+        notes=asked.notes,
+        facts={**first.facts, **fixed_facts(result)},
+        findings=getattr(result, "findings", ()),
+    )
+    return headline, *others, *asked.sections, *provenance(getattr(result, "provenance", {}), asked.study)

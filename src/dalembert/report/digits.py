@@ -80,6 +80,17 @@ def counted(number: int) -> str:
     return f"{number:,}".replace(",", " ")
 
 
+def percent(part: float, digits: int = 3) -> str:
+    """Text of a part of a whole in percent.
+
+    Examples
+    --------
+    >>> percent(0.12345)
+    '12.3 %'
+    """
+    return f"{shown(100 * float(part), digits=digits)} %"
+
+
 def _exponent(value: float) -> int:
     return math.floor(math.log10(abs(value)))
 

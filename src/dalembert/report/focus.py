@@ -12,15 +12,6 @@ MOST = 6
 """Lines that a figure shows unless more are named."""
 
 
-def size_label(kind: str) -> str:
-    """What a kind of amplitude is called on an axis.
-
-    >>> size_label("peak"), size_label("rms"), size_label("harmonic 1")
-    ('amplitude', 'rms', 'amplitude of harmonic 1')
-    """
-    return {"peak": "amplitude", "rms": "rms"}.get(kind, f"amplitude of {kind}")
-
-
 @dataclass(frozen=True, eq=False)
 class Look:
     """What of a curve is looked at.

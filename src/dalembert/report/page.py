@@ -65,7 +65,7 @@ def report(
     environment = _environment()
     scripts = [Markup(get_plotlyjs()), Markup(_packaged("page.js"))]
     page = environment.get_template("page.html").render(
-        title=sections[0].title,  # pyright: ignore[reportAttributeAccessIssue]
+        title=sections[0].title,
         sections=sections,
         environment=environment,
         style=Markup(environment.get_template("page.css").render(light=LIGHT, dark=DARK, font=Markup(FONT))),

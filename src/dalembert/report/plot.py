@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from functools import cached_property
 from html import unescape
-from typing import Any
+from typing import Any, ClassVar
 
 import plotly.graph_objects as go
 from markupsafe import Markup
@@ -17,6 +17,7 @@ SAFE = str.maketrans({"<": "\\u003c", ">": "\\u003e", "&": "\\u0026"})
 class Plot:
     """A figure, the name of its place in the page, and a sentence on how to read it."""
 
+    macro: ClassVar[str] = "figure"
     name: str
     figure: go.Figure
     caption: str = ""

@@ -1,8 +1,9 @@
 """What a channel measures, and in which unit, read from the last word of its name."""
 
 import re
+from collections.abc import Sequence
 
-from dalembert.report.focus import size_label, unit_of
+from dalembert.units import unit_of
 
 SIZE = re.compile(r"(?P<dof>.+) (?P<kind>peak|rms|harmonic \d+)")
 """Channels of responses over frequency."""
@@ -25,6 +26,15 @@ QUANTITIES = {
     "potential_energy": ("energy", "J"),
     "total_energy": ("energy", "J"),
 }
+
+
+def size_label(kind: str) -> str:
+    """What a kind of amplitude is called on an axis.
+
+    >>> size_label("peak"), size_label("rms"), size_label("harmonic 1")
+    ('amplitude', 'rms', 'amplitude of harmonic 1')
+    """
+    return {"peak": "amplitude", "rms": "rms"}.get(kind, f"amplitude of {kind}")
 
 
 def quantity(channel: str, unit: str = "") -> str:
@@ -75,15 +85,15 @@ def labelled(name: str, unit: str) -> str:
     return f"{name} ({unit})" if unit else name
 
 
-def by_quantity(channels: tuple[str, ...], most: int = 4) -> list[list[int]]:
-    """Groups of channel numbers that may share an axis: one quantity each, ``most`` channels at most.
+def by_quantity(channels: Sequence[str], most: int = 4) -> list[list[str]]:
+    """Groups of channels that may share an axis: one quantity each, ``most`` channels at most.
 
     Examples
     --------
     >>> by_quantity(("AB.end.x", "O.torque", "AB.end.y"))
-    [[0, 2], [1]]
+    [['AB.end.x', 'AB.end.y'], ['O.torque']]
     """
-    groups: dict[str, list[int]] = {}
-    for number, channel in enumerate(channels):
-        groups.setdefault(quantity(channel), []).append(number)
+    groups: dict[str, list[str]] = {}
+    for channel in channels:
+        groups.setdefault(quantity(channel), []).append(channel)
     return [group[first : first + most] for group in groups.values() for first in range(0, len(group), most)]

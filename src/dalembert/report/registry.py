@@ -1,12 +1,14 @@
 """Which sections a kind of result has: one registered function each."""
 
 from collections.abc import Callable
+from functools import cache
 from importlib import import_module
+from pkgutil import iter_modules
 from typing import Any, TypeVar
 
 from dalembert.errors import InputError
 from dalembert.report.asked import Asked
-from dalembert.report.sections.section import Section
+from dalembert.report.section import Section
 
 Sections = Callable[[Any, Asked], list[Section]]
 Function = TypeVar("Function", bound=Sections)
@@ -18,7 +20,8 @@ SUBJECTS = {
     "uncertainty": "bounds",
     "vibration": "frequency",
 }
-"""Module in ``dalembert.report.results`` with the sections of each package's results, imported when needed."""
+"""Package in ``dalembert.report.sections`` with the sections of each package's results, imported when needed."""
+_PACKAGE = "dalembert.report.sections"
 _SECTIONS: dict[str, Sections] = {}
 
 
@@ -48,17 +51,12 @@ def sections_of(kind: type | str) -> Callable[[Function], Function]:
     """
 
     def registered(function: Function) -> Function:
-        _SECTIONS[kind if isinstance(kind, str) else _full_name(kind)] = function
+        name = kind if isinstance(kind, str) else _full_name(kind)
+        if name not in _SECTIONS or not function.__module__.startswith(_PACKAGE):  # sections of others win over ours
+            _SECTIONS[name] = function
         return function
 
-    if isinstance(kind, type):
-        _load(kind)
     return registered
-
-
-def register_single(kind: type | str, headline: Callable[..., Section], section: Callable[[Any], Section]) -> None:
-    """Register a kind of result that has one section below its headline."""
-    sections_of(kind)(lambda result, asked: [headline(result, asked.title, asked.notes), section(result)])
 
 
 def registered_sections(result: object, asked: Asked) -> list[Section]:
@@ -70,7 +68,9 @@ def registered_sections(result: object, asked: Asked) -> list[Section]:
         For a result of no registered kind.
     """
     for kind in type(result).__mro__:
-        _load(kind)
+        package, module = [*kind.__module__.split("."), ""][:2]
+        if package == "dalembert" and module in SUBJECTS:
+            _import_sections(SUBJECTS[module])
         if (function := _SECTIONS.get(_full_name(kind))) is not None:
             return function(result, asked)
     raise InputError(
@@ -83,9 +83,9 @@ def _full_name(kind: type) -> str:
     return f"{kind.__module__}.{kind.__qualname__}"
 
 
-def _load(kind: type) -> None:
-    """Import the module that registers the sections of a class of this package."""
-    package, _, module = kind.__module__.partition(".")
-    subject = SUBJECTS.get(module.partition(".")[0]) if package == "dalembert" else None
-    if subject:
-        import_module(f"dalembert.report.results.{subject}")
+@cache
+def _import_sections(subject: str) -> None:
+    """Import the modules that register the sections of a subject."""
+    package = import_module(f"{_PACKAGE}.{subject}")
+    for module in iter_modules(package.__path__):
+        import_module(f"{package.__name__}.{module.name}")

@@ -3,8 +3,11 @@
 import base64
 import csv
 import io
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import ClassVar
+
+import numpy as np
 
 from dalembert.report.digits import counted, shown
 
@@ -36,10 +39,17 @@ class Table:
     rows : sequence of sequence of Cell
     """
 
+    macro: ClassVar[str] = "table"
     name: str
     caption: str
     columns: Sequence[str]
     rows: Sequence[Sequence[Cell]] = field(default_factory=tuple)
+
+    @classmethod
+    def of(cls, name: str, caption: str, columns: Mapping[str, Iterable[object]]) -> "Table":
+        """A table of columns: values, or cells."""
+        rows = [tuple(map(cell, row)) for row in zip(*columns.values(), strict=True)]
+        return cls(name, caption, tuple(columns), rows)
 
     @property
     def csv(self) -> str:
@@ -71,11 +81,30 @@ def cell(value: object, deviation: float | None = None, *, digits: int = 6, mark
     >>> cell(0.78539816, 2e-4).text, cell("AB").text
     ('0.78540', 'AB')
     """
+    if isinstance(value, Cell):
+        return value
+    if isinstance(value, np.generic):
+        value = value.item()
     if isinstance(value, bool) or not isinstance(value, int | float):
         return Cell(value, str(value), mark)
     if isinstance(value, int):
         return Cell(value, counted(value), mark)
     return Cell(value, shown(value, deviation, digits), mark)
+
+
+def cells(values: Iterable[object], digits: int = 6) -> list[Cell]:
+    """Cells of values, with a number of significant digits."""
+    return [cell(value, digits=digits) for value in values]
+
+
+def marks(texts: Iterable[str]) -> list[Cell]:
+    """Cells of notes, which deserve attention unless they are empty."""
+    return [cell(text, mark=bool(text)) for text in texts]
+
+
+def unless(done: Iterable[bool], text: str) -> list[Cell]:
+    """Notes on what is not done."""
+    return marks("" if one else text for one in done)
 
 
 def _safe(value: object) -> object:

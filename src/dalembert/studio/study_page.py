@@ -9,7 +9,7 @@ from urllib.parse import quote
 from nicegui import events, run, ui
 
 from dalembert.errors import DalembertError, InputError
-from dalembert.report.charts.measured import measured
+from dalembert.report.charts.identification.measured import measured
 from dalembert.studio.figures import on_any_page, plot
 from dalembert.studio.frame import button, complain, frame
 from dalembert.studio.jobs import Jobs

@@ -4,8 +4,8 @@ import pytest
 from dalembert.errors import InputError
 from dalembert.parameters import Parameter, Parameters
 from dalembert.report import charts
-from dalembert.report.charts.intervals import end_deviations
-from dalembert.report.charts.paving import planes, rectangles
+from dalembert.report.charts.identification.intervals import end_deviations
+from dalembert.report.charts.identification.paving import planes, rectangles
 from stand_ins import band_fit, box, comparison, parameter_set, propagation
 from support import says
 

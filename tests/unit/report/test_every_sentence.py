@@ -18,7 +18,7 @@ from pages import read_page
 from report_cases import CASES
 
 SOURCE = Path(dalembert.__file__).parent
-SECTIONS = sorted(path.relative_to(SOURCE).as_posix() for path in (SOURCE / "report" / "sections").glob("*.py"))
+SECTIONS = sorted(path.relative_to(SOURCE).as_posix() for path in (SOURCE / "report" / "sections").rglob("*.py"))
 SOURCES = [
     "inverse/least_squares/descent.py",
     "inverse/least_squares/estimate.py",

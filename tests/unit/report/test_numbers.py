@@ -46,7 +46,7 @@ def test_whole_numbers_stand_in_groups():
 
 def test_channels_of_one_quantity_share_an_axis():
     channels = ("a.x", "a.angle", "b.y", "c.x", "d.x", "e.x", "strain")
-    assert by_quantity(channels, most=4) == [[0, 2, 3, 4], [5], [1], [6]]
+    assert by_quantity(channels, most=4) == [["a.x", "b.y", "c.x", "d.x"], ["e.x"], ["a.angle"], ["strain"]]
     assert quantity("system.kinetic_energy") == "energy (J)"
 
 

@@ -13,8 +13,9 @@ from dalembert.inverse.problem.noise import noise_floor, random_residuals
 from dalembert.inverse.problem.problem import pose
 from dalembert.inverse.starts.multistart import horizons
 from dalembert.optimize import ParticleSwarm
+from dalembert.report import Table
 from dalembert.report.charts import responses
-from dalembert.report.sections.comparison import Comparison
+from dalembert.report.sections.identification.response import compared
 from small_models import DECAY, LINE, TIMES, line, measured
 
 TURN = 2 * np.pi
@@ -152,7 +153,8 @@ def test_the_report_draws_the_computed_angle_at_the_turn_of_the_measured_one(tmp
     np.testing.assert_allclose(computed[there], data.values[there, 0], atol=1e-6)
     np.testing.assert_allclose(computed[~there], angle(4.0, 0.5)[~there], atol=1e-6)
     fit.report(tmp_path / "report.html")
-    (row,) = Comparison(fit).table.rows
+    (table,) = [block for block in compared(fit).blocks if isinstance(block, Table)]
+    (row,) = table.rows
     assert row[1].value < 1e-8
 
 

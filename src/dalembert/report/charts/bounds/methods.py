@@ -1,0 +1,87 @@
+"""Methods that bound a response, compared: how far each lies from the reference, and what it cost."""
+
+import numpy as np
+import plotly.graph_objects as go
+
+from dalembert.report.charts.identification.responses import FEW
+from dalembert.report.charts.logarithm import logarithmic, positive
+from dalembert.report.look import LIGHT, plain, themed
+from dalembert.report.quantities import labelled
+from dalembert.report.thin import thin
+from dalembert.uncertainty import Comparison, Propagation
+
+KINDS = {
+    "inner bound": (LIGHT.series[0], "circle"),
+    "estimate": (LIGHT.series[1], "square"),
+    "enclosure of the surrogate": (LIGHT.series[2], "diamond"),
+}
+
+
+def methods(comparison: Comparison, *, title: str = "Error against runs") -> go.Figure:
+    """Largest distance of each method's bounds from the reference, over the runs of the model that it took.
+
+    A method that gives the same bounds as the reference has no place on a logarithmic axis and is left out.
+
+    Parameters
+    ----------
+    comparison : Comparison
+    title : str
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    figure = go.Figure()
+    for kind, (colour, symbol) in KINDS.items():
+        own = [row for row in comparison.rows if row.kind == kind and row.method != comparison.reference]
+        figure.add_scatter(
+            x=[row.runs for row in own],
+            y=positive(np.array([row.largest for row in own])),
+            name=kind,
+            mode="markers+text",
+            text=[plain(row.method) for row in own],
+            textposition="top center",
+            cliponaxis=False,
+            marker={"size": 11, "color": colour, "symbol": symbol},
+            showlegend=bool(own),
+        )
+    themed(figure, title, height=400)
+    figure.update_xaxes(title="runs of the model", **logarithmic(figure, "x"))
+    return figure.update_yaxes(title="largest error", **logarithmic(figure))
+
+
+def differences(comparison: Comparison, *, title: str = "Distance from the reference") -> go.Figure:
+    """Largest distance of any bound from the reference at each sample, one line a method, on a logarithmic scale.
+
+    Where a bound is that of the reference there is a gap.
+
+    Parameters
+    ----------
+    comparison : Comparison
+    title : str
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    figure, known = go.Figure(), reference(comparison)
+    along = known.coordinate
+    for place, one in enumerate(one for one in comparison.results if one is not known):
+        apart = positive(np.maximum(np.abs(one.lower - known.lower), np.abs(one.upper - known.upper)).max(axis=1))
+        kept = thin(apart)
+        figure.add_scatter(
+            x=along.values[kept],
+            y=apart[kept],
+            name=plain(one.method),
+            mode="lines+markers" if len(kept) <= FEW else "lines",
+            marker={"size": 4},
+            line={"width": 1.5, "color": LIGHT.series[place % len(LIGHT.series)]},
+        )
+    themed(figure, title, height=400)
+    figure.update_xaxes(title=labelled(along.name, along.unit))
+    return figure.update_yaxes(title="distance", **logarithmic(figure)).update_layout(showlegend=True)
+
+
+def reference(comparison: Comparison) -> Propagation:
+    """The result that the others are measured by."""
+    return next(one for one in comparison.results if one.method == comparison.reference)

@@ -1,0 +1,132 @@
+"""The forced response: amplitude over frequency, with what happens along the way."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import plotly.graph_objects as go
+
+from dalembert.report.charts.frequency.backbone import backbone_line
+from dalembert.report.charts.logarithm import logarithmic, positive
+from dalembert.report.focus import marked, movers, unstable
+from dalembert.report.look import LIGHT, plain, themed
+from dalembert.report.prefixes import prefixed
+from dalembert.report.quantities import labelled, size_label
+from dalembert.report.thin import thin
+from dalembert.units import unit_of
+from dalembert.vibration import Backbone, FrequencyCurve
+
+SYMBOLS = {"fold": "diamond", "torus": "circle-open", "period doubling": "square-open", "branch point": "star"}
+WIDE = 300
+"""Ratio of the largest amplitude to the smallest above which the axis is logarithmic."""
+FEW = 60
+"""Points up to which each is marked."""
+
+
+def frequency_curve(
+    curve: FrequencyCurve,
+    dofs: Sequence[str] | None = None,
+    *,
+    kind: str = "peak",
+    mode: Backbone | None = None,
+    title: str = "Forced response",
+) -> go.Figure:
+    """Amplitude over frequency along the path; dashed where it is unstable, with folds and points that were not found.
+
+    Parameters
+    ----------
+    curve : FrequencyCurve
+    dofs : sequence of str, optional
+        Degrees of freedom to draw; those that move most if not given.
+    kind : str
+        ``"peak"``, ``"rms"``, or ``"harmonic 1"`` and so on.
+    mode : Backbone, optional
+        A nonlinear mode, drawn as the line through the peaks of the degree of freedom that moves most.
+    title : str
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+
+    Raises
+    ------
+    InputError
+        For a degree of freedom that was not observed, or another kind.
+    """
+    chosen = tuple(dofs or movers(curve))
+    sizes = {dof: curve.amplitude(dof, kind) for dof in chosen}
+    factor, unit = scale(sizes)
+    figure = go.Figure()
+    for place, (dof, size) in enumerate(sizes.items()):
+        _path(figure, curve, dof, factor * size, LIGHT.series[place % len(LIGHT.series)])
+    for event, points in marked(curve).items():
+        figure.add_scatter(
+            x=np.tile(curve.frequencies[points], len(sizes)),
+            y=np.concatenate([factor * size[points] for size in sizes.values()]),
+            name=event,
+            mode="markers",
+            marker={"symbol": SYMBOLS.get(event, "x"), "size": 9, "color": LIGHT.ink},
+        )
+    _lost(figure, curve, {dof: factor * size for dof, size in sizes.items()})
+    if mode is not None:
+        most = max(sizes, key=lambda dof: float(np.nanmax(sizes[dof], initial=0.0)))
+        figure.add_trace(backbone_line(mode, most, kind, factor))
+    themed(figure, title, height=440)
+    figure.update_xaxes(title="frequency (Hz)")
+    return figure.update_yaxes(title=labelled(size_label(kind), unit), **_axis(figure)).update_layout(showlegend=True)
+
+
+def scale(sizes: Mapping[str, np.ndarray]) -> tuple[float, str]:
+    """Factor and unit for amplitudes by degree of freedom; no unit where they have several."""
+    units = {unit_of(dof) for dof in sizes}
+    most = max((float(np.nanmax(size, initial=0.0)) for size in sizes.values()), default=0.0)
+    return prefixed(most, units.pop()) if len(units) == 1 else (1.0, "")
+
+
+def _path(figure: go.Figure, curve: FrequencyCurve, dof: str, size: np.ndarray, colour: str) -> None:
+    """One degree of freedom: solid, and dashed where it is unstable; the two meet."""
+    bad = unstable(curve)
+    touched = (
+        bad | np.roll(bad, 1) * (np.arange(len(bad)) > 0) | np.roll(bad, -1) * (np.arange(len(bad)) < len(bad) - 1)
+    )
+    found = np.where(curve.converged, size, np.nan)
+    few = "lines+markers" if len(size) <= FEW else "lines"
+    for suffix, here, style in (("", ~bad, {}), (", unstable", touched, {"dash": "dash"})):
+        if not here.any():
+            continue
+        y = np.where(here, found, np.nan)
+        kept = thin(y)
+        figure.add_scatter(
+            x=curve.frequencies[kept],
+            y=y[kept],
+            name=f"{plain(dof)}{suffix}",
+            legendgroup=plain(dof),
+            mode=few,
+            line={"color": colour, "width": 2, **style},
+            marker={"size": 4},
+            hovertemplate="%{x:.6g} Hz, %{y:.5g}",
+        )
+
+
+def _lost(figure: go.Figure, curve: FrequencyCurve, sizes: Mapping[str, np.ndarray]) -> None:
+    """Crosses where points were not found, on the straight line between their neighbours."""
+    found, points = np.flatnonzero(curve.converged), np.flatnonzero(~curve.converged)
+    if not len(points) or not len(found):
+        return
+    figure.add_scatter(
+        x=np.tile(curve.frequencies[points], len(sizes)),
+        y=np.concatenate([np.interp(points, found, size[found]) for size in sizes.values()]),
+        name="not found",
+        mode="markers",
+        marker={"symbol": "x-thin", "size": 8, "line": {"width": 2, "color": LIGHT.series[1]}},
+        hovertemplate="%{x:.6g} Hz",
+    )
+
+
+def _axis(figure: go.Figure) -> dict:
+    """Linear from zero, or logarithmic where a curve spans a wide range."""
+    traces: Any = figure.data
+    values = positive(np.concatenate([np.asarray(trace.y, dtype=float) for trace in traces]))
+    if np.any(np.isfinite(values)) and np.nanmax(values) > WIDE * np.nanmin(values):
+        return logarithmic(figure)
+    return {"rangemode": "tozero"}

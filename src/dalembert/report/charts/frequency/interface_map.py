@@ -1,0 +1,103 @@
+"""Contact states over an interface, where the contacts are."""
+
+import numpy as np
+import plotly.graph_objects as go
+
+from dalembert.report.charts.frequency.body import edges
+from dalembert.report.charts.frequency.contact_states import COLOURS, STATES, shares
+from dalembert.report.charts.frequency.deformation import SECONDS, slowness
+from dalembert.report.charts.motion.film import Film
+from dalembert.report.look import LIGHT, plain, themed
+from dalembert.report.prefixes import prefixed
+from dalembert.vibration import Deformation
+
+FRAMES = 32
+SMALLEST, LARGEST = 9, 22
+"""Diameters of contacts, by the energy that they take; half as large where there are many."""
+MANY = 16
+
+
+def interface_map(shape: Deformation, *, title: str | None = None) -> go.Figure:
+    """Contacts from above: filled by their state at a phase of the period, ringed by the one they are in for longest.
+
+    Larger ones take more energy from the motion.
+
+    Parameters
+    ----------
+    shape : Deformation
+        With contacts.
+    title : str, optional
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    wide = np.sort(np.argsort(-np.ptp(np.concatenate([shape.places, shape.contact_places]), axis=0), kind="stable")[:2])
+    parts = shares(shape.states)
+    longest = np.argmax([parts[state] for state in STATES], axis=0)
+    energies = np.clip(np.asarray(shape.energies), 0.0, None)
+    most = float(energies.max(initial=0.0))
+    sizes = SMALLEST + (LARGEST - SMALLEST) * np.sqrt(energies / most if most > 0 else energies)
+    sizes = sizes if len(sizes) <= MANY else sizes / 2
+    factor, unit = prefixed(most, "J")
+    phases = np.arange(FRAMES) * np.asarray(shape.states).shape[1] // FRAMES
+    colours = np.array([COLOURS[state] for state in STATES])
+    rings = np.array([LIGHT.muted, *colours[1:]])
+    x, y = shape.contact_places[:, wide].T
+    text = [
+        f"{plain(name)}: stuck {100 * parts['stuck'][k]:.0f} %, slipping {100 * parts['slipping'][k]:.0f} %, separated "
+        f"{100 * parts['separated'][k]:.0f} %, {factor * energies[k]:.3g} {unit}"
+        for k, name in enumerate(shape.contacts)
+    ]
+    figure = go.Figure([_structure(shape, wide), *_legend()])
+    figure.add_scatter(
+        x=x,
+        y=y,
+        mode="markers",
+        marker={
+            "size": sizes,
+            "color": colours[shape.states[:, 0]],
+            "line": {"width": 3 if len(sizes) <= MANY else 1.5, "color": rings[longest]},
+            "opacity": 1,
+        },
+        text=text,
+        hovertemplate="%{text}<extra></extra>",
+        showlegend=False,
+    )
+    last = len(STATES) + 1
+    figure.frames = [
+        go.Frame(
+            name=str(number),
+            traces=[last],
+            data=[{"type": "scatter", "marker": {"color": colours[shape.states[:, phase]]}}],
+        )
+        for number, phase in enumerate(phases)
+    ]
+    themed(figure, title or "Contact states over the interface", height=480)
+    points = np.concatenate([shape.places[:, wide], shape.contact_places[:, wide]])
+    low, high = points.min(axis=0), points.max(axis=0)
+    margin = 0.06 * float((high - low).max())
+    across, up = ("xyz"[axis] for axis in wide)
+    figure.update_xaxes(title=f"{across} (m)", range=[low[0] - margin, high[0] + margin], constrain="domain")
+    figure.update_yaxes(title=f"{up} (m)", range=[low[1] - margin, high[1] + margin], scaleanchor="x", scaleratio=1)
+    labels = [f"{360 * number / FRAMES:.0f}" for number in range(FRAMES)]
+    film = Film(labels, SECONDS, "phase", "°", slowness(shape.frequency), endless=True)
+    return figure.update_layout(showlegend=True, **film.controls())
+
+
+def _structure(shape: Deformation, wide: np.ndarray) -> go.Scatter:
+    """The edges of the structure at rest, from above."""
+    ends = edges(shape.places, shape.faces)
+    lines = np.full((len(ends), 3, 2), np.nan, dtype=np.float32)
+    lines[:, :2] = shape.places[ends][:, :, wide]
+    x, y = lines.reshape(-1, 2).T
+    line = {"color": LIGHT.grid, "width": 1.5}
+    return go.Scatter(x=x, y=y, mode="lines", line=line, hoverinfo="skip", showlegend=False)
+
+
+def _legend() -> list[go.Scatter]:
+    """An entry for each state."""
+    return [
+        go.Scatter(x=[None], y=[None], name=state, mode="markers", marker={"size": 10, "color": COLOURS[state]})
+        for state in STATES
+    ]

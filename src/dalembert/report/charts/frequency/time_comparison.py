@@ -1,0 +1,75 @@
+"""Points of a response over frequency beside integration in time."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import plotly.graph_objects as go
+
+from dalembert.report.focus import foremost
+from dalembert.report.look import LIGHT, plain, themed
+from dalembert.report.prefixes import prefixed
+from dalembert.report.quantities import labelled, size_label
+from dalembert.units import unit_of
+from dalembert.vibration import FrequencyCurve, TimeComparison
+
+
+def time_comparison(
+    comparison: TimeComparison,
+    curve: FrequencyCurve | None = None,
+    dofs: Sequence[str] | None = None,
+    *,
+    title: str = "Beside time integration",
+) -> go.Figure:
+    """Amplitudes in time as crosses, by harmonic balance as circles, on the curve if it is given.
+
+    Parameters
+    ----------
+    comparison : TimeComparison
+    curve : FrequencyCurve, optional
+    dofs : sequence of str, optional
+        Degrees of freedom to draw; those that move most if not given.
+    title : str
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    chosen = compared_dofs(comparison) if not dofs else tuple(dofs)
+    columns = [comparison.dofs.index(dof) for dof in chosen]
+    most = float(np.nanmax(comparison.time[:, columns], initial=0.0))
+    if curve is not None:
+        most = max(most, *(float(np.nanmax(curve.amplitude(dof, comparison.kind), initial=0.0)) for dof in chosen))
+    units = {unit_of(dof) for dof in chosen}
+    factor, unit = prefixed(most, units.pop()) if len(units) == 1 else (1.0, "")
+    figure = go.Figure()
+    for place, (dof, column) in enumerate(zip(chosen, columns, strict=True)):
+        colour = LIGHT.series[place % len(LIGHT.series)]
+        name, shared = plain(dof), {"legendgroup": plain(dof), "hovertemplate": "%{x:.6g} Hz, %{y:.5g}"}
+        if curve is not None:
+            size = factor * np.where(curve.converged, curve.amplitude(dof, comparison.kind), np.nan)
+            line = {"color": colour, "width": 2}
+            figure.add_scatter(x=curve.frequencies, y=size, name=name, mode="lines", line=line, **shared)
+        for word, values, symbol in (
+            ("harmonic balance", comparison.balance, "circle-open"),
+            ("in time", comparison.time, "x-thin"),
+        ):
+            marker = {"symbol": symbol, "size": 9, "color": colour, "line": {"width": 2, "color": colour}}
+            figure.add_scatter(
+                x=comparison.frequencies,
+                y=factor * values[:, column],
+                name=f"{name}, {word}",
+                mode="markers",
+                marker=marker,
+                **shared,
+            )
+    themed(figure, title, height=440)
+    figure.update_xaxes(title="frequency (Hz)")
+    figure.update_yaxes(title=labelled(size_label(comparison.kind), unit), rangemode="tozero")
+    return figure.update_layout(showlegend=True)
+
+
+def compared_dofs(comparison: TimeComparison, most: int = 4) -> tuple[str, ...]:
+    """The degrees of freedom that move most in time, displacements before others."""
+    sizes = dict(zip(comparison.dofs, np.nanmax(comparison.time, axis=0).tolist(), strict=True))
+    own = {dof: size for dof, size in sizes.items() if unit_of(dof) == unit_of(comparison.dofs[0])}
+    return foremost(own, most)

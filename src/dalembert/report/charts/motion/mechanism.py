@@ -1,0 +1,169 @@
+"""The mechanism in motion: drawn to scale, with play button, slider and the paths of chosen points."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import plotly.graph_objects as go
+
+from dalembert.multibody import Drawing
+from dalembert.report.charts.motion.playback import Playback, controls
+from dalembert.report.look import LIGHT, plain, themed
+
+NAMED_BODIES = 7
+"""More bodies than colours share one trace."""
+POINTS_A_FRAME = 1000
+GHOSTS = 6
+
+
+def mechanism(
+    drawing: Drawing,
+    *,
+    paths: Mapping[str, np.ndarray] | None = None,
+    measured: Mapping[str, np.ndarray] | None = None,
+    title: str = "Mechanism",
+) -> go.Figure:
+    """Animation of a mechanism with equal axes and a range that holds the whole motion.
+
+    Played at 25 frames a second in real time where that takes 2 s to 6 s, else slower or faster, as its caption says;
+    at most 150 frames. Faint outlines show the motion where nothing moves: in print and at rest.
+
+    Parameters
+    ----------
+    drawing : Drawing
+        Lines (frames, points, 2) and joints (frames, 2), by name, in m, at times (frames,) in s.
+    paths : mapping of str to array, shape (samples, 2), optional
+        Paths of points, in m.
+    measured : mapping of str to array, shape (samples, 2), optional
+        Measured positions of points, in m, drawn as crosses.
+    title : str
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+
+    Examples
+    --------
+    >>> from types import SimpleNamespace
+    >>> angle = np.linspace(0, 1, 51)
+    >>> rod = np.stack([np.zeros((51, 2)), np.stack([np.sin(angle), -np.cos(angle)], axis=1)], axis=1)
+    >>> swing = SimpleNamespace(times=np.linspace(0, 2, 51), lines={"rod": rod}, joints={"O": rod[:, 0]})
+    >>> len(mechanism(swing).frames)
+    50
+    """
+    playback = Playback.of(np.asarray(drawing.times, dtype=float))
+    bodies = _bodies(drawing)
+    grounded = {name: at for name, at in drawing.joints.items() if np.ptp(at, axis=0).max() == 0.0}
+    moving = {name: at for name, at in drawing.joints.items() if name not in grounded}
+    still = [
+        _ghosts(bodies, playback.frames),
+        *(_path(name, path) for name, path in (paths or {}).items()),
+        *(_crosses(name, points) for name, points in (measured or {}).items()),
+        _markers("fixed to ground", grounded, 0, "triangle-up", LIGHT.muted),
+    ]
+    first = int(playback.frames[0])
+    figure = go.Figure([*still, *_pose(bodies, first), _markers("joints", moving, first, "circle", LIGHT.ink)])
+    number = list(range(len(still), len(still) + len(bodies) + 1))
+    figure.frames = [
+        go.Frame(
+            name=str(frame),
+            traces=number,
+            data=[
+                *({"x": motion[frame, :, 0], "y": motion[frame, :, 1]} for motion in bodies.values()),
+                _positions(moving, int(frame)),
+            ],
+        )
+        for frame in playback.frames
+    ]
+    box = _box([*drawing.lines.values(), *drawing.joints.values(), *(paths or {}).values(), *(measured or {}).values()])
+    themed(figure, title, height=520)
+    figure.update_xaxes(title="x (m)", range=box[0].tolist())
+    figure.update_yaxes(title="y (m)", range=box[1].tolist(), scaleanchor="x", scaleratio=1)
+    return figure.update_layout(**controls(playback))
+
+
+def _bodies(drawing: Drawing) -> dict[str, np.ndarray]:
+    """Lines (frames, points, 2) in single precision, thinned; many bodies become one line with gaps."""
+    total = sum(line.shape[1] for line in drawing.lines.values())
+    stride = max(1, -(-total // POINTS_A_FRAME))
+    lines = {
+        name: np.asarray(line[:, _kept(line.shape[1], stride)], dtype=np.float32)
+        for name, line in drawing.lines.items()
+    }
+    if len(lines) <= NAMED_BODIES:
+        return lines
+    gap = np.full((len(drawing.times), 1, 2), np.nan, dtype=np.float32)
+    return {f"{len(lines)} bodies": np.concatenate([part for line in lines.values() for part in (line, gap)], axis=1)}
+
+
+def _kept(points: int, stride: int) -> np.ndarray:
+    """Every so many of a line's points, its two ends always."""
+    return np.unique(np.linspace(0, points - 1, max(2, -(-points // stride))).round().astype(int))
+
+
+def _pose(bodies: dict[str, np.ndarray], frame: int) -> list[go.Scatter]:
+    return [
+        go.Scatter(
+            x=motion[frame, :, 0],
+            y=motion[frame, :, 1],
+            name=plain(name),
+            mode="lines",
+            line={"width": 5, "color": colour},
+            hoverinfo="name",
+        )
+        for (name, motion), colour in zip(bodies.items(), LIGHT.series, strict=False)
+    ]
+
+
+def _ghosts(bodies: dict[str, np.ndarray], frames: np.ndarray) -> go.Scatter:
+    """A few poses along the motion, as one faint line with gaps."""
+    poses = frames[np.unique(np.linspace(0, len(frames) - 1, GHOSTS).round().astype(int))]
+    gap = np.full((1, 2), np.nan, dtype=np.float32)
+    outline = np.concatenate([part for pose in poses for line in bodies.values() for part in (line[pose], gap)])
+    return go.Scatter(
+        x=outline[:, 0],
+        y=outline[:, 1],
+        mode="lines",
+        line={"width": 3, "color": LIGHT.grid},
+        hoverinfo="skip",
+        showlegend=False,
+    )
+
+
+def _path(name: str, path: np.ndarray) -> go.Scatter:
+    path = np.asarray(path, dtype=np.float32)[:: max(1, len(path) // 2000)]
+    line = {"width": 1.5, "color": LIGHT.muted, "dash": "dot"}
+    return go.Scatter(x=path[:, 0], y=path[:, 1], name=f"path of {plain(name)}", mode="lines", line=line)
+
+
+def _crosses(name: str, points: np.ndarray) -> go.Scatter:
+    points = np.asarray(points)[:: max(1, len(points) // 150)]
+    marker = {"symbol": "x-thin", "size": 6, "line": {"width": 1.25, "color": LIGHT.ink}}
+    return go.Scatter(x=points[:, 0], y=points[:, 1], name=f"{plain(name)} measured", mode="markers", marker=marker)
+
+
+def _markers(name: str, joints: Mapping[str, np.ndarray], frame: int, symbol: str, colour: str) -> go.Scatter:
+    marker = {"symbol": symbol, "size": 10, "color": LIGHT.surface, "line": {"width": 2, "color": colour}}
+    return go.Scatter(
+        **_positions(joints, frame),
+        name=name,
+        mode="markers",
+        marker=marker,
+        text=[plain(joint) for joint in joints],
+        hoverinfo="text",
+        showlegend=bool(joints),
+    )
+
+
+def _positions(joints: Mapping[str, np.ndarray], frame: int) -> dict[str, np.ndarray]:
+    at = np.array([motion[frame] for motion in joints.values()], dtype=np.float32).reshape(-1, 2)
+    return {"x": at[:, 0], "y": at[:, 1]}
+
+
+def _box(motions: list[np.ndarray]) -> np.ndarray:
+    """Range (2, 2) of x and y over the whole motion, with a margin."""
+    low = np.min([np.nanmin(motion.reshape(-1, 2), axis=0) for motion in motions], axis=0)
+    high = np.max([np.nanmax(motion.reshape(-1, 2), axis=0) for motion in motions], axis=0)
+    size = max(float((high - low).max()), 1e-9)
+    margin = 0.06 * size
+    flat = np.maximum(0.15 * size - (high - low) / 2, 0.0)
+    return np.stack([low - flat - margin, high + flat + margin], axis=1)

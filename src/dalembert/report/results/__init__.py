@@ -1,1 +1,0 @@
-"""Sections of the package's results, by subject."""

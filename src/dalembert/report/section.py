@@ -1,0 +1,114 @@
+"""A section of a report, and what it is made of."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from jinja2 import Environment
+from markupsafe import Markup
+
+from dalembert.report.plot import Plot
+from dalembert.report.table import Table
+
+
+@dataclass(frozen=True)
+class Row:
+    """Figures beside each other, where the page is wide enough; below each other if not ``beside``."""
+
+    macro: ClassVar[str] = "figures"
+    plots: Sequence[Plot]
+    beside: bool = True
+
+
+@dataclass(frozen=True)
+class Fold:
+    """A table, folded away where it has more than ``most`` rows."""
+
+    macro: ClassVar[str] = "fold"
+    table: Table
+    most: int = 20
+    rows: str = "rows"
+
+
+@dataclass(frozen=True)
+class Listed:
+    """Sentences as a list."""
+
+    macro: ClassVar[str] = "listed"
+    sentences: Sequence[str]
+
+
+@dataclass(frozen=True)
+class Download:
+    """A link to a table that is not shown; nothing where there is none."""
+
+    macro: ClassVar[str] = "download_of"
+    table: Table | None
+    words: str
+
+
+@dataclass(frozen=True)
+class Source:
+    """A text as it was written, folded away."""
+
+    macro: ClassVar[str] = "source"
+    title: str
+    text: str
+
+
+Block = str | Plot | Row | Table | Fold | Listed | Download | Source
+"""What stands in a section; a str is a paragraph, left out if it is empty."""
+
+
+@dataclass(frozen=True)
+class Section:
+    """A part of the page: a heading, and what is below it."""
+
+    template: ClassVar[str] = "section.html"
+    heading: str
+    blocks: Sequence[Block] = ()
+
+    @property
+    def anchor(self) -> str:
+        """Where in the page the section is."""
+        return self.heading.lower().replace(" ", "-")
+
+    @property
+    def plots(self) -> list[Plot]:
+        """All figures."""
+        rows = [block.plots if isinstance(block, Row) else [block] for block in self.blocks]
+        return [plot for row in rows for plot in row if isinstance(plot, Plot)]
+
+    def html(self, environment: Environment) -> Markup:
+        """The section, rendered by its template."""
+        return Markup(environment.get_template(self.template).render(section=self))
+
+
+class Part(Section):
+    """A section of a report: sentences, Plotly figures and tables.
+
+    Parameters
+    ----------
+    heading : str
+    sentences : tuple of str
+    figures : mapping of str to plotly.graph_objects.Figure
+        By their captions. Their titles stand in the figures' layouts.
+    tables : tuple of Table
+
+    Examples
+    --------
+    >>> Part("Weather", ("It rained.",)).anchor
+    'weather'
+    """
+
+    def __init__(
+        self,
+        heading: str,
+        sentences: Sequence[str] = (),
+        figures: Mapping[str, Any] | None = None,
+        tables: Sequence[Table] = (),
+    ) -> None:
+        name = Section(heading).anchor
+        drawn = enumerate((figures or {}).items(), start=1)
+        plots = [Plot(f"{name}-{number}", figure, caption) for number, (caption, figure) in drawn]
+        super().__init__(heading, (*sentences, *plots, *map(Fold, tables)))

@@ -1,0 +1,91 @@
+"""Bounds of the response over a box of parameters."""
+
+import numpy as np
+
+from dalembert.intervals import Box
+from dalembert.report import charts
+from dalembert.report.asked import Asked
+from dalembert.report.digits import counted, shown
+from dalembert.report.headline import Headline
+from dalembert.report.look import plain
+from dalembert.report.plot import Plot
+from dalembert.report.quantities import by_quantity, labelled, unit
+from dalembert.report.registry import sections_of
+from dalembert.report.section import Listed, Section
+from dalembert.report.sections.samples import samples
+from dalembert.report.table import Cell, Table, cells, noted
+from dalembert.uncertainty import Propagation
+
+MEANING = {
+    "inner bound": "Runs of the model within the box reach both sides of the band; the true one may be wider",
+    "estimate": "Whatever the parameters are within their intervals, the response lies about in the band",
+    "enclosure of the surrogate": "Whatever the parameters are within their intervals, the surrogate lies in the band, "
+    "and the response as far as the estimated error of the surrogate holds",
+}
+
+
+@sections_of(Propagation)
+def propagation(result: Propagation, asked: Asked) -> list[Section]:
+    """Bounds by one method."""
+    error = result.error
+    headline = Headline(
+        title="Bounds of the response",
+        verdict="bounded" if result.success else "not bounded",
+        success=result.success,
+        status=result.status,
+        facts={
+            "method": result.method,
+            "the bounds are": result.kind,
+            "largest estimated error": "unknown" if error is None else shown(float(error.max()), digits=2),
+            "runs of the model": counted(result.runs),
+            "time": f"{shown(result.seconds, digits=3)} s",
+        },
+    )
+    return [headline, bounds(result)]
+
+
+def bounds(result: Propagation) -> Section:
+    """The box, a figure of the bounds for each quantity, and how wide they are."""
+    how = f"{MEANING[result.kind]}; below, how wide the band is."
+    plots = [
+        Plot(f"bands-{place}", charts.bands(result, group, title=", ".join(map(plain, group))), how)
+        for place, group in enumerate(by_quantity(result.channels), start=1)
+    ]
+    reasons = [finding.message for finding in result.findings if finding.code == "unknown-error"]
+    series = {"lower": result.lower, "upper": result.upper}
+    download = samples("bounds", result.coordinate, result.channels, series, "Download all bounds as CSV")
+    box = box_table(result.box, "Intervals of the parameters")
+    return Section("Bounds", (box, *plots, _widths(result), Listed(reasons), download))
+
+
+def _widths(result: Propagation) -> Table:
+    width, along, corners = result.upper - result.lower, result.coordinate, at_corners(result)
+    errors = ["unknown"] * len(result.channels) if result.error is None else result.error.max(axis=0)
+    columns = {
+        "channel": result.channels,
+        "largest width": width.max(axis=0),
+        labelled(f"at {along.name}", along.unit): along.values[width.argmax(axis=0)],
+        "mean width": [column.mean() for column in width.T],
+        "estimated error": cells(errors, 2),
+    }
+    if corners is not None:
+        columns["taken at corners of the box"] = [Cell(float(part), f"{100 * part:.0f} %") for part in corners]
+    columns["unit"] = [unit(channel, known) for channel, known in zip(result.channels, result.units, strict=True)]
+    return noted(Table.of("widths", "Widths", columns))
+
+
+def box_table(box: Box, caption: str, name: str = "box") -> Table:
+    """Ends, middle and radius of each interval of a box."""
+    middle, radius = (box.lower + box.upper) / 2, (box.upper - box.lower) / 2
+    columns = {"parameter": box.names, "lower": box.lower, "upper": box.upper, "middle": middle, "radius": radius}
+    return Table.of(name, caption, columns)
+
+
+def at_corners(result: Propagation) -> np.ndarray | None:
+    """Part of each channel's bounds that are taken at a corner of the box, (channels,); None where it is not known."""
+    if result.at_lower is None or result.at_upper is None:
+        return None
+    at = np.stack([result.at_lower, result.at_upper])
+    near = 1e-6 * (result.box.upper - result.box.lower)
+    on_end = (at <= result.box.lower + near) | (at >= result.box.upper - near)
+    return on_end.all(axis=-1).mean(axis=(0, 1))

@@ -1,0 +1,105 @@
+"""Responses over frequency for several values of a parameter: the best one, and what it gains."""
+
+import numpy as np
+
+from dalembert.report import charts
+from dalembert.report.asked import Asked
+from dalembert.report.charts.frequency.resonance_peaks import value_text
+from dalembert.report.digits import counted, percent, shown
+from dalembert.report.focus import Look, family_dofs
+from dalembert.report.headline import Headline
+from dalembert.report.plot import Plot
+from dalembert.report.prefixes import in_words
+from dalembert.report.quantities import labelled
+from dalembert.report.registry import sections_of
+from dalembert.report.section import Fold, Row, Section
+from dalembert.report.sections.frequency.curve import beside
+from dalembert.report.sections.frequency.friction import friction
+from dalembert.report.table import Table, cells, marks, noted
+from dalembert.units import unit_of
+from dalembert.vibration import CurveFamily
+
+
+@sections_of(CurveFamily)
+def curve_family(family: CurveFamily, asked: Asked) -> list[Section]:
+    """Curves for several values of a parameter, and what was computed beside the best."""
+    dofs, kind = tuple(asked.dofs or family_dofs(family, asked.amplitude)), asked.amplitude
+    facts, own = {"values": counted(len(family.values))}, []
+    if dofs:
+        best = _best(family, dofs[0], kind)
+        facts |= _facts(family, dofs[0], kind, best)
+        own.append(_section(family, dofs, kind, best))
+        curve = family.curves[best]
+        if curve is not None and curve.coordinates:
+            lead = f"With {family.parameter} = {value_text(family, float(family.values[best]))}, "
+            own.append(friction(Look.of(curve, dofs[:1], kind), lead))
+    headline = Headline(
+        title=f"Forced response over {family.parameter}",
+        verdict="computed" if family.success else "incomplete",
+        success=family.success,
+        status=f"{family.status}.",
+        facts=facts,
+    )
+    return [headline, *own, *beside(asked)]
+
+
+def _best(family: CurveFamily, dof: str, kind: str) -> int:
+    """Number of the curve with the smallest peak."""
+    return int(np.flatnonzero(np.asarray(family.values) == family.best(dof, kind))[0])
+
+
+def _facts(family: CurveFamily, dof: str, kind: str, best: int) -> dict[str, str]:
+    gain = float(family.reduction(dof, kind)[best])
+    facts = {
+        f"{family.parameter} of the smallest peak": value_text(family, float(family.values[best])),
+        f"peak of {dof} there": in_words(family.peaks(dof, kind)[best].amplitude, unit_of(dof), 5),
+    }
+    return facts | (
+        {f"reduction from {value_text(family, float(family.values[0]))}": percent(gain)} if gain > 0 else {}
+    )
+
+
+def _section(family: CurveFamily, dofs: tuple[str, ...], kind: str, best: int) -> Section:
+    """Curves with their envelope, peaks over the parameter, and a table of the peaks and what they gain."""
+    how = "Dotted and dashed: what the best and the worst value would give at each frequency alone."
+    below, numbered = "Below, the frequency of the peak.", list(enumerate(dofs, start=1))
+    wide = [Plot(f"curve-family-{place}", charts.curve_family(family, dof, kind=kind), how) for place, dof in numbered]
+    pairs = [
+        Plot(f"family-peaks-{place}", charts.family_peaks(family, dof, kind=kind), below) for place, dof in numbered
+    ]
+    tables = [Fold(_table(family, place, dof, kind)) for place, dof in numbered]
+    sentences = _sentences(family, dofs[0], kind, best)
+    return Section("Responses over the parameter", (*sentences, *wide, Row(pairs), *tables))
+
+
+def _sentences(family: CurveFamily, dof: str, kind: str, best: int) -> list[str]:
+    peaks, values = family.peaks(dof, kind), np.asarray(family.values)
+    gain = float(family.reduction(dof, kind)[best])
+    told = f"The smallest peak of {dof} is at {family.parameter} = {value_text(family, values[best])}: "
+    told += f"{in_words(peaks[best].amplitude, unit_of(dof), 4)} at {shown(peaks[best].frequency)} Hz"
+    if best and np.isfinite(gain):
+        told += f", {percent(gain)} below that at {value_text(family, values[0])}"
+    told_all = [f"{told}."]
+    ends = [place for place in (0, len(values) - 1) if np.isfinite(peaks[place].frequency)]
+    if len(ends) == 2:
+        first, last = (shown(peaks[place].frequency) for place in ends)
+        shift = f"From {value_text(family, values[0])} to {value_text(family, values[-1])} "
+        told_all.append(f"{shift}the frequency of the peak goes from {first} to {last} Hz.")
+    if len(values) > 1 and values[best] in (values.min(), values.max()):
+        told_all.append("It lies at the end of the values: beyond them the peak may be smaller still.")
+    return told_all
+
+
+def _table(family: CurveFamily, place: int, dof: str, kind: str) -> Table:
+    peaks, curves = family.peaks(dof, kind), family.curves
+    columns = {
+        labelled(family.parameter, family.unit): family.values,
+        labelled("peak", unit_of(dof)): [peak.amplitude for peak in peaks],
+        "at frequency (Hz)": [peak.frequency for peak in peaks],
+        "change from the first (%)": cells(-100 * np.asarray(family.reduction(dof, kind)), 4),
+        "points found": [
+            "" if curve is None else f"{int(curve.converged.sum())} of {len(curve.converged)}" for curve in curves
+        ],
+        "note": marks(reason or "" for reason in family.failures),
+    }
+    return noted(Table.of(f"family-{place}", f"Peaks of {dof}", columns))

@@ -1,0 +1,73 @@
+"""A response over frequency beside integration in time."""
+
+import numpy as np
+
+from dalembert.report import charts
+from dalembert.report.asked import Asked
+from dalembert.report.charts.frequency.time_comparison import compared_dofs
+from dalembert.report.digits import counted, percent, shown
+from dalembert.report.headline import Headline
+from dalembert.report.plot import Plot
+from dalembert.report.quantities import labelled
+from dalembert.report.registry import sections_of
+from dalembert.report.section import Fold, Section
+from dalembert.report.table import Table, cells, noted, unless
+from dalembert.units import unit_of
+from dalembert.vibration import FrequencyCurve, TimeComparison
+
+
+@sections_of(TimeComparison)
+def time_comparison(compared: TimeComparison, asked: Asked) -> list[Section]:
+    """The comparison alone."""
+    found = np.asarray(compared.converged)
+    most = float(np.nanmax(np.abs(compared.differences[found]), initial=0.0))
+    headline = Headline(
+        title="Beside time integration",
+        verdict="compared" if found.all() else "incomplete",
+        success=bool(found.all()),
+        status="All points are periodic in time." if found.all() else "Some points are not periodic in time yet.",
+        facts={
+            "points": counted(len(found)),
+            "largest difference": percent(most, 2),
+            "steps a period": counted(int(compared.provenance["method"]["steps_per_period"])),
+        },
+    )
+    return [headline, in_time(compared)]
+
+
+def in_time(compared: TimeComparison, curve: FrequencyCurve | None = None) -> Section:
+    """Points of the curve that were integrated in time, and how far harmonic balance is from them."""
+    how = "Crosses: in time; circles: harmonic balance at the same frequencies."
+    plot = Plot("time-comparison", charts.time_comparison(compared, curve), how)
+    return Section("Beside time integration", (*_sentences(compared), plot, Fold(_table(compared))))
+
+
+def _sentences(compared: TimeComparison) -> tuple[str, ...]:
+    found = np.asarray(compared.converged)
+    settings = compared.provenance
+    told = f"{len(found)} points were integrated in time with {settings['method']['steps_per_period']} steps a "
+    told += f"period ({settings['way']}), {compared.periods.min()} to {compared.periods.max()} periods each."
+    late = [shown(float(frequency)) for frequency in compared.frequencies[~found]]
+    lost = f"Not periodic yet in time, so not to be compared: {', '.join(late)} Hz." if late else ""
+    if not found.any():
+        return (told, lost)
+    sizes = np.abs(compared.differences[found])
+    row, column = np.unravel_index(int(np.nanargmax(sizes)), sizes.shape)
+    worst = f"Harmonic balance differs by at most {percent(sizes[row, column], 2)} of the largest motion, for "
+    worst += f"{compared.dofs[column]} at {shown(float(compared.frequencies[found][row]))} Hz."
+    return (told, worst, lost)
+
+
+def _table(compared: TimeComparison) -> Table:
+    dofs = compared_dofs(compared)
+    places, unit = [compared.dofs.index(dof) for dof in dofs], unit_of(compared.dofs[0])
+    columns = {
+        "frequency (Hz)": np.tile(compared.frequencies, len(dofs)),
+        "degree of freedom": np.repeat(dofs, len(compared.frequencies)),
+        labelled("harmonic balance", unit): compared.balance[:, places].T.ravel(),
+        labelled("in time", unit): compared.time[:, places].T.ravel(),
+        "difference (% of the largest)": cells(100 * compared.differences[:, places].T.ravel(), 3),
+        "periods": np.tile(compared.periods, len(dofs)),
+        "note": unless(np.tile(compared.converged, len(dofs)), "not periodic yet"),
+    }
+    return noted(Table.of("in-time", "Harmonic balance and time integration", columns))

@@ -1,0 +1,1 @@
+"""Sections of fits, of intervals and sets identified, and of what is known beyond a fit."""

@@ -1,0 +1,45 @@
+"""Responses along one parameter at a time."""
+
+from typing import Any
+
+from dalembert.report import charts
+from dalembert.report.asked import Asked
+from dalembert.report.headline import MOST_VALUES, Headline
+from dalembert.report.plot import Plot
+from dalembert.report.quantities import labelled
+from dalembert.report.registry import sections_of
+from dalembert.report.section import Fold, Row, Section
+from dalembert.report.table import Table
+
+
+@sections_of("dalembert.study.tasks.sweep.Sweep")
+def sweep(result: Any, asked: Asked) -> list[Section]:
+    """A figure and a table for each parameter."""
+    names = ", ".join(curve.parameter for curve in result.curves)
+    headline = Headline(
+        title="Parameter sweep",
+        verdict="swept" if result.success else "incomplete",
+        success=result.success,
+        status=f"Responses at {result.at}, one parameter varied at a time: {names}. {result.status}",
+        facts={f"values of {curve.parameter}": str(len(curve.values)) for curve in result.curves[:MOST_VALUES]},
+    )
+    places = list(enumerate(result.curves, start=1))
+    plots = [
+        Plot(
+            f"sweep-{place}",
+            charts.sweep(curve, result.at),
+            "" if curve.sensitivities is None else "Below, its slope.",
+        )
+        for place, curve in places
+    ]
+    tables = [Fold(_table(place, curve), 0, "values") for place, curve in places]
+    return [headline, Section("Sweep", (Row(plots), *tables))]
+
+
+def _table(place: int, curve: Any) -> Table:
+    columns = {labelled(curve.parameter, curve.unit): curve.values}
+    columns |= zip(curve.channels, curve.responses.T, strict=True)
+    if curve.sensitivities is not None:
+        names = [f"d {channel} / d {curve.parameter}" for channel in curve.channels]
+        columns |= zip(names, curve.sensitivities.T, strict=True)
+    return Table.of(f"sweep-{place}", f"Responses along {curve.parameter}", columns)

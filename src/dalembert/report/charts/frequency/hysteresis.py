@@ -1,6 +1,6 @@
 """Force over displacement of contacts and springs at one point of a curve."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import plotly.graph_objects as go
@@ -43,20 +43,19 @@ def hysteresis(
         For a coordinate that the curve does not have.
     """
     chosen = rubbing(curve, point) if coordinates is None else tuple(coordinates)
-    loops = {name: curve.loop(name, point) for name in chosen}
+    return draw_loops({name: curve.loop(name, point) for name in chosen}, title)
+
+
+def draw_loops(loops: Mapping[str, tuple[np.ndarray, np.ndarray]], title: str) -> go.Figure:
+    """Forces over displacements, by the names of their coordinates."""
     (along, length), (up, force) = (
         prefixed(max((float(np.abs(loop[axis]).max()) for loop in loops.values()), default=0.0), unit)
         for axis, unit in enumerate(("m", "N"))
     )
     figure = go.Figure()
     for place, (name, (u, f)) in enumerate(loops.items()):
-        figure.add_scatter(
-            x=along * u,
-            y=up * f,
-            name=plain(name),
-            mode="lines",
-            line={"color": LIGHT.series[place % len(LIGHT.series)], "width": 2},
-        )
+        line = {"color": LIGHT.series[place % len(LIGHT.series)], "width": 2}
+        figure.add_scatter(x=along * u, y=up * f, name=plain(name), mode="lines", line=line)
     themed(figure, title, height=400)
     figure.update_xaxes(title=labelled("relative displacement", length))
     return figure.update_yaxes(title=labelled("force", force)).update_layout(showlegend=True)

@@ -3,6 +3,7 @@
 import numpy as np
 import plotly.graph_objects as go
 
+from dalembert.report.charts.frequency.hysteresis import draw_loops
 from dalembert.report.focus import foremost
 from dalembert.report.look import LIGHT, plain, themed
 from dalembert.report.prefixes import prefixed
@@ -28,8 +29,11 @@ def periodic_motion(motion: PeriodicMotion, *, title: str = "A period in time") 
     chosen = foremost({dof: size for dof, size in sizes.items() if unit_of(dof) == unit})
     columns = [motion.dofs.index(dof) for dof in chosen]
     factor, unit = prefixed(float(np.abs(motion.displacements[:, columns]).max()), unit)
-    lines = {plain(dof): motion.displacements[:, column] for dof, column in zip(chosen, columns, strict=True)}
-    figure = _lines(360 * motion.frequency * motion.times, {name: factor * y for name, y in lines.items()})
+    figure, phases = go.Figure(), 360 * motion.frequency * motion.times
+    for place, (dof, column) in enumerate(zip(chosen, columns, strict=True)):
+        line = {"color": LIGHT.series[place % len(LIGHT.series)], "width": 2}
+        y = factor * motion.displacements[:, column]
+        figure.add_scatter(x=phases, y=y, name=plain(dof), mode="lines", line=line)
     themed(figure, title, height=400)
     figure.update_xaxes(title="phase of the period (°)", dtick=90, range=[0, 360])
     return figure.update_yaxes(title=labelled("displacement", unit)).update_layout(showlegend=True)
@@ -52,20 +56,4 @@ def loops_in_time(motion: PeriodicMotion, *, title: str = "Hysteresis loops in t
     work = np.abs(np.sum((f[1:] + f[:-1]) / 2 * np.diff(u, axis=0), axis=0))
     chosen = foremost(dict(zip(motion.coordinates, work.tolist(), strict=True)))
     columns = [motion.coordinates.index(name) for name in chosen]
-    along, length = prefixed(float(np.abs(u[:, columns]).max()), "m")
-    up, force = prefixed(float(np.abs(f[:, columns]).max()), "N")
-    figure = go.Figure()
-    for place, (name, column) in enumerate(zip(chosen, columns, strict=True)):
-        line = {"color": LIGHT.series[place % len(LIGHT.series)], "width": 2}
-        figure.add_scatter(x=along * u[:, column], y=up * f[:, column], name=plain(name), mode="lines", line=line)
-    themed(figure, title, height=400)
-    figure.update_xaxes(title=labelled("relative displacement", length))
-    return figure.update_yaxes(title=labelled("force", force)).update_layout(showlegend=True)
-
-
-def _lines(x: np.ndarray, series: dict[str, np.ndarray]) -> go.Figure:
-    figure = go.Figure()
-    for place, (name, y) in enumerate(series.items()):
-        line = {"color": LIGHT.series[place % len(LIGHT.series)], "width": 2}
-        figure.add_scatter(x=x, y=y, name=name, mode="lines", line=line)
-    return figure
+    return draw_loops({name: (u[:, k], f[:, k]) for name, k in zip(chosen, columns, strict=True)}, title)

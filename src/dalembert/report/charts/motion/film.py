@@ -25,6 +25,12 @@ class Film:
         Whether the end is the beginning again.
     redraw : bool
         Whether more than the lines of a plane figure changes.
+    asks : str
+        What the slider is for, if not the name.
+    frames : sequence of str
+        Names of the frames; their numbers if not given.
+    y : float
+        Height of the controls.
     """
 
     labels: Sequence[str]
@@ -34,6 +40,9 @@ class Film:
     pace: str = ""
     endless: bool = False
     redraw: bool = True
+    asks: str = ""
+    frames: Sequence[str] = ()
+    y: float = 0
 
     def controls(self) -> dict[str, Any]:
         """Layout of the play button and the slider, and in ``meta`` what a page with controls of its own needs."""
@@ -44,11 +53,12 @@ class Film:
             {"label": "▶ play", "method": "animate", "args": [None, {**play, "fromcurrent": True}]},
             {"label": "❚❚ pause", "method": "animate", "args": [[None], still]},
         ]
+        names = self.frames or [str(number) for number in range(len(self.labels))]
         steps = [
-            {"label": label, "method": "animate", "args": [[str(number)], still]}
-            for number, label in enumerate(self.labels)
+            {"label": label, "method": "animate", "args": [[name], still]}
+            for name, label in zip(names, self.labels, strict=True)
         ]
-        place: dict[str, Any] = {"xanchor": "left", "y": 0, "yanchor": "top"}
+        place: dict[str, Any] = {"xanchor": "left", "y": self.y, "yanchor": "top"}
         return {
             "updatemenus": [
                 {
@@ -84,7 +94,7 @@ class Film:
                 "pace": self.pace,
                 "before": f"{self.name} ",
                 "after": f" {self.unit}".rstrip(),
-                "asks": self.name,
+                "asks": self.asks or self.name,
                 "endless": self.endless,
                 "redraw": self.redraw,
             },

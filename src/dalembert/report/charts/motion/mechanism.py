@@ -6,7 +6,7 @@ import numpy as np
 import plotly.graph_objects as go
 
 from dalembert.multibody import Drawing
-from dalembert.report.charts.motion.playback import Playback, controls
+from dalembert.report.charts.motion.playback import Playback
 from dalembert.report.look import LIGHT, plain, themed
 
 NAMED_BODIES = 7
@@ -78,7 +78,7 @@ def mechanism(
     themed(figure, title, height=520)
     figure.update_xaxes(title="x (m)", range=box[0].tolist())
     figure.update_yaxes(title="y (m)", range=box[1].tolist(), scaleanchor="x", scaleratio=1)
-    return figure.update_layout(**controls(playback))
+    return figure.update_layout(**playback.film.controls())
 
 
 def _bodies(drawing: Drawing) -> dict[str, np.ndarray]:

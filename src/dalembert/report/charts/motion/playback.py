@@ -1,12 +1,11 @@
 """Which instants of a motion to show, and how fast."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
+from dalembert.report.charts.motion.film import Film
 from dalembert.report.digits import shown
-from dalembert.report.look import LIGHT
 
 FRAMES = 150
 FRAMES_A_SECOND = 25
@@ -65,60 +64,18 @@ class Playback:
             return "played in real time"
         return f"played {shown(max(ratio, 1 / ratio), digits=3)} times {'slower' if ratio > 1 else 'faster'} than real"
 
-
-def controls(playback: Playback) -> dict[str, Any]:
-    """Layout of the play button and the slider, and in ``meta`` what a page with controls of its own needs."""
-    duration = 1000 * playback.seconds / len(playback.frames)
-    still = {"mode": "immediate", "frame": {"duration": 0, "redraw": False}, "transition": {"duration": 0}}
-    play = {"frame": {"duration": duration, "redraw": False}, "transition": {"duration": 0}, "fromcurrent": True}
-    buttons = [
-        {"label": "▶ play", "method": "animate", "args": [None, play]},
-        {"label": "❚❚ pause", "method": "animate", "args": [[None], still]},
-    ]
-    steps = [
-        {"label": label, "method": "animate", "args": [[str(frame)], still]}
-        for frame, label in zip(playback.frames, playback.labels, strict=True)
-    ]
-    return {
-        "updatemenus": [
-            {
-                "type": "buttons",
-                "direction": "left",
-                "showactive": False,
-                "buttons": buttons,
-                "x": 0,
-                "xanchor": "left",
-                "y": -0.16,
-                "yanchor": "top",
-                "pad": {"t": 22, "r": 10},
-            }
-        ],
-        "sliders": [
-            {
-                "steps": steps,
-                "currentvalue": {
-                    "prefix": "t = ",
-                    "suffix": f" s, {playback.pace}",
-                    "font": {"size": 12, "color": LIGHT.ink},
-                },
-                "ticklen": 0,
-                "minorticklen": 0,
-                "font": {"color": "rgba(0, 0, 0, 0)", "size": 1},
-                "x": 0.26,
-                "len": 0.74,
-                "y": -0.16,
-                "yanchor": "top",
-                "pad": {"t": 4},
-            }
-        ],
-        "meta": {
-            "labels": playback.labels,
-            "seconds": playback.seconds,
-            "pace": playback.pace,
-            "before": "t = ",
-            "after": " s",
-            "asks": "Time in seconds",
-            "endless": False,
-            "redraw": False,
-        },
-    }
+    @property
+    def film(self) -> Film:
+        """The film of these frames."""
+        numbers = [str(frame) for frame in self.frames]
+        return Film(
+            self.labels,
+            self.seconds,
+            "t =",
+            "s",
+            self.pace,
+            asks="Time in seconds",
+            frames=numbers,
+            y=-0.16,
+            redraw=False,
+        )

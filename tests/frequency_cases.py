@@ -243,7 +243,7 @@ FREQUENCY_CASES: dict[str, Case] = {
             "The peak was found at 6 of 6 values of preload.",
             "The peak of m2.x is smallest with preload = 4 N:",
             "Followed by ",
-            " balanced points, without whole curves; it is the peak",
+            " balanced points, without whole curves; this peak",
         ),
         ("resonance-track",),
     ),

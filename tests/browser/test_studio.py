@@ -73,7 +73,7 @@ def new_study(page: Page, name: str, template: str) -> None:
     name_of_study(page).fill(name)
     button(page, template).click()
     wait_until(page, "location.pathname.startsWith('/study/')")
-    wait_until(page, f"{TEXT}.includes('In order.')")
+    wait_until(page, f"{TEXT}.includes('Valid.')")
 
 
 def external(chromium, address):
@@ -131,7 +131,7 @@ def test_a_run_is_watched_stopped_and_resumed(visit, root):
     (folder / "slow.py").write_text(LONG)
     (folder / "study.toml").write_text(SWEEP)
     page = visit("/study/long/study")
-    wait_until(page, f"{TEXT}.includes('In order.')")
+    wait_until(page, f"{TEXT}.includes('Valid.')")
     button(page, "Run").click()
     wait_until(page, f"location.pathname === '/run/long' && /rate = .* of 5000/.test({TEXT})")
     button(page, "Stop").click()
@@ -147,7 +147,7 @@ def test_mistakes_stand_at_their_lines(visit):
     page.locator(".cm-line", has_text=re.compile("^mass")).first.click()
     page.keyboard.press("End")
     page.keyboard.insert_text("x")
-    wait_until(page, f"{TEXT}.includes('1 to put right')")
+    wait_until(page, f"{TEXT}.includes('1 error')")
     wait_until(page, "document.querySelector('.cm-line.wrong')?.innerText.startsWith('mass')")
     assert button(page, "Run").is_disabled()
     wait_until(page, "[...document.querySelectorAll('[role=alert]')].some((one) => one.innerText.includes('line '))")

@@ -62,13 +62,13 @@ def report(
     """
     paragraphs = notes.strip().split("\n\n") if isinstance(notes, str) else notes
     sections = contents(result, asked(beside, notes=[text for text in paragraphs if text], **options))
-    environment = _environment()
+    templates = environment()
     scripts = [Markup(get_plotlyjs()), Markup(_packaged("page.js"))]
-    page = environment.get_template("page.html").render(
+    page = templates.get_template("page.html").render(
         title=sections[0].title,
         sections=sections,
-        environment=environment,
-        style=Markup(environment.get_template("page.css").render(light=LIGHT, dark=DARK, font=Markup(FONT))),
+        environment=templates,
+        style=Markup(templates.get_template("page.css").render(light=LIGHT, dark=DARK, font=Markup(FONT))),
         scripts=scripts,
         policy=_policy(scripts),
         look=_json({"template": template().to_plotly_json(), "dark": exchanged()}),
@@ -80,7 +80,8 @@ def report(
     return path
 
 
-def _environment() -> Environment:
+def environment() -> Environment:
+    """Templates of the page."""
     return Environment(
         loader=PackageLoader("dalembert.report"),
         autoescape=True,

@@ -1,9 +1,10 @@
 """A figure on its way into a page."""
 
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from html import unescape
-from typing import Any, ClassVar
+from typing import Any, ClassVar, TypeVar
 
 import plotly.graph_objects as go
 from markupsafe import Markup
@@ -11,6 +12,9 @@ from plotly.io import to_json
 
 SAFE = str.maketrans({"<": "\\u003c", ">": "\\u003e", "&": "\\u0026"})
 """Characters that could end a script element, as JSON may write them."""
+
+
+Shown = TypeVar("Shown")
 
 
 @dataclass(frozen=True)
@@ -45,3 +49,13 @@ class Plot:
         bare.layout.title = None  # pyright: ignore[reportAttributeAccessIssue]
         bare.layout.updatemenus, bare.layout.sliders = (), ()  # pyright: ignore[reportAttributeAccessIssue]
         return Markup((to_json(bare) or "").translate(SAFE))
+
+
+def numbered(name: str, given: Mapping[str, Shown]) -> Iterator[tuple[str, str, Shown]]:
+    """Name of a figure's place, name of the experiment, and what was given for it.
+
+    >>> list(numbered("mechanism", {"": 3})), list(numbered("mechanism", {"warm": 3}))
+    ([('mechanism', '', 3)], [('mechanism-1', 'warm', 3)])
+    """
+    for number, (experiment, one) in enumerate(given.items(), start=1):
+        yield f"{name}-{number}" if experiment else name, experiment, one

@@ -140,7 +140,7 @@ class _Page:
         points = self.live.followed
         if len(points) > 1 and len(points) != self.drawn:
             self.drawn = len(points)
-            _draw(self.curve, "The response as far as it was followed", followed(points, self.live.axes))
+            _draw(self.curve, "The response computed so far", followed(points, self.live.axes))
 
     async def _show_fit(self, values: list[float]) -> None:
         """The best fit so far; a run whose model another process cannot make has none."""

@@ -20,7 +20,7 @@ def runs_page(workspace: Workspace) -> None:
         @ui.refreshable
         def listed(found: list[dict[str, str]]) -> None:
             if not found:
-                ui.label("No runs yet: begin with a new study, or open one of those below, and run it.")
+                ui.label("No runs yet. Create a study, or open one below, and run it.")
                 button("New study", lambda: ui.navigate.to("/new"), icon="add")
             for row in found[:SHOWN]:
                 _row(row, chosen)

@@ -28,7 +28,7 @@ DATA = ".csv,.txt,.dat,.parquet,.mat,.uff,.unv,.nc,.npz"
 def new_page(workspace: Workspace) -> None:
     """Begin a study: from a template, or from a file."""
     with frame("New study"):
-        name = ui.input("Name (one is made up if this is empty)", placeholder="my-pendulum")
+        name = ui.input("Name (optional)", placeholder="my-pendulum")
         name.classes("w-full max-w-md").props("outlined")
 
         def create(text: str, beside: dict[str, str], otherwise: str) -> None:
@@ -41,13 +41,13 @@ def new_page(workspace: Workspace) -> None:
                 return
             ui.navigate.to(f"/study/{quote(study)}")
 
-        ui.label("Begin with").classes("text-xl font-bold").props("role=heading aria-level=2")
+        ui.label("Start from a template").classes("text-xl font-bold").props("role=heading aria-level=2")
         with ui.element("div").classes("grid grid-cols-1 sm:grid-cols-2 gap-3 w-full"):
             for one in templates().values():
                 with ui.column().classes("border rounded p-3 gap-2"):
                     button(one.title, partial(create, one.text, one.beside, one.name), icon="description")
                     ui.label(one.description).classes("text-sm")
-        ui.label("or with a study file of yours").classes("text-xl font-bold").props("role=heading aria-level=2")
+        ui.label("Open a study file").classes("text-xl font-bold").props("role=heading aria-level=2")
 
         async def uploaded(event: events.UploadEventArguments) -> None:
             try:
@@ -91,7 +91,7 @@ def study_page(workspace: Workspace, jobs: Jobs, name: str) -> None:
             text = editor.value
             study, does_what, mistakes = await run.io_bound(_read, path, text) or (None, "", [])
             _tell(editor, wrong, text, mistakes)
-            verdict.set_text("In order." if study else f"{len(mistakes)} to put right:")
+            verdict.set_text("Valid." if study else f"{len(mistakes)} error{'s' if len(mistakes) > 1 else ''}:")
             does.set_text(does_what)
             start.set_enabled(study is not None)
             drawn.clear()

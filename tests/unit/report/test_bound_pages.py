@@ -101,7 +101,7 @@ def intervals(tmp_path_factory):
 
 
 def test_intervals_from_bands_have_their_report(intervals):
-    sections = ["result", "parameters", "bands", "search", "what-the-data-tell", "provenance"]
+    sections = ["result", "parameters", "bands", "search", "identifiability", "provenance"]
     assert _anchors(intervals) == sections
     for words in ("✓ identified", "[0.7461, 0.8247]", "3.4 × 10⁻⁵", "global surrogate", "0.78540", "93"):
         assert words in intervals.text
@@ -130,7 +130,7 @@ def test_a_radius_within_its_deviation_is_marked(tmp_path):
     result = band_fit()
     result.radius, result.radius_deviations = np.array([0.0393, 3e-5]), np.array([4e-4, 2e-5])
     rows = read_page(report(result, tmp_path / "a.html")).table("intervals")
-    assert [row[-1] for row in rows[1:]] == ["", "hardly told from a single number"]
+    assert [row[-1] for row in rows[1:]] == ["", "possibly a single number"]
 
 
 def test_residuals_of_the_bands_are_those_of_the_true_runs(intervals):

@@ -38,7 +38,7 @@ def test_sections_stand_in_reading_order(whole):
         "response-and-data",
         "mechanism",
         "search",
-        "what-the-data-tell",
+        "identifiability",
         "diagnostics-of-the-simulation",
         "provenance",
     ]

@@ -110,5 +110,5 @@ def test_designs_of_one_horizon_are_only_ranked_and_the_unseen_are_marked(tmp_pa
 
 def test_a_fit_shows_its_profiles_and_prediction(tmp_path):
     page = read_page(report(FIT, tmp_path / "a.html", PROFILES, PREDICTION))
-    assert anchors(page)[-4:] == ["what-the-data-tell", "profile-likelihood", "prediction", "provenance"]
+    assert anchors(page)[-4:] == ["identifiability", "profile-likelihood", "prediction", "provenance"]
     assert {"profile-1", "profile-2", "prediction-1"} <= set(figures(FIT, PROFILES, PREDICTION))

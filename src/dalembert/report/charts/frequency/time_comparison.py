@@ -18,7 +18,7 @@ def time_comparison(
     curve: FrequencyCurve | None = None,
     dofs: Sequence[str] | None = None,
     *,
-    title: str = "Beside time integration",
+    title: str = "Comparison with time integration",
 ) -> go.Figure:
     """Amplitudes in time as crosses, by harmonic balance as circles, on the curve if it is given.
 

@@ -18,7 +18,7 @@ def singular_values(
     Parameters
     ----------
     values : array, shape (parameters,)
-        Singular values; a small one belongs to a combination that the data hardly tell.
+        Singular values; a small one belongs to a combination that the data hardly determine.
     directions : array, shape (parameters, parameters)
         Row k is the combination of scaled parameters that belongs to value k.
     names : sequence of str

@@ -65,7 +65,7 @@ def _headline(curve: FrequencyCurve, look: Look | None) -> Headline:
         f"All {counted(points)} points between {low} and {high} Hz were found."
         if found == points
         else f"{counted(points - found)} of {counted(points)} points between {low} and {high} Hz were not found; "
-        "they are marked, and the curve goes on beside them."
+        "they are marked, and the curve continues past them."
     )
     return Headline(
         title="Forced response",

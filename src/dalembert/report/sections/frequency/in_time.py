@@ -22,7 +22,7 @@ def time_comparison(compared: TimeComparison, asked: Asked) -> list[Section]:
     found = np.asarray(compared.converged)
     most = float(np.nanmax(np.abs(compared.differences[found]), initial=0.0))
     headline = Headline(
-        title="Beside time integration",
+        title="Comparison with time integration",
         verdict="compared" if found.all() else "incomplete",
         success=bool(found.all()),
         status="All points are periodic in time." if found.all() else "Some points are not periodic in time yet.",
@@ -39,7 +39,7 @@ def in_time(compared: TimeComparison, curve: FrequencyCurve | None = None) -> Se
     """Points of the curve that were integrated in time, and how far harmonic balance is from them."""
     how = "Crosses: in time; circles: harmonic balance at the same frequencies."
     plot = Plot("time-comparison", charts.time_comparison(compared, curve), how)
-    return Section("Beside time integration", (*_sentences(compared), plot, Fold(_table(compared))))
+    return Section("Comparison with time integration", (*_sentences(compared), plot, Fold(_table(compared))))
 
 
 def _sentences(compared: TimeComparison) -> tuple[str, ...]:

@@ -57,5 +57,5 @@ def _sentences(track: ResonanceTrack) -> tuple[str, ...]:
     )
     told = f"The peak of {track.dof} is smallest with {track.parameter} = {value_text(track, track.values[low])}: "
     told += f"{least}; largest with {value_text(track, track.values[top])}: {most}."
-    followed = f"Followed by {int(np.sum(track.solves))} balanced points, without whole curves; it is the peak that "
-    return (told, followed + "goes on from the first one, and another one may have become larger.")
+    followed = f"Followed by {int(np.sum(track.solves))} balanced points, without whole curves; this peak "
+    return (told, followed + "continues the first one; another one may be larger by now.")

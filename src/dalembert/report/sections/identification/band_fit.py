@@ -74,7 +74,7 @@ def _note(fit: BandFit, k: int) -> str:
     """Whether an interval is one, or a single number as far as the bands tell."""
     if fit.radius[k] <= NONE * (fit.parameters.upper[k] - fit.parameters.lower[k]):
         return "a single number"
-    return "hardly told from a single number" if fit.radius[k] <= 2 * fit.radius_deviations[k] else ""
+    return "possibly a single number" if fit.radius[k] <= 2 * fit.radius_deviations[k] else ""
 
 
 def _bands(fit: BandFit) -> Section:

@@ -19,7 +19,7 @@ def designs(told: Designs, asked: Asked) -> list[Section]:
     """The designs, the best first."""
     headline = Headline(
         title="Design of the experiment",
-        verdict="ranked" if told.success else "not told",
+        verdict="ranked" if told.success else "not ranked",
         success=told.success,
         status=told.status,
         facts={

@@ -1,4 +1,4 @@
-"""What the data tell about the parameters, and what they do not."""
+"""Which parameters the data determine."""
 
 from dalembert.inverse import BandFit, Fit
 from dalembert.report import charts
@@ -15,9 +15,9 @@ def identifiability(fit: Fit | BandFit) -> Section:
     known, names = fit.identifiability(), unknowns(fit)
     plots = []
     if len(names) > 1:
-        pairs = "Near 1 or −1, the data tell a combination of the two parameters but not each of them."
-        small = "A small value is a combination that the data hardly tell."
+        pairs = "Near 1 or −1, the data determine a combination of the two parameters, but not each of them."
+        small = "A small value belongs to a combination that is hardly identifiable."
         spectrum = charts.singular_values(known.singular_values, known.directions, names)
         plots = [Plot("correlation", charts.correlation(fit), pairs), Plot("singular-values", spectrum, small)]
     row = Row(plots, beside=len(names) <= MOST_BESIDE)
-    return Section("What the data tell", (Listed(str(known).splitlines()), row))
+    return Section("Identifiability", (Listed(str(known).splitlines()), row))

@@ -8,10 +8,9 @@ from dalembert.inverse import Prediction
 from dalembert.report import charts
 from dalembert.report.asked import Asked
 from dalembert.report.digits import counted
-from dalembert.report.each import numbered
 from dalembert.report.headline import Headline
 from dalembert.report.look import plain
-from dalembert.report.plot import Plot
+from dalembert.report.plot import Plot, numbered
 from dalembert.report.quantities import by_quantity
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Section

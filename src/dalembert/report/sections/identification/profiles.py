@@ -33,7 +33,7 @@ def profiles(told: Profiles, asked: Asked) -> list[Section]:
 def profiled(told: Profiles) -> Section:
     """The section on profiles."""
     sentences = [str(item) for item in told.outcome if item.code != "profile-level"]
-    how = "Shaded is where the data do not contradict the value; a flat profile is a parameter they do not tell."
+    how = "Shaded is where the data do not contradict the value; a parameter with a flat profile is not identifiable."
     plots = [
         Plot(f"profile-{number}", charts.profile(told, curve.name), how) for number, curve in enumerate(told.curves, 1)
     ]

@@ -7,9 +7,8 @@ import numpy as np
 from dalembert.data import Measurements
 from dalembert.multibody import Drawing, Trajectory
 from dalembert.report import charts
-from dalembert.report.each import numbered
 from dalembert.report.look import plain
-from dalembert.report.plot import Plot
+from dalembert.report.plot import Plot, numbered
 from dalembert.report.section import Section
 
 HEADING = "Mechanism"

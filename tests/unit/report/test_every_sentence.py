@@ -54,7 +54,11 @@ def _texts(node: ast.AST) -> Iterator[str]:
     """Patterns of the texts of some words below a node: no docstrings, and nothing of errors."""
     if isinstance(node, ast.Raise) or (isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)):
         return
-    if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id.startswith(("expect", "require")):
+    if (
+        isinstance(node, ast.Call)
+        and isinstance(node.func, ast.Name)
+        and node.func.id.startswith(("expect", "require"))
+    ):
         return
     pattern = _pieces(node)
     if pattern is None:

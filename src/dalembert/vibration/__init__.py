@@ -12,11 +12,10 @@ from dalembert.vibration.laws.user_element import UserElement
 from dalembert.vibration.laws.user_law import UserLaw
 from dalembert.vibration.modes.nonlinear_modes import Backbone, backbone
 from dalembert.vibration.paths.curve import FrequencyCurve, Peak
-from dalembert.vibration.paths.curve_family import CurveFamily, Envelope
 from dalembert.vibration.paths.deformation import Deformation, deformation
 from dalembert.vibration.paths.forward_model import FrequencyResponse
 from dalembert.vibration.paths.frequency_response import FollowedPoint, frequency_response
-from dalembert.vibration.paths.frequency_responses import frequency_responses
+from dalembert.vibration.paths.frequency_responses import CurveFamily, Envelope, frequency_responses
 from dalembert.vibration.paths.resonance import ResonanceTrack, track_resonance
 from dalembert.vibration.stability.floquet import floquet_multipliers
 from dalembert.vibration.system.system import HarmonicForce, StaticForce, VibrationSystem

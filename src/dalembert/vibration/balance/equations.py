@@ -151,8 +151,8 @@ class Equations:
         point = self.condensation.at(omega)
         evaluation, tangent = self.balance(int(samples)).linearised(point, unknowns)
         return Solution(
-            omega, unknowns, point, evaluation, tangent, int(iterations), error, bool(converged), int(samples),
-            sampling_error,
+            omega, unknowns, point, evaluation, tangent, scale_of(point, evaluation), int(iterations), error,
+            bool(converged), int(samples), sampling_error,
         )  # fmt: skip
 
     def _key(self, unknowns: np.ndarray, omega: float, samples: int, plane: Plane | None) -> bytes:

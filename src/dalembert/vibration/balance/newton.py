@@ -6,8 +6,8 @@ the residual keeps it from jumping between the sides.
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from dataclasses import dataclass
+from functools import partial
 from typing import Any, Protocol, TypeVar
 
 import numpy as np
@@ -65,6 +65,8 @@ class Solution:
     point : Point
     evaluation : Evaluation
     tangent : Tangent
+    scale : float
+        Size of the forces that are in balance, N.
     iterations : int
     error : float
         Residual as part of the forces.
@@ -79,21 +81,12 @@ class Solution:
     point: Point
     evaluation: Evaluation
     tangent: Tangent
-    iterations: int = 0
-    error: float = np.nan
-    converged: bool = False
-    samples: int = 0
+    scale: float
+    iterations: int
+    error: float
+    converged: bool
+    samples: int
     sampling_error: float = np.nan
-
-    @cached_property
-    def scale(self) -> float:
-        """Size of the forces that are in balance."""
-        return scale_of(self.point, self.evaluation)
-
-    @property
-    def rounding(self) -> float:
-        """Residual, as part of the forces, that rounding leaves."""
-        return min(ROUNDING * self.point.stiffest * norm(self.unknowns) / self.scale, VERIFIED)
 
     def rate(self) -> np.ndarray:
         """dU/dω along the path, (q, coefficients)."""
@@ -146,21 +139,25 @@ def correct(
     def place(unknowns: np.ndarray, omega: float, point: Point | None, step: bool = True) -> Solution:
         point = structure(omega) if point is None else point
         found: Any = balance.linearised(point, unknowns) if step else (balance.at(point, unknowns), None)
+        evaluation, tangent = found
         distance = 0.0 if plane is None else plane.distance(unknowns, omega)
-        error = math.hypot(norm(found[0].residual) / scale_of(point, found[0]), distance)
-        return Solution(omega, unknowns, point, *found, error=error, samples=balance.series.samples)
+        scale = scale_of(point, evaluation)
+        error = math.hypot(norm(evaluation.residual) / scale, distance)
+        rounding = min(ROUNDING * point.stiffest * norm(unknowns) / scale, VERIFIED)
+        converged = error <= max(method.tolerance, rounding)
+        return Solution(
+            omega, unknowns, point, evaluation, tangent, scale, len(errors), error, converged, balance.series.samples
+        )
 
     def moved(at: Solution, step: tuple[np.ndarray, float], part: float) -> Solution:
         # Most steps go all the way; after one that does not, the Jacobian is made only where the search ends.
         known = at.point if plane is None else None
         return place(at.unknowns + part * step[0], at.omega + part * step[1], known, step=part == 1.0)
 
-    at, converged = place(unknowns, omega, point), False
-    errors = [at.error]
-    while True:
-        converged = at.error <= max(method.tolerance, at.rounding)
-        if converged or len(errors) > method.iterations or _stalls(errors):
-            break
+    errors: list[float] = []
+    at = place(unknowns, omega, point)
+    errors.append(at.error)
+    while not (at.converged or len(errors) > method.iterations or _stalls(errors)):
         step = _step(at, plane)
         if step is None:
             break
@@ -169,7 +166,7 @@ def correct(
             break
         at = best if best.tangent is not None else place(best.unknowns, best.omega, best.point)
         errors.append(at.error)
-    return replace(at, iterations=len(errors) - 1, converged=converged)
+    return at
 
 
 def _stalls(errors: list[float]) -> bool:

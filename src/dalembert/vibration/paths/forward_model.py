@@ -26,6 +26,7 @@ from dalembert.vibration.paths.curve import FrequencyCurve
 from dalembert.vibration.paths.frequency_response import frequency_response, response_of
 from dalembert.vibration.system.complex_steps import check_laws, check_numbers
 from dalembert.vibration.system.lowering import Lowered, lower
+from dalembert.vibration.system.requirements import positive_numbers
 from dalembert.vibration.system.system import VibrationSystem
 from dalembert.vibration.threads import one_thread
 
@@ -88,8 +89,7 @@ class FrequencyResponse:
         if derivative not in DERIVATIVES:
             raise InputError(unknown("derivative", derivative, DERIVATIVES, "FrequencyResponse"))
         frequencies = samples_of(frequencies, "FrequencyResponse", "frequencies")
-        if frequencies.ndim != 1 or not len(frequencies) or not np.all(np.isfinite(frequencies) & (frequencies > 0)):
-            raise InputError("FrequencyResponse: expected one or more frequencies, positive numbers in Hz")
+        frequencies = positive_numbers(frequencies, "FrequencyResponse", "frequencies", "Hz")
         channels = names_of(channels, "FrequencyResponse", "channels")
         if not channels:
             raise InputError("FrequencyResponse: no channels were given; name at least one, such as 'm2 peak'")

@@ -9,11 +9,16 @@ import numpy as np
 from dalembert.arguments import takes_checked
 from dalembert.errors import InputError, unknown
 from dalembert.forward import Checkpoint
+from dalembert.vibration.balance.conclusions import (
+    free_findings,
+    largest,
+    truncation_findings,
+    unconverged,
+    unconverged_findings,
+)
 from dalembert.vibration.balance.equations import Equations, equations
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.balance.newton import Solution
-from dalembert.vibration.balance.truncation import largest, truncation_findings
-from dalembert.vibration.balance.unconverged import free_findings, unconverged, unconverged_findings
 from dalembert.vibration.paths.continuation import across, at_frequencies, natural
 from dalembert.vibration.paths.curve import FrequencyCurve
 from dalembert.vibration.stability.bifurcations import Judged, judged, unjudged

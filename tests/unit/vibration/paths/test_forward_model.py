@@ -135,7 +135,7 @@ def test_an_unknown_kind_of_amplitude_is_told() -> None:
     ("channels", "frequencies", "sentence"),
     [
         ([], [0.1], "FrequencyResponse: no channels were given; name at least one, such as 'm2 peak'"),
-        (["m rms"], [0.0], "FrequencyResponse: expected one or more frequencies, positive numbers in Hz"),
+        (["m rms"], [0.0], "FrequencyResponse: the frequencies are [0.]; expected positive numbers in Hz"),
     ],
 )
 def test_what_makes_no_response_is_told(channels: list[str], frequencies: list[float], sentence: str) -> None:

@@ -74,6 +74,8 @@ class Solution:
     samples : int
     sampling_error : float
         Change of the residual with twice the samples, as part of the forces.
+    distance : float
+        From the plane across the path on which it was sought, in the plane's scales; 0 without a plane.
     """
 
     omega: float
@@ -87,6 +89,7 @@ class Solution:
     converged: bool
     samples: int
     sampling_error: float = np.nan
+    distance: float = 0.0
 
     def rate(self) -> np.ndarray:
         """dU/dω along the path, (q, coefficients)."""
@@ -146,8 +149,9 @@ def correct(
         rounding = min(ROUNDING * point.stiffest * norm(unknowns) / scale, VERIFIED)
         converged = error <= max(method.tolerance, rounding)
         return Solution(
-            omega, unknowns, point, evaluation, tangent, scale, len(errors), error, converged, balance.series.samples
-        )
+            omega, unknowns, point, evaluation, tangent, scale, len(errors), error, converged, balance.series.samples,
+            distance=distance,
+        )  # fmt: skip
 
     def moved(at: Solution, step: tuple[np.ndarray, float], part: float) -> Solution:
         # Most steps go all the way; after one that does not, the Jacobian is made only where the search ends.
@@ -183,8 +187,7 @@ def _step(at: Solution, plane: Plane | None) -> tuple[np.ndarray, float] | None:
         if plane is not None:
             scales = plane.size, plane.width, at.scale
             top = -residual / at.scale
-            distance = plane.distance(at.unknowns, at.omega)
-            change, turned = bordered(at.tangent, plane.direction, scales, top, -distance, COARSE)
+            change, turned = bordered(at.tangent, plane.direction, scales, top, -at.distance, COARSE)
             return change * plane.size, turned * plane.width
         return -at.tangent.solve(residual[:, :, None], COARSE)[:, :, 0], 0.0
     except np.linalg.LinAlgError:

@@ -228,11 +228,15 @@ def _kept(problem: Equations, one: Judged, rows: np.ndarray) -> dict[str, Any]:
 
     Matrices of some megabytes are not kept.
     """
-    solution, lowered, defined = one.found.solution, problem.lowered, 1.0 if one.found.solution.converged else np.nan
+    solution, lowered = one.found.solution, problem.lowered
     states = np.zeros((len(lowered.contacts), PHASES), dtype=np.uint8)
     instants = np.arange(PHASES) * solution.samples // PHASES
     for block, own in zip(lowered.blocks, solution.evaluation.states, strict=True):
         np.maximum.at(states, block.contacts, own[:, instants])
+    response, forces = response_of(problem, solution)[rows], solution.evaluation.forces
+    displacements = problem.balance(solution.samples).displacements(solution.unknowns)
+    if not solution.converged:
+        response, displacements, forces = (np.full_like(array, np.nan) for array in (response, displacements, forces))
     return {
         "frequencies": solution.omega / (2 * np.pi),
         "unknowns": solution.unknowns,
@@ -244,9 +248,9 @@ def _kept(problem: Equations, one: Judged, rows: np.ndarray) -> dict[str, Any]:
         "sampling_errors": solution.sampling_error,
         "stable": one.stable,
         "marker": one.marker,
-        "response": response_of(problem, solution)[rows] * defined,
-        "displacements": problem.balance(solution.samples).displacements(solution.unknowns) * defined,
-        "forces": solution.evaluation.forces * defined,
+        "response": response,
+        "displacements": displacements,
+        "forces": forces,
         "states": states,
     }
 

@@ -244,6 +244,7 @@ class Balance:
         if block.kind == ELASTIC:
             return (self._combination @ unknowns)[block.rows]
         places = self._retained[block.rows]
+        # D = U - R_0/ε; velocities along tangents: p = ε ∂U/∂τ - R_0.
         moved = unknowns[places] - total[places] / _penalties(block)[:, :, None]
         if block.memory:
             return moved
@@ -287,6 +288,7 @@ class Balance:
                 own[: block.tangents] = numbers[TANGENTIAL] * self.series.derivative
             motion = -weight[:, None, None, None] * before.jacobian[places]
             motion[np.arange(columns), :, places] += own
+            # J = J_0 + G (1 - J_0/ε) for displacements, J_0 + G (ε ∂/∂τ - J_0) for trial forces.
             change = gradient @ motion.reshape(columns * count, -1)
             tangent.jacobian[places] += change.reshape(motion.shape)
             change = gradient @ (weight[:, None] * before.slope[places]).ravel()

@@ -154,6 +154,8 @@ class Condensation:
         inner = inner[0] if inner else self._inner(s)
         right = np.concatenate([np.swapaxes(across, 1, 2), self.inner_loads[:, :, None]], axis=2)
         solved = self.solve(s, right, self._off_resonance(s, inner, right))
+        # With Y = Z_ll⁻¹ Z_lq (follow): Z_q = Z_qq - Z_ql Y, F_q = f_q - Yᵀ f_l, and for the derivatives by ω
+        # Z_q' = Z_qq' - Z_ql' Y - Yᵀ Z_lq' + Yᵀ Z_ll' Y, F_q' = -Z_ql' Z_ll⁻¹ f_l + Yᵀ Z_ll' Z_ll⁻¹ f_l.
         follow, free = solved[:, :, :-1], solved[:, :, -1]
         turned = np.swapaxes(follow, 1, 2)
         moved = _times(inner_slope[0], solved) if inner_slope else self._inner_slope(s, solved)

@@ -52,10 +52,12 @@ def sensitivities(problem: Equations, solution: Solution, perturbed: Sequence[Lo
             )
         )
         given.append(inner)
+    # dU/dp = -J⁻¹ ∂R/∂p for all parameters at once.
     moved = -np.moveaxis(solution.tangent.solve(np.stack(residuals, axis=2)), 2, 0)
     result = []
     for change, inner in zip(moved, given, strict=True):
         shift = series.phasors(change)
+        # dx_l/dp = Z_ll⁻¹ (f' - Z' x)_l - Z_ll⁻¹ Z_lq dU/dp
         interior = condensation.solve(point.frequencies, inner[:, :, None])[:, :, 0]
         interior = interior - (point.follow @ shift[:, :, None])[:, :, 0]
         result.append(series.coefficients(condensation.full(shift, interior)))

@@ -77,6 +77,8 @@ def bordered(
         matrix = _with_row(tangent, direction, scales)
         change = solution(matrix, np.append(top.ravel(), bottom), tangent.held)
         return change[:-1].reshape(top.shape), float(change[-1])
+    # Elimination of the block of J: with J a = top and J b = ∂R/∂ω, turned = (bottom - t·a)/(t_ω - t·b) and
+    # change = a - turned b.
     right = np.stack([top * (force / size), tangent.slope * (width / size)], axis=2)
     solved = tangent.solve(right, tolerance)
     row, (still, moving) = direction[:-1], np.moveaxis(solved, 2, 0)

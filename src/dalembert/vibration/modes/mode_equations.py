@@ -231,6 +231,7 @@ class ModeEquations:
 
     def _linear_part(self, system: Uncondensed, harmonics: np.ndarray, omega: float, growth: float) -> np.ndarray:
         """L(Y), (n, coefficients)."""
+        # K Y + (C - ξ M) ω Y Dᵀ + M ω² Y D²ᵀ - F, with D the derivative by τ
         (stiffness, mass, damping), turn = system.matrices, system.series.derivative
         velocity = omega * harmonics @ turn.T
         inertia = mass @ (omega * velocity @ turn.T)

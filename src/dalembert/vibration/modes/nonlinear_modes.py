@@ -322,6 +322,7 @@ def _kept(own: ModeEquations, mode: int, found: list[FreeMotion]) -> Backbone:
         np.array([getattr(motion, name) for motion in found]) for name in ("omega", "growth", "size")
     )
     shapes = np.stack([own.basis @ motion.harmonics for motion in found])
+    # ζ = ξ/(2 ω); the force F = 2 ζ ω²/A Σ h² X_hᵀ M X_h does the work that the negative damping does.
     numbers = {"frequencies": omegas / (2 * np.pi), "damping": growths / (2 * omegas), "energies": energies,
                "forces": growths * works / sizes}  # fmt: skip
     return Backbone(

@@ -77,6 +77,7 @@ def _towards(equations: Problem, known: Solution, omega: float) -> Solution:
     way = [omega]
     worst = None
     while way:
+        # Natural continuation: the guess is U + (dU/dω) Δω, with dU/dω = -J⁻¹ ∂R/∂ω.
         solution = equations.solve(_predicted(known, way[-1]), way[-1], known.samples)
         if solution.converged:
             known = solution
@@ -215,6 +216,7 @@ class Path:
 
     def step(self, equations: Problem, length: float) -> tuple[Solution, np.ndarray | None]:
         """Return the point after a step, and the direction there in the scales of this point; None if not converged."""
+        # The guess y + s t is corrected on the plane t · (y' - y - s t) = 0 across the path (pseudo-arc length).
         moved = self.direction[:-1].reshape(self.known.unknowns.shape) * (length * self.size)
         guess, omega = self.known.unknowns + moved, self.known.omega + self.direction[-1] * length * self.width
         plane = Plane(self.direction, guess, omega, self.size, self.width)
@@ -258,6 +260,7 @@ def _size(known: Solution) -> float:
 
 def direction_at(known: Solution, before: np.ndarray, width: float, size: float | None = None) -> np.ndarray:
     """Return the unit tangent of the curve in scaled unknowns, in the sense of the one before."""
+    # (J, ∂R/∂ω; t_beforeᵀ) t = (0; 1): the tangent has J dU + ∂R/∂ω dω = 0, and goes to the side of the one before.
     size = size or _size(known)
     change, turned = bordered(known.tangent, before, (size, width, known.scale), np.zeros_like(known.unknowns), 1.0)
     tangent = np.append(change, turned)

@@ -123,6 +123,8 @@ def _steps(system: Uncondensed, laws: Laws, held: Held, light: np.ndarray, h: fl
     carried = 4 / h**2 * mass + 2 / h * damping
     carried[light] = damping[light] / h
     heavy = ~light
+    # With v_+ = 2 (y_+ - y)/h - v the rule is (4 M/h² + 2 C/h + K) y_+ + λ_+ = (4 M/h² + 2 C/h - K) y + 4 M v/h - λ,
+    # bordered by the rows that hold y_+ = y; coordinates without mass: (C/h + K) y_+ + λ_+ = C y/h.
     matrix, right = np.zeros((len(steps), n + r, n + r)), np.zeros((len(steps), n + r, 2 * n + z))
     matrix[:, :n, :n] = carried + stiffness
     speeds = np.where(heavy[:q], 2 / h, 1 / h)  # by which velocities change with displacements
@@ -170,6 +172,7 @@ def _stopped(mass: np.ndarray, velocity: np.ndarray, rows: np.ndarray, light: np
     whole[:, : rows.shape[1]] = rows
     heavy = np.flatnonzero(~light)
     whole = whole[np.any(whole[:, heavy], axis=1)][:, heavy]
+    # v_+ = v - M⁻¹ Hᵀ (H M⁻¹ Hᵀ)⁻¹ H v, with the rows H that are held
     back = np.linalg.solve(mass[np.ix_(heavy, heavy)], whole.T)
     result = velocity.copy()
     result[heavy] -= back @ np.linalg.solve(whole @ back, whole @ velocity[heavy])

@@ -185,6 +185,7 @@ def _step(modes, elements, users, scheme, state, t, reaction, room):
     b, g = scheme.beta * h * h * ratio, scheme.gamma * h * ratio
     q, v, a, w = state.modes[0], state.modes[1], state.modes[2], state.modes[3]
     history, pull = room.history, room.pull
+    # What w_0 and a_0 add to x_1 and v_1, then the acceleration without elements S⁻¹ (f_1 - C v_1 - K x_1).
     for i in range(len(q)):
         history[i] = (scheme.alpha_f * a[i] - scheme.alpha_m * w[i]) / (1.0 - scheme.alpha_m)
         q[i] += h * v[i] + h * h * ((0.5 - scheme.beta) * w[i] + scheme.beta * history[i])
@@ -194,6 +195,7 @@ def _step(modes, elements, users, scheme, state, t, reaction, room):
         pull[i] = modes.force[t, i] - a[i] - modes.stiffness[i] * q[i]
     _product(room.gemv, modes.inverse, modes.solver, pull, a)
     if len(modes.seen):
+        # u_0 = L (x_1 + b a_1), and Newton's method for d + (b L S⁻¹ Lᵀ - 1/rho + 1/k) lambda(d) = u_0
         for i in range(len(q)):
             pull[i] = q[i] + b * a[i]
         apply(room.gemv, modes.seen, pull, room.start)
@@ -211,7 +213,7 @@ def _step(modes, elements, users, scheme, state, t, reaction, room):
         for c in range(len(state.sliders)):
             assign(state.sliders[c], reaction.moved[c])
         assign(state.states, reaction.next)
-        for k in range(len(modes.pushed)):
+        for k in range(len(modes.pushed)):  # a_1 -= S⁻¹ Lᵀ lambda
             for i in range(len(a)):
                 a[i] -= modes.pushed[k, i] * reaction.force[k]
     for i in range(len(q)):

@@ -134,6 +134,7 @@ def generated(sources: Path) -> dict[Path, str]:
         package / "__init__.pyi": f"{STUB}{stub(top)}\n__version__: str\n",
         package / "multibody" / "__init__.pyi": STUB + stub(own),
         package / "report" / "charts" / "__init__.pyi": STUB + stub(listed(sources, CHARTS)),
+        package / "vibration" / "__init__.pyi": STUB + stub(listed(sources, "dalembert.vibration")),
     }
 
 

@@ -8,7 +8,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, Protocol, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -21,6 +21,7 @@ DAMPINGS = (1.0, 0.5, 0.25, 0.125, 0.03125)
 """Parts of a Newton step of the line search, until the residual falls."""
 PATIENCE, PROGRESS = 10, 0.7
 """Newton's method stops if this many iterations do not reduce the least residual to this part."""
+Trial = TypeVar("Trial")
 COARSE = 1e-6
 """Residual of the linear system of a step, as part of its right-hand side, where that is iterated."""
 ROUNDING = 100 * np.finfo(float).eps
@@ -101,22 +102,12 @@ def scale_of(point: Point, evaluation: Evaluation) -> float:
     return point.load + norm(evaluation.forces) or 1.0
 
 
-class Trial(Protocol):
-    """A place in Newton's method."""
-
-    @property
-    def error(self) -> float: ...
-
-
-AnyTrial = TypeVar("AnyTrial", bound=Trial)
-
-
-def line_search(trial: Callable[[float], AnyTrial], error: float) -> AnyTrial | None:
+def line_search(trial: Callable[[float], Trial], error: float) -> Trial | None:
     """Return the trial at the longest part of a step that reduces the error, else the best one; None if none is finite.
 
     A part p is long enough with a reduction to :math:`1 - p/10` of the error (Armijo's rule).
     """
-    trials = []
+    trials: list[Any] = []
     for part in DAMPINGS:
         trials.append(trial(part))
         if trials[-1].error <= (1 - 0.1 * part) * error:

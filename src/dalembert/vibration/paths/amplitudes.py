@@ -35,7 +35,8 @@ class Amplitude:
 
     def __post_init__(self) -> None:
         if self.kind not in ("peak", "rms") and self._order() not in self.orders:
-            raise InputError(f"the kind of amplitude is {self.kind!r}; expected {KINDS}: {_listed(self.orders)}")
+            kept = ", ".join(map(str, self.orders))
+            raise InputError(f"the kind of amplitude is {self.kind!r}; expected {KINDS}: {kept}")
 
     def of(self, coefficients: np.ndarray) -> np.ndarray:
         """Return the sizes of motions with coefficients (..., coefficients)."""
@@ -74,8 +75,17 @@ class Amplitude:
         return np.where(each == self._order(), 1.0, 0.0)
 
 
-def _listed(orders: tuple[int, ...]) -> str:
-    return ", ".join(map(str, orders))
+def coordinate_row(coordinates: Sequence[str], name: str) -> int:
+    """Return the row of a coordinate that elements see.
+
+    Raises
+    ------
+    InputError
+        For an unknown one.
+    """
+    if name not in coordinates:
+        raise InputError(unknown("coordinate", name, coordinates))
+    return coordinates.index(name)
 
 
 def observed_column(dofs: Sequence[str], dof: str) -> int:

@@ -8,11 +8,11 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.optimize import minimize_scalar
 
-from dalembert.errors import InputError, unknown
+from dalembert.errors import InputError
 from dalembert.findings import Finding
 from dalembert.units import unit_of
 from dalembert.vibration.balance.fourier import synthesis
-from dalembert.vibration.paths.amplitudes import Amplitude, observed_column
+from dalembert.vibration.paths.amplitudes import Amplitude, coordinate_row, observed_column
 from dalembert.vibration.storage import Over, VibrationResult
 
 
@@ -123,10 +123,8 @@ class FrequencyCurve(VibrationResult):
 
     def loop(self, coordinate: str, point: int, count: int = 256) -> tuple[np.ndarray, np.ndarray]:
         """Displacement (m) and force (N) of an element's coordinate over a period, (count + 1,) each."""
-        if coordinate not in self.coordinates:
-            raise InputError(unknown("coordinate", coordinate, self.coordinates))
+        row = coordinate_row(self.coordinates, coordinate)
         waves = synthesis(self.orders, np.linspace(0, 2 * np.pi, count + 1))
-        row = self.coordinates.index(coordinate)
         return waves @ self.displacements[point, row], waves @ self.forces[point, row]
 
     def dissipated(self, coordinate: str) -> np.ndarray:
@@ -134,9 +132,7 @@ class FrequencyCurve(VibrationResult):
 
         ∮ λ du, which of all harmonics of the force takes those that the displacement has too; 0 where it is rounding.
         """
-        if coordinate not in self.coordinates:
-            raise InputError(unknown("coordinate", coordinate, self.coordinates))
-        row = self.coordinates.index(coordinate)
+        row = coordinate_row(self.coordinates, coordinate)
         u, force = self.displacements[:, row], self.forces[:, row]
         total, size = np.zeros(len(self)), np.zeros(len(self))
         mean = int(self.orders[0] == 0)

@@ -130,11 +130,7 @@ def _fields(component: Any, owner: str) -> Part:
 
 def _entries(matrix: Any) -> np.ndarray:
     """Entries of a matrix; of a sparse one its product with a vector, since its pattern may change."""
-    return matrix @ _probe(matrix.shape[0]) if issparse(matrix) else matrix.ravel()
-
-
-def _probe(size: int) -> np.ndarray:
-    return np.random.default_rng(0).uniform(0.5, 1.0, size)
+    return matrix @ np.random.default_rng(0).uniform(0.5, 1.0, matrix.shape[0]) if issparse(matrix) else matrix.ravel()
 
 
 def _entry(structure: Structure, name: str, matrix: Any, entry: int) -> str:

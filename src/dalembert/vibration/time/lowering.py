@@ -18,7 +18,6 @@ from dalembert.errors import ModelError
 from dalembert.vibration.balance.condensation import COUPLED, DENSE
 from dalembert.vibration.balance.fourier import Fourier
 from dalembert.vibration.laws.friction_law import NORMAL, TANGENTIAL
-from dalembert.vibration.laws.user_element import UserElement
 from dalembert.vibration.system.lowering import ELASTIC, Lowered
 from dalembert.vibration.system.requirements import require_viscous
 from dalembert.vibration.system.system import StaticForce
@@ -91,14 +90,6 @@ def spectral(structure: Any, omega: float) -> Spectral:
     )
     inertia, hold = (np.einsum("ij,ij->j", shapes, matrix @ shapes) for matrix in (mass, stiffness))
     return Spectral(shapes, inertia, hold, own, np.zeros((0, 0)) if apart else modal)
-
-
-@dataclass(frozen=True)
-class Users:
-    """Address of a C function that adds laws of the user's, 0 if there are none, and what keeps it alive."""
-
-    address: int
-    alive: Any
 
 
 @dataclass(frozen=True)
@@ -204,23 +195,13 @@ class InTime:
             np.concatenate(numbers).astype(complex), u, v, np.zeros(most, complex), force,
         )  # fmt: skip
 
-    def users(self, failures: list[Exception]) -> "Users":
-        """The laws of the user's, callable from compiled code; what they raise is kept, and the run ends."""
-        laws = [(own, element.law) for own, element in self._functions]
-        if not laws:
-            return Users(0, None)
-        call = _C_FUNCTION(_trampoline(laws, len(self.places), failures))
-        return Users(ctypes.cast(call, ctypes.c_void_p).value or 0, call)
-
-    @property
-    def _functions(self) -> list[tuple[np.ndarray, UserElement]]:
-        """Rows of their own of the elements whose law is a function of arrays: the last ones."""
-        sizes = [len(own) for own, _ in self.lowered.functions]
-        first = len(self.places) - sum(sizes) + np.cumsum([0, *sizes])
-        return [
-            (np.arange(begin, begin + size), element)
-            for begin, size, (_, element) in zip(first, sizes, self.lowered.functions, strict=False)
-        ]
+    def users(self, failures: list[Exception]) -> Any:
+        """The laws of the user's as a C function, a null pointer without any; what they raise is kept."""
+        laws, end = [], len(self.places)
+        for own, element in reversed(self.lowered.functions):  # their rows are the last ones
+            laws.insert(0, (np.arange(end - len(own), end), element.law))
+            end -= len(own)
+        return _C_FUNCTION(_trampoline(laws, len(self.places), failures)) if laws else _C_FUNCTION()
 
 
 def _matched(elements: Elements, compliance: np.ndarray) -> tuple[Elements, np.ndarray]:
@@ -262,6 +243,11 @@ def _trampoline(
             into[:] = np.nan
 
     return call
+
+
+def address(function: Any) -> int:
+    """Address of a C function; 0 of a null pointer."""
+    return ctypes.cast(function, ctypes.c_void_p).value or 0
 
 
 def _view(address: int, count: int) -> np.ndarray:

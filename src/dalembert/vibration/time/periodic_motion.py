@@ -6,9 +6,9 @@ from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
-from dalembert.errors import InputError, unknown
+from dalembert.errors import InputError
 from dalembert.units import unit_of
-from dalembert.vibration.paths.amplitudes import PHASES, Amplitude, observed_column
+from dalembert.vibration.paths.amplitudes import PHASES, Amplitude, coordinate_row, observed_column
 from dalembert.vibration.storage import Over, VibrationResult
 
 
@@ -88,9 +88,7 @@ class PeriodicMotion(VibrationResult):
 
     def loop(self, coordinate: str) -> tuple[np.ndarray, np.ndarray]:
         """Displacement (m) and force (N) of an element's coordinate over the period, closed, (times + 1,) each."""
-        if coordinate not in self.coordinates:
-            raise InputError(unknown("coordinate", coordinate, self.coordinates))
-        row = self.coordinates.index(coordinate)
+        row = coordinate_row(self.coordinates, coordinate)
         closed = np.arange(len(self.times) + 1) % len(self.times)
         return self.relative[closed, row], self.forces[closed, row]
 

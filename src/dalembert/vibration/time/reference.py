@@ -22,7 +22,7 @@ from dalembert.vibration.system.requirements import require_force
 from dalembert.vibration.system.system import VibrationSystem
 from dalembert.vibration.threads import one_thread
 from dalembert.vibration.time.elements import Elements, Instant, Reaction, react, reaction, settle
-from dalembert.vibration.time.lowering import InTime, Users
+from dalembert.vibration.time.lowering import InTime, address
 from dalembert.vibration.time.newmark import Newmark
 from dalembert.vibration.time.periodic_motion import PeriodicMotion
 from dalembert.vibration.time.steps import LOST, Modes, Record, Scheme, State, go_through, room
@@ -200,7 +200,7 @@ class _Run:
     failures: list[Exception]
 
     @cached_property
-    def _users(self) -> Users:
+    def _users(self) -> Any:
         return self.problem.users(self.failures)
 
     @cached_property
@@ -226,7 +226,7 @@ class _Run:
         (sliders, states), seen = self._memory(), np.asarray(self.problem.lowered.matrix @ x)[self.problem.places]
         places = np.ascontiguousarray(waves @ seen.T)
         speeds = np.ascontiguousarray(self.problem.omega * waves @ Fourier(curve.orders, steps).derivative @ seen.T)
-        settle(self.problem.elements, self._users.address, places, speeds, sliders, states, self._reaction())
+        settle(self.problem.elements, address(self._users), places, speeds, sliders, states, self._reaction())
         places = np.stack([x @ waves[-1], self.problem.omega * (x @ rates)], axis=1)
         place, velocity = np.linalg.solve(self.problem.spectral.shapes, places).T
         return self._balanced(place, velocity, sliders, states)
@@ -241,7 +241,7 @@ class _Run:
         )  # fmt: skip
         state = State(*(own.copy() for own in state))
         status, count, change = go_through(
-            modes, elements, self._users.address, self._scheme, state, self.problem.omega, most, tolerance, record,
+            modes, elements, address(self._users), self._scheme, state, self.problem.omega, most, tolerance, record,
             self._reaction(), room(modes, state),
         )  # fmt: skip
         if self.failures:
@@ -294,7 +294,7 @@ class _Run:
         """With the accelerations that the forces at the start of a period ask for."""
         seen, found = self.problem.seen, self._reaction()
         instant = Instant(seen @ place, seen @ velocity, 0.0, sliders, states)
-        react(self.problem.elements, self._users.address, instant, found)
+        react(self.problem.elements, address(self._users), instant, found)
         if self.failures:
             raise self.failures[0]
         push = self.problem.forces[-1] - seen.T @ found.force

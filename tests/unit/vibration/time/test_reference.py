@@ -31,7 +31,7 @@ from dalembert.vibration import (
 )
 from dalembert.vibration.system.lowering import lower
 from dalembert.vibration.time.elements import Instant, react, reaction
-from dalembert.vibration.time.lowering import InTime
+from dalembert.vibration.time.lowering import InTime, address
 from support import says
 from vibrating_systems import chain, duffing, one_mass, two_masses
 
@@ -121,7 +121,7 @@ def test_slopes_of_the_elements_are_those_of_their_forces() -> None:
         def forces(u: np.ndarray, sliders: np.ndarray = sliders) -> tuple[np.ndarray, np.ndarray, int]:
             found = reaction(rows, problem.elements, 1)
             instant = Instant(u, np.zeros(rows), 0.0, sliders, np.zeros(0))
-            react(problem.elements, users.address, instant, found)
+            react(problem.elements, address(users), instant, found)
             return found.force, found.slopes, int(found.states[0])
 
         _, slopes, state = forces(u)

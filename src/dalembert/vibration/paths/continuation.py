@@ -56,11 +56,17 @@ class PathPoint:
         Whether the curve turns back here, or where the turn is sharp, just before.
     returned : bool
         Whether the curve comes back here to the frequencies that were asked for.
+    stable : int
+        1, 0, or -1 where it is not known.
+    marker : str
+        Kind of the bifurcation that lies here, or nothing.
     """
 
     solution: Solution
     fold: bool = False
     returned: bool = False
+    stable: int = -1
+    marker: str = ""
 
 
 def at_frequencies(equations: Problem, omegas: np.ndarray, start: Solution | None) -> Iterator[PathPoint]:

@@ -19,9 +19,9 @@ from dalembert.vibration.balance.conclusions import (
 from dalembert.vibration.balance.equations import Equations, equations
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.balance.newton import Solution
-from dalembert.vibration.paths.continuation import across, at_frequencies, natural
+from dalembert.vibration.paths.continuation import PathPoint, across, at_frequencies, natural
 from dalembert.vibration.paths.curve import FrequencyCurve
-from dalembert.vibration.stability.bifurcations import Judged, judged, unjudged
+from dalembert.vibration.stability.bifurcations import FOLD, judged
 from dalembert.vibration.storage import versions
 from dalembert.vibration.system.lowering import Lowered
 from dalembert.vibration.system.requirements import positive_numbers, require_force, require_viscous
@@ -169,12 +169,12 @@ def _followed(
     lowered, records, lost, done = problem.lowered, [], [], 0.0
     top: Solution | None = None
     dofs = tuple(lowered.structure.dofs.names[row] for row in rows)
-    for one in judged(problem, found, located=not given) if stability else unjudged(found):
+    for one in judged(problem, found, located=not given) if stability else found:
         records.append(_kept(problem, one, rows))
-        lost.append(unconverged(problem, one.found.solution))
-        top = largest(top, one.found.solution) if check else None
+        lost.append(unconverged(problem, one.solution))
+        top = largest(top, one.solution) if check else None
         if on_point is not None:
-            omega = one.found.solution.omega
+            omega = one.solution.omega
             come = len(records) / len(omegas) if given else (omega - omegas[0]) / (omegas[1] - omegas[0])
             done = float(max(done, min(come, 1.0)))
             on_point(FollowedPoint(records[-1]["frequencies"], records[-1]["response"], dofs, done))
@@ -223,12 +223,12 @@ def observed(lowered: Lowered, names: Sequence[str] | None) -> np.ndarray:
     return np.unique([*forced, *lowered.matrix.nonzero()[1]]).astype(int)
 
 
-def _kept(problem: Equations, one: Judged, rows: np.ndarray) -> dict[str, Any]:
+def _kept(problem: Equations, one: PathPoint, rows: np.ndarray) -> dict[str, Any]:
     """What a curve keeps of a point, by the names of its arrays; the response in some rows of the structure.
 
     Matrices of some megabytes are not kept.
     """
-    solution, lowered = one.found.solution, problem.lowered
+    solution, lowered = one.solution, problem.lowered
     states = np.zeros((len(lowered.contacts), PHASES), dtype=np.uint8)
     instants = np.arange(PHASES) * solution.samples // PHASES
     for block, own in zip(lowered.blocks, solution.evaluation.states, strict=True):
@@ -243,11 +243,11 @@ def _kept(problem: Equations, one: Judged, rows: np.ndarray) -> dict[str, Any]:
         "iterations": solution.iterations,
         "residuals": solution.error,
         "converged": solution.converged,
-        "fold": one.found.fold,
+        "fold": one.fold,
         "samples": solution.samples,
         "sampling_errors": solution.sampling_error,
         "stable": one.stable,
-        "marker": one.marker,
+        "marker": one.marker or (FOLD if one.fold else ""),
         "response": response,
         "displacements": displacements,
         "forces": forces,

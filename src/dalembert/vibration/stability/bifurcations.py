@@ -1,7 +1,7 @@
 """Bifurcations: points at which the stability of periodic motions changes."""
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import replace
 
 import numpy as np
 
@@ -18,31 +18,7 @@ PLACED = 1e-4
 """Part of the way between two points to which a change is found."""
 
 
-@dataclass(frozen=True)
-class Judged:
-    """A point of a curve with its stability.
-
-    Parameters
-    ----------
-    found : PathPoint
-    stable : int
-        1, 0, or -1 where it is not known.
-    marker : str
-        Kind of the bifurcation that lies here, or nothing.
-    """
-
-    found: PathPoint
-    stable: int = NOT_ASKED
-    marker: str = ""
-
-
-def unjudged(path: Iterable[PathPoint]) -> Iterator[Judged]:
-    """Yield points with their folds, without stability."""
-    for one in path:
-        yield Judged(one, marker=FOLD if one.fold else "")
-
-
-def judged(problem: Equations, path: Iterable[PathPoint], located: bool) -> Iterator[Judged]:
+def judged(problem: Equations, path: Iterable[PathPoint], located: bool) -> Iterator[PathPoint]:
     """Yield points with their stability, and the points at which it changes.
 
     Parameters
@@ -58,17 +34,18 @@ def judged(problem: Equations, path: Iterable[PathPoint], located: bool) -> Iter
         if one.returned:
             before = None
         if not one.solution.converged:
-            yield Judged(one)
+            yield one
             before = None
         elif one.fold:
             # An exponent is zero here, up to rounding of either sign.
-            yield Judged(one, _said(before[1] if before else exponents(problem, one.solution)), FOLD)
+            stable = _said(before[1] if before else exponents(problem, one.solution))
+            yield replace(one, stable=stable, marker=FOLD)
             folded = True
         else:
             own = exponents(problem, one.solution)
             if not own.judged and np.isfinite(own.error):
                 # A change of sign within the error is no bifurcation: points further on show whether there is one.
-                yield Judged(one)
+                yield one
                 adjacent = False
                 continue
             kind = ""
@@ -79,9 +56,10 @@ def judged(problem: Equations, path: Iterable[PathPoint], located: bool) -> Iter
                 place = _located(problem, before, (one.solution, own)) if located and adjacent and kind else None
                 if place is not None:
                     stable = _said(before[1]) if place[1].judged else NOT_ASKED
-                    yield Judged(PathPoint(place[0]), stable, _kind(place[1], place[1], _rank(before[1], own)))
+                    marker = _kind(place[1], place[1], _rank(before[1], own))
+                    yield PathPoint(place[0], stable=stable, marker=marker)
                     kind = ""
-            yield Judged(one, _said(own), kind)
+            yield replace(one, stable=_said(own), marker=kind)
             before, folded, adjacent = (one.solution, own), False, True
 
 

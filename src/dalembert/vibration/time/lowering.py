@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 from scipy.linalg import LinAlgError, eigh
-from scipy.sparse import issparse
 
 from dalembert.errors import ModelError
+from dalembert.structure.eigenmodes import dense
 from dalembert.vibration.balance.condensation import COUPLED, DENSE
 from dalembert.vibration.balance.fourier import Fourier
 from dalembert.vibration.laws.friction_law import NORMAL, TANGENTIAL
@@ -73,8 +73,7 @@ def spectral(structure: Any, omega: float) -> Spectral:
     require_viscous(structure, "motions in time")
     given = (structure.mass, structure.stiffness, structure.damping)
     mass, stiffness, damping = (
-        np.real(matrix.toarray() if issparse(matrix) else matrix)
-        for matrix in (*given[:2], given[0] * 0.0 if given[2] is None else given[2])
+        np.real(dense(matrix)) for matrix in (*given[:2], given[0] * 0.0 if given[2] is None else given[2])
     )
     try:
         shapes = eigh(mass, mass + stiffness / omega**2)[1]

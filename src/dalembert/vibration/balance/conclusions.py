@@ -4,9 +4,7 @@ The truncation error is the change of a motion with more harmonics.
 """
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field, replace
-from functools import partial
-from typing import Any
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -40,26 +38,23 @@ class Unconverged:
         Hz.
     residual : float
         As part of the forces.
-    code : str
-        Of the finding on its cause; empty if the cause is not known.
-    values : dict
-        Of the finding.
-    cause, advice : str
+    cause : Finding, optional
+        None if the cause is not known.
     """
 
     frequency: float
     residual: float
-    code: str = ""
-    values: dict[str, Any] = field(default_factory=dict)
-    cause: str = ""
-    advice: str = ""
+    cause: Finding | None = None
 
 
 def unconverged(problem: Equations, solution: Solution) -> Unconverged | None:
     """Return the cause if a point is not converged."""
     if solution.converged:
         return None
-    found = partial(Unconverged, float(solution.omega) / (2 * np.pi), solution.error)
+    return Unconverged(float(solution.omega) / (2 * np.pi), solution.error, _cause(problem, solution))
+
+
+def _cause(problem: Equations, solution: Solution) -> Finding | None:
     residual, motions = solution.evaluation.residual, solution.point.free_motions
     along = motions.T @ residual[:, 0]
     force = float(np.linalg.norm(along))
@@ -68,22 +63,22 @@ def unconverged(problem: Equations, solution: Solution) -> Unconverged | None:
         moved = np.abs(balance.displacements((motions @ along)[:, None])[:, 0])
         rows = np.flatnonzero(moved > MOVING * moved.max())[:NAMED]
         motion = listed([repr(balance.lowered.row_names[row]) for row in rows])
-        return found(
+        return Finding(
             "unbalanced-mean",
+            "error",
             {"motion": motion, "force": force},
             f"no contact balances a mean force of {force:.3g} N along {motion}, where the structure has no stiffness.",
             "The static forces exceed the limit of friction, or no static force presses the contact. Change them or "
             "the preload, or hold the structure by a spring.",
         )
     if element := _not_finite(problem, solution):
-        cause = f"the function of {element!r} returns forces that are not finite."
-        return found(
-            "force-not-finite", {"element": element}, cause, "Let it return finite forces at all displacements."
-        )
+        message = f"the function of {element!r} returns forces that are not finite."
+        advice = "Let it return finite forces at all displacements."
+        return Finding("force-not-finite", "error", {"element": element}, message, advice)
     if _resonates(solution):
-        cause = "the structure resonates without damping, and no element limits its motion."
-        return found("undamped-resonance", {}, cause, "Give it damping, or choose another frequency.")
-    return found()
+        message = "the structure resonates without damping, and no element limits its motion."
+        return Finding("undamped-resonance", "error", {}, message, "Give it damping, or choose another frequency.")
+    return None
 
 
 def _not_finite(problem: Equations, solution: Solution) -> str:
@@ -118,10 +113,10 @@ def unconverged_findings(points: int, lost: Iterable[Unconverged]) -> tuple[Find
     if not lost:
         return ()
     count = f"{len(lost)} of {points} points were not found."
-    known = sorted((one for one in lost if one.code), key=lambda one: one.code != "unbalanced-mean")
-    if known:
-        one, values = known[0], {"points": len(lost), "frequency": known[0].frequency, **known[0].values}
-        return (Finding(one.code, "error", values, f"{count} At {one.frequency:.6g} Hz {one.cause}", one.advice),)
+    known = [(one.frequency, one.cause) for one in lost if one.cause is not None]
+    for frequency, cause in sorted(known, key=lambda one: one[1].code != "unbalanced-mean")[:1]:
+        values = {"points": len(lost), "frequency": frequency, **cause.values}
+        return (replace(cause, values=values, message=f"{count} At {frequency:.6g} Hz {cause.message}"),)
     worst = max(lost, key=lambda one: one.residual)
     values = {"points": len(lost), "frequency": worst.frequency, "residual": worst.residual}
     message = f"{count} The largest residual is {worst.residual:.1e} of the forces, at {worst.frequency:.6g} Hz."

@@ -14,7 +14,7 @@ from dalembert.kernels.kernel import inner, kernel
 from dalembert.kernels.words import Address, Complexes, Complexes2, Complexes3, Integers, Reals, Reals2
 from dalembert.multibody import evaluate
 from dalembert.multibody.integrators import midpoint_step as midpoint
-from dalembert.multibody.integrators.matrices import Matrices, Pattern, add_product
+from dalembert.multibody.integrators.matrices import Matrices, add_product
 from dalembert.multibody.integrators.midpoint_step import Along, Step
 from dalembert.multibody.integrators.problem import Problem
 from dalembert.multibody.integrators.settling import weigh_along
@@ -139,7 +139,7 @@ def _remove(n, motions, weighed, force):
 
 
 @inner
-def _direct(n, pattern, matrices, s, e):
+def _direct(n, matrices, s, e):
     """Fill the direction of the force; its power."""
     rigid, motions, weighed, force, mass = e.rigid, e.motions, e.weighed, e.force, matrices.mass
     _fill_motions(n, rigid, rigid.shift, s[midpoint.XM], motions)
@@ -148,8 +148,8 @@ def _direct(n, pattern, matrices, s, e):
         for j in range(len(weighed)):
             weighed[j, i] = 0.0
     for j in range(len(weighed)):
-        add_product(n, pattern, mass, motions[j], 1.0, weighed[j])
-    add_product(n, pattern, mass, s[midpoint.VM], 1.0, force)
+        add_product(n, matrices, mass, motions[j], 1.0, weighed[j])
+    add_product(n, matrices, mass, s[midpoint.VM], 1.0, force)
     _remove(n, motions, weighed, force)
     return _product(n, s[midpoint.VM], force)
 
@@ -165,7 +165,7 @@ def _energy(model, h, at, middle, end, totals):
 
 @kernel
 def converge(
-    problem: Problem, pattern: Pattern, matrices: Matrices, model: Address, h: float, goal: float, step: Step,
+    problem: Problem, matrices: Matrices, model: Address, h: float, goal: float, step: Step,
     balance: Balance, tolerance: float, least: float,
 ) -> tuple[bool, int, float, int, float, float]:  # fmt: skip
     """A step whose energy is ``goal`` and the work in it.
@@ -177,12 +177,10 @@ def converge(
     strength, gain, before, iterations, rate, worst = 0.0, 0.0, 1e300, 0, 1.0, 0
     converged, free = False, False
     for attempt in range(_MOST):
-        power = _direct(n, pattern, matrices, s, balance)
+        power = _direct(n, matrices, s, balance)
         for k in range(n):
             push[k] = strength * force[k]
-        converged, more, contraction, worst = midpoint.converge(
-            problem, pattern, matrices, model, h, step, tolerance, least
-        )
+        converged, more, contraction, worst = midpoint.converge(problem, matrices, model, h, step, tolerance, least)
         iterations += more
         rate = contraction if attempt == 0 else rate
         if not converged:
@@ -212,7 +210,7 @@ def _direct_along(perturbed, n, shift, at, middle, buffers, e):
 
 @kernel
 def converge_along(
-    problem: Problem, pattern: Pattern, matrices: Matrices, perturbed: Address, d: int, strength: float, h: float,
+    problem: Problem, matrices: Matrices, perturbed: Address, d: int, strength: float, h: float,
     dgoal: float, step: Step, along: Along, balance: Balance,
 ) -> float:  # fmt: skip
     """Derivative of the step along direction ``d``; the derivative of the work in it."""
@@ -231,7 +229,7 @@ def converge_along(
         else:
             for k in range(n):
                 push[k] = 0.0
-        midpoint.converge_along(problem, pattern, matrices, perturbed, h, step, along)
+        midpoint.converge_along(problem, matrices, perturbed, h, step, along)
         midpoint.perturb_step(s, ds, at)
         energy, gain = _energy(perturbed, h, at, middle, end, totals)
         dgain = gain.imag / STEP

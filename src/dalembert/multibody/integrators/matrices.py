@@ -48,7 +48,7 @@ class Doubles(NamedTuple):
 
 
 class Matrices(NamedTuple):
-    """Values of the entries, and factorised systems.
+    """Values of the entries of a pattern, and factorised systems.
 
     ``mass``, ``damping`` and ``stiffness`` are the derivatives of the equations of motion by accelerations, velocities
     and coordinates; with the stiffness stand those of the constraints and by the multipliers. ``rigid`` is factorised
@@ -56,6 +56,7 @@ class Matrices(NamedTuple):
     ``heavy`` are the numbers of the entries that have a mass, as many as its last entry says.
     """
 
+    pattern: Pattern
     heavy: Integers
     mass: Reals
     damping: Reals
@@ -93,23 +94,21 @@ def room(pattern: Pattern, pairs: int) -> Matrices:
         np.zeros((pairs, layout.size), np.int64), np.zeros((pairs, layout.size + 3 * layout.reach)),
     )  # fmt: skip
     return Matrices(
-        np.zeros(entries + 1, np.int64), np.zeros(entries), np.zeros(entries), np.zeros(entries),
+        pattern, np.zeros(entries + 1, np.int64), np.zeros(entries), np.zeros(entries), np.zeros(entries),
         storage(pattern.layout), storage(pattern.layout), doubles,
     )  # fmt: skip
 
 
 @kernel
-def weigh_masses(
-    pattern: Pattern, matrices: Matrices, complex_model: Address, n: int, state: MotionState, complex_work: Address
-) -> None:
+def weigh_masses(matrices: Matrices, complex_model: Address, n: int, state: MotionState, complex_work: Address) -> None:
     """Evaluate the masses, which do not change in a motion; the signals in ``complex_work`` hold the time."""
     tangent(
-        complex_model, pattern.slots, n, state.x, state.v, state.a, (0.0, 0.0, 1.0), (1.0, 0.0), complex_work,
-        matrices.mass,
+        complex_model, matrices.pattern.slots, n, state.x, state.v, state.a, (0.0, 0.0, 1.0), (1.0, 0.0),
+        complex_work, matrices.mass,
     )  # fmt: skip
     count = 0
     for e in range(len(matrices.mass)):
-        if matrices.mass[e] != 0.0 and pattern.rows[e] < n and pattern.columns[e] < n:
+        if matrices.mass[e] != 0.0 and matrices.pattern.rows[e] < n and matrices.pattern.columns[e] < n:
             matrices.heavy[count] = e
             count += 1
     matrices.heavy[len(matrices.mass)] = count
@@ -117,29 +116,30 @@ def weigh_masses(
 
 @kernel
 def renew(
-    problem: Problem, pattern: Pattern, matrices: Matrices, complex_model: Address, damped: bool, t: float,
+    problem: Problem, matrices: Matrices, complex_model: Address, damped: bool, t: float,
     within: float, state: MotionState, complex_work: Address,
 ) -> bool:  # fmt: skip
     """Evaluate stiffness (and damping, if ``damped``), and factorise [M, J^T; J, 0]; whether it is regular."""
     n = problem.n
     set_signals(complex_model, t, within, complex_work)
-    x, v, a = state.x, state.v, state.a
-    tangent(complex_model, pattern.slots, n, x, v, a, (1.0, 0.0, 0.0), (1.0, 1.0), complex_work, matrices.stiffness)
+    x, v, a, slots = state.x, state.v, state.a, matrices.pattern.slots
+    tangent(complex_model, slots, n, x, v, a, (1.0, 0.0, 0.0), (1.0, 1.0), complex_work, matrices.stiffness)
     if damped:
-        tangent(complex_model, pattern.slots, n, x, v, a, (0.0, 1.0, 0.0), (1.0, 0.0), complex_work, matrices.damping)
-    matrix, rows, columns, places = matrices.rigid.matrix, pattern.rows, pattern.columns, pattern.single
-    mass, stiffness = matrices.mass, matrices.stiffness
+        tangent(complex_model, slots, n, x, v, a, (0.0, 1.0, 0.0), (1.0, 0.0), complex_work, matrices.damping)
+    pattern, matrix, mass, stiffness = matrices.pattern, matrices.rigid.matrix, matrices.mass, matrices.stiffness
+    rows, columns, places = pattern.rows, pattern.columns, pattern.single
     clear(matrix)
     for e in range(len(rows)):
         matrix[places[e]] = mass[e] if rows[e] < n and columns[e] < n else stiffness[e]
-    return factorise(pattern.layout, matrices.rigid)
+    return factorise(matrices.pattern.layout, matrices.rigid)
 
 
 @inner
-def factorise_real(n, pattern, matrices, s):
+def factorise_real(n, matrices, s):
     """Factorise [M + C/s + K/s^2, J^T; J, 0] for a real s; whether it is regular."""
     first, second = 1.0 / s, 1.0 / (s * s)
-    matrix, rows, columns, places = matrices.real.matrix, pattern.rows, pattern.columns, pattern.single
+    pattern, matrix = matrices.pattern, matrices.real.matrix
+    rows, columns, places = pattern.rows, pattern.columns, pattern.single
     mass, damping, stiffness = matrices.mass, matrices.damping, matrices.stiffness
     clear(matrix)
     for e in range(len(rows)):
@@ -147,7 +147,7 @@ def factorise_real(n, pattern, matrices, s):
         if rows[e] < n and columns[e] < n:
             value = mass[e] + first * damping[e] + second * value
         matrix[places[e]] = value
-    return factorise(pattern.layout, matrices.real)
+    return factorise(matrices.pattern.layout, matrices.real)
 
 
 @inlined
@@ -171,11 +171,12 @@ def _double(matrices, p):
 
 
 @inner
-def factorise_complex(n, pattern, matrices, p, s):
+def factorise_complex(n, matrices, p, s):
     """Factorise [M + C/s + K/s^2, J^T; J, 0] for a complex s as system ``p``; whether it is regular."""
     first = inverse(s)
     second = product(first, first)
-    factors, rows, columns, places = _double(matrices, p), pattern.rows, pattern.columns, pattern.double
+    pattern, factors = matrices.pattern, _double(matrices, p)
+    rows, columns, places = pattern.rows, pattern.columns, pattern.double
     matrix, mass, damping, stiffness = factors.matrix, matrices.mass, matrices.damping, matrices.stiffness
     clear(matrix)
     for e in range(len(rows)):
@@ -187,28 +188,29 @@ def factorise_complex(n, pattern, matrices, p, s):
         matrix[places[1, e]] = -turned
         matrix[places[2, e]] = turned
         matrix[places[3, e]] = value
-    return factorise(pattern.double_layout, factors)
+    return factorise(matrices.pattern.double_layout, factors)
 
 
 @inner
-def solve_complex(pattern, matrices, p, given, answer):
+def solve_complex(matrices, p, given, answer):
     """Solve with the complex system ``p``: real parts, then imaginary ones."""
-    solve(pattern.double_layout, _double(matrices, p), given, answer)
+    solve(matrices.pattern.double_layout, _double(matrices, p), given, answer)
 
 
 @inner
-def add_inertia(pattern, matrices, vector, target):
+def add_inertia(matrices, vector, target):
     """target += M vector."""
-    heavy, mass, rows, columns = matrices.heavy, matrices.mass, pattern.rows, pattern.columns
+    pattern, heavy, mass = matrices.pattern, matrices.heavy, matrices.mass
+    rows, columns = pattern.rows, pattern.columns
     for number in range(heavy[len(heavy) - 1]):
         e = heavy[number]
         target[rows[e]] += mass[e] * vector[columns[e]]
 
 
 @inner
-def add_product(n, pattern, values, vector, factor, target):
+def add_product(n, matrices, values, vector, factor, target):
     """target += factor A vector, for the entries ``values`` of A between coordinates."""
-    rows, columns = pattern.rows, pattern.columns
+    rows, columns = matrices.pattern.rows, matrices.pattern.columns
     for e in range(len(rows)):
         i, j = rows[e], columns[e]
         if i < n and j < n:

@@ -103,7 +103,7 @@ def _read(n, s, new):
 
 @kernel
 def differentiate(
-    problem: Problem, pattern: Pattern, matrices: Matrices, directions: Integers, step: Step, balance: Balance,
+    problem: Problem, matrices: Matrices, directions: Integers, step: Step, balance: Balance,
     strength: float, h: float, t: float, target: float, within: float, new: MotionState, dnews: MotionStates,
     moved: Reals2, room: Derivatives,
 ) -> None:  # fmt: skip
@@ -119,15 +119,15 @@ def differentiate(
         set_signals(perturbed, target, within, end)
         midpoint.begin(n, h, dold, slopes[d], ds)
         if balance.converge_along == 0:
-            midpoint.converge_along(problem, pattern, matrices, perturbed, h, step, along)
+            midpoint.converge_along(problem, matrices, perturbed, h, step, along)
         else:
             energies[d] += _balance_along_at(
-                balance.converge_along, problem, pattern, matrices, perturbed, d, strength, h, energies[d], step,
+                balance.converge_along, problem, matrices, perturbed, d, strength, h, energies[d], step,
                 along, balance,
             )  # fmt: skip
         midpoint.keep_missed(n, dold, ds, slopes[d])
         _read(n, ds, dnew)
-        settle_along(problem, pattern, matrices, perturbed, new, dnew, moved, end, complex_state, VELOCITIES)
+        settle_along(problem, matrices, perturbed, new, dnew, moved, end, complex_state, VELOCITIES)
 
 
 _balance_at, _balance_along_at = balancing.converge.at, balancing.converge_along.at
@@ -144,7 +144,7 @@ def _clear(array):
 
 @kernel
 def integrate(
-    problem: Problem, pattern: Pattern, edges: Reals, settings: Settings, model: Address, complex_model: Address,
+    problem: Problem, edges: Reals, settings: Settings, model: Address, complex_model: Address,
     directions: Integers, new: MotionState, dnews: MotionStates, out: MotionStates, dout: Histories, log: Log,
     matrices: Matrices, consistent: Consistency, step: Step, balance: Balance, spare: Spare, last: Ends,
     derivatives: Derivatives,
@@ -169,7 +169,7 @@ def integrate(
             return SINGULAR, t, 0
         if stretch == 0:
             set_signals(complex_model, t, within, complex_work)  # those of a direction would count as masses
-            weigh_masses(pattern, matrices, complex_model, n, new, complex_work)
+            weigh_masses(matrices, complex_model, n, new, complex_work)
         steps = max(1, int(np.ceil((end - t) / settings.step - 1e-6)))
         begin, nominal, number, level = t, (end - t) / steps, 0, 0
         stale, fresh, made = True, True, 0.0
@@ -183,7 +183,7 @@ def integrate(
                 append(t, new, dnews, True, last)
             while due < len(times) and times[due] <= t + 1e-9 * h:
                 written = record(
-                    problem, pattern, matrices, False, model, complex_model, directions, last, within, out, dout, due,
+                    problem, matrices, False, model, complex_model, directions, last, within, out, dout, due,
                     between, spare.dbetween, spare.weights, moved, step.middle, complex_work, derivatives.complex_state,
                     derivatives.record,
                 )  # fmt: skip
@@ -193,7 +193,7 @@ def integrate(
             if number == steps:
                 break
             if stale:
-                if not renew(problem, pattern, matrices, complex_model, settings.damped, t, within, new, complex_work):
+                if not renew(problem, matrices, complex_model, settings.damped, t, within, new, complex_work):
                     return SINGULAR, t, 0
                 stale, fresh, made = False, True, 0.0
             goal = end if number == steps - 1 else begin + nominal * (number + 1)
@@ -202,24 +202,24 @@ def integrate(
             if not abs(h - made) <= 1e-10 * h:
                 counts[2] += 1
                 made = h
-                if not factorise_real(n, pattern, matrices, 2.0 / h):
+                if not factorise_real(n, matrices, 2.0 / h):
                     return SINGULAR, t, 0
             set_signals(model, t + 0.5 * h, within, step.middle)
             set_signals(model, target, within, step.end)
             midpoint.begin(n, h, new, slope, s)
             if balance.converge == 0:
                 converged, iterations, rate, worst = midpoint.converge(
-                    problem, pattern, matrices, model, h, step, settings.newton_tolerance, h * speed
+                    problem, matrices, model, h, step, settings.newton_tolerance, h * speed
                 )
             else:
                 converged, iterations, rate, worst, strength, gain = _balance_at(
-                    balance.converge, problem, pattern, matrices, model, h, energy, step, balance,
+                    balance.converge, problem, matrices, model, h, energy, step, balance,
                     settings.newton_tolerance, h * speed,
                 )  # fmt: skip
             counts[1] += iterations
             if converged:
                 _read(n, s, between)
-                converged = settle(problem, pattern, matrices, model, between, moved, step.end, VELOCITIES)
+                converged = settle(problem, matrices, model, between, moved, step.end, VELOCITIES)
             if not converged:
                 counts[3] += 1
                 h, arrived = 0.0, False
@@ -238,7 +238,7 @@ def integrate(
                 speed = max(speed, abs(s[midpoint.VM, k]) / scale[k])
             if len(directions) > 0:
                 _differentiate_at(
-                    derivatives.differentiate, problem, pattern, matrices, directions, step, balance, strength, h, t,
+                    derivatives.differentiate, problem, matrices, directions, step, balance, strength, h, t,
                     target, within, new, dnews, moved, derivatives,
                 )  # fmt: skip
             if counts[0] < len(log.iterations):

@@ -16,7 +16,7 @@ import numpy as np
 
 from dalembert.kernels.kernel import inner, kernel
 from dalembert.kernels.words import Address, Complexes2, Reals, Reals2
-from dalembert.multibody.integrators.matrices import Matrices, Pattern, add_product
+from dalembert.multibody.integrators.matrices import Matrices, add_product
 from dalembert.multibody.integrators.problem import Problem
 from dalembert.multibody.integrators.settling import weigh_along
 from dalembert.multibody.kernels.assembly import constraint_forces, constraint_rates, residual
@@ -132,7 +132,7 @@ def _balance(model, n, at, middle, end, f, gap, rate, second):
 
 
 @inner
-def _correct(n, size, pattern, matrices, h, f, gap, rate, first, other, s):
+def _correct(n, size, matrices, h, f, gap, rate, first, other, s):
     """Take Newton's correction off a step, by the residuals; ``f`` and ``gap`` become what accelerations moved.
 
     Two systems: [M + h/2 C + h^2/4 K, J^T; J, 0] for ``A``, and the same without C and K for ``B`` - ``A``: in the
@@ -142,8 +142,8 @@ def _correct(n, size, pattern, matrices, h, f, gap, rate, first, other, s):
     for k in range(n, size):
         f[k] = square * gap[k]
         gap[k] = 2.0 / h * rate[k] - 2.0 * f[k]
-    solve(pattern.layout, matrices.real, f, first)
-    solve(pattern.layout, matrices.rigid, gap, other)
+    solve(matrices.pattern.layout, matrices.real, f, first)
+    solve(matrices.pattern.layout, matrices.rigid, gap, other)
     for k in range(size):
         f[k], gap[k] = first[k], first[k] + other[k]
         if k < n:
@@ -169,7 +169,7 @@ def _sizes(n, h, scale, f, gap, s):
 
 @kernel
 def converge(
-    problem: Problem, pattern: Pattern, matrices: Matrices, model: Address, h: float, step: Step, tolerance: float,
+    problem: Problem, matrices: Matrices, model: Address, h: float, step: Step, tolerance: float,
     least: float,
 ) -> tuple[bool, int, float, int]:  # fmt: skip
     """Newton's iteration on a step that a force resists.
@@ -192,8 +192,8 @@ def converge(
         for k in range(n, size):  # rounding would come back as velocities, 1/h times as large
             if abs(gap[k]) <= closed:
                 gap[k] = 0.0
-        add_product(n, pattern, mass, first, 1.0, gap)
-        _correct(n, size, pattern, matrices, h, f, gap, rate, first, other, s)
+        add_product(n, matrices, mass, first, 1.0, gap)
+        _correct(n, size, matrices, h, f, gap, rate, first, other, s)
         norm, way, worst = _sizes(n, h, scale, f, gap, s)
         way = max(least, way)
         if iteration > 1 and norm > _NOISE * way:
@@ -219,7 +219,7 @@ def perturb_step(s, ds, at):
 
 @kernel
 def converge_along(
-    problem: Problem, pattern: Pattern, matrices: Matrices, perturbed: Address, h: float, step: Step, along: Along
+    problem: Problem, matrices: Matrices, perturbed: Address, h: float, step: Step, along: Along
 ) -> None:
     """Derivative of a converged step along a direction, by the same iteration on imaginary parts."""
     s, b, ds, at, vectors, push = step.rows, step.vectors, along.rows, along.complex_state, along.vectors, along.push
@@ -243,8 +243,8 @@ def converge_along(
                 f[k] += push[k]
                 gap[k] += heavier[k]
                 first[k] = ds[B, k] - ds[A, k]
-        add_product(n, pattern, mass, first, 1.0, gap)
-        _correct(n, size, pattern, matrices, h, f, gap, rate, first, other, ds)
+        add_product(n, matrices, mass, first, 1.0, gap)
+        _correct(n, size, matrices, h, f, gap, rate, first, other, ds)
         norm = _sizes(n, h, scale, f, gap, ds)[0]
         length = 0.0
         for k in range(n):

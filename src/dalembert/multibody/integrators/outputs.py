@@ -3,7 +3,7 @@
 from dalembert.kernels.kernel import inner, kernel
 from dalembert.kernels.words import Address, Complexes2, Integers, Reals2, Reals3
 from dalembert.multibody.integrators.ends import Ends, interpolate_ends, support, weigh_ends
-from dalembert.multibody.integrators.matrices import Matrices, Pattern, renew
+from dalembert.multibody.integrators.matrices import Matrices, renew
 from dalembert.multibody.integrators.problem import Problem
 from dalembert.multibody.integrators.settling import COORDINATES, settle, settle_along
 from dalembert.multibody.kernels.assembly import set_signals
@@ -12,7 +12,7 @@ from dalembert.multibody.kernels.motion import Histories, MotionState, MotionSta
 
 @kernel
 def record(
-    problem: Problem, pattern: Pattern, matrices: Matrices, far: bool, model: Address, complex_model: Address,
+    problem: Problem, matrices: Matrices, far: bool, model: Address, complex_model: Address,
     directions: Integers, ends: Ends, within: float, out: MotionStates, dout: Histories, due: int, state: MotionState,
     dstate: MotionState, weights: Reals3, moved: Reals2, work: Address, complex_work: Address,
     complex_state: Complexes2, along: Address,
@@ -33,15 +33,15 @@ def record(
         oldest = support(ends)
         weigh_ends(ends, oldest, t, weights)
         interpolate_ends(n, oldest, weights, ends.states, state)
-        if far and not renew(problem, pattern, matrices, complex_model, False, t, within, state, complex_work):
+        if far and not renew(problem, matrices, complex_model, False, t, within, state, complex_work):
             return False
         set_signals(model, t, within, work)
-        if not settle(problem, pattern, matrices, model, state, moved, work, COORDINATES):
+        if not settle(problem, matrices, model, state, moved, work, COORDINATES):
             return False
     _write(state, row(out, due))
     if len(directions) > 0:
         _record_along_at(
-            along, problem, pattern, matrices, directions, ends, whole, oldest, within, dout, due, state, dstate,
+            along, problem, matrices, directions, ends, whole, oldest, within, dout, due, state, dstate,
             weights, moved, complex_work, complex_state,
         )  # fmt: skip
     return True
@@ -49,7 +49,7 @@ def record(
 
 @kernel
 def record_along(
-    problem: Problem, pattern: Pattern, matrices: Matrices, directions: Integers, ends: Ends, whole: bool, oldest: int,
+    problem: Problem, matrices: Matrices, directions: Integers, ends: Ends, whole: bool, oldest: int,
     within: float, dout: Histories, due: int, state: MotionState, dstate: MotionState, weights: Reals3, moved: Reals2,
     complex_work: Address, complex_state: Complexes2,
 ) -> None:  # fmt: skip
@@ -66,7 +66,7 @@ def record_along(
             interpolate_ends(problem.n, oldest, weights, derivatives, dstate)
             set_signals(directions[d], t, within, complex_work)
             settle_along(
-                problem, pattern, matrices, directions[d], state, dstate, moved, complex_work, complex_state,
+                problem, matrices, directions[d], state, dstate, moved, complex_work, complex_state,
                 COORDINATES,
             )  # fmt: skip
         _write(dstate, row(rows(dout, d), due))

@@ -3,7 +3,7 @@
 from dalembert.kernels.kernel import inner, kernel
 from dalembert.kernels.words import Address, Complexes2, Integers, Reals2
 from dalembert.multibody.integrators.ends import Ends
-from dalembert.multibody.integrators.matrices import Matrices, Pattern
+from dalembert.multibody.integrators.matrices import Matrices
 from dalembert.multibody.integrators.problem import Problem
 from dalembert.multibody.integrators.radau_coefficients import Coefficients
 from dalembert.multibody.integrators.radau_newton import (
@@ -29,7 +29,7 @@ from dalembert.multibody.kernels.motion import MotionState, MotionStates, copy, 
 
 @kernel
 def differentiate(
-    problem: Problem, method: Coefficients, pattern: Pattern, matrices: Matrices, directions: Integers, t: float,
+    problem: Problem, method: Coefficients, matrices: Matrices, directions: Integers, t: float,
     target: float, within: float, s: Stages, dold: MotionState, dnews: MotionStates, ds: Stages, b: Buffers,
     complex_works: Integers,
 ) -> None:  # fmt: skip
@@ -39,12 +39,12 @@ def differentiate(
         dnew = row(dnews, d)
         copy(dnew, dold)
         set_stage_signals(method, directions[d], t, h, target, within, complex_works)
-        _converge_along(problem, method, pattern, matrices, directions[d], complex_works, h, s, dold, ds, b)
+        _converge_along(problem, method, matrices, directions[d], complex_works, h, s, dold, ds, b)
         read(problem.n, ds, dnew)
 
 
 @inner
-def _converge_along(problem, method, pattern, matrices, perturbed, works, h, s, dstart, ds, b):
+def _converge_along(problem, method, matrices, perturbed, works, h, s, dstart, ds, b):
     """Derivatives ``ds`` of the converged stages along a direction, by the same iteration on imaginary parts."""
     n, size, count = problem.n, len(dstart.x) - 1, len(method.c)
     at = b.complex_state
@@ -64,7 +64,7 @@ def _converge_along(problem, method, pattern, matrices, perturbed, works, h, s, 
             weigh_along(perturbed, n, at[0], at[3], works[i], at[7:], at[5])
             for k in range(size + 1):
                 b.motion[i, k], b.weighed[i, k] = at[4, k].imag / STEP, at[5, k].imag / STEP
-        correct_coordinates(n, size, method, pattern, matrices, h, b)
+        correct_coordinates(n, size, method, matrices, h, b)
         take_coordinates(n, size, h, method, dstart, b, ds)
         for i in range(count):
             for k in range(size + 1):
@@ -73,7 +73,7 @@ def _converge_along(problem, method, pattern, matrices, perturbed, works, h, s, 
             constraint_rates(perturbed, n, at[0], at[1], at[2], works[i], at[4], at[5])
             for k in range(size + 1):
                 b.rate[i, k] = at[4, k].imag / STEP
-        take_velocities(n, size, method, pattern, matrices, h, dstart, b, ds)
+        take_velocities(n, size, method, matrices, h, dstart, b, ds)
         norm = largest(n, problem.scale, b.moved)[0]
         length = largest(n, problem.scale, ds.dx)[0]
         if norm <= 1e-14 * length or not norm < 1e100 or (norm <= 1e-10 * length and norm > 0.5 * before):
@@ -83,13 +83,11 @@ def _converge_along(problem, method, pattern, matrices, perturbed, works, h, s, 
 
 @kernel
 def settle_end_along(
-    problem: Problem, pattern: Pattern, matrices: Matrices, directions: Integers, within: float, last: Ends, j: int,
+    problem: Problem, matrices: Matrices, directions: Integers, within: float, last: Ends, j: int,
     moved: Reals2, complex_work: Address, complex_state: Complexes2,
 ) -> None:  # fmt: skip
     """Settle the derivatives of end ``j`` along all directions."""
     for d in range(len(directions)):
         set_signals(directions[d], last.times[j], within, complex_work)
         state, dstate = row(last.states, j), row(rows(last.derivatives, d), j)
-        settle_along(
-            problem, pattern, matrices, directions[d], state, dstate, moved, complex_work, complex_state, VELOCITIES
-        )
+        settle_along(problem, matrices, directions[d], state, dstate, moved, complex_work, complex_state, VELOCITIES)

@@ -109,7 +109,7 @@ class RadauIIA(Integrator):
         fixed = self.step_ends(batch.end, first.jumps)
         calls = [[model.call() for _ in range(1 + self.stages)] for model in (first.real, first.complex_model)]
         spare = workspace(problem, method, pattern, batch.dstates, *calls)
-        run = integrate.given(problem, method, pattern, directions, batch.dstates, dout, *spare)
+        run = integrate.given(problem, method, directions, batch.dstates, dout, *spare)
         runs = []
         for lowered, edges, start in batch:
             log, states = batch.log(_ROOM if fixed is None else max(_ROOM, len(fixed))), resting(*batch.shape)

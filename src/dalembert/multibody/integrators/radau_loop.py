@@ -6,7 +6,7 @@ from dalembert.kernels.kernel import inner, kernel
 from dalembert.kernels.words import Address, Integers, Reals
 from dalembert.multibody.integrators.consistent import Consistency, accelerate
 from dalembert.multibody.integrators.ends import append, support
-from dalembert.multibody.integrators.matrices import Matrices, Pattern, renew, weigh_masses
+from dalembert.multibody.integrators.matrices import Matrices, renew, weigh_masses
 from dalembert.multibody.integrators.outputs import record
 from dalembert.multibody.integrators.problem import DONE, INEXACT, NEWTON_FAILED, SINGULAR, TOO_MANY_STEPS, Log, Problem
 from dalembert.multibody.integrators.radau_coefficients import Coefficients
@@ -31,7 +31,7 @@ def _first_step(n, scale, span, tolerance, order, state):
 
 @inner
 def _settle_ends(
-    problem, pattern, matrices, apart, far, model, complex_model, directions, damped, within, last, moved, work,
+    problem, matrices, apart, far, model, complex_model, directions, damped, within, last, moved, work,
     complex_work, complex_state, along,
 ):  # fmt: skip
     """Settle the ends that outputs of the last step need; whether that went well.
@@ -45,15 +45,13 @@ def _settle_ends(
         t, state, own = last.times[j], row(last.states, j), matrices
         if far or j < newest:
             own = apart
-            if not renew(problem, pattern, own, complex_model, damped, t, within, state, complex_work):
+            if not renew(problem, own, complex_model, damped, t, within, state, complex_work):
                 return False
         set_signals(model, t, within, work)
-        if not settle(problem, pattern, own, model, state, moved, work, VELOCITIES):
+        if not settle(problem, own, model, state, moved, work, VELOCITIES):
             return False
         if len(directions) > 0:
-            _settle_end_along_at(
-                along, problem, pattern, own, directions, within, last, j, moved, complex_work, complex_state
-            )
+            _settle_end_along_at(along, problem, own, directions, within, last, j, moved, complex_work, complex_state)
         last.settled[j] = True
     return True
 
@@ -63,7 +61,7 @@ _settle_end_along_at, _differentiate_at = settle_end_along.at, differentiate.at
 
 @kernel
 def integrate(
-    problem: Problem, method: Coefficients, pattern: Pattern, directions: Integers, dstates: MotionStates,
+    problem: Problem, method: Coefficients, directions: Integers, dstates: MotionStates,
     dout: Histories, new: MotionState, matrices: Matrices, step: Step, outputs: Outputs, along: Along,
     consistency: Consistency, edges: Reals, settings: Settings, model: Address, complex_model: Address,
     start: MotionState, out: MotionStates, log: Log,
@@ -99,7 +97,7 @@ def integrate(
             return SINGULAR, t, 0, 0.0
         if stretch == 0:
             set_signals(complex_model, t, within, complex_work)  # those of a direction would count as masses
-            weigh_masses(pattern, matrices, complex_model, n, new, complex_work)
+            weigh_masses(matrices, complex_model, n, new, complex_work)
             length = _first_step(n, scale, end - t, settings.tolerance, order, new)
         steps = 1 if adaptive else max(1, int(np.ceil((end - t) / settings.step - 1e-6)))
         begin, nominal, number, level = t, (end - t) / steps, 0, 0
@@ -113,11 +111,11 @@ def integrate(
             arrived, settled, ready = False, False, False
             while due < len(times) and times[due] <= t + 1e-9 * taken:
                 ready = ready or _settle_ends(
-                    problem, pattern, matrices, apart, far, model, complex_model, directions, settings.damped, within,
+                    problem, matrices, apart, far, model, complex_model, directions, settings.damped, within,
                     last, moved, work, complex_work, complex_state, along.settle_end,
                 )  # fmt: skip
                 if not ready or not record(
-                    problem, pattern, apart if far else matrices, far, model, complex_model, directions, last, within,
+                    problem, apart if far else matrices, far, model, complex_model, directions, last, within,
                     out, dout, due, outputs.between, outputs.dbetween, shares, moved, work, complex_work, complex_state,
                     along.record,
                 ):  # fmt: skip
@@ -132,7 +130,7 @@ def integrate(
             target = goal if reached else t + length
             h = target - t
             status, made, error, own, iterations, rate, worst = attempt(
-                problem, method, pattern, model, complex_model, settings, t, target, within, before, earlier, stale,
+                problem, method, model, complex_model, settings, t, target, within, before, earlier, stale,
                 made, speed, new, matrices, step,
             )  # fmt: skip
             counts[1] += iterations
@@ -160,7 +158,7 @@ def integrate(
                 continue
             if len(directions) > 0:
                 _differentiate_at(
-                    along.differentiate, problem, method, pattern, matrices, directions, t, target, within, step.s,
+                    along.differentiate, problem, method, matrices, directions, t, target, within, step.s,
                     along.dold, dstates, along.ds, step.b, along.works,
                 )  # fmt: skip
             arrived, speed, before, earlier, taken, least = True, own, h, before, h, np.inf

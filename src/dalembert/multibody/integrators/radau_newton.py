@@ -32,12 +32,12 @@ _VISIBLE = 0.03  # part of the tolerance from which corrections hardly change th
 
 
 @inner
-def factorise(n, method, pattern, matrices, h):
+def factorise(n, method, matrices, h):
     """Factorise the systems of a step; whether they are regular."""
-    if not factorise_real(n, pattern, matrices, method.real / h):
+    if not factorise_real(n, matrices, method.real / h):
         return False
     for p in range(len(method.pairs)):
-        if not factorise_complex(n, pattern, matrices, p, _scaled(method.pairs[p], h)):
+        if not factorise_complex(n, matrices, p, _scaled(method.pairs[p], h)):
             return False
     return True
 
@@ -49,7 +49,7 @@ def _scaled(pair, h):
 
 
 @inner
-def correct_coordinates(n, size, method, pattern, matrices, h, b):
+def correct_coordinates(n, size, method, matrices, h, b):
     """Corrections of the stages' coordinates, multipliers and rates by the residuals ``motion`` and ``weighed``.
 
     Along each eigenvector of D = A^-1 / h, with eigenvalue s: the system [M + C/s + K/s^2, J^T; J, 0]
@@ -65,7 +65,7 @@ def correct_coordinates(n, size, method, pattern, matrices, h, b):
     square = real * real
     for k in range(size):  # what the velocities lack in weight acts as an inertial force
         given[k] = change_x[0, k] + real * change_u[0, k] if k < n else square * change_x[0, k]
-    solve(pattern.layout, matrices.real, given, answer)
+    solve(matrices.pattern.layout, matrices.real, given, answer)
     for k in range(size):
         if k < n:
             change_x[0, k], change_u[0, k], change_a[0, k] = answer[k] / square, answer[k] / real, answer[k]
@@ -78,7 +78,7 @@ def correct_coordinates(n, size, method, pattern, matrices, h, b):
             z = complex(change_x[i, k], change_x[j, k])
             z = z + product(pair, complex(change_u[i, k], change_u[j, k])) if k < n else product(double, z)
             given[k], given[size + k] = z.real, z.imag
-        solve_complex(pattern, matrices, p, given, answer)
+        solve_complex(matrices, p, given, answer)
         for k in range(size):
             z = complex(answer[k], answer[size + k])
             if k < n:
@@ -106,7 +106,7 @@ def take_coordinates(n, size, h, method, start, b, s):
 
 
 @inner
-def take_velocities(n, size, method, pattern, matrices, h, start, b, s):
+def take_velocities(n, size, method, matrices, h, start, b, s):
     """Move the stages' velocities onto the constraints; ``moved`` becomes the size of the whole correction.
 
     M w + J^T m = -(M (q' - v) + J^T mu), J w = J v + Phi_t at each stage: the same matrix without C and K.
@@ -116,7 +116,7 @@ def take_velocities(n, size, method, pattern, matrices, h, start, b, s):
     for i in range(len(x)):
         for k in range(size):
             given[k] = -weighed[i, k] if k < n else rate[i, k]
-        solve(pattern.layout, matrices.rigid, given, answer)
+        solve(matrices.pattern.layout, matrices.rigid, given, answer)
         for k in range(size):
             change_x[i, k] = answer[k]
             if k < n:
@@ -146,7 +146,7 @@ def largest(n, scale, moves):
 
 @inner
 def converge(
-    n, scale, method, pattern, matrices, model, damped, works, h, start, s, b, tolerance, speed, limit,
+    n, scale, method, matrices, model, damped, works, h, start, s, b, tolerance, speed, limit,
 ):  # fmt: skip
     """Newton's iteration on the stages, which are given as predicted, with their integrals.
 
@@ -171,12 +171,12 @@ def converge(
                 given[k] = u[i, k] - v[i, k]
             for k in range(n, size + 1):
                 given[k] = m[i, k]
-            weigh(model, n, pattern, matrices, x[i], given, works[i], b.weighed[i], b.answer)
-        correct_coordinates(n, size, method, pattern, matrices, h, b)
+            weigh(model, n, matrices, x[i], given, works[i], b.weighed[i], b.answer)
+        correct_coordinates(n, size, method, matrices, h, b)
         take_coordinates(n, size, h, method, start, b, s)
         for i in range(count):
             constraint_rates(model, n, x[i], v[i], a[i], works[i], b.rate[i], given)
-        take_velocities(n, size, method, pattern, matrices, h, start, b, s)
+        take_velocities(n, size, method, matrices, h, start, b, s)
         norm, worst = largest(n, scale, b.moved)
         way = max(h * speed, largest(n, scale, s.dx)[0])
         if iteration > 1 and norm > _NOISE * way:
@@ -192,7 +192,7 @@ def converge(
         visible = not lost and not done and not seen and norm <= _VISIBLE * limit * min(1.0, h * speed)
         if visible or (converged and limit > 0.0):
             seen = True
-            error, rate_error = estimate(n, scale, method, pattern, matrices, damped, h, start, s, b)
+            error, rate_error = estimate(n, scale, method, matrices, damped, h, start, s, b)
         if visible and max(error, rate_error / speed) > 1.1 * limit:
             converged = ended = True
         if ended:
@@ -202,7 +202,7 @@ def converge(
 
 
 @inner
-def estimate(n, scale, method, pattern, matrices, damped, h, start, s, b):
+def estimate(n, scale, method, matrices, damped, h, start, s, b):
     """Estimated error of a step, as a part of the scales: of coordinates, and of velocities, 1/s.
 
     It is the difference to the method of the order of the stages that also weighs the rates at the start, by the
@@ -224,17 +224,17 @@ def estimate(n, scale, method, pattern, matrices, damped, h, start, s, b):
         given[k] = 0.0
         if k < n:
             v[k] = v[k] / real + q[k]
-    add_inertia(pattern, matrices, v, given)
+    add_inertia(matrices, v, given)
     if damped:
-        add_product(n, pattern, matrices.damping, q, 1.0 / real, given)
-    solve(pattern.layout, matrices.real, given, answer)
+        add_product(n, matrices, matrices.damping, q, 1.0 / real, given)
+    solve(matrices.pattern.layout, matrices.real, given, answer)
     error, rate_error = 0.0, 0.0
     for k in range(n):
         error = max(error, abs(answer[k]) / scale[k])
         v[k] = real * (answer[k] - q[k])
         given[k] = 0.0
-    add_inertia(pattern, matrices, v, given)
-    solve(pattern.layout, matrices.rigid, given, answer)
+    add_inertia(matrices, v, given)
+    solve(matrices.pattern.layout, matrices.rigid, given, answer)
     for k in range(n):
         rate_error = max(rate_error, abs(answer[k]) / scale[k])
     return error, rate_error

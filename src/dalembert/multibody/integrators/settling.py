@@ -7,7 +7,7 @@ for derivatives, too: they are iterated after the state, with the same factorisa
 
 from dalembert.kernels.kernel import inner, kernel
 from dalembert.kernels.words import Address, Complexes2, Reals2
-from dalembert.multibody.integrators.matrices import Matrices, Pattern, add_inertia
+from dalembert.multibody.integrators.matrices import Matrices, add_inertia
 from dalembert.multibody.integrators.problem import Problem
 from dalembert.multibody.kernels.assembly import constraint_forces, constraint_rates, residual
 from dalembert.multibody.kernels.elementary import STEP
@@ -22,7 +22,7 @@ _ROUGH = 1e-5  # the same of a correction, after which the error is smaller by t
 
 
 @inner
-def weigh(model, n, pattern, matrices, x, w, work, f, at):
+def weigh(model, n, matrices, x, w, work, f, at):
     """Fill ``f`` (N + 1,): M w + J^T m in its first n entries, for w = (w, m), and the constraints behind them.
 
     ``at`` (N + 1,) is room.
@@ -30,7 +30,7 @@ def weigh(model, n, pattern, matrices, x, w, work, f, at):
     for i in range(len(f)):
         f[i] = 0.0
         at[i] = x[i] if i < n else w[i]
-    add_inertia(pattern, matrices, w, f)
+    add_inertia(matrices, w, f)
     constraint_forces(model, at, at, at, work, f)  # which depend on coordinates and multipliers alone
 
 
@@ -115,7 +115,7 @@ def balanced(model, n, state, work, f, unheld, at, still):
 
 @kernel
 def settle(
-    problem: Problem, pattern: Pattern, matrices: Matrices, model: Address, state: MotionState, moved: Reals2,
+    problem: Problem, matrices: Matrices, model: Address, state: MotionState, moved: Reals2,
     work: Address, first: int,
 ) -> bool:  # fmt: skip
     """Accelerations and multipliers of a state; if ``first`` says so, coordinates and velocities are moved before.
@@ -131,14 +131,14 @@ def settle(
         before, done = 0.0, False
         for iteration in range(_MOST_ITERATIONS):
             if level < 2:
-                weigh(model, n, pattern, matrices, state.x, moved[level], work, f, second)
+                weigh(model, n, matrices, state.x, moved[level], work, f, second)
             else:
                 residual(model, n, state.x, state.v, state.a, work, 1.0, f)
             if level > 0:
                 constraint_rates(model, n, state.x, state.v, state.a, work, rate, second)
                 for i in range(n, last):
                     f[i] = rate[i] if level == 1 else second[i]
-            solve(pattern.layout, matrices.rigid, f, answer)
+            solve(matrices.pattern.layout, matrices.rigid, f, answer)
             _move(n, level, answer, state, moved)
             norm, size = _sizes(n, level, answer, state)
             done = _finished(iteration, norm, before, size)
@@ -153,7 +153,7 @@ def settle(
 
 
 @inner
-def accelerate_roughly(problem, pattern, matrices, model, state, work, room):
+def accelerate_roughly(problem, matrices, model, state, work, room):
     """Accelerations and multipliers of a state, as exactly as an estimate of errors needs; ``room`` (4, N + 1)."""
     n, last = problem.n, len(state.x) - 1
     f, answer = room[0], room[3]
@@ -162,7 +162,7 @@ def accelerate_roughly(problem, pattern, matrices, model, state, work, room):
         constraint_rates(model, n, state.x, state.v, state.a, work, room[1], room[2])
         for i in range(n, last):
             f[i] = room[2, i]
-        solve(pattern.layout, matrices.rigid, f, answer)
+        solve(matrices.pattern.layout, matrices.rigid, f, answer)
         _move(n, ACCELERATIONS, answer, state, room)
         norm, size = _sizes(n, ACCELERATIONS, answer, state)
         if norm <= _ROUGH * size or not norm < 1e100:
@@ -171,7 +171,7 @@ def accelerate_roughly(problem, pattern, matrices, model, state, work, room):
 
 @kernel
 def settle_along(
-    problem: Problem, pattern: Pattern, matrices: Matrices, perturbed: Address, state: MotionState, dstate: MotionState,
+    problem: Problem, matrices: Matrices, perturbed: Address, state: MotionState, dstate: MotionState,
     moved: Reals2, work: Address, complex_state: Complexes2, first: int,
 ) -> None:  # fmt: skip
     """Derivative of a settled state along a direction, from that of the state before; signals in ``work``.
@@ -199,7 +199,7 @@ def settle_along(
                     f[i] = rate[i] if level == 1 else second[i]
             for i in range(last + 1):
                 imaginary[i] = f[i].imag / STEP
-            solve(pattern.layout, matrices.rigid, imaginary, answer)
+            solve(matrices.pattern.layout, matrices.rigid, imaginary, answer)
             _move(n, level, answer, dstate, dmoved)
             norm, size = _sizes(n, level, answer, dstate)
             if _finished(iteration, norm, before, size) or not norm < 1e100:

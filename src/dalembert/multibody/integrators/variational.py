@@ -78,7 +78,7 @@ class Variational(Integrator):
             real, complex_model = lowered.real.need("rates"), lowered.complex_model
             calls, complex_calls = [real.call(), real.call()], [complex_model.call(), complex_model.call()]
             status, time, unknown = integrate(
-                batch.problem, pattern, edges, settings, real.address, complex_model.address, directions, start,
+                batch.problem, edges, settings, real.address, complex_model.address, directions, start,
                 batch.dstates, states, dout, log,
                 *workspace(batch.problem, pattern, calls, complex_calls, balance, denergies, batch.dstates),
             )  # fmt: skip

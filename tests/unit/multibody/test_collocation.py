@@ -12,7 +12,7 @@ from dalembert.multibody.integrators.collocation_rule import make_rule
 from dalembert.multibody.integrators.collocation_search import Search
 from dalembert.multibody.integrators.collocation_step import begin, finish, prepare, step_of
 from dalembert.multibody.integrators.collocation_swarm import squares
-from dalembert.multibody.integrators.problem import DONE
+from dalembert.multibody.integrators.problem import DONE, Models
 from dalembert.multibody.integrators.run import make_problem
 from dalembert.multibody.kernels.model import addresses
 from dalembert.multibody.kernels.motion import resting
@@ -139,28 +139,29 @@ def test_gauss_and_newton_leave_no_more_than_fireflies():
     problem, solver = cut([lowered], problem, 0.3), da.Collocation(step=0.01)
     schedule, rule = solver.schedule(problem.edges[0], problem.times), make_rule(2, 2)
     real, complex_one = lowered.real.need("rates"), lowered.complex_model.need("rates")
-    calls, model, complex_model = (real.call(), complex_one.call()), real.address, complex_one.address
+    calls = real.call(), complex_one.call()
     walk = prepare(problem, rule, *calls, 0, linear=True)
     room = descent(problem, walk)
     walk.old.x[:], walk.old.v[:] = lowered.x, lowered.v
-    directions, none = addresses([complex_one, complex_one]), addresses([])
+    models = Models(real.address, complex_one.address, addresses([]))
+    moving = models._replace(directions=addresses([complex_one, complex_one]))
     out, dout = resting(0, len(lowered.x)), resting(0, 0, len(lowered.x))
-    search = Search(da.Firefly(), 0, problem, rule, model, complex_model, directions, schedule, walk)
+    search = Search(da.Firefly(), 0, problem, rule, moving, schedule, walk)
     for number in range(len(schedule.begins)):
         step = step_of(schedule, number)
-        assert begin(problem, rule, model, complex_model, none, step, walk) == DONE
+        assert begin(problem, rule, models, step, walk) == DONE
         middle = walk.c.copy()
         kept = search.kept(step)
         search(number)
         fireflies = walk.c.copy()
         walk.c[:] = middle
-        status, _, _ = descend(problem, rule, 3, model, complex_model, directions, step, walk, room)
+        status, _, _ = descend(problem, rule, 3, moving, step, walk, room)
         assert status == DONE
         left = np.zeros(3)
-        squares(problem, rule, model, step, walk, kept, np.array([middle, fireflies, walk.c]), left)
+        squares(problem, rule, models.real, step, walk, kept, np.array([middle, fireflies, walk.c]), left)
         assert left[2] <= left[1] * (1 + 1e-9)  # to the rounding of large accelerations
         assert left[1] <= left[0]
-        assert finish(problem, rule, model, complex_model, none, step, walk, out, dout) == DONE
+        assert finish(problem, rule, models, step, walk, out, dout) == DONE
 
 
 def test_a_seed_fixes_every_bit_and_another_seed_changes_them():

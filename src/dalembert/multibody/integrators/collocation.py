@@ -19,7 +19,7 @@ from dalembert.multibody.integrators.collocation_swarm import squares
 from dalembert.multibody.integrators.consistent import accelerate_along
 from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.partitioning import settle_along
-from dalembert.multibody.integrators.problem import DONE, SINGULAR, Log, Problem
+from dalembert.multibody.integrators.problem import DONE, SINGULAR, Log, Models, Problem
 from dalembert.multibody.integrators.run import Run, explain
 from dalembert.multibody.kernels.linear import DENSE_KERNELS
 from dalembert.multibody.kernels.motion import Histories, MotionStates, resting
@@ -150,21 +150,17 @@ class Collocation(Integrator):
         walk = prepare(problem, rule, *calls, len(batch.perturbed), linear)
         for own, given in zip((*walk.old, *walk.dold), (*sample.start, *batch.dstates), strict=True):
             own[:] = given
-        along = batch.directions
-        directions = np.append(np.full(len(walk.c), complex_model.address), along)
+        models = Models(model.address, complex_model.address, batch.directions)
+        moving = models._replace(directions=np.append(np.full(len(walk.c), models.complex), models.directions))
         out, dout, log = resting(*batch.shape), batch.derivatives(), batch.log(len(schedule.begins))
         work = descent(problem, walk)
         if isinstance(self.minimiser, GaussNewton):
             status, time, worst = march(
-                problem, rule, self.minimiser.iterations, model.address, complex_model.address, directions, along,
-                schedule, walk, out, dout, log, work,
-            )  # fmt: skip
+                problem, rule, self.minimiser.iterations, moving, models, schedule, walk, out, dout, log, work
+            )
         else:
-            search = Search(
-                self.minimiser, self.seed, problem, rule, model.address, complex_model.address, directions, schedule,
-                walk,
-            )  # fmt: skip
-            status, time, worst = _search(search, along, out, dout, log, work)
+            search = Search(self.minimiser, self.seed, problem, rule, moving, schedule, walk)
+            status, time, worst = _search(search, models, out, dout, log, work)
         reason = None
         if status != DONE:
             reason = explain(lowered, int(status), float(time), int(worst), f"the step is {self.step:g} s")
@@ -172,21 +168,20 @@ class Collocation(Integrator):
 
 
 def _search(
-    search: Search, along: np.ndarray, out: MotionStates, dout: Histories, log: Log, room: Descent
+    search: Search, models: Models, out: MotionStates, dout: Histories, log: Log, room: Descent
 ) -> tuple[int, float, int]:
     """All steps by a minimiser of the package: status, time reached, the coordinate to blame."""
-    problem, rule, model, complex_model = search.problem, search.rule, search.model, search.complex_model
-    schedule, walk = search.schedule, search.walk
+    problem, rule, schedule, walk = search.problem, search.rule, search.schedule, search.walk
     for number in range(len(schedule.begins)):
         step, taken, worst = step_of(schedule, number), 0, 0
-        status = begin(problem, rule, model, complex_model, along, step, walk)
+        status = begin(problem, rule, models, step, walk)
         if status == DONE:
             status, taken, worst = search(number)
         if status == DONE and len(walk.dc):
-            regular = respond(problem, rule, model, complex_model, search.directions, step, walk, room)
+            regular = respond(problem, rule, search.models, step, walk, room)
             status = DONE if regular else SINGULAR
         if status == DONE:
-            status = finish(problem, rule, model, complex_model, along, step, walk, out, dout)
+            status = finish(problem, rule, models, step, walk, out, dout)
         if status != DONE:
             return status, step.begin, worst
         log.counts[:2] += 1, taken

@@ -5,11 +5,11 @@ from typing import NamedTuple
 import numpy as np
 
 from dalembert.kernels.kernel import inner, kernel
-from dalembert.kernels.words import Address, Integers, Reals, Reals2
+from dalembert.kernels.words import Address, Reals, Reals2
 from dalembert.multibody.integrators.collocation_gap import measure
 from dalembert.multibody.integrators.collocation_rule import Rule
 from dalembert.multibody.integrators.collocation_step import Schedule, Step, Walk, begin, finish, step_of
-from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR, Log, Problem
+from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR, Log, Models, Problem
 from dalembert.multibody.kernels.linear import Factors, factorise, resized, solve, storage
 from dalembert.multibody.kernels.motion import Histories, MotionStates
 
@@ -67,9 +67,8 @@ def _square(n, rule, gaps, slopes, unknowns, count, matrix, lead, right):
 
 @kernel
 def descend(
-    problem: Problem, rule: Rule, iterations: int, model: Address, complex_model: Address, directions: Integers,
-    step: Step, walk: Walk, room: Descent,
-) -> tuple[int, int, int]:  # fmt: skip
+    problem: Problem, rule: Rule, iterations: int, models: Models, step: Step, walk: Walk, room: Descent
+) -> tuple[int, int, int]:
     """Gauss and Newton's iterations: status, how many they were, and the coordinate that moved most."""
     n, own, unknowns = problem.n, walk.partition, len(walk.c)
     layout, normal, right, change = resized(problem.exact_layout, unknowns), room.normal, room.right, room.change
@@ -78,7 +77,7 @@ def descend(
     largest, worst = 0.0, 0
     for iteration in range(1, iterations + 1):
         for s in range(len(rule.nodes)):
-            if not measure(problem, rule, model, complex_model, directions, step, walk, False, s):
+            if not measure(problem, rule, models, step, walk, False, s):
                 return NEWTON_FAILED, iteration, worst
         _square(n, rule, walk.gaps, walk.slopes, unknowns, unknowns, normal.matrix, layout.lead, right)
         if not factorise(layout, normal):
@@ -97,10 +96,7 @@ def descend(
 
 
 @kernel
-def respond(
-    problem: Problem, rule: Rule, model: Address, complex_model: Address, directions: Integers, step: Step, walk: Walk,
-    room: Descent,
-) -> bool:  # fmt: skip
+def respond(problem: Problem, rule: Rule, models: Models, step: Step, walk: Walk, room: Descent) -> bool:
     """Derivatives of the minimum along the directions, by the derivative of its gradient.
 
     The first derivatives of what remains are exact. Its second ones, which stand beside what remains at the minimum,
@@ -110,7 +106,7 @@ def respond(
     n, own, unknowns, count = problem.n, walk.partition, len(walk.c), walk.slopes.shape[1]
     layout, normal, right, change = resized(problem.exact_layout, unknowns), room.normal, room.right, room.change
     for s in range(len(rule.nodes)):
-        if not measure(problem, rule, model, complex_model, directions, step, walk, True, s):
+        if not measure(problem, rule, models, step, walk, True, s):
             return False
     _square(n, rule, walk.gaps, walk.slopes, unknowns, count, normal.matrix, layout.lead, right)
     if len(rule.nodes) > len(rule.powers):
@@ -126,7 +122,7 @@ def respond(
             for side in range(2):
                 walk.c[k] = here + (2 * side - 1) * push
                 for s in range(len(rule.nodes)):
-                    if not measure(problem, rule, model, complex_model, directions, step, walk, True, s):
+                    if not measure(problem, rule, models, step, walk, True, s):
                         return False
                     for j in range(count):
                         product = 0.0
@@ -152,27 +148,28 @@ _respond_at = respond.at
 
 @kernel
 def march(
-    problem: Problem, rule: Rule, most: int, model: Address, complex_model: Address, directions: Integers,
-    perturbed: Integers, schedule: Schedule, walk: Walk, out: MotionStates, dout: Histories, log: Log, room: Descent,
+    problem: Problem, rule: Rule, most: int, moving: Models, models: Models, schedule: Schedule, walk: Walk,
+    out: MotionStates, dout: Histories, log: Log, room: Descent,
 ) -> tuple[int, float, int]:  # fmt: skip
-    """All steps by at most so many iterations: status, time reached, the coordinate that moved most."""
+    """All steps by at most so many iterations: status, time reached, the coordinate that moved most.
+
+    ``moving``: the same models with directions of the unknown accelerations before those of the parameters.
+    """
     for number in range(len(schedule.begins)):
         step, taken, worst = step_of(schedule, number), 0, 0
         for _ in range(2):  # from extrapolated accelerations; where that fails, from those at the step's beginning
-            status = begin(problem, rule, model, complex_model, perturbed, step, walk)
+            status = begin(problem, rule, models, step, walk)
             if status == DONE:
-                status, iterations, worst = descend(
-                    problem, rule, most, model, complex_model, directions, step, walk, room
-                )
+                status, iterations, worst = descend(problem, rule, most, moving, step, walk, room)
                 taken += iterations
             if status == DONE:
                 break
             walk.chosen[1] = 0.0
         if status == DONE and len(walk.dc) > 0:
-            if not _respond_at(room.respond, problem, rule, model, complex_model, directions, step, walk, room):
+            if not _respond_at(room.respond, problem, rule, moving, step, walk, room):
                 status = SINGULAR
         if status == DONE:
-            status = finish(problem, rule, model, complex_model, perturbed, step, walk, out, dout)
+            status = finish(problem, rule, models, step, walk, out, dout)
         if status != DONE:
             return status, step.begin, worst
         log.counts[0] += 1

@@ -6,11 +6,10 @@ multipliers are taken from the equations, so that their gap is zero.
 """
 
 from dalembert.kernels.kernel import inner, kernel
-from dalembert.kernels.words import Address, Integers
 from dalembert.multibody.integrators.collocation_rule import Rule
 from dalembert.multibody.integrators.collocation_step import Step, Walk, place
 from dalembert.multibody.integrators.partitioning import ACCELERATION, settle
-from dalembert.multibody.integrators.problem import Problem
+from dalembert.multibody.integrators.problem import Models, Problem
 from dalembert.multibody.kernels.assembly import constraint_rates, residual, set_signals, tangent
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.linear import factorise, solve
@@ -83,10 +82,7 @@ def _perturb(columns, h, s, shape, unknowns, dolds, dstates):
 
 
 @kernel
-def measure(
-    problem: Problem, rule: Rule, model: Address, complex_model: Address, directions: Integers, step: Step, walk: Walk,
-    perturbs: bool, s: int,
-) -> bool:  # fmt: skip
+def measure(problem: Problem, rule: Rule, models: Models, step: Step, walk: Walk, perturbs: bool, s: int) -> bool:
     """What remains at a Gauss point, and its derivatives by c and, where it ``perturbs``, along the directions.
 
     ``directions`` are the unperturbed model for each unknown, then the perturbed ones.
@@ -98,17 +94,16 @@ def measure(
     place(columns, h, rule.nodes[s], shape, walk.old, walk.c, state)
     _perturb(columns, h, rule.nodes[s], shape, len(walk.c), walk.dold, dstates)
     if not settle(
-        problem, model, complex_model, directions, t, within, ACCELERATION, state, dstates, c.work, c.complex_work,
-        c.complex_state, own,
-    ):  # fmt: skip
+        problem, models, t, within, ACCELERATION, state, dstates, c.work, c.complex_work, c.complex_state, own
+    ):
         return False
     for i in range(n):
         walk.gaps[s, i] = state.a[i]
         for d in range(len(dstates.x)):
             walk.slopes[s, d, i] = dstates.a[d, i]
-    if not _drive(problem, model, complex_model, t, within, state, walk.linear, own.matrix, c):
+    if not _drive(problem, models.real, models.complex, t, within, state, walk.linear, own.matrix, c):
         return False
-    _drive_along(problem, directions, t, within, state, dstates, c)
+    _drive_along(problem, models.directions, t, within, state, dstates, c)
     for i in range(n):
         walk.gaps[s, i] -= state.a[i]
         for d in range(len(dstates.x)):

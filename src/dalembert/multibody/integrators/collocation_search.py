@@ -10,7 +10,7 @@ from dalembert.multibody.integrators.collocation_gap import measure
 from dalembert.multibody.integrators.collocation_rule import Rule
 from dalembert.multibody.integrators.collocation_step import Schedule, Step, Walk, step_of
 from dalembert.multibody.integrators.collocation_swarm import Kept, keep, kept_room, squares
-from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, Problem
+from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, Models, Problem
 from dalembert.optimize import Firefly, Minimiser, Squares, Swarm
 
 _WIDE = 2.0  # half the box, against what remains at its middle: where that falls evenly the minimum lies at one half
@@ -23,16 +23,14 @@ class Search:
     """Minimises what remains in the steps of one run.
 
     The box lies around the prediction: twice what remains there of each independent coordinate's acceleration.
-    ``model`` and ``complex_model`` are addresses, ``directions`` an array of addresses.
+    The directions of the ``models`` are those of the unknown accelerations, then those of the parameters.
     """
 
     minimiser: Squares | Firefly | Swarm | Minimiser
     seed: int
     problem: Problem
     rule: Rule
-    model: int
-    complex_model: int
-    directions: np.ndarray
+    models: Models
     schedule: Schedule
     walk: Walk
 
@@ -57,7 +55,7 @@ class Search:
                 residual, jacobian = self._squares(step, middle, half)
                 found = self.minimiser.minimise(residual, jacobian, -corner, corner, 0.0 * corner)
             else:
-                fill = squares.given(self.problem, self.rule, self.model, step, walk, kept)
+                fill = squares.given(self.problem, self.rule, self.models.real, step, walk, kept)
 
                 def objective(places: np.ndarray) -> np.ndarray:
                     fitness = np.zeros(len(places))
@@ -83,9 +81,7 @@ class Search:
 
     def _measured(self, step: Step) -> Callable[[int], bool]:
         """A function that measures what remains at a Gauss point, and its derivatives by the unknown accelerations."""
-        return measure.given(
-            self.problem, self.rule, self.model, self.complex_model, self.directions, step, self.walk, False
-        )
+        return measure.given(self.problem, self.rule, self.models, step, self.walk, False)
 
     def _squares(self, step: Step, middle: np.ndarray, half: np.ndarray) -> tuple:
         """What remains and its derivatives, in the coordinates of the box."""

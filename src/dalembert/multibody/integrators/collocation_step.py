@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dalembert.kernels.kernel import inner, kernel
-from dalembert.kernels.words import Address, Integers, Reals, Reals2, Reals3
+from dalembert.kernels.words import Integers, Reals, Reals2, Reals3
 from dalembert.multibody.integrators.collocation_rule import Rule
 from dalembert.multibody.integrators.consistent import Consistency, accelerate, consistency
 from dalembert.multibody.integrators.partitioning import (
@@ -18,7 +18,7 @@ from dalembert.multibody.integrators.partitioning import (
     room,
     settle,
 )
-from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR, Problem
+from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR, Models, Problem
 from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.model import Call
 from dalembert.multibody.kernels.motion import Histories, MotionState, MotionStates, copy, resting, row
@@ -91,9 +91,8 @@ def prepare(problem: Problem, rule: Rule, call: Call, complex_call: Call, direct
     unknowns = count * (2 * problem.n - width + 1)
     both = unknowns + directions
     return Walk(
-        resting(width), resting(width), resting(directions, width), resting(directions, width),
-        np.zeros(unknowns), np.zeros((directions, unknowns)),
-        resting(points, width), resting(unknowns, width), resting(both, width),
+        resting(width), resting(width), resting(directions, width), resting(directions, width), np.zeros(unknowns),
+        np.zeros((directions, unknowns)), resting(points, width), resting(unknowns, width), resting(both, width),
         np.zeros((points, width)), np.zeros((points, both, width)), np.zeros((3, count)), np.zeros(2), linear,
         room(problem, both), consistency(problem, call.address, complex_call.address, directions),
     )  # fmt: skip
@@ -173,18 +172,16 @@ def _shape(powers, s, shape):
 
 
 @kernel
-def begin(
-    problem: Problem, rule: Rule, model: Address, complex_model: Address, perturbed: Integers, step: Step, walk: Walk
-) -> int:
+def begin(problem: Problem, rule: Rule, models: Models, step: Step, walk: Walk) -> int:
     """Begin a step: accelerations at a jump of the loads, independent coordinates, a prediction."""
     t, within = step.begin, step.within
     if step.opens:
         walk.chosen[1] = 0.0
-        if not accelerate(problem, model, complex_model, perturbed, t, within, walk.old, walk.dold, walk.consistency):
+        if not accelerate(problem, models, t, within, walk.old, walk.dold, walk.consistency):
             return SINGULAR
     old, own, work = walk.old, walk.partition, walk.consistency.complex_work
-    set_signals(complex_model, t, within, work)
-    linearise(problem, complex_model, old, work, own)
+    set_signals(models.complex, t, within, work)
+    linearise(problem, models.complex, old, work, own)
     if not _choose(problem, own, walk.chosen):
         return SINGULAR
     _predict(rule.ahead, own.columns[own.rank[0] : problem.n], old.a, walk.chosen, walk.shape[0], walk.c)
@@ -195,25 +192,21 @@ def begin(
 
 
 @inner
-def _reach(problem, rule, model, complex_model, perturbed, step, walk, share):
+def _reach(problem, rule, models, step, walk, share):
     """The state at a fraction of a step, consistent at all levels, with its derivatives, into ``walk.new``."""
-    own, c, h, shape, old, new, dnews = (
-        walk.partition, walk.consistency, step.end - step.begin, walk.shape, walk.old, walk.new, walk.dnew
-    )  # fmt: skip
+    own, c, shape, old, new, dnews = walk.partition, walk.consistency, walk.shape, walk.old, walk.new, walk.dnew
+    h = step.end - step.begin
     t, columns = step.end if share == 1.0 else step.begin + share * h, own.columns[own.rank[0] : problem.n]
     _shape(rule.powers, share, shape)
     _guess(problem.n, share * h, old, new)
     place(columns, h, share, shape, old, walk.c, new)
-    for d in range(len(perturbed)):
+    for d in range(len(models.directions)):
         dold, dnew = row(walk.dold, d), row(dnews, d)
         copy(dold, dnew)
         place(columns, h, share, shape, dold, walk.dc[d], dnew)
-    if not settle(
-        problem, model, complex_model, perturbed, t, step.within, VELOCITY, new, dnews, c.work, c.complex_work,
-        c.complex_state, own,
-    ):  # fmt: skip
+    if not settle(problem, models, t, step.within, VELOCITY, new, dnews, c.work, c.complex_work, c.complex_state, own):
         return NEWTON_FAILED
-    return DONE if accelerate(problem, model, complex_model, perturbed, t, step.within, new, dnews, c) else SINGULAR
+    return DONE if accelerate(problem, models, t, step.within, new, dnews, c) else SINGULAR
 
 
 @inner
@@ -226,22 +219,21 @@ def _record(state, dstates, out, dout, due):
 
 @kernel
 def finish(
-    problem: Problem, rule: Rule, model: Address, complex_model: Address, perturbed: Integers, step: Step, walk: Walk,
-    out: MotionStates, dout: Histories,
-) -> int:  # fmt: skip
+    problem: Problem, rule: Rule, models: Models, step: Step, walk: Walk, out: MotionStates, dout: Histories
+) -> int:
     """End a step with the accelerations that were found: the states at its output times, and the next state."""
     ended = False
     for due in range(step.first, step.last + 1):  # once more for the end
         share = (problem.times[due] - step.begin) / (step.end - step.begin) if due < step.last else 1.0
         if share > 0.0 and not ended:
             ended = share > 1.0 - 1e-9
-            status = _reach(problem, rule, model, complex_model, perturbed, step, walk, 1.0 if ended else share)
+            status = _reach(problem, rule, models, step, walk, 1.0 if ended else share)
             if status != DONE:
                 return status
         state, dstates = (walk.new, walk.dnew) if share > 0.0 else (walk.old, walk.dold)
         if due < step.last:
             _record(state, dstates, out, dout, due)
     copy(walk.new, walk.old)
-    for d in range(len(perturbed)):
+    for d in range(len(models.directions)):
         copy(row(walk.dnew, d), row(walk.dold, d))
     return DONE

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from dalembert.kernels.kernel import Compiled, inner, kernel
-from dalembert.kernels.words import Address, Integers
+from dalembert.kernels.words import Address
 from dalembert.multibody.integrators.index1 import (
     PARTITIONED,
     PROJECTED,
@@ -23,7 +23,7 @@ from dalembert.multibody.integrators.partitioning import (
     settle,
     settle_along,
 )
-from dalembert.multibody.integrators.problem import DIVERGED, DONE, NEWTON_FAILED, SINGULAR, Problem
+from dalembert.multibody.integrators.problem import DIVERGED, DONE, NEWTON_FAILED, SINGULAR, Models, Problem
 from dalembert.multibody.integrators.projection import project, project_along
 from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.motion import MotionState, MotionStates
@@ -86,8 +86,8 @@ def _finite(n, state):
 
 @kernel
 def complete(
-    problem: Problem, terms: Terms, model: Address, complex_model: Address, directions: Integers, state: MotionState,
-    dstates: MotionStates, c: Completion, t: float, within: float, projected: bool,
+    problem: Problem, terms: Terms, models: Models, state: MotionState, dstates: MotionStates, c: Completion, t: float,
+    within: float, projected: bool,
 ) -> int:  # fmt: skip
     """Bring a state to the constraints as its stabilisation has it, then find what it demands: status.
 
@@ -98,19 +98,14 @@ def complete(
         return DIVERGED
     if terms.way == PARTITIONED:
         if not _settle_at(
-            c.settle, problem, model, complex_model, directions, t, within, VELOCITY, state, dstates, tools.work,
-            tools.complex_work, tools.complex_state, tools.partition,
+            c.settle, problem, models, t, within, VELOCITY, state, dstates, tools.work, tools.complex_work,
+            tools.complex_state, tools.partition,
         ):  # fmt: skip
             return NEWTON_FAILED
     if projected:
-        if not _project_at(
-            c.project, problem, terms, model, complex_model, directions, t, within, state, dstates, tools,
-            c.project_along,
-        ):  # fmt: skip
+        if not _project_at(c.project, problem, terms, models, t, within, state, dstates, tools, c.project_along):
             return NEWTON_FAILED
-    return (
-        DONE if demand(problem, terms, model, complex_model, directions, t, within, state, dstates, tools) else SINGULAR
-    )
+    return DONE if demand(problem, terms, models, t, within, state, dstates, tools) else SINGULAR
 
 
 _settle_at, _project_at = settle.at, project.at

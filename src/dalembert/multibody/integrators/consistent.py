@@ -10,7 +10,7 @@ import numpy as np
 
 from dalembert.kernels.kernel import inlined, inner, kernel
 from dalembert.kernels.words import Address, Complexes2, Integers, Reals, Reals2
-from dalembert.multibody.integrators.problem import Problem
+from dalembert.multibody.integrators.problem import Models, Problem
 from dalembert.multibody.kernels.assembly import constraint_rates, residual, set_signals, tangent
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.linear import Factors, factorise, solve, storage
@@ -57,9 +57,8 @@ def _initial_matrix(problem, complex_model, state, c):
 
 @kernel
 def accelerate(
-    problem: Problem, model: Address, complex_model: Address, directions: Integers, t: float, within: float,
-    state: MotionState, dstates: MotionStates, c: Consistency,
-) -> bool:  # fmt: skip
+    problem: Problem, models: Models, t: float, within: float, state: MotionState, dstates: MotionStates, c: Consistency
+) -> bool:
     """Accelerations and multipliers that satisfy the equations of motion, and their derivatives.
 
     Where the problem says so, the velocities are first moved onto the constraints, by the smallest kinetic energy:
@@ -67,31 +66,31 @@ def accelerate(
     """
     n, last = problem.n, len(state.x) - 1
     delta, answer, rate, second, w = c.vectors[0], c.vectors[1], c.vectors[2], c.vectors[3], c.vectors[4]
-    set_signals(model, t, within, c.work)
-    set_signals(complex_model, t, within, c.complex_work)
+    set_signals(models.real, t, within, c.work)
+    set_signals(models.complex, t, within, c.complex_work)
     for iteration in range(6):  # linear but for friction that depends on the multipliers
         # The last correction is rounding: the derivatives below are taken with the matrix of the state that it leaves.
-        if iteration < 5 and not _initial_matrix(problem, complex_model, state, c):
+        if iteration < 5 and not _initial_matrix(problem, models.complex, state, c):
             return False
         if iteration == 0 and problem.projected:
             for i in range(last + 1):
                 rate[i] = 0.0
-            constraint_rates(model, n, state.x, state.v, state.a, c.work, rate, second)
+            constraint_rates(models.real, n, state.x, state.v, state.a, c.work, rate, second)
             for i in range(n):
                 rate[i] = 0.0
             solve(problem.exact_layout, c.exact, rate, w)
             for i in range(n):
                 state.v[i] -= w[i]
-            if len(directions) > 0:
-                _along_at(c.along, problem, directions, t, within, state, dstates, c, True)
-        residual(model, n, state.x, state.v, state.a, c.work, 1.0, delta)
-        constraint_rates(model, n, state.x, state.v, state.a, c.work, rate, second)
+            if len(models.directions) > 0:
+                _along_at(c.along, problem, models.directions, t, within, state, dstates, c, True)
+        residual(models.real, n, state.x, state.v, state.a, c.work, 1.0, delta)
+        constraint_rates(models.real, n, state.x, state.v, state.a, c.work, rate, second)
         for i in range(n, last):
             delta[i] = second[i]
         solve(problem.exact_layout, c.exact, delta, answer)
         subtract(n, answer, state)
-    if len(directions) > 0:
-        _along_at(c.along, problem, directions, t, within, state, dstates, c, False)
+    if len(models.directions) > 0:
+        _along_at(c.along, problem, models.directions, t, within, state, dstates, c, False)
     return True
 
 

@@ -165,8 +165,8 @@ def _energy(model, h, at, middle, end, totals):
 
 @kernel
 def converge(
-    problem: Problem, matrices: Matrices, model: Address, h: float, goal: float, step: Step,
-    balance: Balance, tolerance: float, least: float,
+    problem: Problem, matrices: Matrices, model: Address, h: float, goal: float, step: Step, balance: Balance,
+    tolerance: float, least: float,
 ) -> tuple[bool, int, float, int, float, float]:  # fmt: skip
     """A step whose energy is ``goal`` and the work in it.
 
@@ -210,8 +210,8 @@ def _direct_along(perturbed, n, shift, at, middle, buffers, e):
 
 @kernel
 def converge_along(
-    problem: Problem, matrices: Matrices, perturbed: Address, d: int, strength: float, h: float,
-    dgoal: float, step: Step, along: Along, balance: Balance,
+    problem: Problem, matrices: Matrices, perturbed: Address, d: int, strength: float, h: float, dgoal: float,
+    step: Step, along: Along, balance: Balance,
 ) -> float:  # fmt: skip
     """Derivative of the step along direction ``d``; the derivative of the work in it."""
     n, s, ds, at, push = problem.n, step.rows, along.rows, along.complex_state, along.push

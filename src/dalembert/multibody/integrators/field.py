@@ -8,15 +8,15 @@ import numpy as np
 
 from dalembert.multibody.integrators.completion import complete, completion, partition
 from dalembert.multibody.integrators.index1 import PARTITIONED, PROJECTED, Terms
-from dalembert.multibody.integrators.problem import DONE, Problem
+from dalembert.multibody.integrators.problem import DONE, Models, Problem
 from dalembert.multibody.kernels.motion import MotionState, resting
 from dalembert.multibody.lowered import Lowered
 
 
 class _Along(NamedTuple):
-    """Directions, derivatives of the state along them, and `complete` of time, stretch, and whether to project."""
+    """Models, derivatives of the state along them, and `complete` of time, stretch, and whether to project."""
 
-    directions: np.ndarray
+    models: Models
     dstates: MotionState
     complete: Callable[[float, float, bool], int]
 
@@ -123,9 +123,9 @@ class Field:
         return self._along(directions, resting(2 * self.n, self.width))
 
     def _along(self, directions: np.ndarray, dstates: MotionState) -> _Along:
-        models = self.lowered.real.address, self.lowered.complex_model.address
-        own = complete.given(self.problem, self.terms, *models, directions, self._state, dstates, self._completion)
-        return _Along(directions, dstates, own)
+        models = Models(self.lowered.real.address, self.lowered.complex_model.address, directions)
+        own = complete.given(self.problem, self.terms, models, self._state, dstates, self._completion)
+        return _Along(models, dstates, own)
 
     def _complete(self, along: _Along, t: float, *, projected: bool) -> int:
         self.evaluations += 1

@@ -16,7 +16,7 @@ from dalembert.multibody.integrators.consistent import Consistency, accelerate, 
 from dalembert.multibody.integrators.derivatives import Differentiation, differentiate, differentiation
 from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.newton import Newton, converge, keep_slope, newton
-from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR, TOO_MANY_STEPS, Log, Problem
+from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR, TOO_MANY_STEPS, Log, Models, Problem
 from dalembert.multibody.integrators.run import Run, explain
 from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.model import Call, addresses
@@ -214,19 +214,19 @@ def integrate(
             log.counts[i] = 0
         edges = problem.edges[sample, : problem.stretches[sample] + 1]
         ends[sample, 0], ends[sample, 1], ends[sample, 2] = _integrate(
-            problem, edges, opens[sample], settings, models[sample], complex_models[sample], directions,
+            problem, edges, opens[sample], settings, Models(models[sample], complex_models[sample], directions),
             row(states, sample), dstates, rows(out, sample), dout, log, room,
         )  # fmt: skip
 
 
 @inner
-def _integrate(problem, edges, opens, settings, model, complex_model, directions, state, dstates, out, dout, log, room):
+def _integrate(problem, edges, opens, settings, models, state, dstates, out, dout, log, room):
     """Run one sample: status, time reached, and the unknown that moved most."""
     n, width = problem.n, len(state.x)
     old, new, dolds, own = room.old, room.new, room.dolds, room.newton
     copy(state, new)
     own.memory[0], own.memory[1] = 0.0, 0.0
-    differentiated = len(directions) > 0
+    differentiated = len(models.directions) > 0
     due = 0
     length = settings.step
     for stretch in range(len(edges) - 1):
@@ -236,7 +236,7 @@ def _integrate(problem, edges, opens, settings, model, complex_model, directions
         if fresh:
             clear(own.slope)
         if fresh and (stretch > 0 or settings.consistent):
-            if not accelerate(problem, model, complex_model, directions, begin, within, new, dstates, room.consistency):
+            if not accelerate(problem, models, begin, within, new, dstates, room.consistency):
                 return SINGULAR, begin, 0
         if stretch == 0:
             while due < len(problem.times) and problem.times[due] <= begin:
@@ -260,9 +260,9 @@ def _integrate(problem, edges, opens, settings, model, complex_model, directions
             copy(new, old)
             c = coefficients(length, settings.spectral_radius)
             side = within if ends or target < end else end
-            set_signals(model, target, side, own.work)
+            set_signals(models.real, target, side, own.work)
             status, detail = converge(
-                problem, model, complex_model, c, target, side, settings.newton_tolerance, old, new, own, log
+                problem, models.real, models.complex, c, target, side, settings.newton_tolerance, old, new, own, log
             )
             error = 0.0
             if status == DONE and settings.adaptive:  # estimated local error: h^2 |beta - 1/6| |w_{n+1} - w_n|
@@ -288,14 +288,12 @@ def _integrate(problem, edges, opens, settings, model, complex_model, directions
             log.counts[0] += 1
             keep_slope(n, c, old, new, own.slope)
             if differentiated and not _differentiate_at(
-                room.differentiate, problem, complex_model, directions, c, target, side, new, dolds, dstates,
+                room.differentiate, problem, models.complex, models.directions, c, target, side, new, dolds, dstates,
                 room.differentiation,
             ):  # fmt: skip
                 return SINGULAR, target, 0
             if problem.projected and width - 1 > n:
-                if not accelerate(
-                    problem, model, complex_model, directions, target, side, new, dstates, room.consistency
-                ):
+                if not accelerate(problem, models, target, side, new, dstates, room.consistency):
                     return SINGULAR, target, 0
             while due < len(problem.times) and problem.times[due] <= target + 1e-9 * length:
                 share = min(1.0, (problem.times[due] - t) / length)

@@ -17,7 +17,7 @@ from dalembert.multibody.integrators.least_squares import (
     turn_range,
 )
 from dalembert.multibody.integrators.partitioning import Partition, room
-from dalembert.multibody.integrators.problem import Problem
+from dalembert.multibody.integrators.problem import Models, Problem
 from dalembert.multibody.integrators.settling import balanced
 from dalembert.multibody.kernels.assembly import constraint_rates, residual, set_signals, tangent
 from dalembert.multibody.kernels.elementary import STEP
@@ -127,8 +127,8 @@ def _rests(problem, model, state, tools):
 
 @kernel
 def demand(
-    problem: Problem, terms: Terms, model: Address, complex_model: Address, directions: Integers, t: float,
-    within: float, state: MotionState, dstates: MotionStates, tools: Tools,
+    problem: Problem, terms: Terms, models: Models, t: float, within: float, state: MotionState, dstates: MotionStates,
+    tools: Tools,
 ) -> bool:  # fmt: skip
     """Fill accelerations and multipliers of a state by the equations of index 1, and their derivatives; whether it can.
 
@@ -136,15 +136,15 @@ def demand(
     linear in both but for friction that depends on the multipliers; the state's own ones are the first guess.
     """
     n, last, nonlinear = problem.n, len(state.x) - 1, terms.nonlinear
-    set_signals(model, t, within, tools.work)
-    set_signals(complex_model, t, within, tools.complex_work)
+    set_signals(models.real, t, within, tools.work)
+    set_signals(models.complex, t, within, tools.complex_work)
     moved = 1.0
     for iteration in range(_MOST_ITERATIONS if nonlinear else 2):  # linear: once more for rounding
-        if (iteration == 0 or nonlinear) and not factorise_motion(problem, terms, complex_model, state, tools):
+        if (iteration == 0 or nonlinear) and not factorise_motion(problem, terms, models.complex, state, tools):
             return False
         if iteration == 0 and terms.redundant:
             keep_in_range(problem, tools.surplus, state)
-        _fill_gap(model, n, terms, state.x, state.v, state.a, tools.work, tools.gap, tools.answer, tools.second)
+        _fill_gap(models.real, n, terms, state.x, state.v, state.a, tools.work, tools.gap, tools.answer, tools.second)
         solve_linear(problem.exact_layout, tools.exact, tools.gap, tools.answer)
         subtract(n, tools.answer, state)
         moved = max(
@@ -155,10 +155,10 @@ def demand(
             break
     if not _size(state.a, 0, n) + _size(state.x, n, last) < 1e100:
         return False
-    if nonlinear and not moved <= 1e-6 and not _rests(problem, model, state, tools):
+    if nonlinear and not moved <= 1e-6 and not _rests(problem, models.real, state, tools):
         return False
     if len(dstates.x) > 0:
-        _demand_along_at(tools.along, problem, terms, directions, t, within, state, dstates, tools)
+        _demand_along_at(tools.along, problem, terms, models.directions, t, within, state, dstates, tools)
     return True
 
 

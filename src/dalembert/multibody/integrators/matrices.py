@@ -103,8 +103,8 @@ def room(pattern: Pattern, pairs: int) -> Matrices:
 def weigh_masses(matrices: Matrices, complex_model: Address, n: int, state: MotionState, complex_work: Address) -> None:
     """Evaluate the masses, which do not change in a motion; the signals in ``complex_work`` hold the time."""
     tangent(
-        complex_model, matrices.pattern.slots, n, state.x, state.v, state.a, (0.0, 0.0, 1.0), (1.0, 0.0),
-        complex_work, matrices.mass,
+        complex_model, matrices.pattern.slots, n, state.x, state.v, state.a, (0.0, 0.0, 1.0), (1.0, 0.0), complex_work,
+        matrices.mass,
     )  # fmt: skip
     count = 0
     for e in range(len(matrices.mass)):
@@ -116,8 +116,8 @@ def weigh_masses(matrices: Matrices, complex_model: Address, n: int, state: Moti
 
 @kernel
 def renew(
-    problem: Problem, matrices: Matrices, complex_model: Address, damped: bool, t: float,
-    within: float, state: MotionState, complex_work: Address,
+    problem: Problem, matrices: Matrices, complex_model: Address, damped: bool, t: float, within: float,
+    state: MotionState, complex_work: Address,
 ) -> bool:  # fmt: skip
     """Evaluate stiffness (and damping, if ``damped``), and factorise [M, J^T; J, 0]; whether it is regular."""
     n = problem.n

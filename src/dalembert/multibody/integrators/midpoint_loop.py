@@ -10,12 +10,12 @@ from dalembert.kernels.words import Address, Complexes2, Integers, Reals, Reals2
 from dalembert.multibody.integrators import energy_balance as balancing
 from dalembert.multibody.integrators import midpoint_step as midpoint
 from dalembert.multibody.integrators.consistent import Consistency, accelerate, consistency
-from dalembert.multibody.integrators.ends import Ends, append, ends
+from dalembert.multibody.integrators.ends import append
 from dalembert.multibody.integrators.energy_balance import Balance
 from dalembert.multibody.integrators.matrices import Matrices, Pattern, factorise_real, renew, room, weigh_masses
 from dalembert.multibody.integrators.midpoint_step import Along, Step
-from dalembert.multibody.integrators.outputs import record, record_along
-from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR, Log, Problem
+from dalembert.multibody.integrators.outputs import Outputs, outputs, record
+from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR, Log, Models, Problem
 from dalembert.multibody.integrators.settling import VELOCITIES, settle, settle_along
 from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.model import Call
@@ -39,7 +39,7 @@ class Derivatives(NamedTuple):
     """Work of the derivatives along directions.
 
     ``slopes`` (directions, 2, N + 1); ``energies`` (directions,) are derivatives of the energy, at the start and then
-    of the balanced one. ``differentiate`` and ``record`` are addresses of kernels, 0 if there are no directions.
+    of the balanced one. ``differentiate`` is the address of the kernel, 0 if there are no directions.
     """
 
     along: Along
@@ -48,28 +48,20 @@ class Derivatives(NamedTuple):
     old: MotionState
     complex_state: Complexes2
     differentiate: Address
-    record: Address
-
-
-class Spare(NamedTuple):
-    """Work of the loop: states, what a step missed (2, N + 1), moves onto the constraints, weights of the ends."""
-
-    between: MotionState
-    dbetween: MotionState
-    slope: Reals2
-    moved: Reals2
-    weights: Reals3
 
 
 class Workspace(NamedTuple):
-    """Work of one sample. The loop takes each part by itself: a record of them all triples its compilation."""
+    """Work of one sample; ``slope`` (2, N + 1) is what a step missed.
+
+    The loop takes each part by itself: a record of them all triples its compilation.
+    """
 
     matrices: Matrices
     consistency: Consistency
     step: Step
     balance: Balance
-    spare: Spare
-    ends: Ends
+    slope: Reals2
+    outputs: Outputs
     derivatives: Derivatives
 
 
@@ -80,15 +72,14 @@ def workspace(
     """Room for one sample; two calls in real numbers, and two in complex ones, for the middle and the end of a step."""
     directions, width = dstates.x.shape
     works, complex_works = [call.address for call in calls], [call.address for call in complex_calls]
-    kernels = (differentiate.address, record_along.address) if directions else (0, 0)
+    out = outputs(_ENDS, dstates, works[0], complex_works[0])
     derivatives = Derivatives(
         midpoint.along_room(width, *complex_works), np.zeros((directions, 2, width)), denergies, resting(width),
-        np.zeros((10, width), complex), *kernels,
+        out.complex_state, differentiate.address if directions else 0,
     )  # fmt: skip
-    spare = Spare(resting(width), resting(width), np.zeros((2, width)), np.zeros((6, width)), np.zeros((4, _ENDS, 3)))
     return Workspace(
         room(pattern, 0), consistency(problem, works[0], complex_works[0], directions),
-        midpoint.step_room(width, *works), balance, spare, ends(_ENDS, dstates), derivatives,
+        midpoint.step_room(width, *works), balance, np.zeros((2, width)), out, derivatives,
     )  # fmt: skip
 
 
@@ -103,14 +94,11 @@ def _read(n, s, new):
 
 @kernel
 def differentiate(
-    problem: Problem, matrices: Matrices, directions: Integers, step: Step, balance: Balance,
-    strength: float, h: float, t: float, target: float, within: float, new: MotionState, dnews: MotionStates,
-    moved: Reals2, room: Derivatives,
+    problem: Problem, matrices: Matrices, directions: Integers, step: Step, balance: Balance, strength: float, h: float,
+    t: float, target: float, within: float, new: MotionState, dnews: MotionStates, moved: Reals2, room: Derivatives,
 ) -> None:  # fmt: skip
     """Derivatives of a step along all directions."""
-    n, along, dold, slopes, energies, complex_state = (
-        problem.n, room.along, room.old, room.slopes, room.energies, room.complex_state,
-    )  # fmt: skip
+    n, along, dold, slopes, energies = problem.n, room.along, room.old, room.slopes, room.energies
     middle, end, ds = along.middle, along.end, along.rows
     for d in range(len(directions)):
         perturbed, dnew = directions[d], row(dnews, d)
@@ -122,12 +110,11 @@ def differentiate(
             midpoint.converge_along(problem, matrices, perturbed, h, step, along)
         else:
             energies[d] += _balance_along_at(
-                balance.converge_along, problem, matrices, perturbed, d, strength, h, energies[d], step,
-                along, balance,
-            )  # fmt: skip
+                balance.converge_along, problem, matrices, perturbed, d, strength, h, energies[d], step, along, balance
+            )
         midpoint.keep_missed(n, dold, ds, slopes[d])
         _read(n, ds, dnew)
-        settle_along(problem, matrices, perturbed, new, dnew, moved, end, complex_state, VELOCITIES)
+        settle_along(problem, matrices, perturbed, new, dnew, moved, end, room.complex_state, VELOCITIES)
 
 
 _balance_at, _balance_along_at = balancing.converge.at, balancing.converge_along.at
@@ -144,37 +131,34 @@ def _clear(array):
 
 @kernel
 def integrate(
-    problem: Problem, edges: Reals, settings: Settings, model: Address, complex_model: Address,
-    directions: Integers, new: MotionState, dnews: MotionStates, out: MotionStates, dout: Histories, log: Log,
-    matrices: Matrices, consistent: Consistency, step: Step, balance: Balance, spare: Spare, last: Ends,
-    derivatives: Derivatives,
+    problem: Problem, edges: Reals, settings: Settings, models: Models, new: MotionState, dnews: MotionStates,
+    out: MotionStates, dout: Histories, log: Log, matrices: Matrices, consistent: Consistency, step: Step,
+    balance: Balance, slope: Reals2, outputs: Outputs, derivatives: Derivatives,
 ) -> tuple[int, float, int]:  # fmt: skip
     """Run one sample between ``edges`` (s): status, time reached, and the unknown that moved most.
 
-    ``directions`` are complex models, one a direction of differentiation. ``new`` (N + 1), the state at the start,
-    and its derivatives ``dnews`` (directions, N + 1) are overwritten; ``out`` (times, N + 1) and ``dout`` (directions,
-    times, N + 1) are filled at ``problem.times``.
+    ``new`` (N + 1), the state at the start, and its derivatives ``dnews`` (directions, N + 1) are overwritten; ``out``
+    (times, N + 1) and ``dout`` (directions, times, N + 1) are filled at ``problem.times``.
     """
     n, times, scale, counts, s = problem.n, problem.times, problem.scale, log.counts, step.rows
-    between, slope, moved, slopes, complex_work = (
-        spare.between, spare.slope, spare.moved, derivatives.slopes, derivatives.along.middle,
-    )  # fmt: skip
+    between, moved, last = outputs.between, outputs.moved, outputs.last
+    slopes, complex_work = derivatives.slopes, derivatives.along.middle
     energy, due = settings.energy, 0
     strength, gain = 0.0, 0.0
     speed, h = 1.0 / (edges[-1] - edges[0]), 0.0
     for stretch in range(len(edges) - 1):
         t, end = edges[stretch], edges[stretch + 1]
         within = 0.5 * (t + end)
-        if not accelerate(problem, model, complex_model, directions, t, within, new, dnews, consistent):
+        if not accelerate(problem, models, t, within, new, dnews, consistent):
             return SINGULAR, t, 0
         if stretch == 0:
-            set_signals(complex_model, t, within, complex_work)  # those of a direction would count as masses
-            weigh_masses(matrices, complex_model, n, new, complex_work)
+            set_signals(models.complex, t, within, complex_work)  # those of a direction would count as masses
+            weigh_masses(matrices, models.complex, n, new, complex_work)
         steps = max(1, int(np.ceil((end - t) / settings.step - 1e-6)))
         begin, nominal, number, level = t, (end - t) / steps, 0, 0
         stale, fresh, made = True, True, 0.0
         _clear(slope)
-        for d in range(len(directions)):
+        for d in range(len(models.directions)):
             _clear(slopes[d])
         last.known[0] = 0
         arrived = True
@@ -182,18 +166,13 @@ def integrate(
             if arrived:  # in one place: what is inlined twice is compiled twice
                 append(t, new, dnews, True, last)
             while due < len(times) and times[due] <= t + 1e-9 * h:
-                written = record(
-                    problem, matrices, False, model, complex_model, directions, last, within, out, dout, due,
-                    between, spare.dbetween, spare.weights, moved, step.middle, complex_work, derivatives.complex_state,
-                    derivatives.record,
-                )  # fmt: skip
-                if not written:
+                if not record(problem, matrices, False, models, outputs, within, out, dout, due):
                     return NEWTON_FAILED, times[due], 0
                 due += 1
             if number == steps:
                 break
             if stale:
-                if not renew(problem, matrices, complex_model, settings.damped, t, within, new, complex_work):
+                if not renew(problem, matrices, models.complex, settings.damped, t, within, new, complex_work):
                     return SINGULAR, t, 0
                 stale, fresh, made = False, True, 0.0
             goal = end if number == steps - 1 else begin + nominal * (number + 1)
@@ -204,22 +183,22 @@ def integrate(
                 made = h
                 if not factorise_real(n, matrices, 2.0 / h):
                     return SINGULAR, t, 0
-            set_signals(model, t + 0.5 * h, within, step.middle)
-            set_signals(model, target, within, step.end)
+            set_signals(models.real, t + 0.5 * h, within, step.middle)
+            set_signals(models.real, target, within, step.end)
             midpoint.begin(n, h, new, slope, s)
             if balance.converge == 0:
                 converged, iterations, rate, worst = midpoint.converge(
-                    problem, matrices, model, h, step, settings.newton_tolerance, h * speed
+                    problem, matrices, models.real, h, step, settings.newton_tolerance, h * speed
                 )
             else:
                 converged, iterations, rate, worst, strength, gain = _balance_at(
-                    balance.converge, problem, matrices, model, h, energy, step, balance,
+                    balance.converge, problem, matrices, models.real, h, energy, step, balance,
                     settings.newton_tolerance, h * speed,
                 )  # fmt: skip
             counts[1] += iterations
             if converged:
                 _read(n, s, between)
-                converged = settle(problem, matrices, model, between, moved, step.end, VELOCITIES)
+                converged = settle(problem, matrices, models.real, between, moved, step.end, VELOCITIES)
             if not converged:
                 counts[3] += 1
                 h, arrived = 0.0, False
@@ -236,9 +215,9 @@ def integrate(
             energy += gain
             for k in range(n):
                 speed = max(speed, abs(s[midpoint.VM, k]) / scale[k])
-            if len(directions) > 0:
+            if len(models.directions) > 0:
                 _differentiate_at(
-                    derivatives.differentiate, problem, matrices, directions, step, balance, strength, h, t,
+                    derivatives.differentiate, problem, matrices, models.directions, step, balance, strength, h, t,
                     target, within, new, dnews, moved, derivatives,
                 )  # fmt: skip
             if counts[0] < len(log.iterations):

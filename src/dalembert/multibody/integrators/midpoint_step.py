@@ -169,9 +169,8 @@ def _sizes(n, h, scale, f, gap, s):
 
 @kernel
 def converge(
-    problem: Problem, matrices: Matrices, model: Address, h: float, step: Step, tolerance: float,
-    least: float,
-) -> tuple[bool, int, float, int]:  # fmt: skip
+    problem: Problem, matrices: Matrices, model: Address, h: float, step: Step, tolerance: float, least: float
+) -> tuple[bool, int, float, int]:
     """Newton's iteration on a step that a force resists.
 
     Answers whether it converged, iterations, last contraction, unknown that moved most. Corrections end at

@@ -10,7 +10,7 @@ import numpy as np
 
 from dalembert.kernels.kernel import inner, kernel
 from dalembert.kernels.words import Address, Complexes2, Integers, Reals, Reals2
-from dalembert.multibody.integrators.problem import Problem
+from dalembert.multibody.integrators.problem import Models, Problem
 from dalembert.multibody.kernels.assembly import constraint_rates, residual, set_signals, tangent
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.linear import DENSE, Factors, factorise, resized, solve, storage
@@ -188,9 +188,8 @@ def _close(problem, model, complex_model, state, work, complex_work, partition):
 
 @kernel
 def settle(
-    problem: Problem, model: Address, complex_model: Address, directions: Integers, t: float, within: float,
-    levels: int, state: MotionState, dstates: MotionStates, work: Address, complex_work: Address,
-    complex_state: Complexes2, partition: Partition,
+    problem: Problem, models: Models, t: float, within: float, levels: int, state: MotionState, dstates: MotionStates,
+    work: Address, complex_work: Address, complex_state: Complexes2, partition: Partition,
 ) -> bool:  # fmt: skip
     """Make the dependent entries of a state satisfy the constraints, and those of its derivatives along directions.
 
@@ -198,17 +197,17 @@ def settle(
     before it. ``complex_state``: complex work (5, N + 1). Whether the constraints could be satisfied.
     """
     n = problem.n
-    set_signals(model, t, within, work)
-    set_signals(complex_model, t, within, complex_work)
-    if not _close(problem, model, complex_model, state, work, complex_work, partition):
+    set_signals(models.real, t, within, work)
+    set_signals(models.complex, t, within, complex_work)
+    if not _close(problem, models.real, models.complex, state, work, complex_work, partition):
         return False
     for level in range(POSITION, levels + 1):
         for _ in range(1 if level == POSITION else 2):  # linear from the velocities on; once more for rounding
-            fill_gap(model, n, level, state.x, state.v, state.a, work, partition.second, partition.gap)
+            fill_gap(models.real, n, level, state.x, state.v, state.a, work, partition.second, partition.gap)
             _shift(problem, partition, level, state)
     if len(dstates.x) > 0:
         _settle_along_at(
-            partition.along, problem, directions, t, within, levels, state, dstates, complex_work, complex_state,
+            partition.along, problem, models.directions, t, within, levels, state, dstates, complex_work, complex_state,
             partition,
         )  # fmt: skip
     return True

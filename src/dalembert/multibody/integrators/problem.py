@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from dalembert.kernels.words import Integers, Reals, Reals2
+from dalembert.kernels.words import Address, Integers, Reals, Reals2
 from dalembert.multibody.kernels.linear import Layout
 
 DONE, NEWTON_FAILED, SINGULAR, TOO_MANY_STEPS, DIVERGED, INEXACT = range(6)
@@ -39,6 +39,14 @@ class Problem(NamedTuple):
     edges: Reals2
     stretches: Integers
     projected: bool = False
+
+
+class Models(NamedTuple):
+    """Addresses of a sample's models: in real and in complex numbers, and complex ones moved along each direction."""
+
+    real: Address
+    complex: Address
+    directions: Integers
 
 
 class Log(NamedTuple):

@@ -7,7 +7,7 @@ from dalembert.kernels.kernel import inlined, inner, kernel
 from dalembert.kernels.words import Address, Integers
 from dalembert.multibody.integrators.index1 import Terms, Tools, factorise_motion
 from dalembert.multibody.integrators.partitioning import POSITION, VELOCITY, fill_gap
-from dalembert.multibody.integrators.problem import Problem
+from dalembert.multibody.integrators.problem import Models, Problem
 from dalembert.multibody.kernels.assembly import residual, set_signals
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.linear import solve
@@ -108,8 +108,8 @@ def _follow(problem, level, model, t, within, state, dstate, tools, change):
 
 @kernel
 def project(
-    problem: Problem, terms: Terms, model: Address, complex_model: Address, directions: Integers, t: float,
-    within: float, state: MotionState, dstates: MotionStates, tools: Tools, along: Address,
+    problem: Problem, terms: Terms, models: Models, t: float, within: float, state: MotionState, dstates: MotionStates,
+    tools: Tools, along: Address,
 ) -> bool:  # fmt: skip
     """Move coordinates, then velocities, onto the constraints, with their derivatives; whether that was possible.
 
@@ -118,17 +118,17 @@ def project(
     no derivatives.
     """
     n, last, base, change = problem.n, len(state.x) - 1, tools.base, tools.change
-    set_signals(model, t, within, tools.work)
+    set_signals(models.real, t, within, tools.work)
     for level in (POSITION, VELOCITY):
-        set_signals(complex_model, t, within, tools.complex_work)
+        set_signals(models.complex, t, within, tools.complex_work)
         for i in range(last + 1):  # at rest and unloaded: the forces of friction are none
             base.x[i] = state.x[i] if i < n else 0.0
             change.x[i], change.a[i] = 0.0, 0.0
-        if not factorise_motion(problem, terms, complex_model, base, tools):
+        if not factorise_motion(problem, terms, models.complex, base, tools):
             return False
         before = 1e300
         for _ in range(_MOST_ITERATIONS):
-            fill_gap(model, n, level, state.x, state.v, state.a, tools.work, tools.gap, tools.second)
+            fill_gap(models.real, n, level, state.x, state.v, state.a, tools.work, tools.gap, tools.second)
             for i in range(n):
                 tools.gap[i] = 0.0
             solve(problem.exact_layout, tools.exact, tools.gap, tools.answer)
@@ -139,7 +139,7 @@ def project(
         if not moved <= _MAGNIFIED * (1.0 if level == POSITION else 1.0 + _largest(n, state.v)):
             return False
         if len(dstates.x) > 0:
-            _project_along_at(along, problem, level, directions, t, within, state, dstates, tools)
+            _project_along_at(along, problem, level, models.directions, t, within, state, dstates, tools)
     return True
 
 

@@ -59,6 +59,5 @@ def coefficients(stages: int) -> Coefficients:
     start = np.linalg.solve(values.T, legendre.legvander(np.array([-1.0]), stages - 1)[0])
     return Coefficients(
         0.5 * (points + 1.0), np.ascontiguousarray(a), inverse, np.ascontiguousarray(t), np.linalg.inv(t),
-        float(numbers[own].real), np.ascontiguousarray(numbers[upper]), start,
-        max(1, 6 - stages),
+        float(numbers[own].real), np.ascontiguousarray(numbers[upper]), start, max(1, 6 - stages),
     )  # fmt: skip

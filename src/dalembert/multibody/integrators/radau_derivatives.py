@@ -1,9 +1,9 @@
 """Derivatives of the converged steps of Radau IIA along directions, and of the states at the ends of steps."""
 
 from dalembert.kernels.kernel import inner, kernel
-from dalembert.kernels.words import Address, Complexes2, Integers, Reals2
-from dalembert.multibody.integrators.ends import Ends
+from dalembert.kernels.words import Integers
 from dalembert.multibody.integrators.matrices import Matrices
+from dalembert.multibody.integrators.outputs import Outputs
 from dalembert.multibody.integrators.problem import Problem
 from dalembert.multibody.integrators.radau_coefficients import Coefficients
 from dalembert.multibody.integrators.radau_newton import (
@@ -29,9 +29,8 @@ from dalembert.multibody.kernels.motion import MotionState, MotionStates, copy, 
 
 @kernel
 def differentiate(
-    problem: Problem, method: Coefficients, matrices: Matrices, directions: Integers, t: float,
-    target: float, within: float, s: Stages, dold: MotionState, dnews: MotionStates, ds: Stages, b: Buffers,
-    complex_works: Integers,
+    problem: Problem, method: Coefficients, matrices: Matrices, directions: Integers, t: float, target: float,
+    within: float, s: Stages, dold: MotionState, dnews: MotionStates, ds: Stages, b: Buffers, complex_works: Integers,
 ) -> None:  # fmt: skip
     """Derivatives of a step along all directions."""
     h = target - t
@@ -83,11 +82,11 @@ def _converge_along(problem, method, matrices, perturbed, works, h, s, dstart, d
 
 @kernel
 def settle_end_along(
-    problem: Problem, matrices: Matrices, directions: Integers, within: float, last: Ends, j: int,
-    moved: Reals2, complex_work: Address, complex_state: Complexes2,
-) -> None:  # fmt: skip
+    problem: Problem, matrices: Matrices, directions: Integers, within: float, room: Outputs, j: int
+) -> None:
     """Settle the derivatives of end ``j`` along all directions."""
+    last, work = room.last, room.complex_work
     for d in range(len(directions)):
-        set_signals(directions[d], last.times[j], within, complex_work)
+        set_signals(directions[d], last.times[j], within, work)
         state, dstate = row(last.states, j), row(rows(last.derivatives, d), j)
-        settle_along(problem, matrices, directions[d], state, dstate, moved, complex_work, complex_state, VELOCITIES)
+        settle_along(problem, matrices, directions[d], state, dstate, room.moved, work, room.complex_state, VELOCITIES)

@@ -14,7 +14,7 @@ from dalembert.multibody.integrators.consistent import accelerate_along
 from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.matrices import pattern_of
 from dalembert.multibody.integrators.outputs import record_along
-from dalembert.multibody.integrators.problem import DONE, INEXACT
+from dalembert.multibody.integrators.problem import DONE, INEXACT, Models
 from dalembert.multibody.integrators.radau_coefficients import coefficients
 from dalembert.multibody.integrators.radau_derivatives import differentiate, settle_end_along
 from dalembert.multibody.integrators.radau_loop import integrate
@@ -109,12 +109,12 @@ class RadauIIA(Integrator):
         fixed = self.step_ends(batch.end, first.jumps)
         calls = [[model.call() for _ in range(1 + self.stages)] for model in (first.real, first.complex_model)]
         spare = workspace(problem, method, pattern, batch.dstates, *calls)
-        run = integrate.given(problem, method, directions, batch.dstates, dout, *spare)
+        run = integrate.given(problem, method, batch.dstates, dout, *spare)
         runs = []
         for lowered, edges, start in batch:
             log, states = batch.log(_ROOM if fixed is None else max(_ROOM, len(fixed))), resting(*batch.shape)
-            model, complex_model = lowered.real.need("rates").address, lowered.complex_model.address
-            status, time, unknown, least = run(edges, self._settings(lowered), model, complex_model, start, states, log)
+            models = Models(lowered.real.need("rates").address, lowered.complex_model.address, directions)
+            status, time, unknown, least = run(edges, self._settings(lowered), models, start, states, log)
             reason = None if status == DONE else self._explain(lowered, status, time, unknown, least, spare.new.x)
             runs.append(batch.result(reason, states, dout, log))
         return runs

@@ -3,16 +3,25 @@
 import numpy as np
 
 from dalembert.kernels.kernel import inner, kernel
-from dalembert.kernels.words import Address, Integers, Reals
+from dalembert.kernels.words import Reals
 from dalembert.multibody.integrators.consistent import Consistency, accelerate
 from dalembert.multibody.integrators.ends import append, support
 from dalembert.multibody.integrators.matrices import Matrices, renew, weigh_masses
-from dalembert.multibody.integrators.outputs import record
-from dalembert.multibody.integrators.problem import DONE, INEXACT, NEWTON_FAILED, SINGULAR, TOO_MANY_STEPS, Log, Problem
+from dalembert.multibody.integrators.outputs import Outputs, record
+from dalembert.multibody.integrators.problem import (
+    DONE,
+    INEXACT,
+    NEWTON_FAILED,
+    SINGULAR,
+    TOO_MANY_STEPS,
+    Log,
+    Models,
+    Problem,
+)
 from dalembert.multibody.integrators.radau_coefficients import Coefficients
 from dalembert.multibody.integrators.radau_derivatives import differentiate, settle_end_along
 from dalembert.multibody.integrators.radau_step import attempt, speed_of
-from dalembert.multibody.integrators.radau_workspace import Along, Outputs, Settings, Step
+from dalembert.multibody.integrators.radau_workspace import Along, Settings, Step
 from dalembert.multibody.integrators.settling import VELOCITIES, settle
 from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.motion import Histories, MotionState, MotionStates, clear, copy, row
@@ -30,28 +39,25 @@ def _first_step(n, scale, span, tolerance, order, state):
 
 
 @inner
-def _settle_ends(
-    problem, matrices, apart, far, model, complex_model, directions, damped, within, last, moved, work,
-    complex_work, complex_state, along,
-):  # fmt: skip
+def _settle_ends(problem, matrices, apart, far, models, damped, within, room, along):
     """Settle the ends that outputs of the last step need; whether that went well.
 
     Former ones with matrices apart of their own places, the newest one, too, where the kept ones are from ``far``.
     """
-    newest = len(last.times) - 1
+    last, newest = room.last, len(room.last.times) - 1
     for j in range(support(last), newest + 1):
         if last.settled[j]:
             continue
         t, state, own = last.times[j], row(last.states, j), matrices
         if far or j < newest:
             own = apart
-            if not renew(problem, own, complex_model, damped, t, within, state, complex_work):
+            if not renew(problem, own, models.complex, damped, t, within, state, room.complex_work):
                 return False
-        set_signals(model, t, within, work)
-        if not settle(problem, own, model, state, moved, work, VELOCITIES):
+        set_signals(models.real, t, within, room.work)
+        if not settle(problem, own, models.real, state, room.moved, room.work, VELOCITIES):
             return False
-        if len(directions) > 0:
-            _settle_end_along_at(along, problem, own, directions, within, last, j, moved, complex_work, complex_state)
+        if len(models.directions) > 0:
+            _settle_end_along_at(along, problem, own, models.directions, within, room, j)
         last.settled[j] = True
     return True
 
@@ -61,30 +67,21 @@ _settle_end_along_at, _differentiate_at = settle_end_along.at, differentiate.at
 
 @kernel
 def integrate(
-    problem: Problem, method: Coefficients, directions: Integers, dstates: MotionStates,
-    dout: Histories, new: MotionState, matrices: Matrices, step: Step, outputs: Outputs, along: Along,
-    consistency: Consistency, edges: Reals, settings: Settings, model: Address, complex_model: Address,
-    start: MotionState, out: MotionStates, log: Log,
+    problem: Problem, method: Coefficients, dstates: MotionStates, dout: Histories, new: MotionState,
+    matrices: Matrices, apart: Matrices, step: Step, outputs: Outputs, along: Along, consistency: Consistency,
+    edges: Reals, settings: Settings, models: Models, start: MotionState, out: MotionStates, log: Log,
 ) -> tuple[int, float, int, float]:  # fmt: skip
     """Run one sample between ``edges`` (s): status, time reached, unknown that moved most, smallest error of a step.
 
     That error is of the last step, against the tolerance, over all lengths that were tried.
 
-    ``method`` are the coefficients; ``directions`` are addresses of complex models, one a direction of differentiation.
-    ``start`` (N + 1) and its derivatives ``dstates`` (directions, N + 1) are overwritten; ``out`` (times, N + 1) and
-    ``dout`` (directions, times, N + 1) are filled at ``problem.times``. The rest is a workspace, which may be that of
-    another sample before.
+    ``method`` are the coefficients. ``start`` (N + 1) and its derivatives ``dstates`` (directions, N + 1) are
+    overwritten; ``out`` (times, N + 1) and ``dout`` (directions, times, N + 1) are filled at ``problem.times``. The
+    rest is a workspace, which may be that of another sample before.
     """
     n, scale, times, counts = problem.n, problem.scale, problem.times, log.counts
     adaptive, order = settings.step == 0.0, len(method.c) + 1.0  # of the estimated error of a step
-    moved, complex_work = step.moved, step.complex_work
-    last, apart, shares, complex_state, work = (
-        outputs.last,
-        outputs.apart,
-        outputs.shares,
-        outputs.complex_state,
-        outputs.work,
-    )
+    last, complex_work = outputs.last, step.complex_work
     copy(start, new)
     clear(matrices.damping)  # is not evaluated where there is none
     clear(apart.damping)
@@ -93,11 +90,11 @@ def integrate(
     for stretch in range(len(edges) - 1):
         t, end = edges[stretch], edges[stretch + 1]
         within = 0.5 * (t + end)
-        if not accelerate(problem, model, complex_model, directions, t, within, new, dstates, consistency):
+        if not accelerate(problem, models, t, within, new, dstates, consistency):
             return SINGULAR, t, 0, 0.0
         if stretch == 0:
-            set_signals(complex_model, t, within, complex_work)  # those of a direction would count as masses
-            weigh_masses(matrices, complex_model, n, new, complex_work)
+            set_signals(models.complex, t, within, complex_work)  # those of a direction would count as masses
+            weigh_masses(matrices, models.complex, n, new, complex_work)
             length = _first_step(n, scale, end - t, settings.tolerance, order, new)
         steps = 1 if adaptive else max(1, int(np.ceil((end - t) / settings.step - 1e-6)))
         begin, nominal, number, level = t, (end - t) / steps, 0, 0
@@ -111,14 +108,10 @@ def integrate(
             arrived, settled, ready = False, False, False
             while due < len(times) and times[due] <= t + 1e-9 * taken:
                 ready = ready or _settle_ends(
-                    problem, matrices, apart, far, model, complex_model, directions, settings.damped, within,
-                    last, moved, work, complex_work, complex_state, along.settle_end,
-                )  # fmt: skip
-                if not ready or not record(
-                    problem, apart if far else matrices, far, model, complex_model, directions, last, within,
-                    out, dout, due, outputs.between, outputs.dbetween, shares, moved, work, complex_work, complex_state,
-                    along.record,
-                ):  # fmt: skip
+                    problem, matrices, apart, far, models, settings.damped, within, outputs, along.settle_end
+                )
+                own = apart if far else matrices
+                if not ready or not record(problem, own, far, models, outputs, within, out, dout, due):
                     return NEWTON_FAILED, times[due], 0, 0.0
                 due += 1
             if number == steps:
@@ -129,9 +122,9 @@ def integrate(
             reached = (level == 0 and not adaptive) or t + length * 1.0001 >= goal
             target = goal if reached else t + length
             h = target - t
-            status, made, error, own, iterations, rate, worst = attempt(
-                problem, method, model, complex_model, settings, t, target, within, before, earlier, stale,
-                made, speed, new, matrices, step,
+            status, made, error, fastest, iterations, rate, worst = attempt(
+                problem, method, models, settings, t, target, within, before, earlier, stale, made, speed, new,
+                matrices, step,
             )  # fmt: skip
             counts[1] += iterations
             if status == SINGULAR:
@@ -156,12 +149,12 @@ def integrate(
                 else:
                     level += 1
                 continue
-            if len(directions) > 0:
+            if len(models.directions) > 0:
                 _differentiate_at(
-                    along.differentiate, problem, method, matrices, directions, t, target, within, step.s,
+                    along.differentiate, problem, method, matrices, models.directions, t, target, within, step.s,
                     along.dold, dstates, along.ds, step.b, along.works,
                 )  # fmt: skip
-            arrived, speed, before, earlier, taken, least = True, own, h, before, h, np.inf
+            arrived, speed, before, earlier, taken, least = True, fastest, h, before, h, np.inf
             if counts[0] < len(log.iterations):
                 log.iterations[counts[0]] = iterations
                 log.ends[counts[0]] = target

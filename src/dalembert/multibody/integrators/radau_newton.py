@@ -56,9 +56,8 @@ def correct_coordinates(n, size, method, matrices, h, b):
     (`docs/theory/radau.md`) for ``motion`` + s ``weighed``. Its solution is the correction of v' (``change_a``);
     that of q' is 1/s times it, that of q 1/s^2 times it.
     """
-    given, answer, change_x, change_u, change_a, pairs = (
-        b.given, b.answer, b.change_x, b.change_u, b.change_a, method.pairs,
-    )  # fmt: skip
+    given, answer, change_x, change_u, change_a = b.given, b.answer, b.change_x, b.change_u, b.change_a
+    pairs = method.pairs
     combine(method.back, 1.0, b.motion, size, change_x)
     combine(method.back, 1.0, b.weighed, n, change_u)
     real = method.real / h
@@ -145,9 +144,7 @@ def largest(n, scale, moves):
 
 
 @inner
-def converge(
-    n, scale, method, matrices, model, damped, works, h, start, s, b, tolerance, speed, limit,
-):  # fmt: skip
+def converge(n, scale, method, matrices, model, damped, works, h, start, s, b, tolerance, speed, limit):
     """Newton's iteration on the stages, which are given as predicted, with their integrals.
 
     Answers whether it converged, iterations, last contraction, unknown that moved most, and the estimated error of

@@ -1,10 +1,9 @@
 """A step of Radau IIA: prediction, matrices, Newton's iteration, estimated error."""
 
 from dalembert.kernels.kernel import inner, kernel
-from dalembert.kernels.words import Address
 from dalembert.multibody.integrators import radau_stages as stages
 from dalembert.multibody.integrators.matrices import Matrices, renew
-from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR, Problem
+from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR, Models, Problem
 from dalembert.multibody.integrators.radau_coefficients import Coefficients
 from dalembert.multibody.integrators.radau_newton import converge, factorise
 from dalembert.multibody.integrators.radau_workspace import Settings, Step
@@ -26,9 +25,9 @@ def speed_of(n, scale, v):
 
 @kernel
 def attempt(
-    problem: Problem, method: Coefficients, model: Address, complex_model: Address,
-    settings: Settings, t: float, target: float, within: float, before: float, earlier: float, stale: bool, made: float,
-    speed: float, new: MotionState, matrices: Matrices, room: Step,
+    problem: Problem, method: Coefficients, models: Models, settings: Settings, t: float, target: float, within: float,
+    before: float, earlier: float, stale: bool, made: float, speed: float, new: MotionState, matrices: Matrices,
+    room: Step,
 ) -> tuple[int, float, float, float, int, float, int]:  # fmt: skip
     """A step from ``new``, which moves if the step is good.
 
@@ -45,16 +44,16 @@ def attempt(
     if stale:
         m = len(method.c) // 2
         middle, place = t + method.c[m] * h, MotionState(s.x[m], s.v[m], s.a[m], s.a[m])
-        if not renew(problem, matrices, complex_model, settings.damped, middle, within, place, room.complex_work):
+        if not renew(problem, matrices, models.complex, settings.damped, middle, within, place, room.complex_work):
             return SINGULAR, made, 0.0, speed, 0, 1.0, 0
     if stale or not (made <= _NEAR * h and h <= _NEAR * made):
         made = h
         if not factorise(n, method, matrices, h):
             return SINGULAR, made, 0.0, speed, 0, 1.0, 0
-    stages.set_stage_signals(method, model, t, h, target, within, works)
+    stages.set_stage_signals(method, models.real, t, h, target, within, works)
     converged, iterations, rate, worst, gap, rate_error = converge(
-        n, scale, method, matrices, model, settings.damped, works, h, new, s, b,
-        settings.newton_tolerance, speed, settings.tolerance if settings.step == 0.0 else 0.0,
+        n, scale, method, matrices, models.real, settings.damped, works, h, new, s, b, settings.newton_tolerance, speed,
+        settings.tolerance if settings.step == 0.0 else 0.0,
     )  # fmt: skip
     error, end = 0.0, len(method.c) - 1
     if converged and settings.step == 0.0:
@@ -62,7 +61,7 @@ def attempt(
         error = max(gap, rate_error / speed) / settings.tolerance
     if converged and error <= 1.0:
         stages.read(n, s, new)
-        accelerate_roughly(problem, matrices, model, new, works[end], room.moved[2:])
+        accelerate_roughly(problem, matrices, models.real, new, works[end], room.moved)
     else:
         stages.recall(past, s)
     return DONE if converged else NEWTON_FAILED, made, error, speed, iterations, rate, worst

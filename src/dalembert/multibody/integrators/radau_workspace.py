@@ -4,11 +4,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dalembert.kernels.words import Address, Complexes2, Integers, Reals2, Reals3
+from dalembert.kernels.words import Address, Integers, Reals2
 from dalembert.multibody.integrators.consistent import Consistency, consistency
-from dalembert.multibody.integrators.ends import Ends, ends
 from dalembert.multibody.integrators.matrices import Matrices, Pattern, room
-from dalembert.multibody.integrators.outputs import record_along
+from dalembert.multibody.integrators.outputs import Outputs, outputs
 from dalembert.multibody.integrators.problem import Problem
 from dalembert.multibody.integrators.radau_coefficients import Coefficients
 from dalembert.multibody.integrators.radau_derivatives import differentiate, settle_end_along
@@ -32,7 +31,7 @@ class Settings(NamedTuple):
 class Step(NamedTuple):
     """Stages of a step and of the one before, buffers, and the calls of the stages.
 
-    ``weights`` (stages + 1, 2 stages) of the prediction and ``moved`` (6, N + 1) are room.
+    ``weights`` (stages + 1, 2 stages) of the prediction and ``moved`` (4, N + 1) are room.
     """
 
     s: Stages
@@ -52,26 +51,17 @@ class Along(NamedTuple):
     works: Integers
     differentiate: Address
     settle_end: Address
-    record: Address
-
-
-class Outputs(NamedTuple):
-    """For outputs: ends of steps, matrices ``apart`` from the kept ones, a state between and its derivative, room."""
-
-    last: Ends
-    apart: Matrices
-    between: MotionState
-    dbetween: MotionState
-    shares: Reals3
-    complex_state: Complexes2
-    work: Address
 
 
 class Workspace(NamedTuple):
-    """Work of a run: the state, its step, outputs, derivatives, consistent accelerations."""
+    """Work of a run: the state, its step, outputs, derivatives, consistent accelerations.
+
+    ``apart``: matrices apart from the kept ones, for outputs.
+    """
 
     new: MotionState
     matrices: Matrices
+    apart: Matrices
     step: Step
     outputs: Outputs
     along: Along
@@ -84,23 +74,19 @@ def workspace(
 ) -> Workspace:  # fmt: skip
     """Room for a run; ``calls`` in real and in complex numbers: one a stage, and one more before them."""
     directions, width = dstates.x.shape
-    count, differs = len(method.c), directions > 0
+    count = len(method.c)
     works, complex_works = (np.array([call.address for call in own]) for own in (calls, complex_calls))
     work, complex_work = int(works[0]), int(complex_works[0])
     matrices, apart = room(pattern, len(method.pairs)), room(pattern, 0)
     apart = apart._replace(heavy=matrices.heavy, mass=matrices.mass)  # which do not change in a motion
+    out = outputs(_ENDS, dstates, work, complex_work)
     step = Step(
-        stages(count, width), stages(count, width), buffers(count, width),
-        np.zeros((count + 1, 2 * count)), np.zeros((6, width)), works[1:], complex_work,
-    )  # fmt: skip
-    outputs = Outputs(
-        ends(_ENDS, dstates), apart, resting(width), resting(width), np.zeros((4, _ENDS, 3)),
-        np.zeros((10, width), complex), work,
+        stages(count, width), stages(count, width), buffers(count, width), np.zeros((count + 1, 2 * count)),
+        out.moved[2:], works[1:], complex_work,
     )  # fmt: skip
     along = Along(
-        resting(width), stages(count, width), complex_works[1:], *(
-            kernel.address if differs else 0 for kernel in (differentiate, settle_end_along, record_along)
-        ),
+        resting(width), stages(count, width), complex_works[1:],
+        *(kernel.address if directions else 0 for kernel in (differentiate, settle_end_along)),
     )  # fmt: skip
     consistent = consistency(problem, work, complex_work, directions)
-    return Workspace(resting(width), matrices, step, outputs, along, consistent)
+    return Workspace(resting(width), matrices, apart, step, out, along, consistent)

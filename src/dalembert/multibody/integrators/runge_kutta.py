@@ -9,12 +9,12 @@ import numpy as np
 
 from dalembert.arguments import limited
 from dalembert.kernels.kernel import Compiled, inner, kernel
-from dalembert.kernels.words import Address, Integers, Reals
+from dalembert.kernels.words import Integers, Reals
 from dalembert.multibody.integrators.batch import Batch
 from dalembert.multibody.integrators.completion import Completion, complete, completion, kernels, partition
 from dalembert.multibody.integrators.index1 import PARTITIONED, PROJECTED, Terms
 from dalembert.multibody.integrators.integrator import Integrator
-from dalembert.multibody.integrators.problem import DIVERGED, DONE, SINGULAR, Log, Problem
+from dalembert.multibody.integrators.problem import DIVERGED, DONE, SINGULAR, Log, Models, Problem
 from dalembert.multibody.integrators.run import Run, explain
 from dalembert.multibody.integrators.stabilisation import Projection, Stabilisation, posed
 from dalembert.multibody.kernels.motion import Histories, MotionState, MotionStates, copy, interpolate, resting, row
@@ -74,8 +74,8 @@ class RungeKutta4(Integrator):
             room.completion.tools.partition.rank[0] = 0  # independent coordinates are chosen anew
             out = resting(1 + len(directions), *batch.shape)
             counts = np.zeros(4, dtype=np.int64)
-            models = lowered.real.need("rates").address, lowered.complex_model.address
-            status, time = integrate(problem, edges, float(self.step), terms, *models, directions, out, counts, room)
+            models = Models(lowered.real.need("rates").address, lowered.complex_model.address, directions)
+            status, time = integrate(problem, edges, float(self.step), terms, models, out, counts, room)
             if status == SINGULAR and not np.max(np.abs(room.stage.state.x)) < _UNBOUNDED:
                 status = DIVERGED
             reason = None if status == DONE else explain(lowered, status, time, 0, f"the step is {self.step:g} s")
@@ -162,8 +162,8 @@ _partition_at = partition.at
 
 @kernel
 def integrate(
-    problem: Problem, edges: Reals, step: float, terms: Terms, model: Address, complex_model: Address,
-    directions: Integers, out: Histories, counts: Integers, room: Workspace,
+    problem: Problem, edges: Reals, step: float, terms: Terms, models: Models, out: Histories, counts: Integers,
+    room: Workspace,
 ) -> tuple[int, float]:  # fmt: skip
     """Run one sample: status and time reached.
 
@@ -174,10 +174,7 @@ def integrate(
         Of the smooth stretches, s.
     step : float
     terms : Terms
-    model, complex_model : address
-        Models in real and in complex numbers.
-    directions : array of addresses
-        Complex models, one a direction of differentiation.
+    models : Models
     out : Histories
         At the output times, (1 + directions, times, N + 1): states, then their derivatives.
     counts : array (2,)
@@ -194,12 +191,10 @@ def integrate(
         within = 0.5 * (begin + end)
         if terms.way == PARTITIONED:
             _partition_at(
-                own.partition, problem, terms, complex_model, begin, within, stage.state, tools.complex_work,
+                own.partition, problem, terms, models.complex, begin, within, stage.state, tools.complex_work,
                 tools.partition,
             )  # fmt: skip
-        status = complete(
-            problem, terms, model, complex_model, directions, stage.state, stage.dstates, own, begin, within, False
-        )
+        status = complete(problem, terms, models, stage.state, stage.dstates, own, begin, within, False)
         if status != DONE:
             return status, begin
         while stretch == 0 and due < len(problem.times) and problem.times[due] <= begin:
@@ -220,15 +215,14 @@ def integrate(
                 if last:
                     _take(n, room.total, stage.stack)
                     if terms.way == PARTITIONED and _partition_at(
-                        own.partition, problem, terms, complex_model, target, within, stage.state, tools.complex_work,
+                        own.partition, problem, terms, models.complex, target, within, stage.state, tools.complex_work,
                         tools.partition,
                     ):  # fmt: skip
                         counts[1] += 1
                 now = target if last else t + share * h
                 status = complete(
-                    problem, terms, model, complex_model, directions, stage.state, stage.dstates, own, now, within,
-                    last and projects,
-                )  # fmt: skip
+                    problem, terms, models, stage.state, stage.dstates, own, now, within, last and projects
+                )
                 if status != DONE:
                     return status, t
             counts[0] += 1
@@ -237,8 +231,8 @@ def integrate(
                 _interpolate(n, h, share, room.old, stage.stack, between.stack)
                 if share < 1.0 - 1e-9:
                     status = complete(
-                        problem, terms, model, complex_model, directions, between.state, between.dstates, own,
-                        problem.times[due], within, projects,
+                        problem, terms, models, between.state, between.dstates, own, problem.times[due], within,
+                        projects,
                     )  # fmt: skip
                     if status != DONE:
                         return status, t

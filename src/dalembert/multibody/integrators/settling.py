@@ -115,9 +115,8 @@ def balanced(model, n, state, work, f, unheld, at, still):
 
 @kernel
 def settle(
-    problem: Problem, matrices: Matrices, model: Address, state: MotionState, moved: Reals2,
-    work: Address, first: int,
-) -> bool:  # fmt: skip
+    problem: Problem, matrices: Matrices, model: Address, state: MotionState, moved: Reals2, work: Address, first: int
+) -> bool:
     """Accelerations and multipliers of a state; if ``first`` says so, coordinates and velocities are moved before.
 
     The signals in ``work`` hold the time. ``moved`` (6, N + 1) are the moves of coordinates and velocities with their
@@ -171,8 +170,8 @@ def accelerate_roughly(problem, matrices, model, state, work, room):
 
 @kernel
 def settle_along(
-    problem: Problem, matrices: Matrices, perturbed: Address, state: MotionState, dstate: MotionState,
-    moved: Reals2, work: Address, complex_state: Complexes2, first: int,
+    problem: Problem, matrices: Matrices, perturbed: Address, state: MotionState, dstate: MotionState, moved: Reals2,
+    work: Address, complex_state: Complexes2, first: int,
 ) -> None:  # fmt: skip
     """Derivative of a settled state along a direction, from that of the state before; signals in ``work``.
 

@@ -17,7 +17,7 @@ from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.matrices import pattern_of
 from dalembert.multibody.integrators.midpoint_loop import Settings, differentiate, integrate, workspace
 from dalembert.multibody.integrators.outputs import record_along
-from dalembert.multibody.integrators.problem import DONE
+from dalembert.multibody.integrators.problem import DONE, Models
 from dalembert.multibody.integrators.run import Run, cut_down, explain
 from dalembert.multibody.kernels.motion import MotionState, resting
 from dalembert.multibody.lowered import Lowered
@@ -78,7 +78,7 @@ class Variational(Integrator):
             real, complex_model = lowered.real.need("rates"), lowered.complex_model
             calls, complex_calls = [real.call(), real.call()], [complex_model.call(), complex_model.call()]
             status, time, unknown = integrate(
-                batch.problem, edges, settings, real.address, complex_model.address, directions, start,
+                batch.problem, edges, settings, Models(real.address, complex_model.address, directions), start,
                 batch.dstates, states, dout, log,
                 *workspace(batch.problem, pattern, calls, complex_calls, balance, denergies, batch.dstates),
             )  # fmt: skip

@@ -6,12 +6,11 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
 from dalembert.arguments import names_of, takes_checked
-from dalembert.contents import Contents
 from dalembert.errors import DalembertError, InputError
 from dalembert.forward import Checkpoint
 from dalembert.multibody.callbacks import in_complex_numbers
@@ -22,7 +21,8 @@ from dalembert.multibody.lowering import lower
 from dalembert.multibody.simulation import prepared, simulate
 from dalembert.multibody.system import System
 from dalembert.multibody.trajectory import Trajectory
-from dalembert.results import Result, facts_of, stored_facts, stored_settings
+from dalembert.results import Result
+from dalembert.stored_fields import Source, Store
 
 OnRow = Callable[["Row"], None]
 
@@ -62,6 +62,18 @@ class Row:
     failure: str = ""
 
 
+class _Rows:
+    """Rows as variables over the dimension ``run``."""
+
+    def store(self, to: Store, settings: dict[str, Any], name: str, value: Sequence[Row]) -> None:
+        for part in Row.__dataclass_fields__:
+            to.variables[part] = ("run", [getattr(row, part) for row in value])
+
+    def load(self, source: Source, settings: Mapping[str, Any], name: str) -> tuple[Row, ...]:
+        columns = (source.arrays[part].tolist() for part in Row.__dataclass_fields__)
+        return tuple(map(Row, *columns))
+
+
 @dataclass(frozen=True, eq=False)
 class WorkPrecision(Result):
     """Errors and run times of integrators on one motion, as :func:`work_precision` returns them.
@@ -85,7 +97,7 @@ class WorkPrecision(Result):
     end: float
     reference: str
     apart: float
-    rows: tuple[Row, ...]
+    rows: Annotated[tuple[Row, ...], _Rows()]
 
     @property
     def methods(self) -> tuple[str, ...]:
@@ -124,23 +136,6 @@ class WorkPrecision(Result):
             )
             lines.append(f"{row.settings:{width}} {told}")
         return "\n".join([*lines, "", self.status])
-
-    def contents(self) -> Contents:
-        """The rows as arrays over the dimension ``run``."""
-        rows = [asdict(row) for row in self.rows]
-        return Contents(
-            {name: ("run", [row[name] for row in rows]) for name in Row.__dataclass_fields__},
-            attributes=stored_facts(self, ("end", "apart"), channels=self.channels, reference=self.reference),
-        )
-
-    @classmethod
-    def from_xarray(cls, dataset: Any) -> "WorkPrecision":
-        """The comparison that :meth:`to_xarray` turned into a dataset."""
-        told = stored_settings(dataset)
-        columns = {name: dataset[name].values.tolist() for name in Row.__dataclass_fields__}
-        rows = tuple(Row(**dict(zip(columns, values, strict=True))) for values in zip(*columns.values(), strict=True))
-        facts = facts_of(cls, dataset, ("end", "apart"))
-        return cls(tuple(told["channels"]), reference=told["reference"], rows=rows, **facts)
 
 
 @takes_checked()

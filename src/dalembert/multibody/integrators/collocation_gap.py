@@ -2,7 +2,7 @@
 
 There the polynomial gives independent coordinates, velocities and accelerations, and the constraints the dependent
 ones. What remains is the gap between these accelerations and those that satisfy the equations of motion; the
-multipliers are taken from the equations, so that their gap is zero.
+multipliers are taken from the equations, so that their gap is zero (`docs/theory/collocation.md`).
 """
 
 from dalembert.kernels.kernel import inner, kernel

@@ -42,15 +42,10 @@ class Kept(NamedTuple):
 def kept_room(walk: Walk) -> Kept:
     """Room for what is kept of the prediction that ``walk`` holds."""
     (points, width), unknowns = walk.gaps.shape, len(walk.c)
-    return Kept(
-        walk.c.copy(),
-        resting(points, width),
-        resting(points * unknowns, width),
-        np.zeros((points, len(walk.partition.dependent.matrix))),
-        np.zeros((points, len(walk.consistency.exact.matrix))),
-        resting(width),
-        np.zeros((3, width)),
-    )
+    dependent = np.zeros((points, len(walk.partition.dependent.matrix)))
+    exact = np.zeros((points, len(walk.consistency.exact.matrix)))
+    states = resting(points, width), resting(points * unknowns, width)
+    return Kept(walk.c.copy(), *states, dependent, exact, resting(width), np.zeros((3, width)))
 
 
 def keep(walk: Walk, kept: Kept, s: int) -> None:

@@ -41,14 +41,10 @@ class Completion(NamedTuple):
 
 def completion(problem: Problem, terms: Terms, work: int, complex_work: int, directions: int) -> Completion:
     """Work for a model, with derivatives if there are any directions."""
-    parted, projected = terms.way == PARTITIONED, terms.way == PROJECTED
-    return Completion(
-        make_tools(problem, terms, work, complex_work, directions),
-        partition.address if parted else 0,
-        settle.address if parted else 0,
-        project.address if projected else 0,
-        project_along.address if projected and directions else 0,
-    )
+    tools, projected = make_tools(problem, terms, work, complex_work, directions), terms.way == PROJECTED
+    parting = (partition.address, settle.address) if terms.way == PARTITIONED else (0, 0)
+    along = project_along.address if projected and directions else 0
+    return Completion(tools, *parting, project.address if projected else 0, along)
 
 
 def kernels(way: int, derivatives: bool) -> list[Compiled]:

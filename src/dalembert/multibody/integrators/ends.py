@@ -28,13 +28,7 @@ def ends(count: int, like: MotionState) -> Ends:
     """Room for ``count`` ends, with derivatives as ``like`` (directions, N + 1)."""
     directions, width = like.x.shape
     states, derivatives = resting(count, width), resting(directions, count, width)
-    return Ends(
-        np.zeros(count),
-        MotionStates(*states),
-        Histories(*derivatives),
-        np.zeros(count, np.int64),
-        np.zeros(1, np.int64),
-    )
+    return Ends(np.zeros(count), states, derivatives, np.zeros(count, np.int64), np.zeros(1, np.int64))
 
 
 @inner

@@ -126,15 +126,8 @@ class GeneralizedAlpha(Integrator):
         return runs
 
     def _settings(self) -> "Settings":
-        return Settings(
-            float(self.step),
-            float(self.spectral_radius),
-            self.initial_acceleration == "consistent",
-            bool(self.adaptive),
-            float(self.tolerance),
-            float(self.newton_tolerance),
-            int(self.most_steps),
-        )
+        steps = self.step, self.spectral_radius, self.initial_acceleration == "consistent", self.adaptive
+        return Settings(*steps, self.tolerance, self.newton_tolerance, self.most_steps)
 
     def _most_logged(self, lowered: Lowered, end: float) -> int:
         ends = self.step_ends(end, lowered.jumps)

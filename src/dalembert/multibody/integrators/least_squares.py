@@ -43,16 +43,10 @@ def surplus_room(problem: Problem, redundant: bool, directions: int) -> Surplus:
     layout = problem.exact_layout
     m = layout.size - problem.n if redundant else 0
     size = layout.size if redundant else 0
-    return Surplus(
-        room(problem, 0),
-        problem.scale[problem.n : problem.n + m].copy(),
-        np.zeros((m, m)),
-        np.zeros((size, size)),
-        storage(resized(layout, size)),
-        np.zeros((3, m)),
-        invert_on_range.address if redundant else 0,
-        turn_range.address if redundant and directions else 0,
-    )
+    scale = problem.scale[problem.n : problem.n + m].copy()
+    kernels = invert_on_range.address if redundant else 0, turn_range.address if redundant and directions else 0
+    arrays = np.zeros((m, m)), np.zeros((size, size)), storage(resized(layout, size)), np.zeros((3, m))
+    return Surplus(room(problem, 0), scale, *arrays, *kernels)
 
 
 @inlined

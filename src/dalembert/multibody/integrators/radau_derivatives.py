@@ -32,7 +32,7 @@ def differentiate(
     problem: Problem, method: Coefficients, matrices: Matrices, directions: Integers, t: float, target: float,
     within: float, s: Stages, dold: MotionState, dnews: MotionStates, ds: Stages, b: Buffers, complex_works: Integers,
 ) -> None:  # fmt: skip
-    """Derivatives of a step along all directions."""
+    """Derivatives of a step along all directions: those of the equations of its stages (`docs/theory/radau.md`)."""
     h = target - t
     for d in range(len(directions)):
         dnew = row(dnews, d)

@@ -120,13 +120,7 @@ class RadauIIA(Integrator):
         return runs
 
     def _settings(self, lowered: Lowered) -> Settings:
-        return Settings(
-            float(self.step or 0.0),
-            float(self.tolerance),
-            float(self.newton_tolerance),
-            int(self.most_steps),
-            lowered.dissipates,
-        )
+        return Settings(self.step or 0.0, self.tolerance, self.newton_tolerance, self.most_steps, lowered.dissipates)
 
     def _explain(
         self, lowered: Lowered, status: int, time: float, unknown: int, least: float, x: np.ndarray

@@ -505,7 +505,7 @@ CASES: dict[str, Case] = {
             ),
             validation=0.5,
         ),
-        ("; the model lacks something that shows there, or the data that were fitted tell too little",),
+        ("; the model lacks something that shows there, or the fitted data do not determine all parameters",),
     ),
     "a share that does not vary": Case(
         lambda: da.identify(
@@ -611,7 +611,7 @@ CASES: dict[str, Case] = {
     ),
     "a look before that fails": Case(
         lambda: "\n".join(foreseen(FRAGILE, _exact(FRAGILE, [0.4]))),
-        (f"What the data can tell could not be foreseen: {RUNS_AWAY}",),
+        (f"Identifiability could not be computed in advance: {RUNS_AWAY}",),
     ),
     "a look before, data in another unit": Case(
         lambda: "\n".join(foreseen(SLOPE, _exact(SLOPE, [500.0], deviations=0.1))),

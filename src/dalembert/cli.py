@@ -279,7 +279,7 @@ def _exit_codes() -> Iterator[None]:
         code = SOLVER_COULD_NOT if isinstance(error, SolveError | StorageError) else INPUT_WRONG
         _complain(str(error), code)
     except KeyboardInterrupt as stop:
-        _complain(f"stopped; go on by: dalembert resume {stop.args[0]}" if stop.args else "stopped", STOPPED)
+        _complain(f"stopped; continue by: dalembert resume {stop.args[0]}" if stop.args else "stopped", STOPPED)
     except BrokenPipeError:
         _without_reader()
         raise typer.Exit(DONE) from None

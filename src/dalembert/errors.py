@@ -9,7 +9,7 @@ from pathlib import Path
 _OWN = str(Path(__file__).parent)
 _LONGEST = 60  # text of a value in a sentence
 _ROOM = "see that the disk has room and that the folder may be written to"
-_BEGUN = f"; what was written before is whole: {_ROOM}, and go on with the run by 'dalembert resume'"
+_BEGUN = f"; what was written before is whole: {_ROOM}, and continue the run by 'dalembert resume'"
 _NOT_BEGUN = f"; nothing has run yet: {_ROOM}, and run the study again"
 
 

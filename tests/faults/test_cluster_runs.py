@@ -47,7 +47,7 @@ def stopped(folder: RunFolder, process: subprocess.Popen[str], beyond: int) -> N
     _, errors = process.communicate(timeout=300)
     *told, last = errors.splitlines()
     assert process.returncode == 130, errors
-    assert last == "stopped; go on by: dalembert resume run"
+    assert last == "stopped; continue by: dalembert resume run"
     assert told
     assert all(line.startswith("monte-carlo") for line in told), errors
     assert folder.state()["state"] == "interrupted"

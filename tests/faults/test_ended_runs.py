@@ -70,7 +70,7 @@ def test_a_stopped_run_says_so(start, folder, number):
     process.send_signal(number)
     _, errors = process.communicate(timeout=120)
     assert process.returncode == 130
-    assert errors.splitlines()[-1] == "stopped; go on by: dalembert resume run"
+    assert errors.splitlines()[-1] == "stopped; continue by: dalembert resume run"
     assert "Traceback" not in errors
     assert folder.state()["state"] == "interrupted"
     assert list(read_events(folder.events))[-1]["state"] == "interrupted"
@@ -82,7 +82,7 @@ def test_a_second_run_in_the_same_folder_is_refused(start, folder, tmp_path):
     command = [COMMAND, "run", "slow.toml", "--out", "run", "--force"]
     second = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert second.returncode == 2
-    assert second.stderr == ("a run is going on in run; wait for it, stop it, or choose another folder with --out\n")
+    assert second.stderr == ("a run is active in run; wait for it, stop it, or choose another folder with --out\n")
     assert folder.state()["state"] == "running"
 
 
@@ -95,7 +95,7 @@ def test_a_full_disk_gives_a_sentence(start, folder):
     assert "Traceback" not in errors
     assert errors.splitlines()[-1] == (
         "run/report.html cannot be written: File too large; what was written before is whole: see that the disk has "
-        "room and that the folder may be written to, and go on with the run by 'dalembert resume'"
+        "room and that the folder may be written to, and continue the run by 'dalembert resume'"
     )
     assert folder.state()["state"] == "failed"
     assert folder.result.stat().st_size > 0

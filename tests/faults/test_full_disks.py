@@ -49,7 +49,7 @@ over = { rate = { count = 400 } }
 """
 TOLD = (
     " cannot be written: {reason}; what was written before is whole: see that the disk has room and that the folder "
-    "may be written to, and go on with the run by 'dalembert resume'"
+    "may be written to, and continue the run by 'dalembert resume'"
 )
 NOT_BEGUN = (
     " cannot be written: {reason}; nothing has run yet: see that the disk has room and that the folder may be written "

@@ -91,7 +91,7 @@ MECHANISMS = {
     "no body": (mb.System, "the system has no body; add one"),
     "a loop that cannot close": (
         too_short,
-        "the mechanism cannot be assembled: joint 'A' stays open by 2 (m or rad). Check lengths and places of the "
+        "the mechanism cannot be assembled: joint 'A' has a gap of 2 (m or rad). Check lengths and places of the "
         "bodies that it connects; a first placement nearer to the closed position may be needed, or fewer driving "
         "coordinates",
     ),

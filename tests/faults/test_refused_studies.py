@@ -71,7 +71,7 @@ step = 2e-3
 OPEN = '[[model.joint]]\nkind = "RevoluteJoint"\nname = "second"\na = "ground(3, 0)"\nb = "bar.end"\n'
 CURVE = SLIDER + "[frequency_response]\nfrequencies = [0.1, 0.2]\n"
 REFUSED = {
-    "simulate: open": (SOLVED + OPEN + "[simulate]\nend = 1.0\n", "stays open by 1 (m or rad)"),
+    "simulate: open": (SOLVED + OPEN + "[simulate]\nend = 1.0\n", "has a gap of 1 (m or rad)"),
     "simulate: channel": (SOLVED + '[simulate]\nend = 1.0\nchannels = ["bar.end.q"]\n', "[simulate], channels: "),
     "simulate: memory": (SOLVED.replace("1 ms", "1e-13 s") + "[simulate]\nend = 1.0\n", "GB of memory"),
     "shooting: no states": (
@@ -139,7 +139,7 @@ REFUSED = {
         "'x' is the only channel",
     ),
     "work: channel": (SOLVED.partition("[solver]")[0] + WORK.replace("end.x", "end.q"), "[work_precision], channels: "),
-    "work: open": (SOLVED.partition("[solver]")[0] + OPEN + WORK, "stays open by 1 (m or rad)"),
+    "work: open": (SOLVED.partition("[solver]")[0] + OPEN + WORK, "has a gap of 1 (m or rad)"),
     "curve: dof": (CURVE + 'observe = ["n"]\n', "[frequency_response], observe: "),
     "curve: amplitude": (CURVE + 'amplitude = "harmonic 99"\n', "[frequency_response], amplitude: "),
     "curve: mode": (CURVE + "backbone = { amplitudes = [1.0], mode = 7 }\n", "mode"),

@@ -249,7 +249,7 @@ def check_steps(
         if lost:
             raise InputError(
                 f"the derivative of {place(lost.entry)} by {name!r} is {lost.by_step:.6g} by the complex step, but "
-                f"{lost.by_differences:.6g} by differences. A function of yours drops the imaginary part, as "
+                f"{lost.by_differences:.6g} by differences. A function of the model drops the imaginary part, as "
                 f"{DROPPING} do. {REMEDY}"
             )
         room = parameters.lower[column] - inside[column], parameters.upper[column] - inside[column]

@@ -187,7 +187,7 @@ def _close(bodies: Sequence[Body], lowered: Lowered, model: Model, free: np.ndar
         )
     worst = int(np.argmax(wide))
     raise ModelError(
-        f"the mechanism cannot be assembled: joint {structure.owners[structure.n + worst]!r} stays open by "
+        f"the mechanism cannot be assembled: joint {structure.owners[structure.n + worst]!r} has a gap of "
         f"{wide[worst]:.3g} (m or rad). Check lengths and places of the bodies that it connects; a first "
         "placement nearer to the closed position may be needed, or fewer driving coordinates"
     )

@@ -165,7 +165,7 @@ class ChannelFile(FileTable):
     lowpass: Annotated[float, Read(fixed("Hz"))] | None = Field(
         None, description="cutoff frequency of a low-pass filter without delay: '40 Hz'"
     )
-    decimate: int | None = Field(None, ge=2, description="keep every so manyth sample behind the low-pass filter")
+    decimate: int | None = Field(None, ge=2, description="keep every n-th sample after the low-pass filter")
 
     def of_file(self, **options: Any) -> "Measurements":
         """The channels of the file, filtered and decimated."""
@@ -207,7 +207,7 @@ class DataTable(ChannelFile):
         description="longest step of the times, or frequencies, that is no gap to derivatives and resample; 1.5 times "
         "the usual one if not given",
     )
-    every: int | None = Field(None, ge=1, description="keep every so manyth sample, without a filter")
+    every: int | None = Field(None, ge=1, description="keep every n-th sample, without a filter")
     resample: Annotated[Samples, WrapValidator(_along)] = Field(
         None, description="times, or frequencies, at which splines through the samples are taken"
     )

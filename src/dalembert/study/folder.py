@@ -198,7 +198,7 @@ class RunFolder:
             lock.acquire()
         except Timeout:
             raise InputError(
-                f"a run is going on in {self.path}; wait for it, stop it, or choose another folder with --out"
+                f"a run is active in {self.path}; wait for it, stop it, or choose another folder with --out"
             ) from None
         except OSError as error:
             raise unwritable(self._lock, error.strerror) from None
@@ -282,7 +282,7 @@ def _empty(folder: RunFolder, force: bool) -> None:
         raise InputError(f"{folder.path} holds files that are no run's; choose an empty or new folder with --out")
     state = folder.state()["state"]
     if not force:
-        resume = f"go on with it by 'dalembert resume {folder.path}', " if state in RESUMABLE else ""
+        resume = f"continue it by 'dalembert resume {folder.path}', " if state in RESUMABLE else ""
         raise InputError(
             f"{folder.path} holds a run ({state}); {resume}give --force to replace it, or choose another folder with "
             "--out"

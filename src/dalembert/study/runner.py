@@ -96,7 +96,7 @@ def resume_run(folder: RunFolder, *, listener: Listener | None = None, executor:
     """
     state = folder.state()
     if state["state"] == RUNNING:
-        raise InputError(f"{folder.path}: the run is going on; wait for it, or stop it")
+        raise InputError(f"{folder.path}: the run is active; wait for it, or stop it")
     if state["state"] == DAMAGED:
         raise folder.damaged(folder.path / "state.json")
     if state["state"] == FINISHED:

@@ -126,7 +126,7 @@ def test_samples_that_fail_have_a_reason_and_the_others_return(workers: int) -> 
         if code in REASONS:
             assert given.failures[row] == REASONS[code]
         elif code == 3:
-            assert given.failures[row].startswith("the mechanism cannot be assembled: joint 'far' stays open by ")
+            assert given.failures[row].startswith("the mechanism cannot be assembled: joint 'far' has a gap of ")
         elif code == 5:
             assert given.failures[row].startswith("Newton's iteration did not converge at t = ")
         else:

@@ -84,13 +84,13 @@ def test_a_run_of_another_version_is_not_resumed(stopped):
 
 def test_a_run_that_goes_on_is_not_resumed(stopped):
     stopped.set_state("running", version="")
-    with stopped.locked(), pytest.raises(InputError, match="the run is going on; wait for it, or stop it"):
+    with stopped.locked(), pytest.raises(InputError, match="the run is active; wait for it, or stop it"):
         resume_run(stopped)
 
 
 def test_the_folder_of_a_stopped_run_says_how_to_go_on(stopped):
     sentence = (
-        f"{stopped.path} holds a run (interrupted); go on with it by 'dalembert resume {stopped.path}', give --force "
+        f"{stopped.path} holds a run (interrupted); continue it by 'dalembert resume {stopped.path}', give --force "
         "to replace it, or choose another folder with --out"
     )
     with pytest.raises(InputError, match=says(sentence)):

@@ -213,7 +213,7 @@ def test_a_folder_at_work_is_left_alone(study):
         folder.set_state("running")
         assert folder.state()["state"] == "running"
         with pytest.raises(
-            InputError, match=r"^a run is going on in runs/decay; wait for it, stop it, or choose another"
+            InputError, match=r"^a run is active in runs/decay; wait for it, stop it, or choose another"
         ):
             run_study(load(study), folder.path, force=True)
     assert folder.state()["state"] == "killed"

@@ -137,7 +137,7 @@ def test_a_prior_in_the_file_enters_the_fit(write):
 def test_a_design_ranks_sensors_and_horizons(write):
     study = write(DESIGN)
     assert plan(study) == (
-        "ranks experiments that measure x, vx by what they would tell of rate, height, from one simulation with 2 "
+        "ranks experiments that measure x, vx by how well they would determine rate, height, from one simulation with 2 "
         "sensitivities"
     )
     folder, outcome = run_study(study)

@@ -56,7 +56,7 @@ class Validation:
             return f"{told}, those of the fit 0."
         ratio = self.misfit / self.fitted
         advice = (
-            "; the model lacks something that shows there, or the data that were fitted tell too little"
+            "; the model lacks something that shows there, or the fitted data do not determine all parameters"
             if ratio > WORSE
             else ""
         )

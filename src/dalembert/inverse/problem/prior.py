@@ -46,8 +46,8 @@ def check_priors(parameters: Parameters, known: bool) -> None:
     """
     for k in () if known else priors(parameters)[:1]:
         raise InputError(
-            f"parameter {parameters.names[k]!r} has a deviation, what is known of it before the data, but how exact "
-            "the data are is not known; give the data's deviations, or weights that are 1/variance"
+            f"parameter {parameters.names[k]!r} has a prior (its deviation), but the noise level of the data is not "
+            "known; give the data's deviations, or weights that are 1/variance"
         )
 
 

@@ -198,7 +198,7 @@ class OdeSolver(Integrator):
             return singular
         why = f"{message[0].lower()}{message[1:].rstrip('.')}" if message else "no reason was given"
         return SolveError(
-            f"OdeSolver: {self.method} could not go on at t = {time:.6g} s ({why}); if the model is stiff take an "
+            f"OdeSolver: {self.method} stopped at t = {time:.6g} s ({why}); if the model is stiff take an "
             "implicit method (Radau, BDF) or GeneralizedAlpha, else loosen relative_tolerance or start from another "
             "position: near a singular one the accelerations grow without bound"
         )

@@ -25,7 +25,7 @@ class BackboneTable(StudyTable):
         None, description="of the first harmonic of dof: a list, or a range"
     )
     between: Annotated[list[Annotated[float, Read(fixed("m"))]], Field(min_length=2, max_length=2)] | None = Field(
-        None, description="two amplitudes, from the first to the second past places where the amplitude turns back"
+        None, description="two amplitudes, from the first to the second past folds of the amplitude"
     )
     mode: int = Field(1, ge=1, description="number among the linear modes at rest, where loaded contacts stick")
     dof: str | None = Field(

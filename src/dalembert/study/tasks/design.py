@@ -63,7 +63,7 @@ class Design(Task):
         model = response(study)
         names = [channel.name for channel in model.channels]
         return (
-            f"ranks experiments that measure {', '.join(names)} by what they would tell of "
+            f"ranks experiments that measure {', '.join(names)} by how well they would determine "
             f"{', '.join(study.parameters.names)}, from one simulation with {len(study.parameters)} sensitivities"
         )
 

@@ -57,7 +57,7 @@ class FrequencyResponseTable(StudyTable):
     observe: list[str] | None = Field(
         None, min_length=1, description="degrees of freedom, nodes or sets whose motion is kept; 'm2' or 'm2.x'"
     )
-    dof: str | None = Field(None, description="whose peak is told; the first observed one if not given")
+    dof: str | None = Field(None, description="whose peak is reported; the first observed one if not given")
     amplitude: str = Field("peak", description="'peak', 'rms', or 'harmonic 1' and so on")
     stability: bool = Field(False, description="whether to find which points are stable, and where that changes")
     deformed: bool = Field(

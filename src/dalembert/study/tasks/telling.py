@@ -91,7 +91,7 @@ def foreseen(model: Any, data: Any) -> tuple[str, ...]:
     try:
         told = identifiability(model, data=data)
     except DalembertError as error:
-        return (f"What the data can tell could not be foreseen: {error}",)
+        return (f"Identifiability could not be computed in advance: {error}",)
     sentences = map(str, told.findings or (told,))
     rubbing = (item for item in findings_at(model, model.parameters.start) if item.code == "slip-rate")
     units = first_unit_findings(model, data)

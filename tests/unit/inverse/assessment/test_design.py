@@ -185,8 +185,8 @@ def test_a_prior_needs_data_whose_noise_is_known():
     box = {"offset": (-5.0, 5.0), "slope": Parameter("slope", -5.0, 5.0, deviation=0.1)}
     model = PythonModel(LINE.function, box, ["x", "y"], TIMES)
     sentence = (
-        "parameter 'slope' has a deviation, what is known of it before the data, but how exact the data are is not "
-        "known; give the data's deviations, or weights that are 1/variance"
+        "parameter 'slope' has a prior (its deviation), but the noise level of the data is not known; give the data's "
+        "deviations, or weights that are 1/variance"
     )
     with pytest.raises(InputError, match=says(sentence)):
         identify(model, measured(LINE, [1.0, -0.5], noise=0.1))

@@ -37,7 +37,7 @@ def test_a_model_that_lacks_something_predicts_worse_than_it_fits():
     assert str(fit.validation).startswith(
         f"Not fitted: the last 20 of 41 samples. There the weighted residuals are {fit.validation.misfit:.3g} in the "
         f"root mean square, {ratio:.3g} times those of the fit; the model lacks something that shows there, or the "
-        "data that were fitted tell too little."
+        "fitted data do not determine all parameters."
     )
 
 

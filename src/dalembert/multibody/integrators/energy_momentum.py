@@ -25,28 +25,28 @@ from dalembert.multibody.structure import Structure
 
 @dataclass(frozen=True)
 class EnergyMomentum(Variational):
-    """Energy and momenta to rounding: the constrained midpoint rule with Gonzalez's correction, of second order.
+    """Conserve energy and momenta to rounding: constrained midpoint rule with Gonzalez's correction, second order.
 
-    The step is that of :class:`Variational`. Beside it acts a small force c M v', with c such that the energy at the
-    end of each step is that of the start of the motion and the work that loads and losses have done in the middles of
-    the steps. v' are the velocities less the rigid motions that gravity and ground leave free, so the force does no
-    work on these, and the momenta of free mechanisms, and of those that turn about one point of the ground, stay to
-    rounding. The constraints hold at all three levels to rounding.
+    The step is that of :class:`Variational` with an additional small force c M v'. The number c makes the energy at the
+    end of each step equal to the initial energy plus the work of loads and losses at the midpoints of the steps. v' are
+    the velocities without the rigid motions that gravity and ground leave free. The force does no work on these, so
+    the momenta of free mechanisms, and of those that rotate about one point of the ground, are conserved to rounding.
+    The constraints on positions, velocities and accelerations are satisfied to rounding.
 
     Parameters
     ----------
     step : float
         Step in s.
     newton_tolerance : float
-        Of the coordinates at each step, relative to the way that they go in it; rounding by default, as constraints,
-        energy and derivatives need it.
+        Error of the coordinates at each step, relative to their change in the step. The default is rounding, which
+        constraints, energy and derivatives need.
 
     Notes
     -----
     O. Gonzalez, "Time integration and discrete Hamiltonian systems" (1996), section 3: the gradient of the midpoint and
-    a part along the motion that makes it exact in energy, here for forces and constraint forces together. Of the order
-    h^2, the force vanishes where nothing moves: at a standstill that falls on the middle of a step c would not be
-    defined; it is then zero, and the next steps make up for the energy.
+    a part along the motion that makes it exact in energy, here for forces and constraint forces together. The
+    force is of the order h^2. If all velocities at the midpoint of a step are zero, c is not defined; it is then set
+    to zero, and the next steps correct the energy.
 
     Examples
     --------

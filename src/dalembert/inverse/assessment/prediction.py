@@ -17,29 +17,34 @@ from dalembert.stored_fields import Labels, Over, Table
 
 @dataclass(frozen=True, eq=False)
 class Prediction(EndedResult):
-    """Bands of a response, sample by sample, of a given probability.
+    """Confidence bands of a response and of new measurements, as :func:`predict` returns them.
 
     Parameters
     ----------
     coordinate : Coordinate
+        Times in s, or frequencies in Hz, of the samples.
     channels, units : tuple of str
+        Names and SI units of the channels.
     response : array, shape (samples, channels)
-        At the identified values.
+        Response at the identified values, in the units of the channels.
     deviations : array, shape (samples, channels)
         Standard deviations of the response, from those of the parameters; NaN from where a band ends.
     noise : array, shape (channels,)
         Standard deviation of a measurement; NaN for channels that were not measured.
     data : Measurements or None
-        What was fitted.
+        The fitted data.
     level : float
+        Probability of the bands, between 0 and 1.
     quantile : float
-        Deviations on either side.
+        Half width of a band, in standard deviations.
     known : bool
         Whether the noise was known, or estimated from the residuals.
     simulations : int
+        Number of simulations.
     provenance : mapping
+        Versions of the programs, and the time of the computation.
     findings : tuple of Finding
-        What the method concludes about the result.
+        Conclusions of the method about the result.
     """
 
     FORMAT: ClassVar[str] = "dalembert prediction 1"

@@ -24,17 +24,17 @@ def identifiability(
     data: Measurements | None = None,
     deviations: Mapping[str, float] | ArrayLike | None = None,
 ) -> Identifiability:
-    """What measurements can tell about the parameters, from one run with its sensitivities.
+    """Return which parameters measurements determine, from one run with its sensitivities.
 
     Parameters
     ----------
     model : ForwardModel
     at : mapping by name, or array of shape (parameters,), optional
-        Where to look; the first guesses if not given. What the data tell may be different elsewhere.
+        Values of the parameters; the first guesses if not given. The result holds near these values.
     data : Measurements, optional
-        Data that are there already: their channels, gaps and deviations count, their values do not.
+        Existing data. Only their channels, gaps and deviations are used, not their values.
     deviations : number, mapping by channel, or array of shape (channels,), optional
-        Standard deviations of the noise of data that are not there yet; a mapping names the channels that will be.
+        Standard deviations of the noise of future data, in SI units; a mapping names the measured channels.
 
     Returns
     -------

@@ -37,12 +37,15 @@ class Trajectory:
     Parameters
     ----------
     system : System
+        The mechanism.
     lowered : Lowered
+        Its arrays, which kernels take.
     solver : Integrator
+        The integrator with its settings.
     run : Run
-        At the output times and, where there is room, at every step.
+        States at the output times and, if they fit into memory, at every step.
     rows : array of int, shape (samples,)
-        Of the output times among those of the run.
+        Indices of the output times among the times of the run.
     """
 
     system: System

@@ -365,7 +365,7 @@ def _check_shooting(method: Squares | Method, validation: object) -> None:
         )
     if validation is not None:
         raise InputError(
-            "shooting: validation was given; a motion that forgets its beginning cannot be predicted; leave one out"
+            "shooting: validation was given, but a chaotic motion cannot be predicted; leave one of the two out"
         )
 
 

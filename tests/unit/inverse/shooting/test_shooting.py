@@ -225,7 +225,7 @@ def test_simulations_of_all_fits_are_counted_as_runs_over_all_samples():
         ),
         (
             {"validation": 0.25},
-            "shooting: validation was given; a motion that forgets its beginning cannot be predicted; leave one out",
+            "shooting: validation was given, but a chaotic motion cannot be predicted; leave one of the two out",
         ),
     ],
 )

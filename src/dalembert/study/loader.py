@@ -131,7 +131,7 @@ def _with_model_file(document: dict[str, Any], context: Context, path: Path) -> 
     for table in shared:
         if table not in ("model", "constants"):
             raise InputError(
-                f"{given}: [{table}] stands in a model file; expected [model] and [constants] there, "
+                f"{given}: [{table}] is in a model file; expected [model] and [constants] there, "
                 "and the rest in the study file"
             )
     if "file" in _table(shared, "model") or "model" not in shared:

@@ -211,9 +211,9 @@ def read_uff(
 ) -> Measurements:
     """Measurements from a universal file, its functions at nodes (dataset 58); the arguments are those of :func:`read`.
 
-    Functions over frequency give measurements along a frequency in Hz. Functions of which the file says that they are
-    not in SI units are refused until ``units`` names their unit, since that is free text there. An evenly spaced
-    abscissa is stored with six digits of its distance.
+    Functions over frequency give measurements along a frequency in Hz. If the file
+    declares that a function is not in SI units, it is refused until ``units`` gives its unit, because the file states
+    units only as free text. The file stores an evenly spaced abscissa by its spacing, with six digits.
     """
     return read(path, "t", columns, deviations, format="uff", **more)
 

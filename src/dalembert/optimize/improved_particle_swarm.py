@@ -31,11 +31,11 @@ class ImprovedParticleSwarm(Swarm):
     groups : (int, int, int), optional
         Particles a group; the published 30, 5, 5 for 40 particles, and an eighth each in groups 2 and 3 for others.
     c1, c2, c3 : float
-        Pull towards own best, best of all, and the quality set.
+        Weights of the steps towards the particle's best, the best of all, and the quality set.
     alpha : float
         Reach of group 2's jumps.
     inertia : (float, float)
-        First value and value after the last iteration.
+        First value ω, and value after the last iteration; t is the number of the iteration.
     velocity_limit : float
         The published 1/100.
     span : {"bound", "width"}
@@ -49,7 +49,7 @@ class ImprovedParticleSwarm(Swarm):
     The velocity limit is published as ±X_max/100. X_max is read as the largest position that a parameter can take,
     the larger absolute bound (``span="bound"``); ``span="width"`` reads it as upper − lower. Random numbers are drawn
     for each particle and parameter, the random parts of the quality set for each particle. While the quality set is
-    empty, what needs it is left out: group 1 goes without its third pull, and group 3 moves as group 1.
+    empty, group 1 moves without its third term, and group 3 moves as group 1.
 
     Source: Guo & Jin, Inverse dynamical problem of flexible multibody systems with interval uncertainty, 2025.
 

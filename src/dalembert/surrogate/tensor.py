@@ -29,7 +29,7 @@ class Tensor(Checked):
     Raises
     ------
     InputError
-        For an order below 1, or as many orders as there are no directions.
+        For an order below 1, or if the number of orders is not that of directions.
     SolveError
         From a fit that would take more than a million runs.
 

@@ -42,7 +42,7 @@ class Prediction(EndedResult):
     simulations : int
         Number of simulations.
     provenance : mapping
-        Versions of the programs, and the time of the computation.
+        Versions of the programs, hashes of model and data, and settings.
     findings : tuple of Finding
         Conclusions of the method about the result.
     """

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 
 from dalembert.inverse import ExperimentFit
-from dalembert.study.experiments import posed
 from dalembert.study.folder import RunFolder
+from dalembert.study.posing import posed
 
 
 def fit_so_far(run: Path, values: list[float]) -> dict[str, Any] | None:

@@ -14,11 +14,11 @@ from dalembert.forward import Checkpoint, Executor, ForwardModel, Recorded, on_c
 from dalembert.parameters import Parameters
 from dalembert.study.builder import FunctionBuilder, SystemBuilder
 from dalembert.study.data_table import DataTable
-from dalembert.study.experiments import measured_channels
+from dalembert.study.experiments import ExperimentTable, measured_channels
 from dalembert.study.inputs import InputTable, MeasuredInput
 from dalembert.study.parameters import ParameterTable
-from dalembert.study.schema import StudyFile
 from dalembert.study.structure_builder import StructureBuilder
+from dalembert.study.study_file import StudyFile
 from dalembert.study.table import StudyTable, placed
 
 if TYPE_CHECKING:
@@ -148,9 +148,16 @@ class Study:
     def inputs(self) -> "dict[str, MeasuredInput]":
         """The measured inputs, by name."""
         if self.beside is None and self.file.experiments and self.file.inputs:
-            return self.file.experiments[0].variant(self).inputs
+            return self.variant(self.file.experiments[0]).inputs
         beside = self.beside or self.file.data
         return {name: table.read(name, beside) for name, table in self.file.inputs.items()}
+
+    def variant(self, table: ExperimentTable) -> "Study":
+        """The study as it is in one of its experiments."""
+        shared = self.file.inputs
+        inputs = {**shared, **{name: own.over(shared[name]) for name, own in table.inputs.items()}}
+        varied = self.varied(table.constants, table.arguments, table.parameters(self.file.parameters))
+        return varied.driven(inputs, table)
 
     def driven(self, inputs: "Mapping[str, InputTable]", beside: DataTable) -> "Study":
         """The same study with other inputs, which are in the file of other data where they name none."""

@@ -7,7 +7,7 @@ from scipy.interpolate import make_interp_spline
 from dalembert.errors import DataError, InputError
 from dalembert.inverse import Prediction
 from dalembert.study import load, plan, report_run, run_study
-from dalembert.study.experiments import posed
+from dalembert.study.posing import posed
 from dalembert.study.runner import unknowns
 from pages import read_page
 

@@ -8,7 +8,7 @@ import pytest
 import dalembert.multibody as mb
 from dalembert.errors import DalembertError, DataError, InputError
 from dalembert.study import load, run_study
-from dalembert.study.experiments import posed
+from dalembert.study.posing import posed
 from dalembert.study.runner import plan
 
 TIMES = np.linspace(0.0, 1.0, 201)

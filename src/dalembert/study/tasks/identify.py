@@ -15,8 +15,9 @@ from dalembert.optimize.minimiser import NAMES as MINIMISERS
 from dalembert.study.catalogue import methods
 from dalembert.study.components import one_of, table_of
 from dalembert.study.events import teller
-from dalembert.study.experiments import measured_channels, posed, unknown_names
+from dalembert.study.experiments import measured_channels
 from dalembert.study.numbers import fixed
+from dalembert.study.posing import posed, unknown_names
 from dalembert.study.table import Read, StudyTable, checked
 from dalembert.study.tasks import telling
 from dalembert.study.tasks.shooting import Shooting, ShootingTable
@@ -212,7 +213,7 @@ class Identification(Outcome):
         found = {}
         for table, item in list(zip(study.file.experiments, fit.experiments, strict=True))[:MOST_MOTIONS]:
             names = [f"{table.name}.{name}" if name in table.own else name for name in study.parameters.names]
-            variant = table.variant(study)
+            variant = study.variant(table)
             values = np.array([fit.estimates[name] for name in names])
             found[table.name] = variant.motion(float(item.data.coordinate.values[-1]), values)
         return found

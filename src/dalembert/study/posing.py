@@ -1,0 +1,105 @@
+"""The models and data that a study makes of its data, experiments and sensors."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from dalembert.errors import DataError
+from dalembert.forward import ForwardModel, Sensor, Sensors
+from dalembert.forward.sensors import QUANTITIES, START
+from dalembert.parameters import Parameter
+from dalembert.study.data_table import DataTable
+from dalembert.study.study import Study
+
+if TYPE_CHECKING:
+    from dalembert.data import Measurements
+    from dalembert.inverse import Experiment
+
+MOST_SAMPLES = 20_000
+"""Samples of a motion between which sensors interpolate, at most; as many as steps if those are fewer."""
+
+LATE = 10
+"""Steps of a record before its first sample from which it must say where the motion begins."""
+
+
+def unknown_names(study: Study) -> tuple[str, ...]:
+    """Names of the parameters of the model, of sensors, and of single experiments, in the order of the fit."""
+    file = study.file
+    if file.data is not None:
+        return (*study.parameters.names, *_of_readings(file, file.data))
+    names = {}
+    for table in file.experiments:
+        for name in (*study.parameters.names, *_of_readings(file, table)):
+            names[f"{table.name}.{name}" if name in table.alone else name] = None
+    return tuple(names)
+
+
+def _of_readings(file: Any, table: DataTable) -> list[str]:
+    """Names of the parameters of the sensors of some data, and of the time at which the motion begins."""
+    start = table.unknown_start
+    return [
+        *(
+            f"{channel} {what}"
+            for channel, sensor in file.sensors.items()
+            if channel in table.channels
+            for what in QUANTITIES
+            if (bounds := getattr(sensor, what)) is not None and bounds[0] < bounds[1]
+        ),
+        *([START] if start is not None and not start.is_fixed else []),
+    ]
+
+
+def posed(study: Study) -> "tuple[ForwardModel | list[Experiment], Measurements | None]":
+    """Model and data of a study, or its experiments and None: the first arguments of ``identify``."""
+    from dalembert.inverse import Experiment
+
+    states = getattr(getattr(study.table, "shooting", None), "states", None) or {}
+    later = tuple(state.channel for state in states.values())
+    if study.file.data is not None:
+        data = study.data()
+        return _model(study, data, study.file.data, later), data
+    experiments = []
+    for table in study.file.experiments:
+        data, variant = table.read(), study.variant(table)
+        experiments.append(Experiment(table.name, _model(variant, data, table, later), data, table.alone))
+    return experiments, None
+
+
+def _model(study: Study, data: "Measurements", table: DataTable, later: Sequence[str] = ()) -> ForwardModel:
+    """The model at the samples of data, seen by the sensors that there are; with channels that are states later."""
+    sensors = {name: table.sensor for name, table in study.file.sensors.items() if name in data.channels}
+    stamps, start = data.coordinate.values, table.unknown_start
+    if study.has_system and start is None:
+        _refuse_late(table, data)
+    if not sensors and start is None:
+        return study.forward(tuple(dict.fromkeys((*data.channels, *later))), stamps)
+    samples = _fine(study, stamps, sensors, start) if study.has_system else stamps
+    return Sensors(study.forward(data.channels, samples), sensors, stamps, start)
+
+
+def _refuse_late(table: DataTable, data: "Measurements") -> None:
+    """Refuse a record that begins late, and of which nobody says when the motion began.
+
+    Raises
+    ------
+    DataError
+    """
+    stamps = data.coordinate.values
+    if table.start is not None or table.between is not None or len(stamps) < 2:
+        return
+    steps = [np.diff(stamps[rows]) for rows in data.taken.T]
+    if stamps[0] > LATE * max(np.median(own) if len(own) else 0.0 for own in steps):
+        raise DataError(
+            f"{table.file}, column {table.time!r}: the times begin at {stamps[0]:.6g} s, and a motion begins at 0. If "
+            "it begins with the record, give start = 'first'; if it began at 0 s of the file, give start = 0"
+        )
+
+
+def _fine(study: Study, stamps: np.ndarray, sensors: dict[str, Sensor], start: Parameter | None = None) -> np.ndarray:
+    """Times of the solver's steps until the last reading, every so manyth of them where they are very many."""
+    least = min((sensor.delay[0] for sensor in sensors.values() if isinstance(sensor.delay, tuple)), default=0.0)
+    end = float(stamps[-1]) - min(0.0, least) - (0.0 if start is None else start.lower)
+    step = getattr(study.solver, "step", None) or end / 2000
+    apart = step * np.ceil(end / step / MOST_SAMPLES)
+    return apart * np.arange(np.ceil(end / apart - 1e-9) + 1)

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Annotated, Any
 
-from pydantic import Field, ValidationError, model_validator
+from pydantic import Field, ValidationError
 
 from dalembert.errors import DataError, unknown
 from dalembert.forward import Sensor
@@ -27,8 +27,7 @@ class SensorTable(StudyTable):
     offset: Bounds | None = Field(None, description="in the channel's unit")
     at_rest: bool = Field(False, description="whether the channel rests at its first value before the motion begins")
 
-    @model_validator(mode="after")
-    def _check(self) -> "SensorTable":
+    def _wrong(self) -> list[str]:
         given = {what: getattr(self, what) for what in QUANTITIES if getattr(self, what) is not None}
         wrong = [
             f"{what} is between {lower:g} and {upper:g}; expected the lower bound first"
@@ -39,9 +38,7 @@ class SensorTable(StudyTable):
             wrong.append(f"lag may be {self.lag[0]:g} s; expected bounds of zero or more")
         if not given:
             wrong.append("none of delay, lag, gain and offset is given; expected bounds of at least one")
-        if wrong:
-            raise problem(*wrong)
-        return self
+        return wrong
 
     @property
     def sensor(self) -> Sensor:

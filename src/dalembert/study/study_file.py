@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar
 
-from pydantic import AfterValidator, BeforeValidator, Field, PlainValidator, WithJsonSchema, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field, PlainValidator, WithJsonSchema
 
 from dalembert.study.data_table import BandsTable, DataTable
 from dalembert.study.experiments import ExperimentTable, SensorTable, expanded, wrong_experiments
@@ -46,8 +46,7 @@ class StudyFile(StudyTable):
     inputs: dict[str, InputTable] = Field({}, description="measured inputs that drive the model, by name")
     sensors: dict[str, SensorTable] = Field({}, description="what is not known of the sensors, by channel")
 
-    @model_validator(mode="after")
-    def _check(self) -> "StudyFile":
+    def _wrong(self) -> list[str]:
         both = sorted(set(self.parameters) & set(self.constants))
         if both:
             raise problem(f"{', '.join(both)} is both a parameter and a constant; give each name once")
@@ -58,15 +57,12 @@ class StudyFile(StudyTable):
                 f"{given}; a study has one task, one of {', '.join(f'[{name}]' for name in self.known_tasks)}"
             )
         (name,) = self.tasks
-        wrong = [
+        return [
             *wrong_experiments(self),
             *wrong_inputs(self),
             *_wrong_settings(self),
             *self.known_tasks[name].wrong(self),
         ]
-        if wrong:
-            raise problem(*wrong)
-        return self
 
     @property
     def vibrates(self) -> bool:

@@ -3,7 +3,7 @@
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from dalembert.study.duration import Effort, whole
 from dalembert.study.events import Emit
@@ -28,14 +28,13 @@ class BackboneTable(StudyTable):
         None, description="by which the amplitude is measured; the one that moves most if not given"
     )
 
-    @model_validator(mode="after")
-    def _check(self) -> "BackboneTable":
+    def _wrong(self) -> list[str]:
         if (self.amplitudes is None) == (self.between is None):
             given = "neither amplitudes nor between is" if self.between is None else "amplitudes and between are both"
             raise problem(f"{given} given; expected one of them")
         if not min(self.given) > 0:
             raise problem(f"the amplitude {min(self.given):g} m was given; expected positive ones")
-        return self
+        return []
 
     @property
     def given(self) -> tuple[float, ...]:

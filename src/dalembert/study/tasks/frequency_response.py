@@ -6,14 +6,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
-from pydantic import Field, create_model, model_validator
+from pydantic import Field, create_model
 
 from dalembert.errors import DalembertError, InputError, unknown
 from dalembert.study.duration import Effort, whole
 from dalembert.study.events import Emit
 from dalembert.study.numbers import fixed, samples
 from dalembert.study.study import Study
-from dalembert.study.table import Read, StudyTable, placed, problem
+from dalembert.study.table import Read, StudyTable, placed
 from dalembert.study.tasks import beside_curve
 from dalembert.study.tasks.backbone import BackboneTable
 from dalembert.study.tasks.beside_curve import beside, beside_family, compare_in_time_table
@@ -66,8 +66,7 @@ class FrequencyResponseTable(StudyTable):
     backbone: BackboneTable | None = Field(None, description="a nonlinear mode beside the curve")
     sweep: FamilyTable | None = Field(None, description="a curve for each value of a parameter")
 
-    @model_validator(mode="after")
-    def _check(self) -> "FrequencyResponseTable":
+    def _wrong(self) -> list[str]:
         wrong = []
         if (self.frequencies is None) == (self.between is None):
             given = "neither frequencies nor between is" if self.between is None else "frequencies and between are both"
@@ -81,9 +80,7 @@ class FrequencyResponseTable(StudyTable):
                 break
         if ends[0] == ends[1]:
             wrong.append(f"between: {ends[0]:g} Hz was given twice; expected two different frequencies")
-        if wrong:
-            raise problem(*wrong)
-        return self
+        return wrong
 
     @property
     def along(self) -> Any:

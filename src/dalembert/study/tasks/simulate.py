@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from dalembert.study.duration import Effort, shortest_of
 from dalembert.study.events import Emit
@@ -26,15 +26,14 @@ class SimulateTable(StudyTable):
     channels: list[str] = Field([], description="what the result keeps: 'AB.end.x'; every channel if not given")
     points: list[str] = Field([], description="points whose paths the report draws: 'AB.end'")
 
-    @model_validator(mode="after")
-    def _check(self) -> "SimulateTable":
+    def _wrong(self) -> list[str]:
         if self.end is None and self.times is None:
             raise problem("neither end nor times is given; expected one of them")
         if self.end is not None and self.end <= 0:
             raise problem(f"end is {self.end:g} s; expected a time after 0")
         if self.end is not None and self.times is not None and self.times[-1] > self.end:
             raise problem(f"the last of times is {self.times[-1]:g} s, after end = {self.end:g} s")
-        return self
+        return []
 
     @property
     def last(self) -> float:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Annotated, Any, Self
 
 import numpy as np
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import Discriminator, Field, Tag
 
 from dalembert.errors import InputError, StorageError, require_known, told
 from dalembert.files import replacing
@@ -45,11 +45,10 @@ class SweepTable(StudyTable):
         min_length=1, description="values of each parameter: { count = 41 } between its bounds, a list, or a range"
     )
 
-    @model_validator(mode="after")
-    def _check(self) -> "SweepTable":
+    def _wrong(self) -> list[str]:
         if len(set(self.channels)) < len(self.channels):
             raise problem("channels are repeated; give each once")
-        return self
+        return []
 
 
 @dataclass(frozen=True, eq=False)

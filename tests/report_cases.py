@@ -214,7 +214,7 @@ def _study(text: str, model: str) -> Callable[[Path], Any]:
     def make(folder: Path) -> Any:
         (folder / "model.py").write_text(model)
         (folder / "study.toml").write_text(text)
-        return run_study(load(folder / "study.toml"), folder / "run")[1]
+        return run_study(load(folder / "study.toml"), folder / "run")[1].result
 
     return make
 

@@ -47,8 +47,7 @@ _NAMES = {
         patched_plate plate read_structure similarity solid tie write_structure
     """,
     "data": """
-        Bands Measurements derivative merged read read_bands read_csv read_mat read_netcdf read_parquet read_trials
-        read_uff
+        Bands Measurements derivative merged read read_bands read_trials
     """,
     "inverse": """
         BandFit Designs Experiment Fit GlobalSurrogate MultipleShooting Nested ParameterSet Prediction Profiles

@@ -23,12 +23,7 @@ from dalembert.data import derivative as derivative
 from dalembert.data import merged as merged
 from dalembert.data import read as read
 from dalembert.data import read_bands as read_bands
-from dalembert.data import read_csv as read_csv
-from dalembert.data import read_mat as read_mat
-from dalembert.data import read_netcdf as read_netcdf
-from dalembert.data import read_parquet as read_parquet
 from dalembert.data import read_trials as read_trials
-from dalembert.data import read_uff as read_uff
 from dalembert.elementary import absolute as absolute
 from dalembert.elementary import atan2 as atan2
 from dalembert.elementary import hypot as hypot

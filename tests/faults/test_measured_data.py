@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dalembert.data import Bands, Measurements, read, read_bands, read_csv
+from dalembert.data import Bands, Measurements, read, read_bands
 from dalembert.errors import DataError
 from dalembert.forward import PythonModel
 from dalembert.inverse import identify
@@ -144,14 +144,14 @@ def test_a_defect_of_a_file_is_told_with_file_line_and_column(defect, tmp_path):
     path = tmp_path / "motion.csv"
     path.write_text(text)
     with pytest.raises(DataError) as error:
-        read_csv(path, **options)
+        read(path, format="csv", **options)
     assert str(error.value) == sentence.format(path=path)
 
 
 def test_a_file_that_is_not_there_is_answered_with_its_neighbours(tmp_path):
     (tmp_path / "motion.csv").touch()
     with pytest.raises(DataError) as error:
-        read_csv(tmp_path / "motions.csv")
+        read(tmp_path / "motions.csv")
     assert str(error.value) == f"folder {tmp_path}: unknown file 'motions.csv'; did you mean 'motion.csv'?"
 
 
@@ -160,7 +160,7 @@ def test_a_file_that_is_no_text_is_told(content, tmp_path):
     path = tmp_path / "motion.csv"
     path.write_bytes(content)
     with pytest.raises(DataError) as error:
-        read_csv(path)
+        read(path, format="csv")
     assert str(error.value) == f"{path}: the file is not text; give its format, or save it as UTF-8 text"
 
 
@@ -199,7 +199,7 @@ def test_a_defect_of_a_json_file_is_told(defect, tmp_path):
 
 def test_a_folder_is_no_file_of_data(tmp_path):
     with pytest.raises(DataError) as error:
-        read_csv(tmp_path)
+        read(tmp_path, format="csv")
     assert str(error.value).startswith(f"{tmp_path}: cannot be read as text with columns (")
 
 

@@ -222,10 +222,10 @@ def test_a_study_has_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None
     study = written(tmp_path, SWEEP + SWEPT)
     assert study.parameters.names == ("length",)
     assert study.settings["parameters"]["mass"]["lower"] == 3.0
-    found = run_study(study)[1].curves[0]  # type: ignore[attr-defined]
+    found = run_study(study)[1].result.curves[0]
     line = next(line for line in SWEEP.splitlines() if line.startswith("mass = {"))
     plain = written(tmp_path, (SWEEP + SWEPT).replace(line, "").replace('"mass"', "3.0"))
-    expected = run_study(plain, force=True)[1].curves[0]  # type: ignore[attr-defined]
+    expected = run_study(plain, force=True)[1].result.curves[0]
     assert np.array_equal(found.sensitivities, expected.sensitivities)
     assert np.abs(found.responses).min() > 1.0  # J
 

@@ -6,7 +6,7 @@ from dalembert.data.columns import Columns
 from dalembert.data.derivative import Derivative, derivative
 from dalembert.data.format import Format, Request
 from dalembert.data.measurements import Measurements, merged
-from dalembert.data.readers import read, read_csv, read_mat, read_netcdf, read_parquet, read_trials, read_uff
+from dalembert.data.readers import read, read_trials
 
 __all__ = [
     "Bands",
@@ -19,10 +19,5 @@ __all__ = [
     "merged",
     "read",
     "read_bands",
-    "read_csv",
-    "read_mat",
-    "read_netcdf",
-    "read_parquet",
     "read_trials",
-    "read_uff",
 ]

@@ -78,6 +78,15 @@ def read(
         missing (with the nearest names) or has another length than the times, a value that is no finite number, a
         time that does not grow, an unknown unit, a library that is not installed.
 
+    Notes
+    -----
+    Times in a Parquet file may be dates: they become seconds since the first. Tables and timeseries of MATLAB cannot be
+    read by anything else: save their columns as vectors.
+
+    Functions over frequency of a universal file give measurements along a frequency in Hz. Functions of which the file
+    says that they are not in SI units are refused until ``units`` names their unit, since that is free text there. An
+    evenly spaced abscissa is stored with six digits of its distance.
+
     Examples
     --------
     >>> from tempfile import TemporaryDirectory
@@ -87,6 +96,14 @@ def read(
     ...     data = read(file, "ms", {"AB.end.x": "x"}, units={"ms": "ms", "x": "mm"})
     >>> data.coordinate.values.tolist(), data.values.tolist()
     ([0.0, 0.1], [[1.0], [0.9]])
+
+    >>> from scipy.io import savemat
+    >>> with TemporaryDirectory() as folder:
+    ...     savemat(Path(folder) / "run.mat", {"run": {"time": [0.0, 0.1], "angle": [[45.0, 30.0], [90.0, 20.0]]}})
+    ...     columns = {"crank.angle": "run.angle(:,1)"}
+    ...     data = read(Path(folder) / "run.mat", "run.time", columns, units={"run.angle(:,1)": "deg"})
+    >>> data.values.round(4).tolist()
+    [[0.7854], [1.5708]]
     """
     path = Path(path)
     names = None if columns is None else tuple(columns.values())
@@ -129,104 +146,3 @@ def read_trials(path: str | Path, split: str | int, *arguments: Any, **options: 
     options = {"start": FIRST, **options}
     labels = trial_labels(Path(path), split, **marks)
     return {label: read(path, *arguments, trial=(split, label), **options) for label in labels}
-
-
-def read_csv(
-    path: str | Path,
-    time: str | int = "t",
-    columns: Mapping[str, str | int] | None = None,
-    deviations: Mapping[str, float] | ArrayLike | None = None,
-    *,
-    separator: str = AUTO,
-    decimal: str = AUTO,
-    units: Mapping[str, str] | None = None,
-    missing: str = "refuse",
-    wraps: Iterable[str] = (),
-) -> Measurements:
-    """Measurements from a text file with columns, whatever its suffix; the arguments are those of :func:`read`.
-
-    Raises
-    ------
-    DataError
-        Naming file, line and column: no such file, empty file, missing column (with the nearest names), a cell that is
-        empty, NaN or not a number, a line too short or too long, a time that does not grow.
-
-    Examples
-    --------
-    >>> from tempfile import TemporaryDirectory
-    >>> with TemporaryDirectory() as folder:
-    ...     file = Path(folder) / "motion.csv"
-    ...     _ = file.write_text("t,x\\n0.0,1.0\\n0.1,0.9\\n")
-    ...     read_csv(file, columns={"AB.end.x": "x"}).values.tolist()
-    [[1.0], [0.9]]
-    """
-    more: dict[str, Any] = {"units": units, "missing": missing, "wraps": wraps}
-    return read(path, time, columns, deviations, format="csv", separator=separator, decimal=decimal, **more)
-
-
-def read_parquet(
-    path: str | Path,
-    time: str | int = "t",
-    columns: Mapping[str, str | int] | None = None,
-    deviations: Mapping[str, float] | ArrayLike | None = None,
-    **more: Any,
-) -> Measurements:
-    """Measurements from a Parquet file; the arguments are those of :func:`read`.
-
-    Times may be dates: they become seconds since the first.
-    """
-    return read(path, time, columns, deviations, format="parquet", **more)
-
-
-def read_mat(
-    path: str | Path,
-    time: str | int = "t",
-    columns: Mapping[str, str | int] | None = None,
-    deviations: Mapping[str, float] | ArrayLike | None = None,
-    **more: Any,
-) -> Measurements:
-    """Measurements from a MAT file of MATLAB, version 5 or 7.3; the arguments are those of :func:`read`.
-
-    Tables and timeseries of MATLAB cannot be read by anything else: save their columns as vectors.
-
-    Examples
-    --------
-    >>> from tempfile import TemporaryDirectory
-    >>> from scipy.io import savemat
-    >>> with TemporaryDirectory() as folder:
-    ...     savemat(Path(folder) / "run.mat", {"run": {"time": [0.0, 0.1], "angle": [[45.0, 30.0], [90.0, 20.0]]}})
-    ...     columns = {"crank.angle": "run.angle(:,1)"}
-    ...     data = read_mat(Path(folder) / "run.mat", "run.time", columns, units={"run.angle(:,1)": "deg"})
-    >>> data.values.round(4).tolist()
-    [[0.7854], [1.5708]]
-    """
-    return read(path, time, columns, deviations, format="mat", **more)
-
-
-def read_uff(
-    path: str | Path,
-    columns: Mapping[str, str] | None = None,
-    deviations: Mapping[str, float] | ArrayLike | None = None,
-    **more: Any,
-) -> Measurements:
-    """Measurements from a universal file, its functions at nodes (dataset 58); the arguments are those of :func:`read`.
-
-    Functions over frequency give measurements along a frequency in Hz. If the file
-    declares that a function is not in SI units, it is refused until ``units`` gives its unit, because the file states
-    units only as free text. The file stores an evenly spaced abscissa by its spacing, with six digits.
-    """
-    return read(path, "t", columns, deviations, format="uff", **more)
-
-
-def read_netcdf(
-    path: str | Path,
-    time: str | int = "t",
-    columns: Mapping[str, str | int] | None = None,
-    deviations: Mapping[str, float] | ArrayLike | None = None,
-    **more: Any,
-) -> Measurements:
-    """Measurements from a NetCDF file, version 3 or 4; the arguments are those of :func:`read`.
-
-    What the attribute ``units`` of a variable says is converted to SI.
-    """
-    return read(path, time, columns, deviations, format="netcdf", **more)

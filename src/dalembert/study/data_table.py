@@ -14,7 +14,6 @@ from pydantic import (
     ValidatorFunctionWrapHandler,
     WithJsonSchema,
     WrapValidator,
-    model_validator,
 )
 
 from dalembert.arguments import is_whole
@@ -131,10 +130,9 @@ class StartTable(StudyTable):
     upper: Annotated[float, Read(fixed("s"))]
     start: Annotated[float, Read(fixed("s"))] | None = None
 
-    @model_validator(mode="after")
-    def _check(self) -> "StartTable":
+    def _wrong(self) -> list[str]:
         checked(lambda: self.parameter)
-        return self
+        return []
 
     @property
     def parameter(self) -> Parameter:
@@ -212,8 +210,7 @@ class DataTable(ChannelFile):
         None, description="times, or frequencies, at which splines through the samples are taken"
     )
 
-    @model_validator(mode="after")
-    def _check(self) -> "DataTable":
+    def _wrong(self) -> list[str]:
         wrong = [
             unknown("channel", name, file.columns, "wraps")
             for file in (self, *self.more)
@@ -237,9 +234,7 @@ class DataTable(ChannelFile):
             wrong.append("every is given with more; give decimate for each file, whose time stamps differ")
         thinned = [name for name in ("decimate", "every", "resample") if getattr(self, name) is not None]
         wrong += [f"{one} and {other} are both given; expected one of them" for one, other in pairwise(thinned)]
-        if wrong:
-            raise problem(*wrong)
-        return self
+        return wrong
 
     @property
     def channels(self) -> tuple[str, ...]:

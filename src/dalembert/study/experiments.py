@@ -1,9 +1,9 @@
-"""The tables of several experiments and of sensors."""
+"""The tables of several experiments and of sensors, and that they fit to the rest of the file."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
-from pydantic import Field, ValidationError, model_validator
+from pydantic import Field, ValidationError
 
 from dalembert.errors import DataError, unknown
 from dalembert.forward import Sensor
@@ -13,9 +13,6 @@ from dalembert.study.inputs import InputTable
 from dalembert.study.numbers import fixed
 from dalembert.study.parameters import OwnParameterTable, ParameterTable
 from dalembert.study.table import Name, Read, StudyTable, problem
-
-if TYPE_CHECKING:
-    pass
 
 TimeBounds = Annotated[list[Annotated[float, Read(fixed("s"))]], Field(min_length=2, max_length=2)]
 Bounds = Annotated[list[Annotated[float, Read(fixed(None))]], Field(min_length=2, max_length=2)]
@@ -30,8 +27,7 @@ class SensorTable(StudyTable):
     offset: Bounds | None = Field(None, description="in the channel's unit")
     at_rest: bool = Field(False, description="whether the channel rests at its first value before the motion begins")
 
-    @model_validator(mode="after")
-    def _check(self) -> "SensorTable":
+    def _wrong(self) -> list[str]:
         given = {what: getattr(self, what) for what in QUANTITIES if getattr(self, what) is not None}
         wrong = [
             f"{what} is between {lower:g} and {upper:g}; expected the lower bound first"
@@ -42,9 +38,7 @@ class SensorTable(StudyTable):
             wrong.append(f"lag may be {self.lag[0]:g} s; expected bounds of zero or more")
         if not given:
             wrong.append("none of delay, lag, gain and offset is given; expected bounds of at least one")
-        if wrong:
-            raise problem(*wrong)
-        return self
+        return wrong
 
     @property
     def sensor(self) -> Sensor:

@@ -28,6 +28,16 @@ WRITTEN = (RUNNING, FINISHED, FAILED, INPUT, INTERRUPTED)
 RESUMABLE = (KILLED, INTERRUPTED, FAILED)
 
 
+class _File:
+    """The path of a file in a run's folder, as an attribute of the folder."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+
+    def __get__(self, folder: "RunFolder", owner: type) -> Path:
+        return folder.path / self._name
+
+
 @dataclass(frozen=True)
 class RunFolder:
     """A run's folder and the files in it.
@@ -39,34 +49,16 @@ class RunFolder:
 
     path: Path
 
-    @property
-    def study(self) -> Path:
-        return self.path / "study.toml"
-
-    @property
-    def settings(self) -> Path:
-        return self.path / "settings.json"
-
-    @property
-    def inputs(self) -> Path:
-        return self.path / "inputs.json"
-
-    @property
-    def events(self) -> Path:
-        return self.path / "events.jsonl"
-
-    @property
-    def result(self) -> Path:
-        return self.path / "result.nc"
-
-    @property
-    def report(self) -> Path:
-        return self.path / "report.html"
-
-    @property
-    def checkpoint(self) -> Path:
-        """What the model has answered so far, while the run is not finished."""
-        return self.path / "checkpoint"
+    study = _File("study.toml")
+    settings = _File("settings.json")
+    inputs = _File("inputs.json")
+    events = _File("events.jsonl")
+    result = _File("result.nc")
+    report = _File("report.html")
+    checkpoint = _File("checkpoint")
+    """What the model has answered so far, while the run is not finished."""
+    _state = _File("state.json")
+    _lock = _File("lock")
 
     @property
     def is_run(self) -> bool:
@@ -84,14 +76,6 @@ class RunFolder:
     def is_refused(self) -> bool:
         """Return True for a run with wrong input that computed nothing, so that it can be replaced without loss."""
         return self.is_run and self.state()["state"] == INPUT and not holds_results(self.checkpoint)
-
-    @property
-    def _state(self) -> Path:
-        return self.path / "state.json"
-
-    @property
-    def _lock(self) -> Path:
-        return self.path / "lock"
 
     def state(self) -> dict[str, Any]:
         """State of the run: ``state``, ``since``, ``study``, ``task`` and more."""

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import Discriminator, Field, Tag
 
 from dalembert.data.stretches import gaps
 from dalembert.errors import DataError, unknown
@@ -51,8 +51,7 @@ class InputTable(FileTable):
     missing: Literal["refuse", "leave-out"] = Field("refuse", description="what becomes of values that are not there")
     wraps: bool = Field(False, description="whether it is an angle known up to whole turns")
 
-    @model_validator(mode="after")
-    def _check(self) -> "InputTable":
+    def _wrong(self) -> list[str]:
         described = sorted(self.model_fields_set & _OF_FILES)
         if described and self.file is None:
             raise problem(
@@ -62,7 +61,7 @@ class InputTable(FileTable):
             raise problem("start: bounds were given; expected a number of seconds of the file, or 'first'")
         if self.frequency is not None:
             raise problem("frequency: an input lies along time; name its column by time")
-        return self
+        return []
 
     def over(self, shared: "InputTable | None") -> "InputTable":
         """This table with the keys that it leaves out from the shared one."""

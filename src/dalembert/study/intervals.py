@@ -2,7 +2,7 @@
 
 from typing import Annotated, Any
 
-from pydantic import BeforeValidator, WithJsonSchema, model_validator
+from pydantic import BeforeValidator, WithJsonSchema
 
 from dalembert.errors import InputError
 from dalembert.intervals import Interval
@@ -23,8 +23,7 @@ class IntervalTable(StudyTable):
     radius: Number | None = None
     relative: Number | None = None
 
-    @model_validator(mode="after")
-    def _check(self) -> "IntervalTable":
+    def _wrong(self) -> list[str]:
         given = self.model_fields_set
         if given not in _FORMS:
             raise problem(f"the keys {', '.join(sorted(given)) or 'none'} were given; expected {_WAYS}")
@@ -32,7 +31,7 @@ class IntervalTable(StudyTable):
             self.interval()
         except InputError as error:
             raise problem(str(error)) from None
-        return self
+        return []
 
     def interval(self) -> Interval:
         """The interval."""

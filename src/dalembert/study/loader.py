@@ -9,9 +9,10 @@ from pydantic import ValidationError
 
 from dalembert.errors import InputError, no_text, unknown
 from dalembert.study.context import Context
-from dalembert.study.schema import StudyFile, study_file, words_of
+from dalembert.study.schema import study_file, words_of
 from dalembert.study.sentences import mistakes
 from dalembert.study.study import Study
+from dalembert.study.study_file import StudyFile
 from dalembert.study.table import placed
 from dalembert.study.tasks import TASKS
 

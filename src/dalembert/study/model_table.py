@@ -3,7 +3,7 @@
 from functools import lru_cache
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, create_model, model_validator
+from pydantic import Field, create_model
 
 from dalembert.errors import unknown
 from dalembert.study.catalogue import Words, kinds_of
@@ -73,8 +73,7 @@ class ModelTable(StudyTable):
             for key, value in self.arguments.items()
         }
 
-    @model_validator(mode="after")
-    def _check(self) -> "ModelTable":
+    def _wrong(self) -> list[str]:
         ways = [name for name in ("function", "forward", "body") if getattr(self, name)]
         ways += ["mass" if self.mass else "structure"] * self.is_structure
         if len(ways) != 1:
@@ -101,10 +100,7 @@ class ModelTable(StudyTable):
             )
         if ("body" in ways or self.is_structure) and self.arguments:
             raise problem("arguments are for a function, and there is none")
-        wrong = [*_repeated(self.components), *_dangling(self.components), *wrong_structure(self)]
-        if wrong:
-            raise problem(*wrong)
-        return self
+        return [*_repeated(self.components), *_dangling(self.components), *wrong_structure(self)]
 
 
 def _repeated(components: list[tuple[str, Any]]) -> list[str]:

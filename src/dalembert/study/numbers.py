@@ -15,7 +15,6 @@ from pydantic import (
     Tag,
     ValidationInfo,
     create_model,
-    model_validator,
 )
 from pydantic_core import CoreSchema
 
@@ -85,8 +84,7 @@ class Grid(StudyTable):
     count: int | None = None
     every: float | None = None
 
-    @model_validator(mode="after")
-    def _check(self) -> "Grid":
+    def _wrong(self) -> list[str]:
         if (self.count is None) == (self.every is None):
             raise problem("expected either count or every beside start and end")
         if self.end <= self.start:
@@ -100,7 +98,7 @@ class Grid(StudyTable):
                 f"every is {self.every:g}, which does not divide the {self.end - self.start:g} from start to end; "
                 "expected a distance that does, or count instead"
             )
-        return self
+        return []
 
     @property
     def _steps(self) -> float:

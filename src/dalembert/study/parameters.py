@@ -3,7 +3,7 @@
 import keyword
 from typing import Any
 
-from pydantic import ValidationInfo, model_validator
+from pydantic import ValidationInfo
 
 from dalembert.errors import InputError
 from dalembert.parameters import Parameter
@@ -30,8 +30,7 @@ class ParameterTable(StudyTable):
     log: bool | None = None
     deviation: float | str | None = None
 
-    @model_validator(mode="after")
-    def _check(self) -> "ParameterTable":
+    def _wrong(self) -> list[str]:
         if self.unit is not None and not is_si(self.unit):
             raise problem(
                 f"unit {self.unit!r} was given; expected an SI unit such as 'm', 'rad' or 'Pa', in which the numbers "
@@ -48,9 +47,7 @@ class ParameterTable(StudyTable):
                 self.parameter("parameter")
             except InputError as error:
                 wrong.append(str(error).removeprefix("parameter 'parameter': "))
-        if wrong:
-            raise problem(*wrong)
-        return self
+        return wrong
 
     @property
     def symbol(self) -> str | None:

@@ -1,4 +1,4 @@
-"""The models and data that a study makes of its experiments and sensors."""
+"""The models and data that a study makes of its data, experiments and sensors."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
@@ -61,7 +61,7 @@ def posed(study: Study) -> "tuple[ForwardModel | list[Experiment], Measurements 
         return _model(study, data, study.file.data, later), data
     experiments = []
     for table in study.file.experiments:
-        data, variant = table.read(), study.in_experiment(table)
+        data, variant = table.read(), study.variant(table)
         experiments.append(Experiment(table.name, _model(variant, data, table, later), data, table.alone))
     return experiments, None
 

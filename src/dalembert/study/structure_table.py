@@ -3,7 +3,7 @@
 from functools import cache
 from typing import Any
 
-from pydantic import Field, create_model, model_validator
+from pydantic import Field, create_model
 
 from dalembert.errors import unknown
 from dalembert.structure.read_structure import ROLES
@@ -47,8 +47,7 @@ class StructureTable(StudyTable):
         """Whether the matrices come from here."""
         return any(one is not None for one in (self.file, self.files, self.function))
 
-    @model_validator(mode="after")
-    def _check(self) -> "StructureTable":
+    def _wrong(self) -> list[str]:
         given = [key for key in ("file", "files", "function") if getattr(self, key) is not None]
         if len(given) > 1:
             raise problem(f"{' and '.join(given)} are given; expected one of them")
@@ -66,9 +65,7 @@ class StructureTable(StudyTable):
                 for key in ("names", "dofs", "sets", "fixed", "reduction")
                 if getattr(self, key)
             ]
-        if wrong:
-            raise problem(*wrong)
-        return self
+        return wrong
 
 
 @cache

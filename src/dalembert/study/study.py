@@ -148,9 +148,16 @@ class Study:
     def inputs(self) -> "dict[str, MeasuredInput]":
         """The measured inputs, by name."""
         if self.beside is None and self.file.experiments and self.file.inputs:
-            return self.in_experiment(self.file.experiments[0]).inputs
+            return self.variant(self.file.experiments[0]).inputs
         beside = self.beside or self.file.data
         return {name: table.read(name, beside) for name, table in self.file.inputs.items()}
+
+    def variant(self, table: ExperimentTable) -> "Study":
+        """The study as it is in one of its experiments."""
+        shared = self.file.inputs
+        inputs = {**shared, **{name: own.over(shared[name]) for name, own in table.inputs.items()}}
+        varied = self.varied(table.constants, table.arguments, table.parameters(self.file.parameters))
+        return varied.driven(inputs, table)
 
     def driven(self, inputs: "Mapping[str, InputTable]", beside: DataTable) -> "Study":
         """The same study with other inputs, which are in the file of other data where they name none."""
@@ -266,13 +273,6 @@ class Study:
         parameters = self.file.parameters if parameters is None else dict(parameters)
         update = {"constants": {**self.file.constants, **constants}, "model": model, "parameters": parameters}
         return replace(self, file=self.file.model_copy(update=update))
-
-    def in_experiment(self, table: ExperimentTable) -> "Study":
-        """The study as it is in one of its experiments."""
-        shared = self.file.inputs
-        inputs = {**shared, **{name: own.over(shared[name]) for name, own in table.inputs.items()}}
-        varied = self.varied(table.constants, table.arguments, table.parameters(self.file.parameters))
-        return varied.driven(inputs, table)
 
     def data(self) -> "Measurements":
         """The measured data."""

@@ -1,16 +1,16 @@
-"""The tables of a study file, but for those of tasks."""
+"""The tables of a study file, and that they fit together."""
 
 from collections.abc import Mapping
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 from pydantic import AfterValidator, BeforeValidator, Field, PlainValidator, WithJsonSchema
 
 from dalembert.study.data_table import BandsTable, DataTable
-from dalembert.study.experiments import ExperimentTable, SensorTable, expanded
-from dalembert.study.inputs import InputTable
+from dalembert.study.experiments import ExperimentTable, SensorTable, expanded, wrong_experiments
+from dalembert.study.inputs import InputTable, wrong_inputs
 from dalembert.study.model_table import ModelTable
 from dalembert.study.parameters import ParameterTable, check_names, read_constants
-from dalembert.study.table import Name, StudyTable
+from dalembert.study.table import Name, StudyTable, problem
 
 
 class About(StudyTable):
@@ -23,6 +23,9 @@ class About(StudyTable):
 
 class StudyFile(StudyTable):
     """A study: a model, and one task."""
+
+    known_tasks: ClassVar[Mapping[str, Any]] = {}
+    """The tasks that there are, by name."""
 
     study: About = Field(default_factory=lambda: About.model_validate({}))
     constants: Annotated[
@@ -43,12 +46,48 @@ class StudyFile(StudyTable):
     inputs: dict[str, InputTable] = Field({}, description="measured inputs that drive the model, by name")
     sensors: dict[str, SensorTable] = Field({}, description="what is not known of the sensors, by channel")
 
-    @property
-    def tasks(self) -> Mapping[str, StudyTable]:
-        """The tables of tasks that the file has, by name; exactly one once it is checked."""
-        raise NotImplementedError
+    def _wrong(self) -> list[str]:
+        both = sorted(set(self.parameters) & set(self.constants))
+        if both:
+            raise problem(f"{', '.join(both)} is both a parameter and a constant; give each name once")
+        if len(self.tasks) != 1:
+            names = " and ".join(f"[{name}]" for name in self.tasks)
+            given = f"{names} are given" if names else "no task is given"
+            raise problem(
+                f"{given}; a study has one task, one of {', '.join(f'[{name}]' for name in self.known_tasks)}"
+            )
+        (name,) = self.tasks
+        return [
+            *wrong_experiments(self),
+            *wrong_inputs(self),
+            *_wrong_settings(self),
+            *self.known_tasks[name].wrong(self),
+        ]
 
     @property
     def vibrates(self) -> bool:
         """Whether the model is a structure over frequency, and not a mechanism in time."""
-        raise NotImplementedError
+        told = self.harmonic_balance is not None or any(self.known_tasks[name].of_structures for name in self.tasks)
+        return self.model.is_structure or (self.model.function is not None and told)
+
+    @property
+    def tasks(self) -> Mapping[str, StudyTable]:
+        """The tables of tasks that the file has, by name; exactly one once it is checked."""
+        return {name: table for name in self.known_tasks if (table := getattr(self, name, None)) is not None}
+
+
+def _wrong_settings(file: StudyFile) -> list[str]:
+    """Sentences about tables of settings that are not for this model."""
+    wrong = []
+    if file.vibrates and file.solver is not None:
+        wrong.append("[solver] integrates mechanisms; a structure over frequency takes [harmonic_balance], or neither")
+    if file.harmonic_balance is not None and not file.vibrates:
+        wrong.append("[harmonic_balance] is for structures over frequency, and here is another model; leave it out")
+    for where, table in (("[data]", file.data), ("[bands]", file.bands)):
+        if table is None:
+            continue
+        if file.vibrates and table.frequency is None and not table.universal:
+            wrong.append(f"{where}: the key 'frequency' is missing; expected the name of the column of frequencies")
+        if file.model.forward is None and not file.vibrates and table.frequency is not None:
+            wrong.append(f"{where}, frequency: the samples of a mechanism lie along time; name its column by time")
+    return wrong

@@ -4,7 +4,7 @@ import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Annotated, Any, TypeVar
+from typing import Annotated, Any, Self, TypeVar
 
 from pydantic import (
     BaseModel,
@@ -35,6 +35,16 @@ class StudyTable(BaseModel):
         if isinstance(info.context, Context):
             info.context.remember(data, cls.model_fields)
         return data
+
+    def _wrong(self) -> list[str]:
+        """Sentences about keys that do not fit together."""
+        return []
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if wrong := self._wrong():
+            raise problem(*wrong)
+        return self
 
 
 def problem(*sentences: str) -> PydanticCustomError:

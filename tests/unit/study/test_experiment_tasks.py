@@ -253,7 +253,7 @@ def test_what_does_not_fit_together_is_told(write, text, sentence):
 
 def test_an_own_parameter_has_bounds_and_a_first_guess_for_one_experiment(write, tmp_path):
     _, outcome = run_study(load(write(OWN + "[identify]\n")), tmp_path / "run")
-    bounds = {item.name: (item.lower, item.upper, item.start) for item in outcome.fit.parameters}
+    bounds = {item.name: (item.lower, item.upper, item.start) for item in outcome.result.parameters}
     assert bounds["short.size"] == (0.5, 4.0, None)
     assert bounds["long.size"] == (1.0, 1.7, 1.2)
     assert outcome.best["values"]["long.size"] == pytest.approx(1.5)
@@ -276,7 +276,7 @@ def test_what_is_wrong_with_own_parameters(write, own, sentence):
 
 def test_the_first_part_of_a_record_that_is_predicted_is_fitted(write, tmp_path):
     _, outcome = run_study(load(write(TWO + '[identify]\nvalidation = { long = "1 s" }\n')), tmp_path / "run")
-    assert outcome.fit.validation.what == "the experiment 'long' after its first 1 s"
+    assert outcome.result.validation.what == "the experiment 'long' after its first 1 s"
     assert outcome.best["values"]["long.size"] == pytest.approx(1.5)
 
 
@@ -316,7 +316,7 @@ def test_the_trials_in_a_file_are_experiments(write, tmp_path):
     _, outcome = run_study(study, tmp_path / "run")
     exact = {"drag": 0.2} | {f"swing-{k}.begin": np.deg2rad(at) for k, at in ((1, 30), (2, 50), (3, 40))}
     assert outcome.best["values"] == pytest.approx(exact, rel=1e-6)
-    assert outcome.fit.validation.what == "the experiment 'swing-3' after its first 0.3 s"
+    assert outcome.result.validation.what == "the experiment 'swing-3' after its first 0.3 s"
 
 
 def test_one_trial_of_a_file_is_data(write, tmp_path):

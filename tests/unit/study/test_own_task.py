@@ -17,8 +17,7 @@ import numpy as np
 from dalembert.files import write_text
 from dalembert.study.duration import Effort, whole
 from dalembert.study.table import StudyTable
-from dalembert.study.tasks.result import ResultOutcome
-from dalembert.study.tasks.task import Task
+from dalembert.study.tasks.task import ResultTask
 from dalembert.study.tasks.wrong import needs_structure
 
 
@@ -37,6 +36,10 @@ class Ringing:
     def save(self, path):
         write_text(path, json.dumps(asdict(self)))
 
+    @classmethod
+    def load(cls, path):
+        return cls(**json.loads(path.read_text()))
+
 
 class RingingTable(StudyTable):
     """Find how long modes ring."""
@@ -44,17 +47,14 @@ class RingingTable(StudyTable):
     damping_ratio: float = 0.01
 
 
-class RingingTask(Task):
+class RingingTask(ResultTask):
     """The task ``[ringing]``."""
 
     name = "ringing"
     of_structures = True
-
-    def table(self):
-        return RingingTable
-
-    def wrong(self, file):
-        return needs_structure(file, "ringing")
+    schema = RingingTable
+    needs = (needs_structure,)
+    kind = "own_ringing:Ringing"
 
     def plan(self, study):
         return "finds how long modes ring: 1 simulation"
@@ -68,11 +68,8 @@ class RingingTask(Task):
     def unknowns(self, study):
         return ()
 
-    def run(self, study, emit):
-        return ResultOutcome(study, self._result(study), {})
-
-    def load(self, study, path):
-        return ResultOutcome(study, Ringing(**json.loads(path.read_text())), {})
+    def result(self, study, emit):
+        return self._result(study)
 
     def _result(self, study):
         structure = study.system().structure

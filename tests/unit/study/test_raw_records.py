@@ -26,7 +26,7 @@ def test_the_study_of_the_template_finds_the_truth(tmp_path):
     study = load(begin("records", tmp_path / "rig"))
     assert "mixed: 601 samples" in plan(study)
     _, outcome = run_study(study, tmp_path / "run")
-    fit = outcome.fit
+    fit = outcome.result
     truth = {
         "torque_constant": raw_records.TORQUE_CONSTANT,
         "friction": raw_records.FRICTION,

@@ -16,7 +16,7 @@ from dalembert.study import RunFolder, load, report_run, run_study
 from dalembert.study.events import read_events
 from dalembert.study.folder import find_runs, new_folder
 from dalembert.study.listing import rows
-from dalembert.study.tasks.task import concluded
+from dalembert.study.tasks import Outcome
 from support import says
 
 DECAY = """
@@ -260,12 +260,12 @@ def test_findings_of_a_result_and_its_other_doubts_are_each_told_once():
     one = Finding("one", "warning", {}, "One.", "Do something.")
     note = Finding("note", "note", {}, "Note.")
     result = SimpleNamespace(findings=(one, note), doubts=(Finding("two", "warning", {}, "Two."), one))
-    assert [(each.code, each.message) for each in concluded(result)] == [
+    assert [(each.code, each.message) for each in Outcome(None, result).findings] == [
         ("one", "One."),
         ("note", "Note."),
         ("two", "Two."),
     ]
-    assert concluded(object()) == ()
+    assert Outcome(None, object()).findings == ()
 
 
 def test_the_list_of_runs(study):

@@ -128,7 +128,7 @@ def test_a_prior_in_the_file_enters_the_fit(write):
     free, known = IDENTIFY, IDENTIFY.replace("upper = 2.0 }", "upper = 2.0, start = 0.5, deviation = '10 mm' }")
     with pytest.raises(DalembertError, match="deviation: "):
         write(known.replace("'10 mm'", "'10 s'").replace("height = {", "height = { unit = 'm',"))
-    without, with_prior = (run_study(write(text))[1].fit for text in (free, known))
+    without, with_prior = (run_study(write(text))[1].result for text in (free, known))
     assert with_prior.parameters.items[1].deviation == 0.01
     assert without.values[1] == pytest.approx(1.0, abs=0.03)
     assert 0.5 < with_prior.values[1] < without.values[1] - 0.03

@@ -1,21 +1,17 @@
 """Backbone: frequency and damping of a nonlinear mode over its amplitude."""
 
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import Field
 
+from dalembert.study.duration import Effort, whole
+from dalembert.study.events import Emit
 from dalembert.study.numbers import fixed, samples
+from dalembert.study.study import Study
 from dalembert.study.table import Read, StudyTable, placed, problem
-from dalembert.study.tasks.result import ResultOutcome
-from dalembert.study.tasks.task import Outcome, Task
+from dalembert.study.tasks.task import Outcome, ResultTask
 from dalembert.study.tasks.wrong import needs_structure
-
-if TYPE_CHECKING:
-    from dalembert.study.duration import Effort
-    from dalembert.study.events import Emit
-    from dalembert.study.study import Study
 
 
 class BackboneTable(StudyTable):
@@ -32,21 +28,20 @@ class BackboneTable(StudyTable):
         None, description="by which the amplitude is measured; the one that moves most if not given"
     )
 
-    @model_validator(mode="after")
-    def _check(self) -> "BackboneTable":
+    def _wrong(self) -> list[str]:
         if (self.amplitudes is None) == (self.between is None):
             given = "neither amplitudes nor between is" if self.between is None else "amplitudes and between are both"
             raise problem(f"{given} given; expected one of them")
         if not min(self.given) > 0:
             raise problem(f"the amplitude {min(self.given):g} m was given; expected positive ones")
-        return self
+        return []
 
     @property
     def given(self) -> tuple[float, ...]:
         """The amplitudes, or the two ends."""
         return tuple(self.amplitudes or self.between or ())
 
-    def follow(self, study: "Study", system: Any) -> Any:
+    def follow(self, study: Study, system: Any) -> Any:
         """The mode of a system."""
         from dalembert.vibration import backbone
 
@@ -54,20 +49,17 @@ class BackboneTable(StudyTable):
         return backbone(system, along, self.mode, study.balance, dof=self.dof, checkpoint=study.checkpoint)
 
 
-class BackboneTask(Task):
+class BackboneTask(ResultTask):
     """The task ``[backbone]``."""
 
     name = "backbone"
+    kind = "dalembert.vibration:Backbone"
     rank = 11
     of_structures = True
+    schema = BackboneTable
+    needs = (needs_structure,)
 
-    def table(self) -> type[StudyTable]:
-        return BackboneTable
-
-    def wrong(self, file: Any) -> list[str]:
-        return needs_structure(file, "backbone")
-
-    def plan(self, study: "Study") -> str:
+    def plan(self, study: Study) -> str:
         from dalembert.vibration.system.requirements import require_viscous
 
         table = study.table
@@ -76,8 +68,7 @@ class BackboneTask(Task):
         count = "as many amplitudes as it needs" if table.between else f"{len(table.given)} amplitudes"
         return f"follows mode {table.mode} from {table.given[0]:g} to {table.given[-1]:g} m ({count}): 1 simulation"
 
-    def effort(self, study: "Study") -> "Effort":
-        from dalembert.study.duration import Effort, whole
+    def effort(self, study: Study) -> Effort:
         from dalembert.vibration import backbone
 
         table = study.table
@@ -88,20 +79,14 @@ class BackboneTask(Task):
 
         return Effort(whole(once), 1, count, count, "the first amplitude")
 
-    def run(self, study: "Study", emit: "Emit") -> Outcome:
+    def result(self, study: Study, emit: Emit) -> Any:
         study.equations()
-        return _outcome(study, study.table.follow(study, study.system()))
+        return study.table.follow(study, study.system())
 
-    def load(self, study: "Study", path: Path) -> Outcome:
-        from dalembert.vibration import Backbone
-
-        return _outcome(study, Backbone.load(path))
-
-
-def _outcome(study: "Study", found: Any) -> Outcome:
-    """Outcome of a mode, with its frequencies at both ends and its largest damping."""
-    if not found.converged.any():
-        return ResultOutcome(study, found, {})
-    frequencies = found.frequencies[found.converged]
-    ends = {"frequency at first": float(frequencies[0]), "frequency at last": float(frequencies[-1])}
-    return ResultOutcome(study, found, {"values": ends | {"largest damping": float(np.nanmax(found.damping))}})
+    def outcome(self, study: Study, found: Any) -> Outcome:
+        """Outcome of a mode, with its frequencies at both ends and its largest damping."""
+        if not found.converged.any():
+            return Outcome(study, found, {})
+        frequencies = found.frequencies[found.converged]
+        ends = {"frequency at first": float(frequencies[0]), "frequency at last": float(frequencies[-1])}
+        return Outcome(study, found, {"values": ends | {"largest damping": float(np.nanmax(found.damping))}})

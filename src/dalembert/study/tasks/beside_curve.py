@@ -2,17 +2,16 @@
 
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field, create_model
 
 from dalembert.study.components import buildable_table
 from dalembert.study.numbers import samples
+from dalembert.study.study import Study
 from dalembert.study.table import Read, StudyTable
-
-if TYPE_CHECKING:
-    from dalembert.study.study import Study
+from dalembert.study.tasks.task import loaded_beside
 
 COMPARISON, BACKBONE, DEFORMATION = "time_comparison", "backbone", "deformation"
 """What there may be beside a curve: options of a report, and names of files beside the result, ``NAME.nc``."""
@@ -38,7 +37,7 @@ def compare_in_time_table() -> type[CompareInTimeTable]:
     return create_model("CompareInTimeTable", __base__=CompareInTimeTable, __doc__=CompareInTimeTable.__doc__, **fields)
 
 
-def beside(study: "Study", curve: Any, system: Any) -> dict[str, Any]:
+def beside(study: Study, curve: Any, system: Any) -> dict[str, Any]:
     """What the task's table asks for beside a curve."""
     from dalembert.vibration import compare_in_time
 
@@ -60,7 +59,7 @@ def beside(study: "Study", curve: Any, system: Any) -> dict[str, Any]:
     return told
 
 
-def beside_family(study: "Study", family: Any) -> dict[str, Any]:
+def beside_family(study: Study, family: Any) -> dict[str, Any]:
     """The same beside curves over a parameter: the motion at the smallest of their peaks."""
     table, found = study.table, [curve is not None and curve.converged.any() for curve in family.curves]
     if not any(found):
@@ -70,7 +69,7 @@ def beside_family(study: "Study", family: Any) -> dict[str, Any]:
     return _deformed(study, family.curves[family.values.tolist().index(best)], system)
 
 
-def _deformed(study: "Study", curve: Any, system: Any) -> dict[str, Any]:
+def _deformed(study: Study, curve: Any, system: Any) -> dict[str, Any]:
     """The motion at the point with the largest amplitude, where it can be drawn."""
     from dalembert.vibration import deformation
 
@@ -81,16 +80,8 @@ def _deformed(study: "Study", curve: Any, system: Any) -> dict[str, Any]:
     return {DEFORMATION: deformation(system, curve, int(np.nanargmax(np.where(curve.converged, sizes, np.nan))))}
 
 
-def save(told: dict[str, Any], result: Path) -> None:
-    """Write each beside the result."""
-    for name, one in told.items():
-        one.save(result.with_name(f"{name}.nc"))
-
-
 def load(result: Path) -> dict[str, Any]:
     """What was written beside a result."""
     from dalembert.vibration import Backbone, Deformation, TimeComparison
 
-    kinds = {DEFORMATION: Deformation, COMPARISON: TimeComparison, BACKBONE: Backbone}
-    paths = {name: result.with_name(f"{name}.nc") for name in kinds}
-    return {name: kind.load(paths[name]) for name, kind in kinds.items() if paths[name].is_file()}
+    return loaded_beside(result, {DEFORMATION: Deformation, COMPARISON: TimeComparison, BACKBONE: Backbone})

@@ -1,23 +1,19 @@
 """Work and precision: integrators compared on the study's mechanism."""
 
 from dataclasses import replace
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import numpy as np
-from pydantic import Field, create_model, model_validator
+from pydantic import Field, create_model
 
+from dalembert.study.duration import Effort, shortest_of
+from dalembert.study.events import Emit
 from dalembert.study.numbers import MOST, fixed
 from dalembert.study.solvers import solver
+from dalembert.study.study import Study
 from dalembert.study.table import Read, StudyTable, checked, placed, problem
-from dalembert.study.tasks.result import ResultOutcome
-from dalembert.study.tasks.task import Outcome, Task
+from dalembert.study.tasks.task import Outcome, ResultTask
 from dalembert.study.tasks.wrong import needs_mechanism
-
-if TYPE_CHECKING:
-    from dalembert.study.duration import Effort
-    from dalembert.study.events import Emit
-    from dalembert.study.study import Study
 
 
 class SeriesTable(StudyTable):
@@ -29,10 +25,9 @@ class SeriesTable(StudyTable):
         min_length=1, max_length=1, description="values of one setting: { step = [0.01, 0.005] }"
     )
 
-    @model_validator(mode="after")
-    def _check(self) -> "SeriesTable":
+    def _wrong(self) -> list[str]:
         checked(self.integrators)
-        return self
+        return []
 
     def integrators(self) -> list[Any]:
         """The integrator with each value of the setting."""
@@ -57,11 +52,13 @@ class WorkPrecisionTable(StudyTable):
     repeats: int = Field(3, ge=1, le=1000, description="timed runs of each; the fastest counts")
 
 
-class CompareIntegrators(Task):
+class CompareIntegrators(ResultTask):
     """The task ``[work_precision]``."""
 
     name = "work_precision"
+    kind = "dalembert.multibody:WorkPrecision"
     rank = 8
+    needs = (needs_mechanism,)
 
     def table(self) -> type[StudyTable]:
         series = create_model("Series", __base__=SeriesTable, __doc__=SeriesTable.__doc__, solver=(solver(), ...))
@@ -84,9 +81,9 @@ class CompareIntegrators(Task):
         ]
         if file.model.forward is not None:
             wrong.append("[work_precision] needs a mechanism; a forward model has no steps")
-        return [*wrong, *needs_mechanism(file, "work_precision")]
+        return [*wrong, *super().wrong(file)]
 
-    def plan(self, study: "Study") -> str:
+    def plan(self, study: Study) -> str:
         from dalembert.multibody import TimeResponse
 
         table, ends = study.table, np.array([0.0, study.table.end])
@@ -100,9 +97,8 @@ class CompareIntegrators(Task):
         told = f"compares {len(table.series)} integrators in {count} settings over {table.end:g} s"
         return f"{told}: {_simulations(table)} simulations"
 
-    def effort(self, study: "Study") -> "Effort":
+    def effort(self, study: Study) -> Effort:
         from dalembert.multibody import simulate
-        from dalembert.study.duration import Effort, shortest_of
 
         table, end, system = study.table, study.table.end, study.system()
         solvers = [one.settings() for one in table.reference]
@@ -116,10 +112,10 @@ class CompareIntegrators(Task):
         count, shortest = _simulations(table), min(shortest_of(one, end) for one in solvers)
         return Effort(part, len(solvers), count, count, "the motion with each integrator", shortest)
 
-    def unknowns(self, study: "Study") -> tuple[str, ...]:
+    def unknowns(self, study: Study) -> tuple[str, ...]:
         return ()
 
-    def run(self, study: "Study", emit: "Emit") -> Outcome:
+    def result(self, study: Study, emit: Emit) -> Any:
         from dalembert.multibody import work_precision
 
         table = study.table
@@ -132,7 +128,7 @@ class CompareIntegrators(Task):
             done += 1
             emit("compared", solver=row.settings, error=row.error, seconds=row.seconds, done=done, total=total)
 
-        found = work_precision(
+        return work_precision(
             study.system(),
             table.end,
             table.channels,
@@ -143,20 +139,13 @@ class CompareIntegrators(Task):
             checkpoint=study.checkpoint,
             on_row=on_row,
         )
-        return _outcome(study, found)
 
-    def load(self, study: "Study", path: Path) -> Outcome:
-        from dalembert.multibody import WorkPrecision
-
-        return _outcome(study, WorkPrecision.load(path))
+    def outcome(self, study: Study, found: Any) -> Outcome:
+        """Outcome of a comparison, with the smallest error."""
+        errors = [row.error for row in found.rows if not row.failure]
+        return Outcome(study, found, {"values": {"smallest error": min(errors)}} if errors else {})
 
 
 def _simulations(table: Any) -> int:
     """Timed runs, one more of each that is not, and the references."""
     return sum(len(series.integrators()) for series in table.series) * (table.repeats + 1) + len(table.reference)
-
-
-def _outcome(study: "Study", found: Any) -> Outcome:
-    """Outcome of a comparison, with the smallest error."""
-    errors = [row.error for row in found.rows if not row.failure]
-    return ResultOutcome(study, found, {"values": {"smallest error": min(errors)}} if errors else {})

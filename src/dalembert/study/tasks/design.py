@@ -1,22 +1,18 @@
 """Design: which sensors, and for how long, would tell the parameters best."""
 
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Discriminator, Field, Tag
 
+from dalembert.study.duration import Effort, evaluated
+from dalembert.study.events import Emit
 from dalembert.study.intervals import Number
 from dalembert.study.numbers import samples
+from dalembert.study.study import Study
 from dalembert.study.table import StudyTable
-from dalembert.study.tasks.result import ResultOutcome
-from dalembert.study.tasks.task import Outcome, Task
+from dalembert.study.tasks.task import Outcome, ResultTask
 from dalembert.study.tasks.wrong import needs_parameters, needs_samples, needs_solver, response, unnamed
-
-if TYPE_CHECKING:
-    from dalembert.study.duration import Effort
-    from dalembert.study.events import Emit
-    from dalembert.study.study import Study
 
 Deviations = Annotated[
     Annotated[dict[str, Number], Tag("channels")] | Annotated[Number, Tag("number")],
@@ -43,23 +39,23 @@ class DesignTable(StudyTable):
     at: dict[str, Number] = Field({}, description="values of parameters; first guesses where not given")
 
 
-class Design(Task):
+class Design(ResultTask):
     """The task ``[design]``."""
 
     name = "design"
+    kind = "dalembert.inverse:Designs"
     rank = 7
-
-    def table(self) -> type[StudyTable]:
-        return DesignTable
+    schema = DesignTable
+    needs = (
+        needs_parameters,
+        needs_samples,
+        needs_solver,
+    )
 
     def wrong(self, file: Any) -> list[str]:
-        table = file.design
-        wrong = needs_parameters(file, "design")
-        wrong += unnamed(table.at, file.parameters, "[design.at]")
-        wrong += needs_samples(file, "design")
-        return [*wrong, *needs_solver(file)]
+        return [*super().wrong(file), *unnamed(file.design.at, file.parameters, "[design.at]")]
 
-    def plan(self, study: "Study") -> str:
+    def plan(self, study: Study) -> str:
         model = response(study)
         names = [channel.name for channel in model.channels]
         return (
@@ -67,17 +63,15 @@ class Design(Task):
             f"{', '.join(study.parameters.names)}, from one simulation with {len(study.parameters)} sensitivities"
         )
 
-    def effort(self, study: "Study") -> "Effort":
-        from dalembert.study.duration import evaluated
-
+    def effort(self, study: Study) -> Effort:
         count = 1 + len(study.parameters)
         return evaluated(response(study), _at(study), count, count)
 
-    def run(self, study: "Study", emit: "Emit") -> Outcome:
+    def result(self, study: Study, emit: Emit) -> Any:
         from dalembert.inverse import design
 
         table = study.table
-        designs = design(
+        return design(
             response(study),
             _at(study),
             deviations=table.deviations,
@@ -85,21 +79,14 @@ class Design(Task):
             horizons=table.horizons,
             criterion=table.criterion,
         )
-        return _outcome(study, designs)
 
-    def load(self, study: "Study", path: Path) -> Outcome:
-        from dalembert.inverse import Designs
+    def outcome(self, study: Study, designs: Any) -> Outcome:
+        """Outcome of designs, with the best one's score and the deviations that it foresees."""
+        expected = zip(designs.parameters.names, designs.deviations[0].tolist(), strict=True)
+        values = {"score": float(designs.scores[0])} | {f"deviation of {name}": value for name, value in expected}
+        return Outcome(study, designs, {"values": values})
 
-        return _outcome(study, Designs.load(path))
 
-
-def _at(study: "Study") -> np.ndarray:
+def _at(study: Study) -> np.ndarray:
     """Where the sensitivities are taken, (parameters,)."""
     return study.parameters.vector({**study.parameters.mapping(study.parameters.start), **study.table.at})
-
-
-def _outcome(study: "Study", designs: Any) -> Outcome:
-    """Outcome of designs, with the best one's score and the deviations that it foresees."""
-    expected = zip(designs.parameters.names, designs.deviations[0].tolist(), strict=True)
-    values = {"score": float(designs.scores[0])} | {f"deviation of {name}": value for name, value in expected}
-    return ResultOutcome(study, designs, {"values": values})

@@ -1,29 +1,27 @@
 """Frequency response: periodic responses of a structure over frequency, or a family of them over one parameter."""
 
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
-from pydantic import Field, create_model, model_validator
+from pydantic import Field, create_model
 
 from dalembert.errors import DalembertError, InputError, unknown
-from dalembert.findings import Finding
+from dalembert.study.duration import Effort, whole
+from dalembert.study.events import Emit
 from dalembert.study.numbers import fixed, samples
-from dalembert.study.table import Read, StudyTable, placed, problem
+from dalembert.study.study import Study
+from dalembert.study.table import Read, StudyTable, placed
 from dalembert.study.tasks import beside_curve
 from dalembert.study.tasks.backbone import BackboneTable
 from dalembert.study.tasks.beside_curve import beside, beside_family, compare_in_time_table
 from dalembert.study.tasks.sweep import Along, values_along
-from dalembert.study.tasks.task import Outcome, Task, concluded, silent
+from dalembert.study.tasks.task import Outcome, Task, silent
 from dalembert.study.tasks.wrong import needs_structure, unnamed
 
 if TYPE_CHECKING:
-    from dalembert.study.duration import Effort
-    from dalembert.study.events import Emit
-    from dalembert.study.study import Study
     from dalembert.vibration import FollowedPoint
 
 MOST_DRAWN = 6
@@ -68,8 +66,7 @@ class FrequencyResponseTable(StudyTable):
     backbone: BackboneTable | None = Field(None, description="a nonlinear mode beside the curve")
     sweep: FamilyTable | None = Field(None, description="a curve for each value of a parameter")
 
-    @model_validator(mode="after")
-    def _check(self) -> "FrequencyResponseTable":
+    def _wrong(self) -> list[str]:
         wrong = []
         if (self.frequencies is None) == (self.between is None):
             given = "neither frequencies nor between is" if self.between is None else "frequencies and between are both"
@@ -83,9 +80,7 @@ class FrequencyResponseTable(StudyTable):
                 break
         if ends[0] == ends[1]:
             wrong.append(f"between: {ends[0]:g} Hz was given twice; expected two different frequencies")
-        if wrong:
-            raise problem(*wrong)
-        return self
+        return wrong
 
     @property
     def along(self) -> Any:
@@ -93,21 +88,8 @@ class FrequencyResponseTable(StudyTable):
         return tuple(self.between) if self.between is not None else np.array(self.frequencies)
 
 
-@dataclass(frozen=True)
 class Response(Outcome):
     """A curve, or a family of them."""
-
-    study: "Study" = field(repr=False)
-    result: Any
-    told: dict[str, Any] = field(default_factory=dict)
-
-    @property
-    def success(self) -> bool:
-        return self.result.success
-
-    @property
-    def status(self) -> str:
-        return self.result.status
 
     @property
     def summary(self) -> str:
@@ -115,47 +97,37 @@ class Response(Outcome):
         more = "".join(f"\n\n{one.summary()}" for one in self.told.values())
         return self.result.summary() + told * (self.study.table.amplitude != "peak") + more
 
-    @property
-    def best(self) -> dict[str, Any]:
-        table, result = self.study.table, self.result
-        dof = table.dof or result.dofs[0]
-        if table.sweep is None:
-            if not result.converged.any():
-                return {}
-            peak = result.peak(dof, table.amplitude)
-            return {"values": {f"{table.amplitude} of {dof}": peak.amplitude, "frequency (Hz)": peak.frequency}}
-        best = result.best(dof, table.amplitude)
-        row = result.values.tolist().index(best)
-        peak, part = result.peaks(dof, table.amplitude)[row], result.reduction(dof, table.amplitude)[row]
-        found = {
-            f"{table.amplitude} of {dof}": peak.amplitude,
-            "frequency (Hz)": peak.frequency,
-            "reduction": float(part),
-        }
-        return {"values": {table.sweep.parameter: best, **found}}
 
-    @property
-    def findings(self) -> tuple[Finding, ...]:
-        return concluded(self.result)
+def _best(table: FrequencyResponseTable, result: Any) -> dict[str, Any]:
+    """The peak, or the smallest of the peaks of a family."""
+    dof = table.dof or result.dofs[0]
+    if table.sweep is None:
+        if not result.converged.any():
+            return {}
+        peak = result.peak(dof, table.amplitude)
+        return {"values": {f"{table.amplitude} of {dof}": peak.amplitude, "frequency (Hz)": peak.frequency}}
+    best = result.best(dof, table.amplitude)
+    row = result.values.tolist().index(best)
+    peak, part = result.peaks(dof, table.amplitude)[row], result.reduction(dof, table.amplitude)[row]
+    found = {
+        f"{table.amplitude} of {dof}": peak.amplitude,
+        "frequency (Hz)": peak.frequency,
+        "reduction": float(part),
+    }
+    return {"values": {table.sweep.parameter: best, **found}}
 
-    def save(self, path: Path) -> None:
-        self.result.save(path)
-        beside_curve.save(self.told, path)
 
-    def report(self, path: Path) -> None:
-        from dalembert.report import report
+def _drawn(table: FrequencyResponseTable, result: Any) -> tuple[str, ...]:
+    """The degrees of freedom that figures show: the one whose peak is told, or those that were asked for."""
+    if table.dof is not None:
+        return tuple(name for name in result.dofs if table.dof in (name, name.rpartition(".")[0]))
+    return () if table.observe is None or len(result.dofs) > MOST_DRAWN else result.dofs
 
-        about = self.study.file.study
-        options: Any = {"dofs": self._drawn(), "amplitude": self.study.table.amplitude}
-        text, beside = self.study.content.decode(), self.told.values()
-        report(self.result, path, *beside, title=self.study.title, notes=about.description, study=text, **options)
 
-    def _drawn(self) -> tuple[str, ...]:
-        """The degrees of freedom that figures show: the one whose peak is told, or those that were asked for."""
-        table = self.study.table
-        if table.dof is not None:
-            return tuple(name for name in self.result.dofs if table.dof in (name, name.rpartition(".")[0]))
-        return () if table.observe is None or len(self.result.dofs) > MOST_DRAWN else self.result.dofs
+def _response(study: Study, result: Any, told: Mapping[str, Any]) -> Response:
+    """The outcome, with the numbers of its peak."""
+    options = {"dofs": _drawn(study.table, result), "amplitude": study.table.amplitude}
+    return Response(study, result, _best(study.table, result), options, told)
 
 
 class FrequencyResponseTask(Task):
@@ -164,6 +136,7 @@ class FrequencyResponseTask(Task):
     name = "frequency_response"
     rank = 9
     of_structures = True
+    needs = (needs_structure,)
 
     def table(self) -> type[StudyTable]:
         compared = compare_in_time_table() | None, Field(None, description="points of the curve in time")
@@ -173,7 +146,7 @@ class FrequencyResponseTask(Task):
 
     def wrong(self, file: Any) -> list[str]:
         table = file.frequency_response
-        wrong = needs_structure(file, "frequency_response")
+        wrong = super().wrong(file)
         if table.sweep is not None:
             wrong += unnamed([table.sweep.parameter], file.parameters, "[frequency_response], sweep")
             wrong += [
@@ -183,7 +156,7 @@ class FrequencyResponseTask(Task):
             ]
         return wrong
 
-    def plan(self, study: "Study") -> str:
+    def plan(self, study: Study) -> str:
         from dalembert.vibration.paths.amplitudes import Amplitude
         from dalembert.vibration.system.requirements import require_viscous
 
@@ -210,8 +183,7 @@ class FrequencyResponseTask(Task):
         values = _values(study)
         return f"{way} for {len(values)} values of {table.sweep.parameter}: {len(values)} simulations"
 
-    def effort(self, study: "Study") -> "Effort":
-        from dalembert.study.duration import Effort, whole
+    def effort(self, study: Study) -> Effort:
         from dalembert.vibration import frequency_response
 
         table, system = study.table, study.system()
@@ -224,7 +196,7 @@ class FrequencyResponseTask(Task):
         count = None if table.between is not None else curves * len(table.frequencies)
         return Effort(whole(once), 2, count, count, "a point, going by both ends of the curve")
 
-    def parts(self, study: "Study") -> Iterable[Callable[[], object]]:
+    def parts(self, study: Study) -> Iterable[Callable[[], object]]:
         """The curve, or those of a family; and the nonlinear mode beside it."""
         table = study.table
         parts: list[Callable[[], object]] = [partial(self.run, study, silent)]
@@ -234,7 +206,7 @@ class FrequencyResponseTask(Task):
             parts.append(lambda: table.backbone.follow(study, study.system()))
         return parts
 
-    def run(self, study: "Study", emit: "Emit") -> Outcome:
+    def run(self, study: Study, emit: Emit) -> Outcome:
         from dalembert.vibration import frequency_response, frequency_responses
 
         table = study.table
@@ -245,7 +217,7 @@ class FrequencyResponseTask(Task):
             system = study.system()
             tell = _points_told(study, emit)
             curve = frequency_response(system, table.along, study.balance, on_point=tell, **options)
-            return Response(study, curve, beside(study, curve, system))
+            return _response(study, curve, beside(study, curve, system))
         name, values = table.sweep.parameter, _values(study)
         unit = next(item.unit for item in study.parameters if item.name == name)
 
@@ -269,16 +241,16 @@ class FrequencyResponseTask(Task):
             on_curve=on_curve,
             **options,
         )
-        return Response(study, family, beside_family(study, family))
+        return _response(study, family, beside_family(study, family))
 
-    def load(self, study: "Study", path: Path) -> Outcome:
+    def load(self, study: Study, path: Path) -> Outcome:
         from dalembert.vibration import CurveFamily, FrequencyCurve
 
         kind = FrequencyCurve if study.table.sweep is None else CurveFamily
-        return Response(study, kind.load(path), beside_curve.load(path))
+        return _response(study, kind.load(path), beside_curve.load(path))
 
 
-def _options(study: "Study") -> dict[str, Any]:
+def _options(study: Study) -> dict[str, Any]:
     """Settings of a curve, or of each curve of a family."""
     table = study.table
     return {
@@ -289,7 +261,7 @@ def _options(study: "Study") -> dict[str, Any]:
     }
 
 
-def _any_curve(study: "Study") -> None:
+def _any_curve(study: Study) -> None:
     """Follow the first curve of a family that can be; a family fails only if all its curves do."""
     from dalembert.vibration import frequency_response
 
@@ -304,7 +276,7 @@ def _any_curve(study: "Study") -> None:
     raise errors[0]
 
 
-def _points_told(study: "Study", emit: "Emit") -> Callable[["FollowedPoint"], None]:
+def _points_told(study: Study, emit: Emit) -> Callable[["FollowedPoint"], None]:
     """Writes each point of a curve as it is found, with the amplitude that the study tells."""
     from dalembert.vibration.paths.amplitudes import Amplitude
 
@@ -319,14 +291,14 @@ def _points_told(study: "Study", emit: "Emit") -> Callable[["FollowedPoint"], No
     return tell
 
 
-def _observed(study: "Study") -> list[str] | None:
+def _observed(study: Study) -> list[str] | None:
     """Observed names, with the nodes of sets in the place of these."""
     names = study.table.observe
     expanded = getattr(study.builder, "expanded", None)
     return names if names is None or expanded is None else expanded(names)
 
 
-def _values(study: "Study") -> np.ndarray:
+def _values(study: Study) -> np.ndarray:
     """Values of the swept parameter, (values,)."""
     sweep = study.table.sweep
     return values_along(study.parameters, sweep.parameter, sweep.values)

@@ -1,6 +1,6 @@
 """Identify: parameters from measured data."""
 
-from dataclasses import dataclass, field
+from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -9,26 +9,24 @@ import numpy as np
 from pydantic import AfterValidator, Discriminator, Field, Tag, create_model
 
 from dalembert.errors import InputError, unknown
-from dalembert.findings import Finding
 from dalembert.optimize import Minimiser, Squares, Swarm
 from dalembert.optimize.minimiser import NAMES as MINIMISERS
 from dalembert.study.catalogue import methods
 from dalembert.study.components import one_of, table_of
-from dalembert.study.events import teller
+from dalembert.study.duration import TOGETHER, Effort, evaluated
+from dalembert.study.events import Emit, teller
 from dalembert.study.experiments import measured_channels
 from dalembert.study.numbers import fixed
 from dalembert.study.posing import posed, unknown_names
+from dalembert.study.study import Study
 from dalembert.study.table import Read, StudyTable, checked
 from dalembert.study.tasks import telling
 from dalembert.study.tasks.shooting import Shooting, ShootingTable
-from dalembert.study.tasks.task import Outcome, Task, concluded
+from dalembert.study.tasks.task import Outcome, Task
 from dalembert.study.tasks.wrong import needs_parameters, needs_solver, unmatched, unnamed
 
 if TYPE_CHECKING:
     from dalembert.inverse import Fit
-    from dalembert.study.duration import Effort
-    from dalembert.study.events import Emit
-    from dalembert.study.study import Study
 
 DEFAULT = "least-squares"
 STEPS_IN_SEGMENTS = 80  # of multiple shooting from one start, about: 57 to 105 in studies/chaotic-pendulum
@@ -153,58 +151,20 @@ def _buildable(method: Any) -> Any:
     return method
 
 
-@dataclass(frozen=True)
 class Identification(Outcome):
     """A fit, and the motion at its values if the model is a mechanism."""
 
-    study: "Study"
-    fit: "Fit"
-    told: dict[str, Any] = field(default_factory=dict)
-
-    @property
-    def success(self) -> bool:
-        return self.fit.success
-
-    @property
-    def status(self) -> str:
-        return self.fit.status
-
     @property
     def summary(self) -> str:
-        return "\n\n".join([self.fit.summary(), *telling.summaries(self.told)])
+        return "\n\n".join([self.result.summary(), *telling.summaries(self.told)])
 
     @property
-    def best(self) -> dict[str, Any]:
-        names = self.fit.parameters.names
-        known = [one if np.isfinite(one) else None for one in self.fit.deviations.tolist()]
-        values = self.fit.parameters.mapping(self.fit.values)
-        return {"fitness": self.fit.fitness, "values": values, "deviations": dict(zip(names, known, strict=True))}
-
-    @property
-    def findings(self) -> tuple[Finding, ...]:
-        return concluded(self.fit)
-
-    def save(self, path: Path) -> None:
-        self.fit.save(path)
-        telling.save(self.told, path)
-
-    def report(self, path: Path) -> None:
-        from dalembert.report import report
-
-        study = self.study
-        report(
-            self.fit,
-            path,
-            self._motion(),
-            *self.told.values(),
-            title=study.title,
-            notes=study.file.study.description,
-            study=study.content.decode(),
-        )
+    def beside(self) -> list[Any]:
+        return [self._motion(), *telling.reported(self.told)]
 
     def _motion(self) -> Any:
         """The motion at the identified values; of several experiments the first ones', by name."""
-        study, fit = self.study, self.fit
+        study, fit = self.study, self.result
         if not study.has_system:
             return None
         if not fit.experiments:
@@ -213,7 +173,7 @@ class Identification(Outcome):
         found = {}
         for table, item in list(zip(study.file.experiments, fit.experiments, strict=True))[:MOST_MOTIONS]:
             names = [f"{table.name}.{name}" if name in table.own else name for name in study.parameters.names]
-            variant = study.in_experiment(table)
+            variant = study.variant(table)
             values = np.array([fit.estimates[name] for name in names])
             found[table.name] = variant.motion(float(item.data.coordinate.values[-1]), values)
         return found
@@ -224,12 +184,13 @@ class Identify(Task):
 
     name = "identify"
     rank = 2
+    needs = (needs_parameters, needs_solver)
 
     def table(self) -> type[StudyTable]:
         return identify_table()
 
     def wrong(self, file: Any) -> list[str]:
-        wrong = needs_parameters(file, "identify")
+        wrong = super().wrong(file)
         if file.data is None and not file.experiments:
             wrong.append("[identify] needs a [data] table")
         channels = measured_channels(file)
@@ -240,9 +201,9 @@ class Identify(Task):
                 f"[identify], profile: the minimum of the loss {file.identify.loss!r} is no likelihood; leave one of "
                 "the keys out"
             )
-        return [*wrong, *_wrong_shooting(file), *needs_solver(file)]
+        return [*wrong, *_wrong_shooting(file)]
 
-    def plan(self, study: "Study") -> str:
+    def plan(self, study: Study) -> str:
         from dalembert.inverse.experiments.experiments import joint
 
         table = study.table
@@ -251,9 +212,8 @@ class Identify(Task):
         cost = _cost(settings(table.method), table.starts, len(whole.parameters), table.shooting)
         return f"identifies {', '.join(whole.parameters.names)} from {_measured(model, data)} by {cost}"
 
-    def effort(self, study: "Study") -> "Effort":
+    def effort(self, study: Study) -> Effort:
         from dalembert.inverse.experiments.experiments import joint
-        from dalembert.study.duration import TOGETHER, evaluated
 
         model, _ = posed(study)
         whole = joint(model)[0] if isinstance(model, list) else model
@@ -261,20 +221,20 @@ class Identify(Task):
         least, most = _expected(method, study.table.starts, len(whole.parameters), study.table.shooting)
         return evaluated(whole, whole.parameters.start, least, most, TOGETHER if isinstance(method, Swarm) else 1)
 
-    def foresight(self, study: "Study") -> int:
+    def foresight(self, study: Study) -> int:
         return 2 + len(unknown_names(study))
 
-    def trials(self, study: "Study") -> int:
+    def trials(self, study: Study) -> int:
         """Two where segments must meet: whether a motion can begin anew in its midst."""
         return 0 if study.table.shooting is None else 2
 
-    def foreseen(self, study: "Study") -> tuple[str, ...]:
+    def foreseen(self, study: Study) -> tuple[str, ...]:
         return telling.foreseen(*posed(study))
 
-    def unknowns(self, study: "Study") -> tuple[str, ...]:
+    def unknowns(self, study: Study) -> tuple[str, ...]:
         return unknown_names(study)
 
-    def run(self, study: "Study", emit: "Emit") -> Outcome:
+    def run(self, study: Study, emit: Emit) -> Outcome:
         from dalembert.inverse import identify
         from dalembert.inverse.events import as_record
 
@@ -296,13 +256,21 @@ class Identify(Task):
             shooting=None if table.shooting is None else table.shooting.settings(),
             on_event=teller(emit, as_record),
         )
-        return Identification(study, fit, telling.beyond(table, model, data, fit, teller(emit, as_record)))
+        return _identified(study, fit, telling.beyond(table, model, data, fit, teller(emit, as_record)))
 
-    def load(self, study: "Study", path: Path) -> Outcome:
+    def load(self, study: Study, path: Path) -> Outcome:
         from dalembert.inverse import Fit
 
         names = [table.name for table in study.file.experiments]
-        return Identification(study, Fit.load(path), telling.load(path, names))
+        return _identified(study, Fit.load(path), telling.load(path, names))
+
+
+def _identified(study: Study, fit: "Fit", told: Mapping[str, Any]) -> Identification:
+    """The outcome, with the values and their standard deviations."""
+    known = [one if np.isfinite(one) else None for one in fit.deviations.tolist()]
+    deviations = dict(zip(fit.parameters.names, known, strict=True))
+    values = fit.parameters.mapping(fit.values)
+    return Identification(study, fit, {"fitness": fit.fitness, "values": values, "deviations": deviations}, told=told)
 
 
 def _wrong_shooting(file: Any) -> list[str]:

@@ -1,24 +1,19 @@
 """Identify intervals of parameters from bands of the response."""
 
 from functools import cache
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from pydantic import Field, create_model
 
 from dalembert.study.catalogue import band_methods, part
 from dalembert.study.components import settings_of
-from dalembert.study.events import teller
+from dalembert.study.duration import TOGETHER, Effort, evaluated
+from dalembert.study.events import Emit, teller
 from dalembert.study.intervals import IntervalKey, Number
+from dalembert.study.study import Study
 from dalembert.study.table import StudyTable
-from dalembert.study.tasks.result import ResultOutcome
-from dalembert.study.tasks.task import Outcome, Task
-from dalembert.study.tasks.wrong import needs_parameters, needs_solver, unmatched, unnamed
-
-if TYPE_CHECKING:
-    from dalembert.study.duration import Effort
-    from dalembert.study.events import Emit
-    from dalembert.study.study import Study
+from dalembert.study.tasks.task import Outcome, ResultTask
+from dalembert.study.tasks.wrong import needs_bands, needs_parameters, needs_solver, unmatched, unnamed
 
 DEFAULT = "global"
 
@@ -44,26 +39,31 @@ def identify_bands_table() -> type[IdentifyBandsTable]:
     return create_model("IdentifyBands", __base__=IdentifyBandsTable, **fields)
 
 
-class IdentifyBands(Task):
+class IdentifyBands(ResultTask):
     """The task ``[identify_bands]``."""
 
     name = "identify_bands"
+    kind = "dalembert.inverse:BandFit"
     rank = 5
+    needs = (
+        needs_parameters,
+        needs_bands,
+        needs_solver,
+    )
 
     def table(self) -> type[StudyTable]:
         return identify_bands_table()
 
     def wrong(self, file: Any) -> list[str]:
         table = file.identify_bands
-        wrong = needs_parameters(file, "identify_bands")
-        wrong += [] if file.bands else ["[identify_bands] needs a [bands] table"]
+        wrong = super().wrong(file)
         wrong += unnamed(table.intervals or (), file.parameters, "[identify_bands], intervals")
         wrong += unnamed(table.truth, file.parameters, "[identify_bands.truth]")
         if file.bands is not None:
             wrong += unmatched(table.weights, file.bands.columns, "weight", "[identify_bands], weights")
-        return [*wrong, *needs_solver(file)]
+        return wrong
 
-    def plan(self, study: "Study") -> str:
+    def plan(self, study: Study) -> str:
         bands, table, names = study.bands(), study.table, study.parameters.names
         wide = names if table.intervals is None else table.intervals
         fixed = [name for name in names if name not in wide]
@@ -73,9 +73,8 @@ class IdentifyBands(Task):
             f"{len(bands.coordinate.values)} samples by {_cost(_method(study), len(names))}"
         )
 
-    def effort(self, study: "Study") -> "Effort":
+    def effort(self, study: Study) -> Effort:
         from dalembert.inverse import Nested
-        from dalembert.study.duration import TOGETHER, evaluated
 
         bands, method, count = study.bands(), _method(study), None
         if isinstance(method, Nested):
@@ -83,18 +82,17 @@ class IdentifyBands(Task):
         model = study.forward(bands.channels, bands.coordinate.values)
         return evaluated(model, study.parameters.start, count, count, TOGETHER)
 
-    def unknowns(self, study: "Study") -> tuple[str, ...]:
+    def unknowns(self, study: Study) -> tuple[str, ...]:
         """Middles of all parameters, then radii of those that are intervals."""
         names, wide = study.parameters.names, study.table.intervals
         radii = [name for name in names if wide is None or name in wide]
         return (*(f"{name} middle" for name in names), *(f"{name} radius" for name in radii))
 
-    def run(self, study: "Study", emit: "Emit") -> Outcome:
+    def result(self, study: Study, emit: Emit) -> Any:
         from dalembert.inverse import as_record, identify_bands
 
         bands, table = study.bands(), study.table
-
-        fit = identify_bands(
+        return identify_bands(
             study.forward(bands.channels, bands.coordinate.values),
             bands,
             intervals=table.intervals,
@@ -103,15 +101,15 @@ class IdentifyBands(Task):
             seed=table.seed,
             on_event=teller(emit, as_record),
         )
-        return _outcome(study, fit)
 
-    def load(self, study: "Study", path: Path) -> Outcome:
-        from dalembert.inverse import BandFit
+    def outcome(self, study: Study, fit: Any) -> Outcome:
+        """Outcome of identified intervals, with their ends; the known ones are drawn beside them."""
+        known = {name: table.interval() for name, table in study.table.truth.items()}
+        truth = {name: (interval.lower, interval.upper) for name, interval in known.items()}
+        return Outcome(study, fit, {"fitness": fit.fitness, "values": fit.estimates}, {"truth": truth})
 
-        return _outcome(study, BandFit.load(path))
 
-
-def _method(study: "Study") -> Any:
+def _method(study: Study) -> Any:
     given = study.table.method
     return band_methods()[DEFAULT]() if given is None else given.settings()
 
@@ -125,10 +123,3 @@ def _cost(method: Any, parameters: int) -> str:
     swarm, each = method.swarm, method.scheme.runs(parameters)
     sizes = f"{swarm.particles} particles x {swarm.iterations} iterations x {each} runs"
     return f"{type(method).__name__}: {sizes} = {swarm.particles * swarm.iterations * each} simulations"
-
-
-def _outcome(study: "Study", fit: Any) -> Outcome:
-    """Outcome of identified intervals, with their ends; the known ones are drawn beside them."""
-    known = {name: table.interval() for name, table in study.table.truth.items()}
-    truth = {name: (interval.lower, interval.upper) for name, interval in known.items()}
-    return ResultOutcome(study, fit, {"fitness": fit.fitness, "values": fit.estimates}, {"truth": truth})

@@ -1,24 +1,19 @@
 """Identify all parameters that are consistent with measurements of bounded error."""
 
 from functools import cache
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 from pydantic import Discriminator, Field, Tag, create_model
 
 from dalembert.study.catalogue import schemes
 from dalembert.study.components import settings_of
-from dalembert.study.events import teller
+from dalembert.study.duration import TOGETHER, Effort, evaluated
+from dalembert.study.events import Emit, teller
 from dalembert.study.intervals import Number
+from dalembert.study.study import Study
 from dalembert.study.table import StudyTable
-from dalembert.study.tasks.result import ResultOutcome
-from dalembert.study.tasks.task import Outcome, Task
-from dalembert.study.tasks.wrong import needs_parameters, needs_solver, unmatched, unnamed
-
-if TYPE_CHECKING:
-    from dalembert.study.duration import Effort
-    from dalembert.study.events import Emit
-    from dalembert.study.study import Study
+from dalembert.study.tasks.task import Outcome, ResultTask
+from dalembert.study.tasks.wrong import needs_data, needs_parameters, needs_solver, unmatched, unnamed
 
 Errors = Annotated[
     Annotated[dict[str, Number], Tag("channels")] | Annotated[Number, Tag("number")],
@@ -48,39 +43,42 @@ def identify_set_table() -> type[IdentifySetTable]:
     return create_model("IdentifySet", __base__=IdentifySetTable, **fields)
 
 
-class IdentifySet(Task):
+class IdentifySet(ResultTask):
     """The task ``[identify_set]``."""
 
     name = "identify_set"
+    kind = "dalembert.inverse:ParameterSet"
     rank = 6
+    needs = (
+        needs_parameters,
+        needs_data,
+        needs_solver,
+    )
 
     def table(self) -> type[StudyTable]:
         return identify_set_table()
 
     def wrong(self, file: Any) -> list[str]:
         table = file.identify_set
-        wrong = needs_parameters(file, "identify_set")
-        wrong += [] if file.data else ["[identify_set] needs a [data] table"]
+        wrong = super().wrong(file)
         wrong += unnamed(table.truth, file.parameters, "[identify_set.truth]")
         if file.data is not None and isinstance(table.error, dict):
             wrong += unmatched(table.error, file.data.channels, "error", "[identify_set], error")
-        return [*wrong, *needs_solver(file)]
+        return wrong
 
-    def plan(self, study: "Study") -> str:
+    def plan(self, study: Study) -> str:
         data = study.data()
         return (
             f"paves the set of {', '.join(study.parameters.names)} that explain {len(data.coordinate.values)} samples "
             f"of {', '.join(data.channels)} within their errors, on a surrogate of as many simulations as it needs"
         )
 
-    def effort(self, study: "Study") -> "Effort":
-        from dalembert.study.duration import TOGETHER, evaluated
-
+    def effort(self, study: Study) -> Effort:
         data = study.data()
         model = study.forward(data.channels, data.coordinate.values)
         return evaluated(model, study.parameters.start, None, None, TOGETHER)
 
-    def run(self, study: "Study", emit: "Emit") -> Outcome:
+    def result(self, study: Study, emit: Emit) -> Any:
         from dalembert.inverse import as_record, identify_set
 
         data, table = study.data(), study.table
@@ -89,18 +87,11 @@ class IdentifySet(Task):
         if table.scheme is not None:
             given["scheme"] = table.scheme.settings()
         model = study.forward(data.channels, data.coordinate.values)
-        found = identify_set(model, data, error=table.error, seed=table.seed, on_event=teller(emit, as_record), **given)
-        return _outcome(study, found)
+        return identify_set(model, data, error=table.error, seed=table.seed, on_event=teller(emit, as_record), **given)
 
-    def load(self, study: "Study", path: Path) -> Outcome:
-        from dalembert.inverse import ParameterSet
-
-        return _outcome(study, ParameterSet.load(path))
-
-
-def _outcome(study: "Study", found: Any) -> Outcome:
-    """Outcome of a set, with the ends of its outer box."""
-    box = found.outer
-    ends = () if box is None else ((name, interval) for name, interval in box.items())
-    values = {f"{name} {side}": getattr(interval, side) for name, interval in ends for side in ("lower", "upper")}
-    return ResultOutcome(study, found, {"values": values}, {"truth": study.table.truth})
+    def outcome(self, study: Study, found: Any) -> Outcome:
+        """Outcome of a set, with the ends of its outer box."""
+        box = found.outer
+        ends = () if box is None else ((name, interval) for name, interval in box.items())
+        values = {f"{name} {side}": getattr(interval, side) for name, interval in ends for side in ("lower", "upper")}
+        return Outcome(study, found, {"values": values}, {"truth": study.table.truth})

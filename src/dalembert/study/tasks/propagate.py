@@ -2,25 +2,21 @@
 
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from pydantic import Field, create_model
 
 from dalembert.intervals import Box
 from dalembert.study.catalogue import part, propagation_methods
 from dalembert.study.components import settings_of
-from dalembert.study.events import teller
+from dalembert.study.duration import TOGETHER, Effort, evaluated
+from dalembert.study.events import Emit, teller
 from dalembert.study.intervals import IntervalKey
 from dalembert.study.numbers import samples
+from dalembert.study.study import Study
 from dalembert.study.table import StudyTable
-from dalembert.study.tasks.result import ResultOutcome
-from dalembert.study.tasks.task import Outcome, Task
+from dalembert.study.tasks.task import Outcome, ResultTask
 from dalembert.study.tasks.wrong import needs_parameters, needs_samples, needs_solver, response, unnamed
-
-if TYPE_CHECKING:
-    from dalembert.study.duration import Effort
-    from dalembert.study.events import Emit
-    from dalembert.study.study import Study
 
 DEFAULT, REFERENCE = "chebyshev", "optimise"
 
@@ -53,25 +49,28 @@ def propagate_table() -> type[PropagateTable]:
     return create_model("Propagate", __base__=PropagateTable, **fields)
 
 
-class Propagate(Task):
+class Propagate(ResultTask):
     """The task ``[propagate]``."""
 
     name = "propagate"
     rank = 4
+    needs = (
+        needs_parameters,
+        needs_samples,
+        needs_solver,
+    )
 
     def table(self) -> type[StudyTable]:
         return propagate_table()
 
     def wrong(self, file: Any) -> list[str]:
         table = file.propagate
-        wrong = needs_parameters(file, "propagate")
-        wrong += unnamed(table.intervals, file.parameters, "[propagate.intervals]")
-        wrong += needs_samples(file, "propagate")
+        wrong = [*super().wrong(file), *unnamed(table.intervals, file.parameters, "[propagate.intervals]")]
         if table.reference is not None and not table.compare:
             wrong.append("[propagate], reference: nothing is compared; name methods in compare, or leave the key out")
-        return [*wrong, *needs_solver(file)]
+        return wrong
 
-    def plan(self, study: "Study") -> str:
+    def plan(self, study: Study) -> str:
         from dalembert.uncertainty.methods import label
         from dalembert.uncertainty.runs import Runs
 
@@ -88,8 +87,7 @@ class Propagate(Task):
             f"bounds {channels} at {len(model.coordinate.values)} samples over {', '.join(wide)} by {', '.join(costs)}"
         )
 
-    def effort(self, study: "Study") -> "Effort":
-        from dalembert.study.duration import TOGETHER, evaluated
+    def effort(self, study: Study) -> Effort:
         from dalembert.uncertainty.methods import label
         from dalembert.uncertainty.runs import Runs
 
@@ -98,23 +96,30 @@ class Propagate(Task):
         count = None if None in known else sum(filter(None, known))
         return evaluated(model, box.middle, count, count, TOGETHER)
 
-    def run(self, study: "Study", emit: "Emit") -> Outcome:
+    def result(self, study: Study, emit: Emit) -> Any:
         from dalembert.uncertainty import as_record, compare, propagate
 
         model, box, table = response(study), _box(study), study.table
         *methods, last = _methods(study)
         options: Any = {"seed": table.seed, "on_event": teller(emit, as_record)}
         if table.compare:
-            return _outcome(study, compare(model, box, methods, reference=last, **options))
-        return _outcome(study, propagate(model, box, last, **options))
+            return compare(model, box, methods, reference=last, **options)
+        return propagate(model, box, last, **options)
 
-    def load(self, study: "Study", path: Path) -> Outcome:
+    def load(self, study: Study, path: Path) -> Outcome:
         from dalembert.uncertainty import Comparison, Propagation
 
-        return _outcome(study, (Comparison if study.table.compare else Propagation).load(path))
+        return self.outcome(study, (Comparison if study.table.compare else Propagation).load(path))
+
+    def outcome(self, study: Study, result: Any) -> Outcome:
+        """Outcome of bounds, or of methods compared, with the largest width of each channel."""
+        bands = getattr(result, "results", (result,))[-1]
+        widths = zip(bands.channels, (bands.upper - bands.lower).max(axis=0), strict=True)
+        values = {f"width of {channel}": float(width) for channel, width in widths}
+        return Outcome(study, result, {"values": values})
 
 
-def _box(study: "Study") -> Box:
+def _box(study: Study) -> Box:
     """The box in the order of the parameters."""
     given = study.table.intervals
     return Box.of(
@@ -125,7 +130,7 @@ def _box(study: "Study") -> Box:
     )
 
 
-def _methods(study: "Study") -> list[Any]:
+def _methods(study: Study) -> list[Any]:
     """The method, then those to compare it with, and the reference last where any are compared."""
     kinds, table = propagation_methods(), study.table
     first = kinds[DEFAULT]() if table.method is None else table.method.settings()
@@ -134,11 +139,3 @@ def _methods(study: "Study") -> list[Any]:
     reference = kinds[REFERENCE]() if table.reference is None else table.reference.settings()
     others = [method.settings() for method in table.compare]
     return [*(method for method in (first, *others) if method != reference), reference]
-
-
-def _outcome(study: "Study", result: Any) -> Outcome:
-    """Outcome of bounds, or of methods compared, with the largest width of each channel."""
-    bands = getattr(result, "results", (result,))[-1]
-    widths = zip(bands.channels, (bands.upper - bands.lower).max(axis=0), strict=True)
-    values = {f"width of {channel}": float(width) for channel, width in widths}
-    return ResultOutcome(study, result, {"values": values})

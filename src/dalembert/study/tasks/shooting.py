@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING, Annotated
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import BeforeValidator, Field
 
 from dalembert.study.intervals import Number
 from dalembert.study.table import StudyTable, checked
@@ -39,10 +39,9 @@ class ShootingTable(StudyTable):
         "mechanism follow from its joints",
     )
 
-    @model_validator(mode="after")
-    def _check(self) -> "ShootingTable":
+    def _wrong(self) -> list[str]:
         checked(self.settings)
-        return self
+        return []
 
     def settings(self) -> "MultipleShooting":
         """The settings of the method."""

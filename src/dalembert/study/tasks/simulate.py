@@ -1,22 +1,19 @@
 """Simulate: the motion of a mechanism at the first guesses of its parameters."""
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import Field
 
+from dalembert.study.duration import Effort, shortest_of
+from dalembert.study.events import Emit
 from dalembert.study.numbers import fixed, samples
+from dalembert.study.study import Study
 from dalembert.study.table import Read, StudyTable, placed, problem
-from dalembert.study.tasks.task import Outcome, Task
+from dalembert.study.tasks.task import Outcome, ResultTask, silent
 from dalembert.study.tasks.wrong import needs_mechanism
-
-if TYPE_CHECKING:
-    from dalembert.study.duration import Effort
-    from dalembert.study.events import Emit
-    from dalembert.study.study import Study
 
 
 class SimulateTable(StudyTable):
@@ -29,15 +26,14 @@ class SimulateTable(StudyTable):
     channels: list[str] = Field([], description="what the result keeps: 'AB.end.x'; every channel if not given")
     points: list[str] = Field([], description="points whose paths the report draws: 'AB.end'")
 
-    @model_validator(mode="after")
-    def _check(self) -> "SimulateTable":
+    def _wrong(self) -> list[str]:
         if self.end is None and self.times is None:
             raise problem("neither end nor times is given; expected one of them")
         if self.end is not None and self.end <= 0:
             raise problem(f"end is {self.end:g} s; expected a time after 0")
         if self.end is not None and self.times is not None and self.times[-1] > self.end:
             raise problem(f"the last of times is {self.times[-1]:g} s, after end = {self.end:g} s")
-        return self
+        return []
 
     @property
     def last(self) -> float:
@@ -48,12 +44,8 @@ class SimulateTable(StudyTable):
         return self.times[-1]
 
 
-@dataclass(frozen=True)
 class Motion(Outcome):
     """A simulated motion."""
-
-    study: "Study"
-    trajectory: Any
 
     @property
     def success(self) -> bool:
@@ -61,41 +53,18 @@ class Motion(Outcome):
 
     @property
     def status(self) -> str:
-        return f"simulated to {self.trajectory.times[-1]:g} s"
-
-    @property
-    def summary(self) -> str:
-        return self.trajectory.summary()
-
-    @property
-    def best(self) -> dict[str, Any]:
-        return {}
+        return f"simulated to {self.result.times[-1]:g} s"
 
     def save(self, path: Path) -> None:
-        self.trajectory.save(path, self.study.table.channels or None)
-
-    def report(self, path: Path) -> None:
-        from dalembert.report import report
-
-        study = self.study
-        report(
-            self.trajectory,
-            path,
-            title=study.title,
-            notes=study.file.study.description,
-            study=study.content.decode(),
-            points=study.table.points,
-        )
+        self.result.save(path, self.study.table.channels or None)
 
 
-class Simulate(Task):
+class Simulate(ResultTask):
     """The task ``[simulate]``."""
 
     name = "simulate"
     rank = 1
-
-    def table(self) -> type[StudyTable]:
-        return SimulateTable
+    schema = SimulateTable
 
     def wrong(self, file: Any) -> list[str]:
         if file.model.forward is not None:
@@ -104,7 +73,7 @@ class Simulate(Task):
             return needs_mechanism(file, "simulate")
         return [] if file.solver else ["the table [solver] is missing; expected at least its step"]
 
-    def plan(self, study: "Study") -> str:
+    def plan(self, study: Study) -> str:
         from dalembert.multibody import TimeResponse
 
         study.system()
@@ -116,9 +85,7 @@ class Simulate(Task):
                     TimeResponse(study.builder, study.parameters, names, ends, solver=study.solver).channels  # noqa: B018
         return f"simulates the motion to {study.table.last:g} s: 1 simulation"
 
-    def effort(self, study: "Study") -> "Effort":
-        from dalembert.study.duration import Effort, shortest_of
-
+    def effort(self, study: Study) -> Effort:
         end, times = study.table.last, study.table.times
 
         def part(share: float) -> float:
@@ -128,7 +95,7 @@ class Simulate(Task):
 
         return Effort(part, 1, 1, 1, "the motion", shortest_of(study.solver, end))
 
-    def parts(self, study: "Study") -> Iterable[Callable[[], object]]:
+    def parts(self, study: Study) -> Iterable[Callable[[], object]]:
         """The checks of the simulation, which has no checkpoint to end it."""
         from dalembert.multibody.simulation import posed
 
@@ -137,11 +104,14 @@ class Simulate(Task):
             lambda: posed(study.system(), study.table.last, study.solver, None if times is None else np.array(times)),
         )
 
-    def run(self, study: "Study", emit: "Emit") -> Outcome:
+    def result(self, study: Study, emit: Emit) -> Any:
         emit("simulating", end=study.table.last)
         times = study.table.times
-        return Motion(study, study.motion(study.table.last, times=None if times is None else np.array(times)))
+        return study.motion(study.table.last, times=None if times is None else np.array(times))
 
-    def load(self, study: "Study", path: Path) -> Outcome:
+    def outcome(self, study: Study, result: Any) -> Outcome:
+        return Motion(study, result, options={"points": study.table.points})
+
+    def load(self, study: Study, path: Path) -> Outcome:
         """The motion again: a result does not keep all that a drawing needs, and the same study moves the same."""
-        return self.run(study, lambda *_, **__: None)
+        return self.run(study, silent)

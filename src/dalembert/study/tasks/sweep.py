@@ -1,26 +1,24 @@
 """Sweep: responses and their sensitivities at one instant, along one parameter after another."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any, Self
 
 import numpy as np
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import Discriminator, Field, Tag
 
 from dalembert.errors import InputError, StorageError, require_known, told
 from dalembert.files import replacing
 from dalembert.forward import ForwardModel, prefetched
 from dalembert.parameters import Parameters
+from dalembert.study.duration import TOGETHER, Effort, evaluated
+from dalembert.study.events import Emit
 from dalembert.study.numbers import MOST, fixed, samples
+from dalembert.study.study import Study
 from dalembert.study.table import Read, StudyTable, problem
-from dalembert.study.tasks.task import Outcome, Task
+from dalembert.study.tasks.task import ResultTask
 from dalembert.study.tasks.wrong import needs_solver, unnamed
-
-if TYPE_CHECKING:
-    from dalembert.study.duration import Effort
-    from dalembert.study.events import Emit
-    from dalembert.study.study import Study
 
 _BATCH = 64  # points between two events
 
@@ -47,11 +45,10 @@ class SweepTable(StudyTable):
         min_length=1, description="values of each parameter: { count = 41 } between its bounds, a list, or a range"
     )
 
-    @model_validator(mode="after")
-    def _check(self) -> "SweepTable":
+    def _wrong(self) -> list[str]:
         if len(set(self.channels)) < len(self.channels):
             raise problem("channels are repeated; give each once")
-        return self
+        return []
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,10 +76,9 @@ class Curve:
 
 
 @dataclass(frozen=True, eq=False)
-class Sweep(Outcome):
+class Sweep:
     """One curve a parameter, at one instant that ``at`` names."""
 
-    study: "Study" = field(repr=False)
     at: str
     curves: tuple[Curve, ...]
 
@@ -101,13 +97,8 @@ class Sweep(Outcome):
         failed = f"; {self.failed} of them failed, see events.jsonl" if self.failed else ""
         return f"{count} points along {', '.join(curve.parameter for curve in self.curves)}{failed}"
 
-    @property
     def summary(self) -> str:
         return self.status
-
-    @property
-    def best(self) -> dict[str, Any]:
-        return {}
 
     def save(self, path: Path) -> None:
         import xarray as xr
@@ -117,26 +108,29 @@ class Sweep(Outcome):
         with replacing(path) as temporary:
             tree.to_netcdf(temporary, engine="h5netcdf")
 
-    def report(self, path: Path) -> None:
-        from dalembert.report import report
+    @classmethod
+    def load(cls, path: Path) -> Self:
+        """The curves that :meth:`save` wrote."""
+        import xarray as xr
 
-        about = self.study.file.study
-        report(self, path, title=self.study.title, notes=about.description, study=self.study.content.decode())
+        with xr.open_datatree(path, engine="h5netcdf") as tree:
+            curves = tuple(_curve(name, node.to_dataset().load()) for name, node in tree.children.items())
+            return cls(tree.attrs["at"], curves)
 
 
-class SweepTask(Task):
+class SweepTask(ResultTask):
     """The task ``[sweep]``."""
 
     name = "sweep"
     rank = 3
-
-    def table(self) -> type[StudyTable]:
-        return SweepTable
+    schema = SweepTable
+    needs = (needs_solver,)
+    kind = f"{__name__}:Sweep"
 
     def wrong(self, file: Any) -> list[str]:
-        return [*unnamed(file.sweep.over, file.parameters, "[sweep.over]"), *needs_solver(file)]
+        return [*unnamed(file.sweep.over, file.parameters, "[sweep.over]"), *super().wrong(file)]
 
-    def plan(self, study: "Study") -> str:
+    def plan(self, study: Study) -> str:
         model = _model(study)
         _sample(model, study.table.at)
         _columns(model, study.table.channels)
@@ -146,14 +140,12 @@ class SweepTask(Task):
         along = ", ".join(f"{name} ({number})" for name, number in values.items())
         return f"sweeps {along} at {_instant(model, study.table.at)}: {count} simulations{each}"
 
-    def effort(self, study: "Study") -> "Effort":
-        from dalembert.study.duration import TOGETHER, evaluated
-
+    def effort(self, study: Study) -> Effort:
         count = sum(len(values_along(study.parameters, name, study.table.over[name])) for name in study.table.over)
         count *= 1 + len(study.parameters) if study.table.sensitivities else 1
         return evaluated(_model(study), study.parameters.start, count, count, TOGETHER)
 
-    def run(self, study: "Study", emit: "Emit") -> Outcome:
+    def result(self, study: Study, emit: Emit) -> Sweep:
         model = _model(study)
         total = sum(len(values_along(study.parameters, name, study.table.over[name])) for name in study.table.over)
         curves, done = [], 0
@@ -164,17 +156,10 @@ class SweepTask(Task):
                 details = {"parameter": name, "value": float(curve.values[row]), "done": done, "total": total}
                 emit("swept", **details, failure=failure)
             curves.append(curve)
-        return Sweep(study, _instant(model, study.table.at), tuple(curves))
-
-    def load(self, study: "Study", path: Path) -> Outcome:
-        import xarray as xr
-
-        with xr.open_datatree(path, engine="h5netcdf") as tree:
-            curves = tuple(_curve(name, node.to_dataset().load()) for name, node in tree.children.items())
-            return Sweep(study, tree.attrs["at"], curves)
+        return Sweep(_instant(model, study.table.at), tuple(curves))
 
 
-def _model(study: "Study") -> ForwardModel:
+def _model(study: Study) -> ForwardModel:
     return study.forward(study.table.channels, np.array([study.table.at]))
 
 
@@ -208,7 +193,7 @@ def values_along(parameters: Parameters, name: str, along: BoundsTable | tuple[f
     return np.linspace(parameter.lower, parameter.upper, along.count)
 
 
-def _empty(study: "Study", model: ForwardModel, name: str) -> Curve:
+def _empty(study: Study, model: ForwardModel, name: str) -> Curve:
     """A curve with NaN where responses will stand."""
     values = values_along(study.parameters, name, study.table.over[name])
     channels = [model.channels[column] for column in _columns(model, study.table.channels)]
@@ -219,7 +204,7 @@ def _empty(study: "Study", model: ForwardModel, name: str) -> Curve:
     return Curve(name, unit, values, names, units, np.full(shape, np.nan), slopes)
 
 
-def _fill(study: "Study", model: ForwardModel, curve: Curve) -> Iterator[tuple[int, str | None]]:
+def _fill(study: Study, model: ForwardModel, curve: Curve) -> Iterator[tuple[int, str | None]]:
     """Simulate each point of a curve; yields its number and why it failed, if it did."""
     sample, columns = _sample(model, study.table.at), _columns(model, list(curve.channels))
     place = study.parameters.names.index(curve.parameter)

@@ -1,63 +1,89 @@
 """What a task of a study file is, and what it hands back."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol
+from pkgutil import resolve_name
+from typing import Any, ClassVar
 
 from dalembert.findings import Finding
+from dalembert.study.duration import Effort
+from dalembert.study.events import Emit
+from dalembert.study.study import Study
 from dalembert.study.table import StudyTable
-
-if TYPE_CHECKING:
-    from dalembert.study.duration import Effort
-    from dalembert.study.events import Emit
-    from dalembert.study.study import Study
 
 
 def silent(kind: str, **details: Any) -> None:
     """Take an event and do nothing: for parts of a run that nobody follows."""
 
 
-def concluded(result: Any) -> tuple[Finding, ...]:
-    """Findings of a result, and what else it is doubted for."""
-    findings = tuple(getattr(result, "findings", ()))
-    return (*findings, *(doubt for doubt in getattr(result, "doubts", ()) if doubt not in findings))
+@dataclass(frozen=True)
+class Outcome:
+    """What a task found: a result with ``success``, ``status``, ``summary()`` and ``save(path)``.
 
+    Parameters
+    ----------
+    study : Study
+    result : any
+    best : mapping
+        Few numbers for the list of runs.
+    options : mapping
+        Of :func:`dalembert.report.report`, beside title, notes and study.
+    told : mapping
+        Further results, by the names of their files beside that of the result, without ending.
+    """
 
-class Outcome(Protocol):
-    """What a task found."""
+    study: Study = field(repr=False)
+    result: Any
+    best: Mapping[str, Any] = field(default_factory=dict)
+    options: Mapping[str, Any] = field(default_factory=dict)
+    told: Mapping[str, Any] = field(default_factory=dict)
 
     @property
-    def success(self) -> bool: ...
+    def success(self) -> bool:
+        return self.result.success
 
     @property
     def status(self) -> str:
         """What came out, or what could not, in a sentence."""
-        ...
+        return self.result.status
 
     @property
     def summary(self) -> str:
         """What came out, in a few lines for a terminal."""
-        ...
-
-    @property
-    def best(self) -> dict[str, Any]:
-        """Few numbers for the list of runs."""
-        ...
+        return self.result.summary()
 
     @property
     def findings(self) -> tuple[Finding, ...]:
-        """What is concluded about the result."""
-        return ()
+        """Findings of the result, and what else it is doubted for."""
+        findings = tuple(getattr(self.result, "findings", ()))
+        return (*findings, *(doubt for doubt in getattr(self.result, "doubts", ()) if doubt not in findings))
+
+    @property
+    def beside(self) -> Iterable[Any]:
+        """What the report shows beside the result."""
+        return self.told.values()
 
     def save(self, path: Path) -> None:
-        """Write the result as NetCDF, whole or not at all."""
-        ...
+        """Write the result and what is beside it as NetCDF, each whole or not at all."""
+        self.result.save(path)
+        for name, one in self.told.items():
+            one.save(path.with_name(f"{name}.nc"))
 
     def report(self, path: Path) -> None:
         """Write the HTML report, whole or not at all."""
-        ...
+        from dalembert.report import report
+
+        notes, text = self.study.file.study.description, self.study.content.decode()
+        report(self.result, path, *self.beside, title=self.study.title, notes=notes, study=text, **self.options)
+
+
+def loaded_beside(result: Path, kinds: Mapping[str, Any]) -> dict[str, Any]:
+    """What was written beside a result, by the names of files and of their kinds' classes."""
+    paths = {name: result.with_name(f"{name}.nc") for name in kinds}
+    return {name: kind.load(paths[name]) for name, kind in kinds.items() if paths[name].is_file()}
 
 
 class Task(ABC):
@@ -71,52 +97,84 @@ class Task(ABC):
         Place in lists of tasks.
     of_structures : bool
         Whether it is for structures over frequency alone.
+    schema : type
+        Of the table.
+    needs : tuple of callable
+        What it needs elsewhere in the file: each returns sentences from the file and the name of the task.
     """
 
     name: ClassVar[str]
     rank: ClassVar[int] = 100
     of_structures: ClassVar[bool] = False
+    schema: ClassVar[type[StudyTable]]
+    needs: ClassVar[tuple[Callable[[Any, str], list[str]], ...]] = ()
 
-    @abstractmethod
     def table(self) -> type[StudyTable]:
         """Schema of the task's table."""
+        return self.schema
 
-    @abstractmethod
     def wrong(self, file: Any) -> list[str]:
         """Sentences about what the task misses elsewhere in the file."""
+        return [sentence for need in self.needs for sentence in need(file, self.name)]
 
     @abstractmethod
-    def plan(self, study: "Study") -> str:
+    def plan(self, study: Study) -> str:
         """What would run, and about how many simulations, in a sentence; nothing is simulated for it."""
 
-    def parts(self, study: "Study") -> Iterable[Callable[[], object]]:
+    def parts(self, study: Study) -> Iterable[Callable[[], object]]:
         """Parts of the run, each of which checks its settings before its first simulation."""
         return (partial(self.run, study, silent),)
 
     @abstractmethod
-    def effort(self, study: "Study") -> "Effort":
+    def effort(self, study: Study) -> Effort:
         """What the study spends its time with."""
 
-    def unknowns(self, study: "Study") -> tuple[str, ...]:
+    def unknowns(self, study: Study) -> tuple[str, ...]:
         """Names of the values that the events of a run tell."""
         return study.parameters.names
 
-    def foresight(self, study: "Study") -> int:
+    def foresight(self, study: Study) -> int:
         """About how many simulations :meth:`foreseen` takes the time of; none if it has nothing to say."""
         return 0
 
-    def foreseen(self, study: "Study") -> tuple[str, ...]:
+    def foreseen(self, study: Study) -> tuple[str, ...]:
         """Sentences on what would come out, from a look that costs little."""
         return ()
 
-    def trials(self, study: "Study") -> int:
+    def trials(self, study: Study) -> int:
         """Number of simulations that the run checks the study by, before those that it computes its result from."""
         return 0
 
     @abstractmethod
-    def run(self, study: "Study", emit: "Emit") -> Outcome:
+    def run(self, study: Study, emit: Emit) -> Outcome:
         """Do it."""
 
     @abstractmethod
-    def load(self, study: "Study", path: Path) -> Outcome:
+    def load(self, study: Study, path: Path) -> Outcome:
         """What a run found, from its result file."""
+
+
+class ResultTask(Task):
+    """A task that makes one result, which one class reads again.
+
+    Attributes
+    ----------
+    kind : str
+        Where that class is, ``"package.module:Class"``; it has a class method ``load(path)``.
+    """
+
+    kind: ClassVar[str]
+
+    @abstractmethod
+    def result(self, study: Study, emit: Emit) -> Any:
+        """Do it."""
+
+    def outcome(self, study: Study, result: Any) -> Outcome:
+        """What a run hands back of its result."""
+        return Outcome(study, result)
+
+    def run(self, study: Study, emit: Emit) -> Outcome:
+        return self.outcome(study, self.result(study, emit))
+
+    def load(self, study: Study, path: Path) -> Outcome:
+        return self.outcome(study, resolve_name(self.kind).load(path))

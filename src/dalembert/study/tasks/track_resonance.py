@@ -1,22 +1,18 @@
 """Track resonance: the peak of a response over a parameter, without whole curves."""
 
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import numpy as np
 from pydantic import Field
 
+from dalembert.study.duration import Effort, whole
+from dalembert.study.events import Emit
 from dalembert.study.numbers import fixed
+from dalembert.study.study import Study
 from dalembert.study.table import Read, StudyTable, placed
-from dalembert.study.tasks.result import ResultOutcome
 from dalembert.study.tasks.sweep import Along, values_along
-from dalembert.study.tasks.task import Outcome, Task
+from dalembert.study.tasks.task import Outcome, ResultTask
 from dalembert.study.tasks.wrong import needs_structure, unnamed
-
-if TYPE_CHECKING:
-    from dalembert.study.duration import Effort
-    from dalembert.study.events import Emit
-    from dalembert.study.study import Study
 
 
 class TrackResonanceTable(StudyTable):
@@ -31,23 +27,21 @@ class TrackResonanceTable(StudyTable):
     amplitude: str = Field("peak", description="'peak', 'rms', or 'harmonic 1' and so on")
 
 
-class TrackResonance(Task):
+class TrackResonance(ResultTask):
     """The task ``[track_resonance]``."""
 
     name = "track_resonance"
+    kind = "dalembert.vibration:ResonanceTrack"
     rank = 10
     of_structures = True
-
-    def table(self) -> type[StudyTable]:
-        return TrackResonanceTable
+    schema = TrackResonanceTable
+    needs = (needs_structure,)
 
     def wrong(self, file: Any) -> list[str]:
         where = "[track_resonance], parameter"
-        return needs_structure(file, "track_resonance") + unnamed(
-            [file.track_resonance.parameter], file.parameters, where
-        )
+        return [*super().wrong(file), *unnamed([file.track_resonance.parameter], file.parameters, where)]
 
-    def plan(self, study: "Study") -> str:
+    def plan(self, study: Study) -> str:
         from dalembert.vibration.paths.amplitudes import Amplitude
 
         table, lowered = study.table, study.equations().lowered
@@ -61,28 +55,32 @@ class TrackResonance(Task):
             f"{values[0]:g} to {values[-1]:g}: {len(values)} simulations"
         )
 
-    def effort(self, study: "Study") -> "Effort":
-        from dalembert.study.duration import Effort, whole
-
+    def effort(self, study: Study) -> Effort:
         count = len(_values(study))
         part = whole(lambda: _track(study, _values(study)[:1]))
         return Effort(part, 1, count, count, "the peak at the first value")
 
-    def run(self, study: "Study", emit: "Emit") -> Outcome:
-        return _outcome(study, _track(study, _values(study)))
+    def result(self, study: Study, emit: Emit) -> Any:
+        return _track(study, _values(study))
 
-    def load(self, study: "Study", path: Path) -> Outcome:
-        from dalembert.vibration import ResonanceTrack
+    def outcome(self, study: Study, track: Any) -> Outcome:
+        """Outcome of a track, with its smallest peak."""
+        if not track.converged.any():
+            return Outcome(study, track, {})
+        best, row = track.best(), int(np.nanargmin(track.amplitudes))
+        peak = {
+            f"{track.kind} of {track.dof}": float(track.amplitudes[row]),
+            "frequency (Hz)": float(track.frequencies[row]),
+        }
+        return Outcome(study, track, {"values": {track.parameter: best, **peak}})
 
-        return _outcome(study, ResonanceTrack.load(path))
 
-
-def _values(study: "Study") -> np.ndarray:
+def _values(study: Study) -> np.ndarray:
     """Values of the parameter, (values,)."""
     return values_along(study.parameters, study.table.parameter, study.table.values)
 
 
-def _track(study: "Study", values: np.ndarray) -> Any:
+def _track(study: Study, values: np.ndarray) -> Any:
     from dalembert.vibration import track_resonance
 
     table, name = study.table, study.table.parameter
@@ -97,15 +95,3 @@ def _track(study: "Study", values: np.ndarray) -> Any:
         unit=next(item.unit for item in study.parameters if item.name == name),
         checkpoint=study.checkpoint,
     )
-
-
-def _outcome(study: "Study", track: Any) -> Outcome:
-    """Outcome of a track, with its smallest peak."""
-    if not track.converged.any():
-        return ResultOutcome(study, track, {})
-    best, row = track.best(), int(np.nanargmin(track.amplitudes))
-    peak = {
-        f"{track.kind} of {track.dof}": float(track.amplitudes[row]),
-        "frequency (Hz)": float(track.frequencies[row]),
-    }
-    return ResultOutcome(study, track, {"values": {track.parameter: best, **peak}})

@@ -8,7 +8,7 @@ import numpy as np
 from dalembert.errors import unknown
 
 
-def needs_solver(file: Any) -> list[str]:
+def needs_solver(file: Any, task: str) -> list[str]:
     """Sentence about a mechanism without a solver."""
     missing = file.model.forward is None and file.solver is None and not file.vibrates
     return ["the table [solver] is missing; expected at least its step"] if missing else []
@@ -29,6 +29,16 @@ def needs_structure(file: Any, task: str) -> list[str]:
         f"[{task}] needs a structure: [[model.mass]] tables, matrices in [model.structure], or a function that returns "
         "a VibrationSystem"
     ]
+
+
+def needs_data(file: Any, task: str) -> list[str]:
+    """Sentence about a study without measured data."""
+    return [] if file.data else [f"[{task}] needs a [data] table"]
+
+
+def needs_bands(file: Any, task: str) -> list[str]:
+    """Sentence about a study without bands."""
+    return [] if file.bands else [f"[{task}] needs a [bands] table"]
 
 
 def needs_samples(file: Any, task: str) -> list[str]:

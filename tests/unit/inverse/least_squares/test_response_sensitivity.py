@@ -129,10 +129,10 @@ def test_a_study_file_names_method_settings_and_spread(tmp_path, monkeypatch):
     np.savetxt("decay.csv", np.column_stack([TIMES, data.values]), delimiter=",", header="t,x", comments="")
     (tmp_path / "decay.toml").write_text(STUDY)
     folder, outcome = run_study(load("decay.toml"))
-    settings = outcome.fit.provenance["method"]["settings"]
+    settings = outcome.result.provenance["method"]["settings"]
     assert (settings["regularisation"], settings["noise"], settings["agreement"]) == ("discrepancy", 0.01, 0.25)
-    assert outcome.fit.provenance["spread"] == "sobol"
-    np.testing.assert_allclose(outcome.fit.values, [2.0, 0.8], atol=0.05)
+    assert outcome.result.provenance["spread"] == "sobol"
+    np.testing.assert_allclose(outcome.result.values, [2.0, 0.8], atol=0.05)
     steps = [event for event in read_events(folder.events) if event["event"] == "iteration"]
     assert any(step["regularised"] for step in steps)
 

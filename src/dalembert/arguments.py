@@ -11,43 +11,11 @@ from typing import Any, NamedTuple, TypeVar, Union, cast
 import numpy as np
 
 from dalembert.errors import InputError, shown
+from dalembert.ranges import Range
 
 LARGEST = 1e100  # of a number of a model; squares of larger ones soon leave the range of floating point
 Function = TypeVar("Function", bound=Callable[..., Any])
 _PLAIN = (float, int, complex, np.float64, np.complex128)
-
-
-class Range(NamedTuple):
-    """Range of a number, of which the limits ``above`` and ``below`` are no part.
-
-    >>> [0 in POSITIVE, 0 in NOT_NEGATIVE, -0.5 in Range(above=-1.0, most=0.0)]
-    [False, True, True]
-    >>> f"{POSITIVE}; {Range(least=1.0)}; {Range(above=-1.0, below=0.5)}"
-    'a positive number; a number of at least 1; a number between -1 and 0.5'
-    """
-
-    above: float = -np.inf
-    least: float = -np.inf
-    below: float = np.inf
-    most: float = np.inf
-
-    def __contains__(self, value: object) -> bool:
-        real = np.real(value)  # type: ignore[call-overload]
-        return bool(np.all((self.above < real) & (self.least <= real) & (real < self.below) & (real <= self.most)))
-
-    def __str__(self) -> str:
-        if self in (POSITIVE, NOT_NEGATIVE):
-            return "a positive number" if self == POSITIVE else "zero or a positive number"
-        limits = {name: limit for name, limit in self._asdict().items() if np.isfinite(limit)}
-        if limits.keys() == {"least", "most"}:
-            return f"a number from {self.least:g} to {self.most:g}"
-        if limits.keys() == {"above", "below"}:
-            return f"a number between {self.above:g} and {self.below:g}"
-        words = {"above": "above", "least": "of at least", "below": "below", "most": "at most"}
-        return "a number " + " and ".join(f"{words[name]} {limit:g}" for name, limit in limits.items())
-
-
-POSITIVE, NOT_NEGATIVE = Range(above=0.0), Range(least=0.0)
 
 
 def limited(default: Any = MISSING, unit: str | None = None, **limits: float) -> Any:
@@ -80,11 +48,11 @@ class Checked:
 
     Examples
     --------
-    >>> from dataclasses import dataclass, field
+    >>> from dataclasses import dataclass
     >>> @dataclass(frozen=True)
     ... class Rod(Checked):
     ...     name: str
-    ...     length: float | complex = field(metadata={"unit": "m", "range": POSITIVE})
+    ...     length: float | complex = limited(unit="m", above=0)
     >>> Rod("AB", "2")
     Traceback (most recent call last):
     dalembert.errors.InputError: Rod 'AB': length is '2'; expected a number in m

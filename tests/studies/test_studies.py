@@ -61,7 +61,7 @@ def found(study: Study, outcome: Outcome, row: dict[str, Any]) -> float:
         case "propagate":
             return bounded(study, getattr(outcome, "result"), row)  # noqa: B009
         case "simulate":
-            trajectory: Any = getattr(outcome, "trajectory")  # noqa: B009 (an outcome of this task has one)
+            trajectory: Any = outcome.result
             sample = int(np.argmin(np.abs(trajectory.times - row["at"])))
             assert trajectory.times[sample] == pytest.approx(row["at"], abs=1e-9)
             return float(trajectory.channels([quantity])[sample, 0])

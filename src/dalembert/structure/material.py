@@ -2,7 +2,8 @@
 
 from dataclasses import dataclass, field
 
-from dalembert.arguments import POSITIVE, Checked, Range
+from dalembert.arguments import Checked
+from dalembert.ranges import POSITIVE, Range
 
 
 @dataclass(frozen=True)

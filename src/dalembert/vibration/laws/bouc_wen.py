@@ -13,9 +13,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from dalembert.arguments import POSITIVE, Range
 from dalembert.errors import InputError
 from dalembert.kernels.kernel import inner
+from dalembert.ranges import POSITIVE, Range
 from dalembert.vibration.laws.contacts import Number
 from dalembert.vibration.laws.element import LawElement
 from dalembert.vibration.laws.law import law

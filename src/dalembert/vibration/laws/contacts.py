@@ -5,8 +5,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from dalembert.arguments import NOT_NEGATIVE, POSITIVE, Checked
+from dalembert.arguments import Checked
 from dalembert.errors import InputError, require_known, shown
+from dalembert.ranges import NOT_NEGATIVE, POSITIVE
 
 Number = float | complex
 """A float, or a complex number whose imaginary part is a direction of differentiation."""

@@ -15,8 +15,8 @@ Source: Segalman, "A four-parameter Iwan model for lap-type joints", Journal of 
 
 from dataclasses import dataclass, field
 
-from dalembert.arguments import NOT_NEGATIVE, POSITIVE, Range
 from dalembert.kernels.kernel import inner
+from dalembert.ranges import NOT_NEGATIVE, POSITIVE, Range
 from dalembert.vibration.laws.contacts import Number
 from dalembert.vibration.laws.element import LawElement
 from dalembert.vibration.laws.law import law

@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from dalembert.arguments import NOT_NEGATIVE, POSITIVE
+from dalembert.ranges import NOT_NEGATIVE, POSITIVE
 from dalembert.vibration.balance.fourier import Fourier
 from dalembert.vibration.laws.contact_sums import ContactSums, Shape, contact_sums
 from dalembert.vibration.laws.contacts import Number

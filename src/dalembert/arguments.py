@@ -29,8 +29,8 @@ def limited(default: Any = MISSING, unit: str | None = None, **limits: float) ->
     Traceback (most recent call last):
     dalembert.errors.InputError: Search: tolerance is 2; expected a number between 0 and 1
     """
-    of_unit = {} if unit is None else {"unit": unit}
-    return field(default=default, metadata={"range": Range(**limits), **of_unit})
+    metadata = {"unit": unit, "range": Range(**limits) if limits else None}
+    return field(default=default, metadata={name: value for name, value in metadata.items() if value is not None})
 
 
 class Checked:

@@ -229,11 +229,11 @@ INPUTS = {
     ),
     "a length of zero": (
         lambda: mb.RigidBar("bar", length=0.0, mass=1.0),
-        "rigid bar 'bar': length is 0; expected a positive number",
+        "RigidBar 'bar': length is 0 m; expected a positive number",
     ),
     "a mass that is negative": (
         lambda: mb.PointMass("bob", mass=-1.0),
-        "point mass 'bob': mass is -1; expected a positive number",
+        "PointMass 'bob': mass is -1 kg; expected a positive number",
     ),
     "an inertia that is not a number": (
         lambda: mb.RigidBody("plate", 1.0, np.nan),
@@ -257,7 +257,7 @@ INPUTS = {
     ),
     "a Poisson ratio of one half": (
         lambda: mb.AncfBeam("bar", 1.0, 1, 1e6, poisson_ratio=0.5, **SECTION),
-        "beam 'bar': poisson_ratio is 0.5; expected a number in (-1, 0.5)",
+        "AncfBeam 'bar': poisson_ratio is 0.5; expected a number between -1 and 0.5",
     ),
     "a law that is not there": (
         lambda: mb.AncfBeam("bar", 1.0, 1, 1e6, poisson_ratio=0.3, **SECTION, law="plane stress"),
@@ -269,15 +269,15 @@ INPUTS = {
     ),
     "damping that is negative": (
         lambda: mb.AncfCable("rope", 1.0, 1, 1e6, **SECTION, damping=-1e-3),
-        "beam 'rope': damping is -0.001; expected zero or a positive number",
+        "AncfCable 'rope': damping is -0.001 s; expected zero or a positive number",
     ),
     "friction that is negative": (
         lambda: mb.RevoluteJoint("pin", mb.Ground(), bar().start, coulomb=-0.1),
-        "revolute joint 'pin': coulomb is -0.1; expected zero or a positive number",
+        "RevoluteJoint 'pin': coulomb is -0.1 N*m; expected zero or a positive number",
     ),
     "a slip rate of zero": (
         lambda: mb.RevoluteJoint("pin", mb.Ground(), bar().start, slip_rate=0.0),
-        "revolute joint 'pin': slip_rate is 0; expected a positive number",
+        "RevoluteJoint 'pin': slip_rate is 0 rad/s; expected a positive number",
     ),
     "a friction coefficient without a lever": (
         lambda: mb.RevoluteJoint("pin", mb.Ground(), bar().start, friction_coefficient=0.3),
@@ -286,11 +286,11 @@ INPUTS = {
     ),
     "a slip velocity of zero": (
         lambda: mb.PrismaticJoint("slide", mb.Ground(), bar().start, slip_velocity=0.0),
-        "prismatic joint 'slide': slip_velocity is 0; expected a positive number",
+        "PrismaticJoint 'slide': slip_velocity is 0 m/s; expected a positive number",
     ),
     "a rod of negative length": (
         lambda: mb.DistanceJoint("rod", mb.Ground(), bar().start, length=-1.0),
-        "distance joint 'rod': length is -1; expected a positive number",
+        "DistanceJoint 'rod': length is -1 m; expected a positive number",
     ),
     "a coordinate that is not there": (
         lambda: mb.PrescribedMotion("drive", mb.Ground(), bar().start, coordinate="angel"),
@@ -298,7 +298,7 @@ INPUTS = {
     ),
     "a free length that is negative": (
         lambda: mb.Spring("coil", mb.Ground(), bar().start, 1.0, free_length=-1.0),
-        "spring 'coil': free_length is -1; expected zero or a positive number",
+        "Spring 'coil': free_length is -1 m; expected zero or a positive number",
     ),
     "a step of zero": (
         lambda: mb.GeneralizedAlpha(step=0.0),

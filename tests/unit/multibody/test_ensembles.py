@@ -110,7 +110,7 @@ def awkward(code: float, rate: float) -> mb.System:
 
 REASONS = {
     1: f"ValueError: the builder refuses this one (test_ensembles.py, line {awkward.__code__.co_firstlineno + 5})",
-    2: "point mass 'heavy': mass is -1; expected a positive number",
+    2: "PointMass 'heavy': mass is -1 kg; expected a positive number",
     4: "the model's function returned systems of different structure for different parameters; parameters may change "
     "numbers, not the number or the kinds of components",
 }

@@ -287,7 +287,7 @@ def bar_on_a_beam(**fields):
         (
             lambda: disc(voltage=1.0, efficiency=1.2),
             InputError,
-            "motor 'motor': efficiency is 1.2; expected a number in (0, 1]",
+            "Motor 'motor': efficiency is 1.2; expected a number above 0 and at most 1",
         ),
         (
             lambda: disc(voltage=1.0, gear_ratio=0.0),
@@ -297,13 +297,13 @@ def bar_on_a_beam(**fields):
         (
             lambda: disc(voltage=1.0, voltage_limit=-2.0),
             InputError,
-            "motor 'motor': voltage_limit is -2; expected a positive number",
+            "Motor 'motor': voltage_limit is -2 V; expected a positive number",
         ),
         (lambda: disc(mb.Servo, goal=1.0), InputError, "servo 'motor': kp is missing; give it"),
         (
             lambda: disc(mb.Servo, goal=1.0, kp=1.0, dead_band=0.0),
             InputError,
-            "servo 'motor': dead_band is 0; expected a positive number",
+            "Servo 'motor': dead_band is 0 rad; expected a positive number",
         ),
         (
             lambda: bar_on_a_beam(armature_inertia=1e-4),

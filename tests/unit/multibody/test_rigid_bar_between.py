@@ -65,8 +65,8 @@ def test_derivatives_by_coordinates_are_exact() -> None:
             "rigid bar 'bar': start and end are both (0.1, 0.2); expected two different places",
         ),
         ({}, "rigid bar 'bar': mass and line_density are both 0; expected a positive one"),
-        ({"mass": -1.0}, "rigid bar 'bar': mass is -1; expected zero or a positive number"),
-        ({"mass": 1.0, "inertia": 0.0}, "rigid bar 'bar': inertia is 0; expected a positive number"),
+        ({"mass": -1.0}, "RigidBarBetween 'bar': mass is -1 kg; expected zero or a positive number"),
+        ({"mass": 1.0, "inertia": 0.0}, "rigid bar 'bar': inertia is 0 kg*m**2; expected a positive number"),
     ],
 )
 def test_a_bar_that_cannot_be_is_refused(given: dict, sentence: str) -> None:

@@ -7,7 +7,7 @@ from typing import Any, cast
 import numpy as np
 
 from dalembert.errors import InputError
-from dalembert.multibody.components.fields import Number, number, require
+from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.planar.body import GRADIENT, POSITION, Body, turned
 from dalembert.multibody.components.points import Place, Point
 
@@ -22,9 +22,9 @@ class Ancf(Body):
     Its first vectors a node are the position and the gradient along the axis.
     """
 
-    length: Number = number("m")
+    length: Number = number("m", above=0)
     elements: int = cast(Any, field())  # as a field of ours is to a type checker: any
-    youngs_modulus: Number = number("Pa")
+    youngs_modulus: Number = number("Pa", above=0)
 
     @property
     @abstractmethod
@@ -76,7 +76,6 @@ class Ancf(Body):
 
     def _check(self) -> None:
         owner = f"beam {self.name!r}"
-        require(owner, length=self.length, youngs_modulus=self.youngs_modulus)
         if not (isinstance(self.elements, int) and 0 < self.elements <= MOST_ELEMENTS):
             raise InputError(
                 f"{owner}: elements is {self.elements!r}; expected a whole number, from 1 to {MOST_ELEMENTS}"

@@ -7,7 +7,7 @@ from dataclasses import InitVar, dataclass, field
 import numpy as np
 
 from dalembert.findings import Finding
-from dalembert.multibody.components.fields import Number, number, pair, require, require_not_negative
+from dalembert.multibody.components.fields import Number, number, pair
 from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar import markers
 from dalembert.multibody.components.planar.ancf import Ancf
@@ -43,21 +43,19 @@ class AncfCable(Ancf):
     20
     """
 
-    density: Number = number("kg/m**3")
-    height: Number = number("m")
-    width: Number = number("m")
+    density: Number = number("kg/m**3", above=0)
+    height: Number = number("m", above=0)
+    width: Number = number("m", above=0)
     angle: Number = number("rad", 0.0)
     start: InitVar[Place] = pair("m")
     velocity: tuple[Number, Number] | None = pair("m/s", None)
     angular_velocity: Number | None = number("rad/s", None)
-    damping: Number = number("s", 0.0)
+    damping: Number = number("s", 0.0, least=0)
     origin: Place = field(init=False)
 
     def __post_init__(self, start: Place) -> None:
         object.__setattr__(self, "origin", start)
         self._check()
-        require(f"beam {self.name!r}", density=self.density, height=self.height, width=self.width)
-        require_not_negative(f"beam {self.name!r}", damping=self.damping)
 
     @property
     def vectors(self) -> int:

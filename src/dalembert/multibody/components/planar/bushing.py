@@ -5,7 +5,7 @@ __all__ = ["Bushing"]
 from dataclasses import dataclass
 
 from dalembert.kernels.kernel import inlined
-from dalembert.multibody.components.fields import Number, number, require_not_negative
+from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar import pairs
 from dalembert.multibody.components.planar.load import Load
@@ -124,18 +124,14 @@ class Bushing(Load):
 
     a: Side
     b: Side
-    stiffness_x: Number = number("N/m")
-    stiffness_y: Number = number("N/m")
-    stiffness_angle: Number = number("N*m/rad", 0.0)
-    damping_x: Number = number("N*s/m", 0.0)
-    damping_y: Number = number("N*s/m", 0.0)
-    damping_angle: Number = number("N*m*s/rad", 0.0)
+    stiffness_x: Number = number("N/m", least=0)
+    stiffness_y: Number = number("N/m", least=0)
+    stiffness_angle: Number = number("N*m/rad", 0.0, least=0)
+    damping_x: Number = number("N*s/m", 0.0, least=0)
+    damping_y: Number = number("N*s/m", 0.0, least=0)
+    damping_angle: Number = number("N*m*s/rad", 0.0, least=0)
 
     kind = BUSHING
-
-    def __post_init__(self) -> None:
-        names = [f"{kind}_{axis}" for kind in ("stiffness", "damping") for axis in ("x", "y", "angle")]
-        require_not_negative(f"bushing {self.name!r}", **{name: getattr(self, name) for name in names})
 
     def lower(self, lowering: Lowering) -> None:
         require_direction(f"bushing {self.name!r}", "a spring, or a rigid body", self.a, self.b)

@@ -8,7 +8,7 @@ import numpy as np
 
 from dalembert.errors import ModelError
 from dalembert.kernels.kernel import inlined
-from dalembert.multibody.components.fields import Number, number, require
+from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar import pairs
 from dalembert.multibody.components.planar.joint import OUTPUTS, Joint, observe_joint
@@ -64,13 +64,9 @@ class DistanceJoint(Joint):
         m; the first distance of the points if not given.
     """
 
-    length: Number | None = number("m", None)
+    length: Number | None = number("m", None, above=0)
 
     kind = DISTANCE
-
-    def __post_init__(self) -> None:
-        if self.length is not None:
-            require(f"distance joint {self.name!r}", length=self.length)
 
     def lower(self, lowering: Lowering) -> None:
         pair = lowering.pair(self.a, self.b, self.name)

@@ -4,7 +4,7 @@ from typing import Any, NamedTuple
 
 from dalembert.errors import InputError
 from dalembert.kernels.kernel import inlined
-from dalembert.multibody.components.fields import Number, require, require_not_negative
+from dalembert.multibody.components.fields import Number
 from dalembert.multibody.kernels.elementary import exponential, logarithm, tanh
 
 #: Viscous coefficient, constant Coulomb force or torque, what it grows by with the reaction (friction coefficient
@@ -58,13 +58,8 @@ def rubs(joint: Any) -> bool:
 
 
 def check(owner: str, joint: Any, stribeck: str) -> None:
-    """Refuse negative coefficients, and Stribeck's friction without its rate, the field ``stribeck``."""
-    require_not_negative(owner, **coefficients(joint))
-    require(owner, stribeck_exponent=joint.stribeck_exponent)
-    rate = getattr(joint, stribeck)
-    if rate is not None:
-        require(owner, **{stribeck: rate})
-    elif joint.stribeck is not None:
+    """Refuse Stribeck's friction without its rate, the field ``stribeck``."""
+    if joint.stribeck is not None and getattr(joint, stribeck) is None:
         raise InputError(
             f"{owner}: stribeck was given without a {stribeck}. Give the rate at which Stribeck's friction has "
             "decreased to 1/e"

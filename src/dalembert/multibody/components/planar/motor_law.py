@@ -8,7 +8,7 @@ import numpy as np
 
 from dalembert.errors import InputError, ModelError
 from dalembert.kernels.kernel import inlined
-from dalembert.multibody.components.fields import Number, number, require, require_not_negative
+from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar import pairs
 from dalembert.multibody.components.planar.load import Load
@@ -132,26 +132,20 @@ class Drive(Load):
 
     a: Side
     b: Side
-    torque_constant: Number = number("N*m/A")
-    resistance: Number | None = number("ohm", None)
-    back_emf: Number | None = number("V*s/rad", None)
-    voltage_limit: Number | None = number("V", None)
+    torque_constant: Number = number("N*m/A", above=0)
+    resistance: Number | None = number("ohm", None, above=0)
+    back_emf: Number | None = number("V*s/rad", None, least=0)
+    voltage_limit: Number | None = number("V", None, above=0)
     gear_ratio: Number = number("", 1.0)
-    efficiency: Number = number("", 1.0)
-    slip_rate: Number = number("rad/s", 0.1)
-    armature_inertia: Number = number("kg*m**2", 0.0)
+    efficiency: Number = number("", 1.0, above=0, most=1)
+    slip_rate: Number = number("rad/s", 0.1, above=0)
+    armature_inertia: Number = number("kg*m**2", 0.0, least=0)
     enabled: Course = number("", 1.0)
 
     def _check(self, owner: str) -> None:
         """Refuse numbers that no motor has."""
-        require(owner, torque_constant=self.torque_constant, slip_rate=self.slip_rate)
-        given = {"resistance": self.resistance, "voltage_limit": self.voltage_limit}
-        require(owner, **{name: value for name, value in given.items() if value is not None})
-        require_not_negative(owner, back_emf=self.back_emf or 0.0, armature_inertia=self.armature_inertia)
         if np.real(self.gear_ratio) == 0:
             raise InputError(f"{owner}: gear_ratio is 0; expected a number other than zero")
-        if not 0 < np.real(self.efficiency) <= 1:
-            raise InputError(f"{owner}: efficiency is {np.real(self.efficiency):g}; expected a number in (0, 1]")
 
     def _add(
         self, lowering: Lowering, owner: str, numbers: list[Number], integers: list[int], *, by_current: bool = False

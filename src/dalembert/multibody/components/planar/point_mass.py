@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dalembert.kernels.kernel import inlined
-from dalembert.multibody.components.fields import Number, number, pair, require
+from dalembert.multibody.components.fields import Number, number, pair
 from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar import markers
 from dalembert.multibody.components.planar.body import POSITION, Body, Marker, with_points
@@ -55,12 +55,9 @@ class PointMass(Body):
         then.
     """
 
-    mass: Number = number("kg")
+    mass: Number = number("kg", above=0)
     position: Place = pair("m")
     velocity: tuple[Number, Number] | None = pair("m/s", None)
-
-    def __post_init__(self) -> None:
-        require(f"point mass {self.name!r}", mass=self.mass)
 
     @property
     def place(self) -> Place:

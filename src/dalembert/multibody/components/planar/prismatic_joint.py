@@ -5,7 +5,7 @@ __all__ = ["PrismaticJoint"]
 from dataclasses import dataclass
 
 from dalembert.kernels.kernel import inlined
-from dalembert.multibody.components.fields import Number, number, require
+from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar import friction, pairs
 from dalembert.multibody.components.planar.joint import OUTPUTS, Joint, observe_joint
@@ -143,20 +143,18 @@ class PrismaticJoint(Joint):
     """
 
     angle: Number = number("rad", 0.0)
-    viscous: Number | None = number("N*s/m", None)
-    coulomb: Number | None = number("N", None)
-    friction_coefficient: Number | None = number("", None)
-    slip_velocity: Number = number("m/s", 1e-3)
-    stribeck: Number | None = number("N", None)
-    stribeck_velocity: Number | None = number("m/s", None)
-    stribeck_exponent: Number = number("", 2.0)
+    viscous: Number | None = number("N*s/m", None, least=0)
+    coulomb: Number | None = number("N", None, least=0)
+    friction_coefficient: Number | None = number("", None, least=0)
+    slip_velocity: Number = number("m/s", 1e-3, above=0)
+    stribeck: Number | None = number("N", None, least=0)
+    stribeck_velocity: Number | None = number("m/s", None, above=0)
+    stribeck_exponent: Number = number("", 2.0, above=0)
 
     kind = PRISMATIC
 
     def __post_init__(self) -> None:
-        owner = f"prismatic joint {self.name!r}"
-        friction.check(owner, self, "stribeck_velocity")
-        require(owner, slip_velocity=self.slip_velocity)
+        friction.check(f"prismatic joint {self.name!r}", self, "stribeck_velocity")
 
     @property
     def smoothing(self) -> friction.Smoothing | None:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from dalembert.errors import InputError
 from dalembert.kernels.kernel import inlined, inner
-from dalembert.multibody.components.fields import Number, number, require, require_not_negative
+from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar import friction, pairs
 from dalembert.multibody.components.planar.joint import OUTPUTS, Joint, observe_joint
@@ -139,26 +139,23 @@ class RevoluteJoint(Joint):
     array([0.796])
     """
 
-    viscous: Number | None = number("N*m*s", None)
-    coulomb: Number | None = number("N*m", None)
-    friction_coefficient: Number | None = number("", None)
-    pin_radius: Number | None = number("m", None)
-    slip_rate: Number = number("rad/s", 1e-3)
-    stribeck: Number | None = number("N*m", None)
-    stribeck_rate: Number | None = number("rad/s", None)
-    stribeck_exponent: Number = number("", 2.0)
+    viscous: Number | None = number("N*m*s", None, least=0)
+    coulomb: Number | None = number("N*m", None, least=0)
+    friction_coefficient: Number | None = number("", None, least=0)
+    pin_radius: Number | None = number("m", None, least=0)
+    slip_rate: Number = number("rad/s", 1e-3, above=0)
+    stribeck: Number | None = number("N*m", None, least=0)
+    stribeck_rate: Number | None = number("rad/s", None, above=0)
+    stribeck_exponent: Number = number("", 2.0, above=0)
 
     kind = REVOLUTE
 
     def __post_init__(self) -> None:
-        owner = f"revolute joint {self.name!r}"
-        require_not_negative(owner, pin_radius=self.pin_radius or 0.0)
-        friction.check(owner, self, "stribeck_rate")
-        require(owner, slip_rate=self.slip_rate)
+        friction.check(f"revolute joint {self.name!r}", self, "stribeck_rate")
         if self.friction_coefficient is not None and self.pin_radius is None:
             raise InputError(
-                f"{owner}: a friction_coefficient was given without a pin_radius, so it would have no lever; "
-                "give the pin's radius in m"
+                f"revolute joint {self.name!r}: a friction_coefficient was given without a pin_radius, so it would "
+                "have no lever; give the pin's radius in m"
             )
 
     @property

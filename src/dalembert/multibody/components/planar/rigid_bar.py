@@ -5,7 +5,7 @@ __all__ = ["RigidBar"]
 from dataclasses import InitVar, dataclass, field
 from typing import Any
 
-from dalembert.multibody.components.fields import Number, number, pair, require
+from dalembert.multibody.components.fields import Number, number, pair
 from dalembert.multibody.components.planar.body import with_points
 from dalembert.multibody.components.planar.rigid import Rigid
 from dalembert.multibody.components.points import Place
@@ -68,9 +68,9 @@ class RigidBar(Bar):
     ((3.0, 1.0), 'rod.end')
     """
 
-    length: Number = number("m")
-    mass: Number = number("kg")
-    inertia: Number | None = number("kg*m**2", None)
+    length: Number = number("m", above=0)
+    mass: Number = number("kg", above=0)
+    inertia: Number | None = number("kg*m**2", None, above=0)
     centre: InitVar[Number] = number("", 0.5)
     angle: Number = number("rad", 0.0)
     start: InitVar[Place] = pair("m")
@@ -80,9 +80,6 @@ class RigidBar(Bar):
     origin: Place = field(init=False)
 
     def __post_init__(self, centre: Number, start: Place) -> None:
-        require(f"rigid bar {self.name!r}", length=self.length, mass=self.mass)
-        if self.inertia is not None:
-            require(f"rigid bar {self.name!r}", inertia=self.inertia)
         object.__setattr__(self, "balance", centre)
         object.__setattr__(self, "origin", start)
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from dalembert.elementary import atan2, hypot
 from dalembert.errors import InputError
-from dalembert.multibody.components.fields import Number, number, pair, require, require_not_negative
+from dalembert.multibody.components.fields import Number, number, pair
 from dalembert.multibody.components.planar.body import with_points
 from dalembert.multibody.components.planar.rigid_bar import Bar
 
@@ -50,8 +50,8 @@ class RigidBarBetween(Bar):
 
     start: InitVar[tuple[Number, Number]] = pair("m", MISSING)
     end: InitVar[tuple[Number, Number]] = pair("m", MISSING)
-    mass: Number = number("kg", 0.0)
-    line_density: Number = number("kg/m", 0.0)
+    mass: Number = number("kg", 0.0, least=0)
+    line_density: Number = number("kg/m", 0.0, least=0)
     inertia: Number | None = number("kg*m**2", None)
     centre: InitVar[Number] = number("", 0.5)
     velocity: tuple[Number, Number] = pair("m/s")
@@ -67,11 +67,11 @@ class RigidBarBetween(Bar):
         if not np.real(self.length) > 0:
             place = tuple(float(np.real(coordinate)) for coordinate in start)
             raise InputError(f"{owner}: start and end are both {place}; expected two different places")
-        require_not_negative(owner, mass=self.mass, line_density=self.line_density)
         total, inertia = self.inertias
         if not np.real(total) > 0:
             raise InputError(f"{owner}: mass and line_density are both 0; expected a positive one")
-        require(owner, inertia=inertia)
+        if not np.real(inertia) > 0:
+            raise InputError(f"{owner}: inertia is {np.real(inertia):g} kg*m**2; expected a positive number")
 
     @property
     def length(self) -> Number:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from dalembert.errors import InputError, require_known
-from dalembert.multibody.components.fields import Number, number, pair, require
+from dalembert.multibody.components.fields import Number, number, pair
 from dalembert.multibody.components.planar.body import with_points
 from dalembert.multibody.components.planar.rigid import Rigid
 from dalembert.multibody.components.points import Place
@@ -45,8 +45,8 @@ class RigidBody(Rigid):
     ('centre', 'corner')
     """
 
-    mass: Number = number("kg")
-    inertia: Number = number("kg*m**2")
+    mass: Number = number("kg", above=0)
+    inertia: Number = number("kg*m**2", above=0)
     position: Place = pair("m")
     angle: Number = number("rad", 0.0)
     anchor: str = "centre"
@@ -55,7 +55,6 @@ class RigidBody(Rigid):
     angular_velocity: Number | None = number("rad/s", None)
 
     def __post_init__(self) -> None:
-        require(f"rigid body {self.name!r}", mass=self.mass, inertia=self.inertia)
         if "centre" in self.points:
             raise InputError(f"rigid body {self.name!r}: the point name 'centre' is taken by the centre of mass")
         require_known("anchor", self.anchor, self.point_names, f"rigid body {self.name!r}")

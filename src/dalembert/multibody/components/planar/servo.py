@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from dalembert.errors import InputError
 from dalembert.kernels.kernel import inlined
-from dalembert.multibody.components.fields import Number, number, require, require_not_negative
+from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar.motor_law import Drive, clipped, drive_kind
 from dalembert.multibody.components.planar.pairs import relative_angle, relative_spin
@@ -76,9 +76,9 @@ class Servo(Drive):
     """
 
     goal: Course | None = number("rad", None)
-    kp: Number | None = number("V/rad", None)
-    kd: Number = number("V*s/rad", 0.0)
-    dead_band: Number | None = number("rad", None)
+    kp: Number | None = number("V/rad", None, least=0)
+    kd: Number = number("V*s/rad", 0.0, least=0)
+    dead_band: Number | None = number("rad", None, above=0)
 
     kind = SERVO
 
@@ -87,9 +87,6 @@ class Servo(Drive):
         for name in ("goal", "kp", "resistance"):
             if getattr(self, name) is None:
                 raise InputError(f"{owner}: {name} is missing; give it")
-        require_not_negative(owner, kp=self.kp or 0.0, kd=self.kd)
-        if self.dead_band is not None:
-            require(owner, dead_band=self.dead_band)
         self._check(owner)
 
     def lower(self, lowering: Lowering) -> None:

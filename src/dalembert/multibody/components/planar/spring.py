@@ -5,7 +5,7 @@ __all__ = ["Spring"]
 from dataclasses import dataclass
 
 from dalembert.kernels.kernel import inlined
-from dalembert.multibody.components.fields import Number, number, require_not_negative
+from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar.load import Load
 from dalembert.multibody.components.planar.pairs import push_pair, separation, separation_rate
@@ -62,14 +62,10 @@ class Spring(Load):
     b: Side
     stiffness: Number = number("N/m")
     damping: Number = number("N*s/m", 0.0)
-    free_length: Number | None = number("m", None)
+    free_length: Number | None = number("m", None, least=0)
     cubic: Number = number("N/m**3", 0.0)
 
     kind = SPRING
-
-    def __post_init__(self) -> None:
-        if self.free_length is not None:
-            require_not_negative(f"spring {self.name!r}", free_length=self.free_length)
 
     def lower(self, lowering: Lowering) -> None:
         pair = lowering.pair(self.a, self.b, self.name)

@@ -66,7 +66,7 @@ def found(study: Study, outcome: Outcome, row: dict[str, Any]) -> float:
             assert trajectory.times[sample] == pytest.approx(row["at"], abs=1e-9)
             return float(trajectory.channels([quantity])[sample, 0])
         case "sweep":
-            curve = next(curve for curve in getattr(outcome, "curves") if curve.parameter == row["along"])  # noqa: B009
+            curve = next(curve for curve in outcome.result.curves if curve.parameter == row["along"])
             sample = int(np.argmin(np.abs(curve.values - row["at"])))
             assert curve.values[sample] == pytest.approx(row["at"], abs=1e-9)
             return float(curve.responses[sample, curve.channels.index(quantity)])

@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 import numpy as np
-from scipy.signal import butter, sosfiltfilt
 
 from dalembert.arguments import is_real, is_whole
 from dalembert.data.record import TURN, Record, Recorded
@@ -16,6 +15,8 @@ _EVEN = 0.05  # of the distance of samples: how far one of them may differ
 
 def filtered(data: Recorded, cutoff: float) -> Recorded:
     """Measurements without what is faster than a cutoff frequency (Hz); see `Measurements.filtered`."""
+    from scipy.signal import butter
+
     along = _times(data)
     if not is_real(cutoff) or not 0 < cutoff < np.inf:
         raise DataError(f"the cutoff frequency is {cutoff} Hz; expected a positive number")
@@ -106,6 +107,8 @@ def _spacing(times: np.ndarray) -> float:
 
 def _between_gaps(times: np.ndarray, values: np.ndarray, sections: np.ndarray, period: int) -> np.ndarray:
     """A channel filtered between its gaps; stretches shorter than a period of the cutoff are missing."""
+    from scipy.signal import sosfiltfilt
+
     result = np.full(len(values), np.nan)
     for run in stretches(np.ones(len(values), dtype=bool), times):
         length = run.stop - run.start
@@ -116,6 +119,8 @@ def _between_gaps(times: np.ndarray, values: np.ndarray, sections: np.ndarray, p
 
 def _noise_gain(sections: np.ndarray, period: int) -> float:
     """Share of the standard deviation of white noise that passes: the root of the sum of the squared answer."""
+    from scipy.signal import sosfiltfilt
+
     impulse = np.zeros(40 * period + 1)
     impulse[20 * period] = 1.0
     return float(np.sqrt(np.sum(sosfiltfilt(sections, impulse, padlen=0) ** 2)))

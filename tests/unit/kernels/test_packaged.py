@@ -19,7 +19,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     folder = tmp_path_factory.mktemp("object")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(everything, "package_kernels", lambda: [weighted, both])
-        packaged.build(folder)
+        everything.build(folder)
     return folder
 
 
@@ -30,7 +30,7 @@ def test_it_needs_nothing_but_mathematical_functions(folder: Path) -> None:
 
 def test_it_is_used_where_sources_and_processor_fit(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(packaged, "source_digest", lambda: json.loads((folder / "kernels.json").read_text())["sources"])
-    monkeypatch.setattr(packaged, "_HERE", folder)
+    monkeypatch.setattr(packaged, "HERE", folder)
     find = packaged.packaged.__wrapped__
     assert find().symbols == {weighted.symbol, both.symbol}
     monkeypatch.setattr(packaged, "source_digest", lambda: "others")

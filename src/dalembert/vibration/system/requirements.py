@@ -36,8 +36,8 @@ def require_force(forces: list, where: str) -> None:
     """
     if not forces:
         raise InputError(
-            f"{where}: no force acts on the system, so that it stands still; add a HarmonicForce, or use backbone for "
-            "motions without force"
+            f"{where}: no force acts on the system, so that it stands still; add a HarmonicForce ('[[model.force]]'), "
+            "or use backbone for motions without force"
         )
 
 

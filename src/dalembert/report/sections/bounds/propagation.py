@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from dalembert.intervals import Box
 from dalembert.report import charts
 from dalembert.report.asked import Asked
 from dalembert.report.digits import counted, shown
@@ -12,6 +11,7 @@ from dalembert.report.plot import Plot
 from dalembert.report.quantities import by_quantity, labelled, unit
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Listed, Section
+from dalembert.report.sections.box import box_table
 from dalembert.report.sections.samples import samples
 from dalembert.report.table import Cell, Table, cells, noted
 from dalembert.uncertainty import Propagation
@@ -72,13 +72,6 @@ def _widths(result: Propagation) -> Table:
         columns["taken at corners of the box"] = [Cell(float(part), f"{100 * part:.0f} %") for part in corners]
     columns["unit"] = [unit(channel, known) for channel, known in zip(result.channels, result.units, strict=True)]
     return noted(Table.of("widths", "Widths", columns))
-
-
-def box_table(box: Box, caption: str, name: str = "box") -> Table:
-    """Ends, middle and radius of each interval of a box."""
-    middle, radius = (box.lower + box.upper) / 2, (box.upper - box.lower) / 2
-    columns = {"parameter": box.names, "lower": box.lower, "upper": box.upper, "middle": middle, "radius": radius}
-    return Table.of(name, caption, columns)
 
 
 def at_corners(result: Propagation) -> np.ndarray | None:

@@ -11,7 +11,7 @@ from dalembert.report.headline import Headline, few
 from dalembert.report.plot import Plot
 from dalembert.report.registry import sections_of
 from dalembert.report.section import Row, Section
-from dalembert.report.sections.bounds.propagation import box_table
+from dalembert.report.sections.box import box_table
 
 BOXES = (
     ("outer", "Outer box: all consistent parameters lie in it"),

@@ -163,7 +163,7 @@ FREQUENCY_CASES: dict[str, Case] = {
     "a response without contacts": Case(lambda: frequency_response(_turning(), AROUND, FEW), ("computed",)),
     "a response with folds": Case(
         _folded,
-        ("The path turns back in frequency at", "Drawn for the point of the curve where m.x is largest, "),
+        ("The path has folds at", "Drawn for the point of the curve where m.x is largest, "),
         ("spring-forces",),
     ),
     "a response that is unstable": Case(

@@ -48,7 +48,7 @@ class UserElement(Checked):
         values = self._forces(u)
         if np.iscomplexobj(u):
             return values, np.zeros(0)
-        # Elsewhere a trial of Newton's method may lie beyond what the law is for; the search turns back there.
+        # Elsewhere a trial of Newton's method may lie beyond what the law is for; the search goes back there.
         if not np.any(u) and not np.all(np.isfinite(values)):
             raise InputError(
                 f"element {self.name!r}: its function returned {values[~np.isfinite(values)][0]} at zero "

@@ -17,7 +17,7 @@ MOST_ROWS = 20
 def forced_response(look: Look, mode: Backbone | None) -> Section:
     """The curve of the degrees of freedom looked at, and a table of the peaks of all."""
     how = "Each point is a periodic motion."
-    how += " Symbols: where the path turns back or changes its stability." if marked(look.curve) else ""
+    how += " Symbols: where the path has a fold or changes its stability." if marked(look.curve) else ""
     how += " Dashed: unstable motions." if unstable(look.curve).any() else ""
     how += " Crosses: not found." if not look.curve.converged.all() else ""
     how += " Dotted: the nonlinear mode without force." if mode is not None else ""
@@ -31,7 +31,7 @@ def _sentences(look: Look) -> list[str]:
     folds = [shown(float(curve.frequencies[point])) for point in marked(curve).get("fold", [])]
     if folds:
         told.append(
-            f"The path turns back in frequency at {_listed(folds)} Hz: between folds several motions are possible at "
+            f"The path has folds at {_listed(folds)} Hz: between them several motions are possible at "
             "the same frequency, and a slow sweep jumps from one to another."
         )
     bad = unstable(curve)

@@ -68,11 +68,12 @@ class MarchedSums:
     def derivatives(self, displacements: np.ndarray, omega: float) -> np.ndarray:
         """Derivatives at samples, (elements, samples, columns + states, 2 columns + states).
 
-        See :func:`dalembert.vibration.laws.sampled_sums.law_derivatives`.
+        See the same numbers of :func:`dalembert.vibration.laws.sampled_sums.law_derivatives`.
         """
         start = np.array([run.periodic()[0] for run in self._runs(displacements, omega)])
         directions = 2 * displacements.shape[1] + self.block.states
-        return derivatives(self.block, *sampled_motion(displacements, omega, self.series), start, directions)[1]
+        _, slopes = derivatives(self.block, *sampled_motion(displacements, omega, self.series), start, directions)
+        return np.moveaxis(slopes, 3, 1)
 
     def _runs(self, displacements: np.ndarray, omega: float) -> "list[_Run]":
         element = self.block.element

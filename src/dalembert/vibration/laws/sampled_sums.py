@@ -66,7 +66,7 @@ def law_derivatives(
     """Forces (elements, columns, samples), and derivatives of forces and next state, at each sample.
 
     ``start`` (elements, states) are the states before the first sample; ``moved`` (states,) is room. ``slopes``
-    (elements, samples, columns + states, directions), by displacements, velocities and states before.
+    (elements, columns + states, directions, samples), by displacements, velocities and states before.
     """
     columns, states = len(room.u), len(room.state)
     for e in range(len(place)):
@@ -86,9 +86,9 @@ def law_derivatives(
                 call_law(law, room.u, room.v, moved, numbers[e], room.force)
                 for i in range(columns):
                     force[e, i, t] = room.force[i].real
-                    slopes[e, t, i, direction] = room.force[i].imag / STEP
+                    slopes[e, i, direction, t] = room.force[i].imag / STEP
                 for s in range(states):
-                    slopes[e, t, columns + s, direction] = moved[s].imag / STEP
+                    slopes[e, columns + s, direction, t] = moved[s].imag / STEP
             if states:
                 _place(place[e], velocity[e], t, room)
                 call_law(law, room.u, room.v, room.state, numbers[e], room.force)
@@ -118,7 +118,6 @@ class SampledSums:
         rated, columns, series = self.block.element.rated, displacements.shape[1], self.series
         motion, none = self._motion(displacements, omega), np.zeros((len(displacements), 0))
         force, slopes = derivatives(self.block, *motion, none, (1 + rated) * columns)
-        slopes = np.moveaxis(slopes, 1, 3)
         local = slopes[:, :, :columns, None] * series.synthesis.T  # (elements, columns, columns, coefficients, samples)
         by_omega = np.zeros(displacements.shape)
         if rated:
@@ -135,8 +134,8 @@ class SampledSums:
 
 def sampled_motion(displacements: np.ndarray, omega: float, series: Fourier) -> tuple[np.ndarray, np.ndarray]:
     """Displacements and velocities at samples, as kernels take them."""
-    place, rate = (np.ascontiguousarray(displacements @ own.T, dtype=complex) for own in series.waves[:2])
-    return place, omega * rate
+    place = (displacements @ series.waves[0].T).astype(complex)
+    return place, omega * (displacements @ series.waves[1].T).astype(complex) if omega else np.zeros_like(place)
 
 
 def forces_from_rest(block: LawBlock, place: np.ndarray, velocity: np.ndarray) -> np.ndarray:
@@ -152,7 +151,7 @@ def derivatives(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Forces and derivatives at each sample, see :func:`law_derivatives`."""
     (elements, columns, samples), states = place.shape, block.states
-    force, slopes = np.empty(place.shape), np.empty((elements, samples, columns + states, directions))
+    force, slopes = np.empty(place.shape), np.empty((elements, columns + states, directions, samples))
     law_derivatives(
         block.law.address, block.complex_numbers, place, velocity, start.astype(complex), directions,
         Room.of(columns, states), np.empty(states, complex), force, slopes,

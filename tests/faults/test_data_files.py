@@ -205,7 +205,7 @@ FILES = {
         "a.mat",
         mat(t=TIMES, x=ANGLE),
         {"units": {"t": "mm"}},
-        "{path}, column 't': the unit 'mm' was given; expected that of a time such as 's' or 'ms'",
+        "{path}, column 't': the unit 'mm' was given; expected a unit of time such as 's' or 'ms'",
     ),
     "a unit of a column that there is not": (
         "a.mat",

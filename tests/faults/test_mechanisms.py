@@ -334,7 +334,7 @@ INPUTS = {
     ),
     "times after the end": (
         lambda: mb.simulate(pendulum(), 1.0, times=np.array([0.0, 2.0])),
-        "times: they reach from 0 to 2 s; expected them within [0, 1] s",
+        "times: they reach from 0 to 2 s, but the motion ends at 1 s; expected times within",
     ),
     "no channels": (
         lambda: mb.TimeResponse(pendulum, {}, [], np.array([0.0, 1.0])),

@@ -203,7 +203,7 @@ CASES: dict[str, tuple[Callable[[], object], str]] = {
     ),
     "huge data": (
         lambda: fitted(measured(1e200 * DECAY)),
-        "channel 'x': its largest value is 1e+200; expected at most 1e+50; use other units",
+        "channel 'x': its largest absolute value is 1e+200; expected at most 1e+50; use other units",
     ),
     "tiny data": (
         lambda: fitted(measured(1e-200 * DECAY)),

@@ -139,7 +139,7 @@ def test_a_lag_is_not_confused_with_a_delay():
         (
             {"x": Sensor()},
             STAMPS,
-            "Sensors: the sensor of 'x' has no delay, lag, gain or offset; give bounds of one, or leave it out",
+            "Sensors: the sensor of 'x' has no delay, lag, gain or offset; give bounds of at least one of them, or remove the sensor",
         ),
         (
             {"x": Sensor(delay=(0.0, 0.6))},

@@ -78,7 +78,7 @@ class Columns:
             return si(f"1 {unit}", expected)
         except InputError:
             kind = "frequency such as 'Hz' or 'kHz'" if self.frequency else "time such as 's' or 'ms'"
-            raise DataError(f"{where}: the unit {unit!r} was given; expected that of a {kind}") from None
+            raise DataError(f"{where}: the unit {unit!r} was given; expected a unit of {kind}") from None
 
 
 @dataclass(frozen=True)

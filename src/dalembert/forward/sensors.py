@@ -287,7 +287,8 @@ def _unknowns(model: ForwardModel, name: str, sensor: Sensor) -> list[Parameter]
     given = {what: getattr(sensor, what) for what in QUANTITIES if getattr(sensor, what) is not None}
     if not given:
         raise InputError(
-            f"Sensors: the sensor of {name!r} has no delay, lag, gain or offset; give bounds of one, or leave it out"
+            f"Sensors: the sensor of {name!r} has no delay, lag, gain or offset; give bounds of at least one of them, "
+            "or remove the sensor"
         )
     unit = {"delay": model.coordinate.unit, "lag": model.coordinate.unit, "gain": "", "offset": units[name]}
     found = [_parameter(f"{name} {what}", bounds, unit[what], QUANTITIES[what]) for what, bounds in given.items()]

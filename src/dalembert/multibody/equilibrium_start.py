@@ -44,8 +44,8 @@ def begin_at_rest(lowered: Lowered) -> Lowered:
         step = _solution(tangent(lowered, np.real(place), np.real(still), (1.0, 0.0, 0.0)), moved)
         if step is None:
             raise SolveError(
-                "the equilibrium at the start has no derivative: a parameter loads a motion that is free of stiffness; "
-                "add a joint or a spring"
+                "the equilibrium at the start has no derivative by the parameters: they change a force along a motion "
+                "that has no stiffness; add a joint or a spring that holds it"
             )
         place[:-1] -= 1j * step
     place[lowered.structure.n :] = 0.0  # integrators find the multipliers of the start
@@ -75,7 +75,7 @@ def resting_place(lowered: Lowered) -> tuple[np.ndarray, int]:
     Raises
     ------
     SolveError
-        Where there is none near it, or a motion is free of stiffness.
+        Where there is none near it, or the system can move without any stiffness.
     """
     still = np.zeros_like(np.real(lowered.x))
 

@@ -88,7 +88,7 @@ def equilibrium(system: System) -> Equilibrium:
     Raises
     ------
     SolveError
-        Where there is no equilibrium near the first placement, or a motion is free of stiffness.
+        Where there is no equilibrium near the first placement, or the system can move without any stiffness.
 
     Examples
     --------

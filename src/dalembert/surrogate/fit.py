@@ -96,7 +96,9 @@ def _box(lower: ArrayLike, upper: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
 def _scale(runs: Runs, groups: ArrayLike | None) -> np.ndarray:
     """Largest variation of an output of each group over the runs, shape (outputs,); never below rounding."""
     if runs.range is None:
-        raise SolveError("all runs of a surrogate failed; keep the box away from where the model fails")
+        raise SolveError(
+            "all runs of the model for a surrogate failed; choose bounds of the parameters within which the model runs"
+        )
     low, high = runs.range
     group = np.zeros(len(low), dtype=int) if groups is None else np.unique(groups, return_inverse=True)[1]
     if group.shape != low.shape:

@@ -62,7 +62,7 @@ def test_derivatives_by_coordinates_are_exact() -> None:
     [
         (
             {"end": START, "mass": 1.0},
-            "rigid bar 'bar': start and end are both (0.1, 0.2); expected two different places",
+            "rigid bar 'bar': start and end are both at (0.1, 0.2); give two different positions",
         ),
         ({}, "rigid bar 'bar': mass and line_density are both 0; expected a positive one"),
         ({"mass": -1.0}, "RigidBarBetween 'bar': mass is -1 kg; expected zero or a positive number"),

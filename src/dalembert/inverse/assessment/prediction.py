@@ -28,7 +28,8 @@ class Prediction(EndedResult):
     response : array, shape (samples, channels)
         Response at the identified values, in the units of the channels.
     deviations : array, shape (samples, channels)
-        Standard deviations of the response, from those of the parameters; NaN from where a band ends.
+        Standard deviations of the response, from those of the parameters; NaN from where a
+        band is as wide as the motion, see the finding ``band-ends``.
     noise : array, shape (channels,)
         Standard deviation of a measurement; NaN for channels that were not measured.
     data : Measurements or None
@@ -36,7 +37,7 @@ class Prediction(EndedResult):
     level : float
         Probability of the bands, between 0 and 1.
     quantile : float
-        Half width of a band, in standard deviations.
+        Half width of a band in standard deviations: of the response, or of the response and the noise together.
     known : bool
         Whether the noise was known, or estimated from the residuals.
     simulations : int

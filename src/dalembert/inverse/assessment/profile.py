@@ -170,7 +170,7 @@ def _problem(
     """The problem that was solved."""
     if isinstance(model, ForwardModel):
         if data is None:
-            raise InputError("profile: no data were given; expected the measurements that the model was fitted to")
+            raise InputError("profile: data is missing; give the measurements that the model was fitted to")
         whole, given = model, data
     else:
         whole, given = joint(model)

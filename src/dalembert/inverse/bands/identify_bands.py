@@ -42,8 +42,8 @@ def identify_bands(
 ) -> BandFit:
     """Intervals of a model's parameters over which its response has given bounds.
 
-    With Yˡ(x), Yᵘ(x) the least and largest response over the box of middles and radii x, least
-    F = Σ W ((Yˡ − given lower)² + (Yᵘ − given upper)²) over samples and channels.
+    x holds the middles and radii of the intervals; Yˡ(x) and Yᵘ(x) are the smallest and the largest response over that
+    box. The x is searched that minimises F = Σ W ((Yˡ − given lower)² + (Yᵘ − given upper)²) over samples and channels.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ def identify_bands(
     InputError
         For arguments that cannot be meant.
     SolveError
-        For a surrogate that cannot be made or is not to be trusted, with the order that would do.
+        For a surrogate that cannot be built or is not accurate enough; the message says which order suffices.
 
     Notes
     -----

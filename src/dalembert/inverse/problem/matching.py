@@ -113,7 +113,9 @@ def check_sizes(data: Measurements) -> None:
         data.channels, np.max(np.abs(np.where(data.present, data.values, 0.0)), axis=0), strict=True
     ):
         if largest > MOST:
-            raise DataError(f"channel {name!r}: its largest value is {largest:.3g}; expected at most {MOST:g}; {UNITS}")
+            raise DataError(
+                f"channel {name!r}: its largest absolute value is {largest:.3g}; expected at most {MOST:g}; {UNITS}"
+            )
     if data.deviations is None:
         return
     for name, deviation in zip(data.channels, data.deviations, strict=True):

@@ -34,7 +34,7 @@ class GaussNewton(Checked):
     Parameters
     ----------
     iterations : int
-        At most, a step; fewer where rounding is reached before.
+        Largest number of iterations in each step; fewer where rounding is reached before.
     """
 
     iterations: int = limited(3, least=1)

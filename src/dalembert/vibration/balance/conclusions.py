@@ -37,7 +37,7 @@ class Unconverged:
     frequency : float
         Hz.
     residual : float
-        As part of the forces.
+        Norm of the residual divided by that of the forces.
     cause : Finding, optional
         None if the cause is not known.
     """

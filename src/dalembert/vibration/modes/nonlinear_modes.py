@@ -53,12 +53,12 @@ class Backbone(ConvergedResult):
     energies : array, shape (points,)
         Largest kinetic energies of the period, J.
     forces : array, shape (points,)
-        Amplitudes of a force on ``dof`` that a quarter of a period ahead of it keeps the motion going, N.
+        Amplitudes of the harmonic force on ``dof``, 90° ahead of its displacement, that balances the damping, N.
     shapes : array, shape (points, dofs, coefficients)
         The motions, m.
     iterations : array of int, shape (points,)
     residuals : array, shape (points,)
-        As part of the forces.
+        Norm of the residual divided by that of the forces.
     converged : array of bool, shape (points,)
     samples : array of int, shape (points,)
         Of a period.

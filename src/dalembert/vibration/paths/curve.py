@@ -50,7 +50,7 @@ class FrequencyCurve(VibrationResult):
         From which a curve can be restarted.
     iterations : array of int, shape (points,)
     residuals : array, shape (points,)
-        As part of the forces.
+        Norm of the residual divided by that of the forces.
     converged : array of bool, shape (points,)
     fold : array of bool, shape (points,)
         Where the path turns back in frequency.

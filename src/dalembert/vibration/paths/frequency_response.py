@@ -96,8 +96,8 @@ def frequency_response(
         Whether the largest motion is computed again with twice the harmonics. A change is the finding
         ``"few-harmonics"``.
     checkpoint : Checkpoint, optional
-        Where solutions are kept as they are found; begun again with the same file the curve is followed to where it was
-        in a part of the time, and on from there to the same bits.
+        File in which solutions are stored as they are found. A run that was interrupted and is started again with the
+        same file reads them, and its results are equal to the bits.
     on_point : callable, optional
         Called with each point, a :class:`FollowedPoint`, as it is found.
 

@@ -242,7 +242,7 @@ def frequency_responses(
         Address of a Dask cluster, such as ``"tcp://10.0.0.1:8786"``, or a client of one, whose workers follow a curve
         each; the bits are the same.
     checkpoint : Checkpoint, optional
-        Where solutions are kept as they are found, or from a cluster whole curves.
+        File in which solutions are stored as they are found; whole curves if a cluster computes them.
     on_curve : callable, optional
         Called with the number of each value, its curve and why there is none, in the order of the values.
     options

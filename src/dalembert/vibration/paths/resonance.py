@@ -139,14 +139,14 @@ def track_resonance(
     unit : str
         Of the parameter.
     checkpoint : Checkpoint, optional
-        Where solutions are kept as they are found; begun again with the same file the peak is followed to where it was
-        in a part of the time, and on from there to the same bits.
+        File in which solutions are stored as they are found. A run that was interrupted and is started again with the
+        same file reads them, and its results are equal to the bits.
 
     Returns
     -------
     ResonanceTrack
-        Values at which the peak is not found, from the one before nor by halves of the step, are marked. It is a peak
-        of the path that goes on from the one before; another one may have become larger.
+        Where the peak is not found from the previous value, nor by halved steps of the parameter, the value is marked
+        as not converged. Each peak continues the previous one; another peak may have become larger.
 
     Raises
     ------
@@ -155,7 +155,7 @@ def track_resonance(
 
     Examples
     --------
-    A preload in between damps the most: less takes less, and more holds the mass by the slider's spring.
+    A medium preload damps most: a smaller one dissipates less, and with a larger one the contact sticks.
 
     >>> import numpy as np
     >>> from dalembert.structure import lumped

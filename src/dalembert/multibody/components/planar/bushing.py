@@ -93,11 +93,11 @@ BUSHING = Kind(
 
 @dataclass(frozen=True)
 class Bushing(Load):
-    """An elastic bearing between two points, unloaded at the start.
+    """An elastic bearing between two points, without force as the bodies are placed.
 
     A spring with a damper acts along each axis of a, and a torsion spring with a damper between their angles:
-    force = stiffness x displacement + damping x velocity. The three are uncoupled. The forces act at b, so that a also
-    takes the torque of their lever.
+    force = stiffness x displacement + damping x velocity, of b relative to a. The three are uncoupled. Both forces act
+    at the place of b: a also takes their moment, with the lever from a to b.
 
     Parameters
     ----------

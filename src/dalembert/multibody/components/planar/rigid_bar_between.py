@@ -66,7 +66,7 @@ class RigidBarBetween(Bar):
         owner = f"rigid bar {self.name!r}"
         if not np.real(self.length) > 0:
             place = tuple(float(np.real(coordinate)) for coordinate in start)
-            raise InputError(f"{owner}: start and end are both {place}; expected two different places")
+            raise InputError(f"{owner}: start and end are both at {place}; give two different positions")
         total, inertia = self.inertias
         if not np.real(total) > 0:
             raise InputError(f"{owner}: mass and line_density are both 0; expected a positive one")

@@ -41,7 +41,7 @@ class Servo(Drive):
     torque_constant, resistance, back_emf, gear_ratio, efficiency, slip_rate, armature_inertia, enabled
         Of the motor, see `Motor`. The resistance is needed.
     voltage_limit : float, optional
-        V. For a loop with gains as duty per angle, multiply them by the supply voltage and give that as the limit.
+        V. A gain that is a duty ratio (0 to 1) per rad is multiplied by the supply voltage, which is the limit.
     goal : float or Signal
         rad; the channel ``angle`` of the servo is compared with it.
     kp : float

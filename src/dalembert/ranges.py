@@ -20,8 +20,11 @@ class Range(NamedTuple):
     most: float = np.inf
 
     def __contains__(self, value: object) -> bool:
+        above, least, below, most = self
+        if isinstance(value, float | int | complex):
+            return above < value.real < below and least <= value.real <= most
         real = np.real(value)  # type: ignore[call-overload]
-        return bool(np.all((self.above < real) & (self.least <= real) & (real < self.below) & (real <= self.most)))
+        return bool(np.all((above < real) & (least <= real) & (real < below) & (real <= most)))
 
     def __str__(self) -> str:
         if self in (POSITIVE, NOT_NEGATIVE):

@@ -219,7 +219,7 @@ def test_what_cannot_be_meant_is_refused():
         profile(DECAY, data, fit, names=["rat"])
     with pytest.raises(InputError, match="profile: the model has the parameters offset, slope, the fit size, rate"):
         profile(LINE, data, fit)
-    with pytest.raises(InputError, match="profile: no data were given"):
+    with pytest.raises(InputError, match="profile: data is missing"):
         profile(DECAY, None, fit)
     robust = identify(DECAY, data, loss="huber", loss_scale=0.1)
     with pytest.raises(InputError, match="profile: the fit has the loss 'huber', whose minimum is no likelihood"):

@@ -1,7 +1,6 @@
 """Laws as compiled functions: derivatives, memory, fast ways, and what is refused."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 import pytest
@@ -59,19 +58,6 @@ def lossy(u, v, z, numbers, force):
 def slide(u, v, z, numbers, force):
     """The elastic slider in one direction, under a constant load."""
     update(u, z, force, numbers, 1, False, True)
-
-
-@dataclass(frozen=True)
-class Slider(LawElement):
-    name: str
-    first: str
-    second: str | None = None
-
-    law = slide
-
-    @property
-    def states(self) -> int:
-        return 1
 
 
 ELEMENTS: dict[str, Callable[[], LawElement]] = {
@@ -149,7 +135,11 @@ def test_a_slider_as_a_general_law_is_the_built_in_one() -> None:
     series = Fourier((0, 1, 3), 128)
     contact = FrictionContact("slider", "a", friction=0.5, preload=0.6, law=ElasticSlider(2.0))
     (own,) = lower(system(contact)).real.blocks
-    sums = MarchedSums(LawBlock(Slider("slider", "a"), ("slider",), own.rows, own.numbers), series, events=False)
+    sums = MarchedSums(
+        LawBlock(UserLaw("slider", "a.x", function=slide, internal=1), ("slider",), own.rows, own.numbers),
+        series,
+        events=False,
+    )
     problem = equations(system(contact), HarmonicBalance(harmonics=1, events=False))
     unknowns = np.array([[0.1, 0.5, 0.2, 0.1, -0.1]])
     built_in = problem.balance(128)

@@ -7,7 +7,7 @@ import dalembert.multibody as mb
 from dalembert.multibody import evaluate
 from dalembert.multibody.assemble import assembled
 from dalembert.multibody.integrators import partitioning
-from dalembert.multibody.integrators.problem import Models
+from dalembert.multibody.integrators.problem import ACCELERATION, Models
 from dalembert.multibody.integrators.run import make_problem
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.model import Call, addresses
@@ -86,7 +86,7 @@ def test_dependent_entries_satisfy_the_constraints_at_all_levels(bars: int) -> N
     given = [values[own].copy() for values in state[:3]]
     assert partitioning.settle(
         problem, Models(lowered.real.address, lowered.complex_model.address, addresses([])), 0.0, 0.0,
-        partitioning.ACCELERATION, state, resting(0, len(state.x)), call.address, complex_call.address, complex_state,
+        ACCELERATION, state, resting(0, len(state.x)), call.address, complex_call.address, complex_state,
         partition,
     )  # fmt: skip
     zero = np.zeros(1)
@@ -113,7 +113,7 @@ def test_derivatives_of_the_dependent_entries() -> None:
         directions = addresses(own.complex_model.need("rates") for own in along)
         assert partitioning.settle(
             problem, Models(lowered.real.address, lowered.complex_model.address, directions), 0.0, 0.0,
-            partitioning.ACCELERATION, state, dstates, call.address, complex_call.address, complex_state, partition,
+            ACCELERATION, state, dstates, call.address, complex_call.address, complex_state, partition,
         )  # fmt: skip
         return state, dstates
 

@@ -19,7 +19,7 @@ from dalembert.multibody.integrators.collocation_swarm import squares
 from dalembert.multibody.integrators.consistent import accelerate_along
 from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.partitioning import settle_along
-from dalembert.multibody.integrators.problem import DONE, SINGULAR, Log, Models, Problem
+from dalembert.multibody.integrators.problem import DONE, SINGULAR, Log, Models, Problem, note_step
 from dalembert.multibody.integrators.run import Run, explain
 from dalembert.multibody.kernels.linear import DENSE_KERNELS
 from dalembert.multibody.kernels.motion import Histories, MotionStates, resting
@@ -184,7 +184,6 @@ def _search(
             status = finish(problem, rule, models, step, walk, out, dout)
         if status != DONE:
             return status, step.begin, worst
-        log.counts[:2] += 1, taken
-        if number < len(log.iterations):
-            log.iterations[number], log.ends[number] = taken, step.end
+        log.counts[1] += taken
+        note_step(log, taken, step.end)
     return DONE, schedule.ends[-1], 0

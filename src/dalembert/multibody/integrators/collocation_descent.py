@@ -9,9 +9,9 @@ from dalembert.kernels.words import Address, Reals, Reals2
 from dalembert.multibody.integrators.collocation_gap import measure
 from dalembert.multibody.integrators.collocation_rule import Rule
 from dalembert.multibody.integrators.collocation_step import Schedule, Step, Walk, begin, finish, step_of
-from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR, Log, Models, Problem
+from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR, Log, Models, Problem, note_step
 from dalembert.multibody.kernels.linear import Factors, factorise, resized, solve, storage
-from dalembert.multibody.kernels.motion import Histories, MotionStates
+from dalembert.multibody.kernels.motion import Histories, MotionStates, clear
 
 _ROUNDING = 1e-15  # change of a coordinate over the step, against its scale, that is none
 _COARSE = 1e-6  # the same, after the last iteration, that is too much
@@ -44,11 +44,9 @@ def descent(problem: Problem, walk: Walk) -> Descent:
 @inner
 def _square(n, rule, gaps, slopes, unknowns, count, matrix, lead, right):
     """Normal matrix, by columns, of the weighted squares, the gaps' and the other slopes' products with them."""
-    for i in range(len(matrix)):
-        matrix[i] = 0.0
+    clear(matrix)
     for j in range(len(right)):
-        for k in range(unknowns):
-            right[j, k] = 0.0
+        clear(right[j])
     for s in range(len(rule.nodes)):
         for k in range(unknowns):
             for j in range(count):
@@ -172,8 +170,6 @@ def march(
             status = finish(problem, rule, models, step, walk, out, dout)
         if status != DONE:
             return status, step.begin, worst
-        log.counts[0] += 1
         log.counts[1] += taken
-        if number < len(log.iterations):
-            log.iterations[number], log.ends[number] = taken, step.end
+        note_step(log, taken, step.end)
     return DONE, schedule.ends[-1], 0

@@ -8,12 +8,12 @@ multipliers are taken from the equations, so that their gap is zero (`docs/theor
 from dalembert.kernels.kernel import inner, kernel
 from dalembert.multibody.integrators.collocation_rule import Rule
 from dalembert.multibody.integrators.collocation_step import Step, Walk, place
-from dalembert.multibody.integrators.partitioning import ACCELERATION, settle
-from dalembert.multibody.integrators.problem import Models, Problem
-from dalembert.multibody.kernels.assembly import constraint_rates, residual, set_signals, tangent
-from dalembert.multibody.kernels.elementary import STEP
+from dalembert.multibody.integrators.consistent import add_masses, differentiate_acceleration
+from dalembert.multibody.integrators.partitioning import settle
+from dalembert.multibody.integrators.problem import ACCELERATION, Models, Problem
+from dalembert.multibody.kernels.assembly import constraint_rates, residual, set_signals
 from dalembert.multibody.kernels.linear import factorise, solve
-from dalembert.multibody.kernels.motion import perturb, row, subtract
+from dalembert.multibody.kernels.motion import row, subtract
 
 
 @inner
@@ -27,12 +27,7 @@ def _drive(problem, model, complex_model, t, within, state, linear, constraints,
     set_signals(complex_model, t, within, c.complex_work)
     for iteration in range(2 if linear else 6):
         if iteration == 0 or not linear:
-            tangent(
-                complex_model, problem.exact_slots, n, state.x, state.v, state.a, (0.0, 0.0, 1.0), (1.0, 0.0),
-                c.complex_work, c.exact.matrix,
-            )  # fmt: skip
-            for i in range(len(constraints)):
-                c.exact.matrix[i] += constraints[i]
+            add_masses(problem, complex_model, state, c.complex_work, constraints, c.exact.matrix)
             if not factorise(problem.exact_layout, c.exact):
                 return False
         residual(model, n, state.x, state.v, state.a, c.work, 1.0, given)
@@ -45,23 +40,10 @@ def _drive(problem, model, complex_model, t, within, state, linear, constraints,
 @inner
 def _drive_along(problem, directions, t, within, state, dstates, c):
     """Derivatives of what `_drive` has found, by the matrix that it left."""
-    n, last, complex_state, given, answer = problem.n, len(state.x) - 1, c.complex_state, c.vectors[0], c.vectors[1]
     for d in range(len(dstates.x)):
-        along, dstate = directions[d], row(dstates, d)
-        set_signals(along, t, within, c.complex_work)
+        set_signals(directions[d], t, within, c.complex_work)
         for _ in range(2):
-            perturb(n, state, dstate, complex_state)
-            residual(
-                along, n, complex_state[0], complex_state[1], complex_state[2], c.complex_work, 1.0, complex_state[3]
-            )
-            constraint_rates(
-                along, n, complex_state[0], complex_state[1], complex_state[2], c.complex_work, complex_state[4],
-                complex_state[3],
-            )  # fmt: skip
-            for i in range(last):
-                given[i] = complex_state[3, i].imag / STEP
-            solve(problem.exact_layout, c.exact, given, answer)
-            subtract(n, answer, dstate)
+            differentiate_acceleration(problem, directions[d], state, row(dstates, d), c)
 
 
 @inner

@@ -8,8 +8,8 @@ from dalembert.kernels.kernel import inner, kernel
 from dalembert.kernels.words import Integers, Reals, Reals2, Reals3
 from dalembert.multibody.integrators.collocation_rule import Rule
 from dalembert.multibody.integrators.consistent import Consistency, accelerate, consistency
+from dalembert.multibody.integrators.ends import write
 from dalembert.multibody.integrators.partitioning import (
-    VELOCITY,
     Partition,
     choose,
     dependence,
@@ -18,10 +18,10 @@ from dalembert.multibody.integrators.partitioning import (
     room,
     settle,
 )
-from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR, Models, Problem
+from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR, VELOCITY, Models, Problem
 from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.model import Call
-from dalembert.multibody.kernels.motion import Histories, MotionState, MotionStates, copy, resting, row
+from dalembert.multibody.kernels.motion import Histories, MotionState, MotionStates, copy, resting, row, rows
 
 _GROWN = 4.0  # dependence, against that of the first choice, at which other coordinates are chosen
 
@@ -211,10 +211,9 @@ def _reach(problem, rule, models, step, walk, share):
 
 @inner
 def _record(state, dstates, out, dout, due):
-    for i in range(len(state.x)):
-        out.x[due, i], out.v[due, i], out.a[due, i] = state.x[i], state.v[i], state.a[i]
-        for d in range(len(dstates.x)):
-            dout.x[d, due, i], dout.v[d, due, i], dout.a[d, due, i] = dstates.x[d, i], dstates.v[d, i], dstates.a[d, i]
+    write(state, row(out, due))
+    for d in range(len(dstates.x)):
+        write(row(dstates, d), row(rows(dout, d), due))
 
 
 @kernel

@@ -12,9 +12,9 @@ from dalembert.kernels.kernel import inlined, inner, kernel
 from dalembert.kernels.words import Address, Reals, Reals2
 from dalembert.multibody.integrators.collocation_rule import Rule
 from dalembert.multibody.integrators.collocation_step import Step, Walk, place
-from dalembert.multibody.integrators.partitioning import ACCELERATION, POSITION, VELOCITY
-from dalembert.multibody.integrators.problem import Problem
-from dalembert.multibody.kernels.assembly import constraint_forces, constraint_rates, residual, set_signals
+from dalembert.multibody.integrators.partitioning import fill_gap
+from dalembert.multibody.integrators.problem import ACCELERATION, POSITION, VELOCITY, Problem
+from dalembert.multibody.kernels.assembly import constraint_rates, residual, set_signals
 from dalembert.multibody.kernels.linear import Factors, resized, solve
 from dalembert.multibody.kernels.motion import MotionState, MotionStates, copy, resting, row
 
@@ -74,19 +74,6 @@ def _start(base, kept, s, trial, state):
             state.w[i] += change * kept.slopes.w[own, i]
 
 
-@inner
-def _fill_gap(model, n, level, x, v, a, work, gap, spare):
-    """The constraints, or their first or second rates, into the entries of ``gap`` from n on."""
-    if level == POSITION:
-        for i in range(len(gap)):
-            gap[i] = 0.0
-        constraint_forces(model, x, v, a, work, gap)
-    elif level == VELOCITY:
-        constraint_rates(model, n, x, v, a, work, gap, spare)
-    else:
-        constraint_rates(model, n, x, v, a, work, spare, gap)
-
-
 @inlined
 def _judge(iteration, largest, before):
     """1: solved; -1: it will not be; 0: go on."""
@@ -108,7 +95,7 @@ def _follow(model, n, scale, partition, layout, inverse, level, state, values, w
     """Dependent entries of a level, with a kept inverse; whether they were found."""
     before = 1.0
     for iteration in range(_MOST_ITERATIONS):
-        _fill_gap(model, n, level, state.x, state.v, state.a, work, gap, spare)
+        fill_gap(model, n, level, state.x, state.v, state.a, work, gap, spare)
         for i in range(layout.size):
             change[i] = gap[n + partition.rows[i]]
         solve(layout, inverse, change, gap)

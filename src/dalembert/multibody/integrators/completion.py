@@ -14,7 +14,6 @@ from dalembert.multibody.integrators.index1 import (
     make_tools,
 )
 from dalembert.multibody.integrators.partitioning import (
-    VELOCITY,
     Partition,
     choose,
     dependence,
@@ -23,7 +22,7 @@ from dalembert.multibody.integrators.partitioning import (
     settle,
     settle_along,
 )
-from dalembert.multibody.integrators.problem import DIVERGED, DONE, NEWTON_FAILED, SINGULAR, Models, Problem
+from dalembert.multibody.integrators.problem import DIVERGED, DONE, NEWTON_FAILED, SINGULAR, VELOCITY, Models, Problem
 from dalembert.multibody.integrators.projection import project, project_along
 from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.motion import MotionState, MotionStates

@@ -8,13 +8,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dalembert.kernels.kernel import inlined, inner, kernel
+from dalembert.kernels.kernel import inner, kernel
 from dalembert.kernels.words import Address, Complexes2, Integers, Reals, Reals2
 from dalembert.multibody.integrators.problem import Models, Problem
+from dalembert.multibody.integrators.settling import weigh_along
 from dalembert.multibody.kernels.assembly import constraint_rates, residual, set_signals, tangent
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.linear import Factors, factorise, solve, storage
-from dalembert.multibody.kernels.motion import MotionState, MotionStates, perturb, row, subtract
+from dalembert.multibody.kernels.motion import MotionState, MotionStates, clear, perturb, row, subtract
 
 
 class Consistency(NamedTuple):
@@ -36,23 +37,28 @@ def consistency(problem: Problem, work: int, complex_work: int, directions: int)
     """Room for consistent accelerations."""
     exact, width = storage(problem.exact_layout), problem.exact_layout.size + 1
     along = accelerate_along.address if directions else 0
-    constraints, vectors = np.zeros(len(exact.matrix)), np.zeros((5, width))
-    return Consistency(work, complex_work, exact, constraints, vectors, np.zeros((7, width), complex), along)
+    constraints, vectors = np.zeros(len(exact.matrix)), np.zeros((4, width))
+    return Consistency(work, complex_work, exact, constraints, vectors, np.zeros((9, width), complex), along)
 
 
-@inlined
-def _initial_matrix(problem, complex_model, state, c):
-    """Factorised matrix of motion beside the constraints at acceleration level; whether it is regular."""
-    slots, n = problem.exact_slots, problem.n
-    tangent(
-        complex_model, slots, n, state.x, state.v, state.a, (1.0, 0.0, 0.0), (0.0, 1.0), c.complex_work, c.constraints
-    )
-    tangent(
-        complex_model, slots, n, state.x, state.v, state.a, (0.0, 0.0, 1.0), (1.0, 0.0), c.complex_work, c.exact.matrix
-    )
-    for i in range(len(c.constraints)):
-        c.exact.matrix[i] += c.constraints[i]
-    return factorise(problem.exact_layout, c.exact)
+@inner
+def fill_motion(problem, complex_model, state, work, constraints, matrix):
+    """Fill ``matrix`` with that of motion beside the Jacobian of the constraints, which ``constraints`` then holds.
+
+    It is taken at the time that the signals in ``work``, a call in complex numbers, hold.
+    """
+    slots, n, x, v, a = problem.exact_slots, problem.n, state.x, state.v, state.a
+    tangent(complex_model, slots, n, x, v, a, (1.0, 0.0, 0.0), (0.0, 1.0), work, constraints)
+    add_masses(problem, complex_model, state, work, constraints, matrix)
+
+
+@inner
+def add_masses(problem, complex_model, state, work, constraints, matrix):
+    """Fill ``matrix`` with that of motion beside the Jacobian in ``constraints``."""
+    slots, n, x, v, a = problem.exact_slots, problem.n, state.x, state.v, state.a
+    tangent(complex_model, slots, n, x, v, a, (0.0, 0.0, 1.0), (1.0, 0.0), work, matrix)
+    for i in range(len(constraints)):
+        matrix[i] += constraints[i]
 
 
 @kernel
@@ -64,29 +70,26 @@ def accelerate(
     Where the problem says so, the velocities are first moved onto the constraints, by the smallest kinetic energy:
     v - w with M w + J^T m = 0 and J w = rate of the constraints.
     """
-    n, last = problem.n, len(state.x) - 1
-    delta, answer, rate, second, w = c.vectors[0], c.vectors[1], c.vectors[2], c.vectors[3], c.vectors[4]
+    n = problem.n
+    delta, answer, rate, w = c.vectors[0], c.vectors[1], c.vectors[2], c.vectors[3]
     set_signals(models.real, t, within, c.work)
     set_signals(models.complex, t, within, c.complex_work)
     for iteration in range(6):  # linear but for friction that depends on the multipliers
         # The last correction is rounding: the derivatives below are taken with the matrix of the state that it leaves.
-        if iteration < 5 and not _initial_matrix(problem, models.complex, state, c):
-            return False
+        if iteration < 5:
+            fill_motion(problem, models.complex, state, c.complex_work, c.constraints, c.exact.matrix)
+            if not factorise(problem.exact_layout, c.exact):
+                return False
         if iteration == 0 and problem.projected:
-            for i in range(last + 1):
-                rate[i] = 0.0
-            constraint_rates(models.real, n, state.x, state.v, state.a, c.work, rate, second)
-            for i in range(n):
-                rate[i] = 0.0
+            clear(rate)
+            constraint_rates(models.real, n, state.x, state.v, state.a, c.work, rate, delta)
             solve(problem.exact_layout, c.exact, rate, w)
             for i in range(n):
                 state.v[i] -= w[i]
             if len(models.directions) > 0:
                 _along_at(c.along, problem, models.directions, t, within, state, dstates, c, True)
         residual(models.real, n, state.x, state.v, state.a, c.work, 1.0, delta)
-        constraint_rates(models.real, n, state.x, state.v, state.a, c.work, rate, second)
-        for i in range(n, last):
-            delta[i] = second[i]
+        constraint_rates(models.real, n, state.x, state.v, state.a, c.work, rate, delta)
         solve(problem.exact_layout, c.exact, delta, answer)
         subtract(n, answer, state)
     if len(models.directions) > 0:
@@ -105,21 +108,22 @@ def accelerate_along(
         if projects:
             _project_along(problem, directions[d], state, row(dstates, d), c)
         else:
-            _accelerate_along(problem, directions[d], state, row(dstates, d), c)
+            differentiate_acceleration(problem, directions[d], state, row(dstates, d), c)
 
 
 _along_at = accelerate_along.at
 
 
 @inner
-def _accelerate_along(problem, perturbed, state, dstate, c):
-    n, last, complex_state = problem.n, len(state.x) - 1, c.complex_state
-    delta, answer, r, rates, seconds = c.vectors[0], c.vectors[1], complex_state[3], complex_state[4], complex_state[5]
+def differentiate_acceleration(problem, perturbed, state, dstate, c):
+    """Derivative of accelerations and multipliers along one direction, by the matrix in ``c``."""
+    n, complex_state, delta, answer = problem.n, c.complex_state, c.vectors[0], c.vectors[1]
+    x, v, a, r = complex_state[0], complex_state[1], complex_state[2], complex_state[3]
     perturb(n, state, dstate, complex_state)
-    residual(perturbed, n, complex_state[0], complex_state[1], complex_state[2], c.complex_work, 1.0, r)
-    constraint_rates(perturbed, n, complex_state[0], complex_state[1], complex_state[2], c.complex_work, rates, seconds)
-    for i in range(last):
-        delta[i] = (r[i].imag if i < n else seconds[i].imag) / STEP
+    residual(perturbed, n, x, v, a, c.complex_work, 1.0, r)
+    constraint_rates(perturbed, n, x, v, a, c.complex_work, complex_state[4], r)
+    for i in range(len(state.x) - 1):
+        delta[i] = r[i].imag / STEP
     solve(problem.exact_layout, c.exact, delta, answer)
     subtract(n, answer, dstate)
 
@@ -127,24 +131,15 @@ def _accelerate_along(problem, perturbed, state, dstate, c):
 @inner
 def _project_along(problem, perturbed, state, dstate, c):
     """The derivative of v - w, by the equations of the projection in complex numbers."""
-    n, last, complex_state, w = problem.n, len(state.x) - 1, c.complex_state, c.vectors[4]
-    answer, rate = c.vectors[1], c.vectors[2]
-    forces, still, drate, dsecond = complex_state[3], complex_state[4], complex_state[5], complex_state[6]
+    n, complex_state, answer, rate, w = problem.n, c.complex_state, c.vectors[1], c.vectors[2], c.vectors[3]
+    x, drate, f, weighed = complex_state[0], complex_state[3], complex_state[4], complex_state[5]
     perturb(n, state, dstate, complex_state)
-    constraint_rates(perturbed, n, complex_state[0], complex_state[1], complex_state[2], c.complex_work, drate, dsecond)
-    for i in range(last + 1):
-        complex_state[1, i] = 0.0
-        complex_state[2, i] = w[i] if i < n else 0.0
-        if i >= n:
-            complex_state[0, i] = w[i]
-    residual(perturbed, n, complex_state[0], complex_state[1], complex_state[2], c.complex_work, 1.0, forces)
-    for i in range(last + 1):
-        complex_state[2, i] = 0.0
-        if i >= n:
-            complex_state[0, i] = 0.0
-    residual(perturbed, n, complex_state[0], complex_state[1], complex_state[2], c.complex_work, 1.0, still)
-    for i in range(last):
-        answer[i] = (forces[i].imag - still[i].imag if i < n else -drate[i].imag) / STEP
+    constraint_rates(perturbed, n, x, complex_state[1], complex_state[2], c.complex_work, drate, f)
+    for i in range(len(w)):
+        weighed[i] = w[i]
+    weigh_along(perturbed, n, x, weighed, c.complex_work, complex_state[6:], f)
+    for i in range(len(w) - 1):
+        answer[i] = (f[i].imag if i < n else -drate[i].imag) / STEP
     solve(problem.exact_layout, c.exact, answer, rate)
     for i in range(n):
         dstate.v[i] += rate[i]

@@ -32,14 +32,19 @@ def ends(count: int, like: MotionState) -> Ends:
 
 
 @inner
+def write(state, target):
+    """Copy unknowns, velocities and accelerations, which outputs have."""
+    for k in range(len(state.x)):
+        target.x[k], target.v[k], target.a[k] = state.x[k], state.v[k], state.a[k]
+
+
+@inner
 def _shift(states, state):
     """Each of the states takes the place of the one before, and a state that of the last."""
     last = len(states.x) - 1
     for j in range(last):
-        for k in range(len(state.x)):
-            states.x[j, k], states.v[j, k], states.a[j, k] = states.x[j + 1, k], states.v[j + 1, k], states.a[j + 1, k]
-    for k in range(len(state.x)):
-        states.x[last, k], states.v[last, k], states.a[last, k] = state.x[k], state.v[k], state.a[k]
+        write(row(states, j + 1), row(states, j))
+    write(state, row(states, last))
 
 
 @inner

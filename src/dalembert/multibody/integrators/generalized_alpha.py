@@ -16,7 +16,16 @@ from dalembert.multibody.integrators.consistent import Consistency, accelerate, 
 from dalembert.multibody.integrators.derivatives import Differentiation, differentiate, differentiation
 from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.newton import Newton, converge, keep_slope, newton
-from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR, TOO_MANY_STEPS, Log, Models, Problem
+from dalembert.multibody.integrators.problem import (
+    DONE,
+    NEWTON_FAILED,
+    SINGULAR,
+    TOO_MANY_STEPS,
+    Log,
+    Models,
+    Problem,
+    note_step,
+)
 from dalembert.multibody.integrators.run import Run, explain
 from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.model import Call, addresses
@@ -203,8 +212,7 @@ def integrate(
         Status (`DONE`, or the reason), time reached, unknown that moved most.
     """
     for sample in range(len(models)):
-        for i in range(4):
-            log.counts[i] = 0
+        clear(log.counts)
         edges = problem.edges[sample, : problem.stretches[sample] + 1]
         ends[sample, 0], ends[sample, 1], ends[sample, 2] = _integrate(
             problem, edges, opens[sample], settings, Models(models[sample], complex_models[sample], directions),
@@ -275,10 +283,7 @@ def _integrate(problem, edges, opens, settings, models, state, dstates, out, dou
                 else:
                     level += 1
                 continue
-            if log.counts[0] < len(log.iterations):
-                log.iterations[log.counts[0]] = detail
-                log.ends[log.counts[0]] = target
-            log.counts[0] += 1
+            note_step(log, detail, target)
             keep_slope(n, c, old, new, own.slope)
             if differentiated and not _differentiate_at(
                 room.differentiate, problem, models.complex, models.directions, c, target, side, new, dolds, dstates,

@@ -9,6 +9,7 @@ import numpy as np
 
 from dalembert.kernels.kernel import inner, kernel
 from dalembert.kernels.words import Address, Complexes2, Integers, Reals
+from dalembert.multibody.integrators.consistent import fill_motion
 from dalembert.multibody.integrators.least_squares import (
     Surplus,
     invert_on_range,
@@ -18,8 +19,8 @@ from dalembert.multibody.integrators.least_squares import (
 )
 from dalembert.multibody.integrators.partitioning import Partition, room
 from dalembert.multibody.integrators.problem import Models, Problem
-from dalembert.multibody.integrators.settling import balanced
-from dalembert.multibody.kernels.assembly import constraint_rates, residual, set_signals, tangent
+from dalembert.multibody.integrators.settling import balanced, largest
+from dalembert.multibody.kernels.assembly import constraint_rates, residual, set_signals
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.linear import Factors, factorise, storage
 from dalembert.multibody.kernels.linear import solve as solve_linear
@@ -86,14 +87,8 @@ def factorise_motion(problem, terms, complex_model, state, tools):
 
     It is taken in the time that the signals in ``tools.complex_work`` hold.
     """
-    slots, n, matrix = problem.exact_slots, problem.n, tools.exact.matrix
-    constraints = tools.surplus.partition.matrix
-    tangent(
-        complex_model, slots, n, state.x, state.v, state.a, (1.0, 0.0, 0.0), (0.0, 1.0), tools.complex_work, constraints
-    )
-    tangent(complex_model, slots, n, state.x, state.v, state.a, (0.0, 0.0, 1.0), (1.0, 0.0), tools.complex_work, matrix)
-    for i in range(len(constraints)):
-        matrix[i] += constraints[i]
+    matrix = tools.exact.matrix
+    fill_motion(problem, complex_model, state, tools.complex_work, tools.surplus.partition.matrix, matrix)
     if terms.redundant:
         return _invert_at(tools.surplus.invert, problem, tools.surplus, matrix)
     return factorise(problem.exact_layout, tools.exact)
@@ -106,16 +101,6 @@ def _fill_gap(model, n, terms, x, v, a, work, gap, rate, second):
     constraint_rates(model, n, x, v, a, work, rate, second)
     for i in range(n, len(gap) - 1):
         gap[i] = second[i] + 2.0 * terms.alpha * rate[i] + terms.beta * terms.beta * gap[i]
-
-
-@inner
-def _size(values, begin, end):
-    """Largest size of some entries; not a number if one is none."""
-    largest = 0.0
-    for i in range(begin, end):
-        if largest == largest and not abs(values[i]) <= largest:
-            largest = abs(values[i])
-    return largest
 
 
 @inner
@@ -148,12 +133,12 @@ def demand(
         solve_linear(problem.exact_layout, tools.exact, tools.gap, tools.answer)
         subtract(n, tools.answer, state)
         moved = max(
-            _size(tools.answer, 0, n) / (_size(state.a, 0, n) + 1e-300),
-            _size(tools.answer, n, last) / (_size(state.x, n, last) + 1e-300),
+            largest(tools.answer, 0, n) / (largest(state.a, 0, n) + 1e-300),
+            largest(tools.answer, n, last) / (largest(state.x, n, last) + 1e-300),
         )
         if iteration > 0 and moved <= _QUADRATIC:
             break
-    if not _size(state.a, 0, n) + _size(state.x, n, last) < 1e100:
+    if not largest(state.a, 0, n) + largest(state.x, n, last) < 1e100:
         return False
     if nonlinear and not moved <= 1e-6 and not _rests(problem, models.real, state, tools):
         return False

@@ -63,15 +63,6 @@ def _add(factor, source, target):
 
 
 @inlined
-def _product(basis, scale, j, k):
-    """Scalar product of two columns in units of the scales."""
-    total = 0.0
-    for i in range(len(basis)):
-        total += basis[i, j] * basis[i, k] / (scale[i] * scale[i])
-    return total
-
-
-@inlined
 def _share(basis, scale, k, vector):
     """Scalar product of a column with a vector in units of the scales."""
     total = 0.0
@@ -91,10 +82,10 @@ def _find_range(problem, surplus):
             basis[i, k] = scale[i] * scale[i] * partition.matrix[own + i]
         for _ in range(2):  # twice is enough to be orthogonal to rounding
             for j in range(k):
-                share = _product(basis, scale, j, k)
+                share = _share(basis, scale, j, basis[:, k])
                 for i in range(len(basis)):
                     basis[i, k] -= share * basis[i, j]
-        length = np.sqrt(_product(basis, scale, k, k))
+        length = np.sqrt(_share(basis, scale, k, basis[:, k]))
         for i in range(len(basis)):
             basis[i, k] /= length
 

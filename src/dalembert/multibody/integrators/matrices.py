@@ -126,19 +126,19 @@ def renew(
     tangent(complex_model, slots, n, x, v, a, (1.0, 0.0, 0.0), (1.0, 1.0), complex_work, matrices.stiffness)
     if damped:
         tangent(complex_model, slots, n, x, v, a, (0.0, 1.0, 0.0), (1.0, 0.0), complex_work, matrices.damping)
-    pattern, matrix, mass, stiffness = matrices.pattern, matrices.rigid.matrix, matrices.mass, matrices.stiffness
-    rows, columns, places = pattern.rows, pattern.columns, pattern.single
-    clear(matrix)
-    for e in range(len(rows)):
-        matrix[places[e]] = mass[e] if rows[e] < n and columns[e] < n else stiffness[e]
-    return factorise(matrices.pattern.layout, matrices.rigid)
+    return _factorise(n, matrices, 0.0, 0.0, matrices.rigid)
 
 
 @inner
 def factorise_real(n, matrices, s):
     """Factorise [M + C/s + K/s^2, J^T; J, 0] for a real s; whether it is regular."""
-    first, second = 1.0 / s, 1.0 / (s * s)
-    pattern, matrix = matrices.pattern, matrices.real.matrix
+    return _factorise(n, matrices, 1.0 / s, 1.0 / (s * s), matrices.real)
+
+
+@inner
+def _factorise(n, matrices, first, second, factors):
+    """Factorise [M + first C + second K, J^T; J, 0]; whether it is regular."""
+    pattern, matrix = matrices.pattern, factors.matrix
     rows, columns, places = pattern.rows, pattern.columns, pattern.single
     mass, damping, stiffness = matrices.mass, matrices.damping, matrices.stiffness
     clear(matrix)
@@ -147,7 +147,7 @@ def factorise_real(n, matrices, s):
         if rows[e] < n and columns[e] < n:
             value = mass[e] + first * damping[e] + second * value
         matrix[places[e]] = value
-    return factorise(matrices.pattern.layout, matrices.real)
+    return factorise(pattern.layout, factors)
 
 
 @inlined

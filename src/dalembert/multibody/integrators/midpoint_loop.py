@@ -15,11 +15,20 @@ from dalembert.multibody.integrators.energy_balance import Balance
 from dalembert.multibody.integrators.matrices import Matrices, Pattern, factorise_real, renew, room, weigh_masses
 from dalembert.multibody.integrators.midpoint_step import Along, Step
 from dalembert.multibody.integrators.outputs import Outputs, outputs, record
-from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR, Log, Models, Problem
-from dalembert.multibody.integrators.settling import VELOCITIES, settle, settle_along
+from dalembert.multibody.integrators.problem import (
+    DONE,
+    NEWTON_FAILED,
+    SINGULAR,
+    VELOCITY,
+    Log,
+    Models,
+    Problem,
+    note_step,
+)
+from dalembert.multibody.integrators.settling import settle, settle_along
 from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.model import Call
-from dalembert.multibody.kernels.motion import Histories, MotionState, MotionStates, copy, resting, row
+from dalembert.multibody.kernels.motion import Histories, MotionState, MotionStates, clear, copy, resting, row
 
 _AGED = 0.05  # contraction at which the next step begins with new matrices
 _ENDS = 2  # of steps, between which outputs are interpolated
@@ -114,7 +123,7 @@ def differentiate(
             )
         midpoint.keep_missed(n, dold, ds, slopes[d])
         _read(n, ds, dnew)
-        settle_along(problem, matrices, perturbed, new, dnew, moved, end, room.complex_state, VELOCITIES)
+        settle_along(problem, matrices, perturbed, new, dnew, moved, end, room.complex_state, VELOCITY)
 
 
 _balance_at, _balance_along_at = balancing.converge.at, balancing.converge_along.at
@@ -125,8 +134,7 @@ _differentiate_at = differentiate.at
 def _clear(array):
     """Fill a matrix with zeros."""
     for i in range(len(array)):
-        for k in range(array.shape[1]):
-            array[i, k] = 0.0
+        clear(array[i])
 
 
 @kernel
@@ -198,7 +206,7 @@ def integrate(
             counts[1] += iterations
             if converged:
                 _read(n, s, between)
-                converged = settle(problem, matrices, models.real, between, moved, step.end, VELOCITIES)
+                converged = settle(problem, matrices, models.real, between, moved, step.end, VELOCITY)
             if not converged:
                 counts[3] += 1
                 h, arrived = 0.0, False
@@ -220,10 +228,7 @@ def integrate(
                     derivatives.differentiate, problem, matrices, models.directions, step, balance, strength, h, t,
                     target, within, new, dnews, moved, derivatives,
                 )  # fmt: skip
-            if counts[0] < len(log.iterations):
-                log.iterations[counts[0]] = iterations
-                log.ends[counts[0]] = target
-            counts[0] += 1
+            note_step(log, iterations, target)
             number += 1 if level == 0 else 0
             level -= 1 if level > 0 else 0
             t, fresh, stale, arrived = target, False, rate > _AGED, True

@@ -4,12 +4,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dalembert.kernels.kernel import inner, kernel
+from dalembert.kernels.kernel import kernel
 from dalembert.kernels.words import Address, Complexes2, Integers, Reals2, Reals3
-from dalembert.multibody.integrators.ends import Ends, ends, interpolate_ends, support, weigh_ends
+from dalembert.multibody.integrators.ends import Ends, ends, interpolate_ends, support, weigh_ends, write
 from dalembert.multibody.integrators.matrices import Matrices, renew
-from dalembert.multibody.integrators.problem import Models, Problem
-from dalembert.multibody.integrators.settling import COORDINATES, settle, settle_along
+from dalembert.multibody.integrators.problem import POSITION, Models, Problem
+from dalembert.multibody.integrators.settling import settle, settle_along
 from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.motion import Histories, MotionState, MotionStates, copy, resting, row, rows
 
@@ -65,9 +65,9 @@ def record(
         if far and not renew(problem, matrices, models.complex, False, t, within, state, room.complex_work):
             return False
         set_signals(models.real, t, within, room.work)
-        if not settle(problem, matrices, models.real, state, room.moved, room.work, COORDINATES):
+        if not settle(problem, matrices, models.real, state, room.moved, room.work, POSITION):
             return False
-    _write(state, row(out, due))
+    write(state, row(out, due))
     if len(models.directions) > 0:
         _record_along_at(room.along, problem, matrices, models.directions, room, whole, oldest, within, dout, due)
     return True
@@ -92,16 +92,9 @@ def record_along(
             set_signals(directions[d], t, within, room.complex_work)
             settle_along(
                 problem, matrices, directions[d], room.between, dstate, room.moved, room.complex_work,
-                room.complex_state, COORDINATES,
+                room.complex_state, POSITION,
             )  # fmt: skip
-        _write(dstate, row(rows(dout, d), due))
+        write(dstate, row(rows(dout, d), due))
 
 
 _record_along_at = record_along.at
-
-
-@inner
-def _write(state, target):
-    """Copy what is an output."""
-    for k in range(len(state.x)):
-        target.x[k], target.v[k], target.a[k] = state.x[k], state.v[k], state.a[k]

@@ -10,13 +10,12 @@ import numpy as np
 
 from dalembert.kernels.kernel import inner, kernel
 from dalembert.kernels.words import Address, Complexes2, Integers, Reals, Reals2
-from dalembert.multibody.integrators.problem import Models, Problem
-from dalembert.multibody.kernels.assembly import constraint_rates, residual, set_signals, tangent
+from dalembert.multibody.integrators.problem import POSITION, VELOCITY, Models, Problem
+from dalembert.multibody.kernels.assembly import constraint_forces, constraint_rates, set_signals, tangent
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.linear import DENSE, Factors, factorise, resized, solve, storage
-from dalembert.multibody.kernels.motion import MotionState, MotionStates, perturb, row
+from dalembert.multibody.kernels.motion import MotionState, MotionStates, clear, perturb, row
 
-POSITION, VELOCITY, ACCELERATION = 1, 2, 3  # how many levels are made to satisfy the constraints
 _DEPENDENT = 1e-9  # pivot, against the first one, of a constraint that follows from the others
 _MOST_ITERATIONS = 20
 _CLOSED = 1e-9  # correction against the scale after which a quadratic iteration is at rounding
@@ -140,12 +139,12 @@ def dependence(problem, partition):
 def fill_gap(model, n, level, x, v, a, work, gap, second):
     """The constraints, or their first or second rates, into the entries of ``gap`` from n on."""
     if level == POSITION:
-        residual(model, n, x, v, a, work, 1.0, gap)
-    else:
+        clear(gap)
+        constraint_forces(model, x, v, a, work, gap)
+    elif level == VELOCITY:
         constraint_rates(model, n, x, v, a, work, gap, second)
-    if level == ACCELERATION:
-        for i in range(n, len(gap)):
-            gap[i] = second[i]
+    else:
+        constraint_rates(model, n, x, v, a, work, second, gap)
 
 
 @inner
@@ -155,18 +154,13 @@ def _shift(problem, partition, level, state):
     for i in range(rank):
         partition.gap[i] = partition.second[n + partition.rows[i]]
     solve(resized(problem.exact_layout, rank), partition.dependent, partition.gap, partition.change)
-    largest = 0.0
+    values, largest = state.x if level == POSITION else (state.v if level == VELOCITY else state.a), 0.0
     for i in range(rank):
         moved, c = partition.change[i], columns[i]
         size = abs(moved) / problem.scale[c]
         if largest == largest and not size <= largest:  # the first that is not a number stays
             largest = size
-        if level == POSITION:
-            state.x[c] -= moved
-        elif level == VELOCITY:
-            state.v[c] -= moved
-        else:
-            state.a[c] -= moved
+        values[c] -= moved
     return largest
 
 

@@ -2,10 +2,12 @@
 
 from typing import NamedTuple
 
+from dalembert.kernels.kernel import inlined
 from dalembert.kernels.words import Address, Integers, Reals, Reals2
 from dalembert.multibody.kernels.linear import Layout
 
 DONE, NEWTON_FAILED, SINGULAR, TOO_MANY_STEPS, DIVERGED, INEXACT = range(6)
+POSITION, VELOCITY, ACCELERATION = range(3)  # levels at which a state satisfies the constraints
 
 
 class Reduced(NamedTuple):
@@ -55,3 +57,12 @@ class Log(NamedTuple):
     counts: Integers
     iterations: Integers
     ends: Reals
+
+
+@inlined
+def note_step(log, iterations, end):
+    """Count a step, and keep its iterations and its end, s, while room lasts."""
+    number = log.counts[0]
+    if number < len(log.iterations):
+        log.iterations[number], log.ends[number] = iterations, end
+    log.counts[0] += 1

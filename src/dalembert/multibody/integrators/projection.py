@@ -3,15 +3,16 @@
 q - w with M w + J^T m = 0 and Phi(q - w) = 0, by Newton's iteration; velocities alike (`docs/theory/index-1.md`).
 """
 
-from dalembert.kernels.kernel import inlined, inner, kernel
+from dalembert.kernels.kernel import inner, kernel
 from dalembert.kernels.words import Address, Integers
 from dalembert.multibody.integrators.index1 import Terms, Tools, factorise_motion
-from dalembert.multibody.integrators.partitioning import POSITION, VELOCITY, fill_gap
-from dalembert.multibody.integrators.problem import Models, Problem
-from dalembert.multibody.kernels.assembly import residual, set_signals
+from dalembert.multibody.integrators.partitioning import fill_gap
+from dalembert.multibody.integrators.problem import POSITION, VELOCITY, Models, Problem
+from dalembert.multibody.integrators.settling import largest, weigh_along
+from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.linear import solve
-from dalembert.multibody.kernels.motion import MotionState, MotionStates, row
+from dalembert.multibody.kernels.motion import MotionState, MotionStates, clear, row
 
 _MOST_ITERATIONS = 15
 # Corrections that stop to shrink are rounding, which a nearly singular position magnifies up to this size.
@@ -22,29 +23,16 @@ _NOTHING = 1e-16
 @inner
 def _move(problem, level, tools, state, change):
     """Add the correction in ``tools.answer`` to the whole change, and take it off the state; its size."""
-    n, answer, largest = problem.n, tools.answer, 0.0
+    n, answer, values, largest = problem.n, tools.answer, state.x if level == POSITION else state.v, 0.0
     for i in range(n):
         size = abs(answer[i]) / problem.scale[i]
         if largest == largest and not size <= largest:
             largest = size
         change.a[i] += answer[i]
-        if level == POSITION:
-            state.x[i] -= answer[i]
-        else:
-            state.v[i] -= answer[i]
+        values[i] -= answer[i]
     for i in range(n, len(answer) - 1):
         change.x[i] += answer[i]
     return largest
-
-
-@inlined
-def _clear_forces(n, complex_state):
-    """A complex state at rest without multipliers: x from row 0, v and a nothing."""
-    for i in range(complex_state.shape[1]):
-        complex_state[1, i] = 0.0
-        complex_state[2, i] = 0.0
-        if i >= n:
-            complex_state[0, i] = 0.0
 
 
 @kernel
@@ -65,45 +53,32 @@ def _follow(problem, level, model, t, within, state, dstate, tools, change):
     equations are those of the projection in complex numbers: M w + J^T m = 0 in the coordinates before, and the
     constraints after.
     """
-    n, last, complex_state = problem.n, len(state.x) - 1, tools.complex_state
+    n, last, complex_state, work = problem.n, len(state.x) - 1, tools.complex_state, tools.complex_work
     base, gap, answer = tools.base, tools.gap, tools.answer
-    set_signals(model, t, within, tools.complex_work)
-    # The derivatives of w and m stand in the last rows; the coordinates before, whose derivative does not change, too.
+    x, v, f, weighed = complex_state[0], complex_state[1], complex_state[3], complex_state[4]
+    dweighed, before = complex_state[5], complex_state[6]  # derivatives of w and m; coordinates before, which stay
+    set_signals(model, t, within, work)
     for i in range(last + 1):
-        complex_state[5, i] = 0.0
-        complex_state[6, i] = complex(base.x[i], STEP * dstate.x[i]) if i < n else 0.0
+        dweighed[i] = 0.0
+        before[i] = complex(base.x[i], STEP * dstate.x[i]) if i < n else 0.0
     for _ in range(3):  # the matrix is that of the coordinates before
         for i in range(last + 1):
-            complex_state[0, i] = complex_state[6, i] if i < n else complex(change.x[i], complex_state[5, i].imag)
-            complex_state[1, i] = 0.0
-            complex_state[2, i] = complex(change.a[i], complex_state[5, i].imag) if i < n else 0.0
-        residual(
-            model, n, complex_state[0], complex_state[1], complex_state[2], tools.complex_work, 1.0, complex_state[3]
-        )
-        _clear_forces(n, complex_state)
-        residual(
-            model, n, complex_state[0], complex_state[1], complex_state[2], tools.complex_work, 1.0, complex_state[4]
-        )
+            weighed[i] = complex(change.a[i] if i < n else change.x[i], dweighed[i].imag)
+        weigh_along(model, n, before, weighed, work, complex_state, f)
         for i in range(n):
-            gap[i] = (complex_state[3, i].imag - complex_state[4, i].imag) / STEP
-        for i in range(n):
-            shift = complex_state[5, i].imag
-            complex_state[0, i] = complex(state.x[i], STEP * dstate.x[i] - (shift if level == POSITION else 0.0))
-            complex_state[1, i] = complex(state.v[i], STEP * dstate.v[i] - (shift if level == VELOCITY else 0.0))
-        fill_gap(
-            model, n, level, complex_state[0], complex_state[1], complex_state[2], tools.complex_work, complex_state[3],
-            complex_state[4],
-        )  # fmt: skip
+            gap[i] = f[i].imag / STEP
+            shift = dweighed[i].imag
+            x[i] = complex(state.x[i], STEP * dstate.x[i] - (shift if level == POSITION else 0.0))
+            v[i] = complex(state.v[i], STEP * dstate.v[i] - (shift if level == VELOCITY else 0.0))
+        fill_gap(model, n, level, x, v, complex_state[2], work, f, weighed)
         for i in range(n, last):
-            gap[i] = -complex_state[3, i].imag / STEP
+            gap[i] = -f[i].imag / STEP
         solve(problem.exact_layout, tools.exact, gap, answer)
         for i in range(last):
-            complex_state[5, i] = complex(0.0, complex_state[5, i].imag - STEP * answer[i])
+            dweighed[i] = complex(0.0, dweighed[i].imag - STEP * answer[i])
+    values = dstate.x if level == POSITION else dstate.v
     for i in range(n):
-        if level == POSITION:
-            dstate.x[i] -= complex_state[5, i].imag / STEP
-        else:
-            dstate.v[i] -= complex_state[5, i].imag / STEP
+        values[i] -= dweighed[i].imag / STEP
 
 
 @kernel
@@ -129,14 +104,13 @@ def project(
         before = 1e300
         for _ in range(_MOST_ITERATIONS):
             fill_gap(models.real, n, level, state.x, state.v, state.a, tools.work, tools.gap, tools.second)
-            for i in range(n):
-                tools.gap[i] = 0.0
+            clear(tools.gap[:n])
             solve(problem.exact_layout, tools.exact, tools.gap, tools.answer)
             moved = _move(problem, level, tools, state, change)
             if moved <= _NOTHING or (moved <= _MAGNIFIED and moved > 0.1 * before) or not moved < 1e100:
                 break
             before = moved
-        if not moved <= _MAGNIFIED * (1.0 if level == POSITION else 1.0 + _largest(n, state.v)):
+        if not moved <= _MAGNIFIED * (1.0 if level == POSITION else 1.0 + largest(state.v, 0, n)):
             return False
         if len(dstates.x) > 0:
             _project_along_at(along, problem, level, models.directions, t, within, state, dstates, tools)
@@ -144,11 +118,3 @@ def project(
 
 
 _project_along_at = project_along.at
-
-
-@inlined
-def _largest(n, values):
-    largest = 0.0
-    for i in range(n):
-        largest = max(largest, abs(values[i]))
-    return largest

@@ -4,7 +4,7 @@ from dalembert.kernels.kernel import inner, kernel
 from dalembert.kernels.words import Integers
 from dalembert.multibody.integrators.matrices import Matrices
 from dalembert.multibody.integrators.outputs import Outputs
-from dalembert.multibody.integrators.problem import Problem
+from dalembert.multibody.integrators.problem import VELOCITY, Problem
 from dalembert.multibody.integrators.radau_coefficients import Coefficients
 from dalembert.multibody.integrators.radau_newton import (
     MOST_ITERATIONS,
@@ -21,7 +21,7 @@ from dalembert.multibody.integrators.radau_stages import (
     read,
     set_stage_signals,
 )
-from dalembert.multibody.integrators.settling import VELOCITIES, settle_along, weigh_along
+from dalembert.multibody.integrators.settling import settle_along, weigh_along
 from dalembert.multibody.kernels.assembly import constraint_rates, residual, set_signals
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.motion import MotionState, MotionStates, copy, row, rows
@@ -89,4 +89,4 @@ def settle_end_along(
     for d in range(len(directions)):
         set_signals(directions[d], last.times[j], within, work)
         state, dstate = row(last.states, j), row(rows(last.derivatives, d), j)
-        settle_along(problem, matrices, directions[d], state, dstate, room.moved, work, room.complex_state, VELOCITIES)
+        settle_along(problem, matrices, directions[d], state, dstate, room.moved, work, room.complex_state, VELOCITY)

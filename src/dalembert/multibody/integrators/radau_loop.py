@@ -14,15 +14,17 @@ from dalembert.multibody.integrators.problem import (
     NEWTON_FAILED,
     SINGULAR,
     TOO_MANY_STEPS,
+    VELOCITY,
     Log,
     Models,
     Problem,
+    note_step,
 )
 from dalembert.multibody.integrators.radau_coefficients import Coefficients
 from dalembert.multibody.integrators.radau_derivatives import differentiate, settle_end_along
 from dalembert.multibody.integrators.radau_step import attempt, speed_of
 from dalembert.multibody.integrators.radau_workspace import Along, Settings, Step
-from dalembert.multibody.integrators.settling import VELOCITIES, settle
+from dalembert.multibody.integrators.settling import settle
 from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.motion import Histories, MotionState, MotionStates, clear, copy, row
 
@@ -54,7 +56,7 @@ def _settle_ends(problem, matrices, apart, far, models, damped, within, room, al
             if not renew(problem, own, models.complex, damped, t, within, state, room.complex_work):
                 return False
         set_signals(models.real, t, within, room.work)
-        if not settle(problem, own, models.real, state, room.moved, room.work, VELOCITIES):
+        if not settle(problem, own, models.real, state, room.moved, room.work, VELOCITY):
             return False
         if len(models.directions) > 0:
             _settle_end_along_at(along, problem, own, models.directions, within, room, j)
@@ -155,10 +157,7 @@ def integrate(
                     along.dold, dstates, along.ds, step.b, along.works,
                 )  # fmt: skip
             arrived, speed, before, earlier, taken, least = True, fastest, h, before, h, np.inf
-            if counts[0] < len(log.iterations):
-                log.iterations[counts[0]] = iterations
-                log.ends[counts[0]] = target
-            counts[0] += 1
+            note_step(log, iterations, target)
             t = target
             number += 1 if reached else 0
             level -= 1 if level > 0 else 0

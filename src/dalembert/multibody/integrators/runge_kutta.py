@@ -12,12 +12,22 @@ from dalembert.kernels.kernel import Compiled, inner, kernel
 from dalembert.kernels.words import Integers, Reals
 from dalembert.multibody.integrators.batch import Batch
 from dalembert.multibody.integrators.completion import Completion, complete, completion, kernels, partition
+from dalembert.multibody.integrators.ends import write
 from dalembert.multibody.integrators.index1 import PARTITIONED, PROJECTED, Terms
 from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.problem import DIVERGED, DONE, SINGULAR, Log, Models, Problem
 from dalembert.multibody.integrators.run import Run, explain
 from dalembert.multibody.integrators.stabilisation import Projection, Stabilisation, posed
-from dalembert.multibody.kernels.motion import Histories, MotionState, MotionStates, copy, interpolate, resting, row
+from dalembert.multibody.kernels.motion import (
+    Histories,
+    MotionState,
+    MotionStates,
+    copy,
+    interpolate,
+    resting,
+    row,
+    rows,
+)
 from dalembert.multibody.structure import Structure
 
 _UNBOUNDED = 1e8  # m or rad: no mechanism, but a step that is too long
@@ -153,8 +163,7 @@ def _interpolate(n, h, share, old, new, between):
 def _record(stack, out, due):
     """Write the states at an output time."""
     for d in range(len(stack.x)):
-        for i in range(stack.x.shape[1]):
-            out.x[d, due, i], out.v[d, due, i], out.a[d, due, i] = stack.x[d, i], stack.v[d, i], stack.a[d, i]
+        write(row(stack, d), row(rows(out, d), due))
 
 
 _partition_at = partition.at

@@ -8,13 +8,12 @@ for derivatives, too: they are iterated after the state, with the same factorisa
 from dalembert.kernels.kernel import inner, kernel
 from dalembert.kernels.words import Address, Complexes2, Reals2
 from dalembert.multibody.integrators.matrices import Matrices, add_inertia
-from dalembert.multibody.integrators.problem import Problem
+from dalembert.multibody.integrators.problem import ACCELERATION, POSITION, VELOCITY, Problem
 from dalembert.multibody.kernels.assembly import constraint_forces, constraint_rates, residual
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.linear import solve
 from dalembert.multibody.kernels.motion import MotionState, perturb
 
-COORDINATES, VELOCITIES, ACCELERATIONS = range(3)  # levels from which a state is settled
 _MOST_ITERATIONS = 25
 _ROUNDING = 2e-16  # of the largest entry, below which an error is left
 _LOOSE = 1e-9  # the same where corrections stop to shrink
@@ -52,31 +51,23 @@ def weigh_along(model, n, x, w, work, buffers, f):
 @inner
 def _move(n, level, answer, state, moved):
     """Take a correction off a state, and off the move of its level so far."""
+    values = state.x if level == POSITION else (state.v if level == VELOCITY else state.a)
     for i in range(len(state.x) - 1):
-        if level < 2:
+        if level < ACCELERATION:
             moved[level, i] -= answer[i]
         if i < n:
-            if level == 0:
-                state.x[i] -= answer[i]
-            elif level == 1:
-                state.v[i] -= answer[i]
-            else:
-                state.a[i] -= answer[i]
-        elif level == 2:
+            values[i] -= answer[i]
+        elif level == ACCELERATION:
             state.x[i] -= answer[i]
 
 
 @inner
 def _sizes(n, level, answer, state):
     """Largest correction, and largest entry of what it corrects."""
-    norm, size = 0.0, 1e-300
+    values, size = state.x if level == POSITION else (state.v if level == VELOCITY else state.a), 1e-300
     for i in range(n):
-        value = state.x[i] if level == 0 else (state.v[i] if level == 1 else state.a[i])
-        size = max(size, abs(value))
-        gap = abs(answer[i])
-        if norm == norm and not gap <= norm:  # the first that is not a number stays
-            norm = gap
-    return norm, size
+        size = max(size, abs(values[i]))
+    return largest(answer, 0, n), size
 
 
 @inner
@@ -92,6 +83,16 @@ def _finished(iteration, norm, before, size):
 
 
 @inner
+def largest(values, begin, end):
+    """Largest size of some entries; not a number if one is none."""
+    size = 0.0
+    for i in range(begin, end):
+        if size == size and not abs(values[i]) <= size:  # the first that is not a number stays
+            size = abs(values[i])
+    return size
+
+
+@inner
 def balanced(model, n, state, work, f, unheld, at, still):
     """Whether what is left of the equations of motion is rounding against their forces, as of a mechanism at rest.
 
@@ -99,18 +100,12 @@ def balanced(model, n, state, work, f, unheld, at, still):
     joints show it at rest, those at zero velocity where a drive turns steadily against its dampers. ``f`` is what is
     left, the other vectors (N + 1,) are room.
     """
-    left, largest = 0.0, 0.0
     for i in range(len(at)):
         at[i], still[i] = state.x[i] if i < n else 0.0, 0.0
-    for i in range(n):
-        left = max(left, abs(f[i]))
     residual(model, n, at, state.v, state.a, work, 1.0, unheld)
-    for i in range(n):
-        largest = max(largest, abs(unheld[i]))
+    moving = largest(unheld, 0, n)
     residual(model, n, at, still, still, work, 1.0, unheld)
-    for i in range(n):
-        largest = max(largest, abs(unheld[i]))
-    return left <= _LOOSE * largest
+    return largest(f, 0, n) <= _LOOSE * max(moving, largest(unheld, 0, n))
 
 
 @kernel
@@ -126,7 +121,7 @@ def settle(
     f, rate, second, answer = moved[2], moved[3], moved[4], moved[5]
     for i in range(last + 1):
         moved[0, i] = moved[1, i] = 0.0
-    for level in range(first if last > n else ACCELERATIONS, 3):
+    for level in range(first if last > n else ACCELERATION, 3):
         before, done = 0.0, False
         for iteration in range(_MOST_ITERATIONS):
             if level < 2:
@@ -146,7 +141,7 @@ def settle(
             before = norm
         if done or before <= _LOOSE * size:
             continue
-        if level < ACCELERATIONS or not balanced(model, n, state, work, f, rate, second, answer):
+        if level < ACCELERATION or not balanced(model, n, state, work, f, rate, second, answer):
             return False
     return True
 
@@ -154,16 +149,13 @@ def settle(
 @inner
 def accelerate_roughly(problem, matrices, model, state, work, room):
     """Accelerations and multipliers of a state, as exactly as an estimate of errors needs; ``room`` (4, N + 1)."""
-    n, last = problem.n, len(state.x) - 1
-    f, answer = room[0], room[3]
+    n, f, answer = problem.n, room[0], room[3]
     for _ in range(_MOST_ITERATIONS):
         residual(model, n, state.x, state.v, state.a, work, 1.0, f)
-        constraint_rates(model, n, state.x, state.v, state.a, work, room[1], room[2])
-        for i in range(n, last):
-            f[i] = room[2, i]
+        constraint_rates(model, n, state.x, state.v, state.a, work, room[1], f)
         solve(matrices.pattern.layout, matrices.rigid, f, answer)
-        _move(n, ACCELERATIONS, answer, state, room)
-        norm, size = _sizes(n, ACCELERATIONS, answer, state)
+        _move(n, ACCELERATION, answer, state, room)
+        norm, size = _sizes(n, ACCELERATION, answer, state)
         if norm <= _ROUGH * size or not norm < 1e100:
             break
 
@@ -182,7 +174,7 @@ def settle_along(
     shift, f, rate, second = complex_state[3], complex_state[4], complex_state[5], complex_state[6]
     for i in range(last + 1):
         dmoved[0, i] = dmoved[1, i] = 0.0
-    for level in range(first if last > n else ACCELERATIONS, 3):
+    for level in range(first if last > n else ACCELERATION, 3):
         before = 0.0
         for iteration in range(_MOST_ITERATIONS):
             perturb(n, state, dstate, complex_state)

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from dalembert.errors import SolveError
-from dalembert.multibody.integrators.problem import Log, Problem
+from dalembert.multibody.integrators.problem import Log, Models, Problem
 from dalembert.multibody.integrators.run import Run
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.model import addresses
@@ -15,14 +15,19 @@ from dalembert.multibody.kernels.motion import MotionState, resting, row
 from dalembert.multibody.lowered import Lowered
 
 _ROUNDING = 1e-9  # of differences of times, relative to the motion's end
+_ROOM = 100_000  # steps that are logged at least
 
 
 class Sample(NamedTuple):
-    """One sample: the edges of its smooth stretches, s, and its state at the start, which the integrator overwrites."""
+    """One sample: the edges of its smooth stretches, s, and its state at the start, which the integrator overwrites.
+
+    The ``models`` have kernels of rates, but for the complex one.
+    """
 
     lowered: Lowered
     edges: np.ndarray
     start: MotionState
+    models: Models
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,27 +60,27 @@ class Batch:
     dstates: MotionState
 
     def __iter__(self) -> Iterator[Sample]:
+        directions = addresses(entry.complex_model.need("rates") for entry in self.perturbed)
         for number, lowered in enumerate(self.samples):
             edges = self.problem.edges[number, : self.problem.stretches[number] + 1]
-            yield Sample(lowered, edges, row(self.states, number))
+            models = Models(lowered.real.need("rates").address, lowered.complex_model.address, directions)
+            yield Sample(lowered, edges, row(self.states, number), models)
 
     @property
     def shape(self) -> tuple[int, int]:
         """Output times, and entries of a state, N + 1."""
         return len(self.problem.times), self.states.x.shape[1]
 
-    @property
-    def directions(self) -> np.ndarray:
-        """Addresses of the complex models along the directions of differentiation, with kernels of rates."""
-        return addresses(entry.complex_model.need("rates") for entry in self.perturbed)
-
     def derivatives(self) -> Any:
         """Return zeros for the derivatives at the output times: arrays (directions, times, N + 1)."""
         return resting(len(self.perturbed), *self.shape)
 
-    def log(self, room: int) -> Log:
-        """Return an empty log of one run; it keeps the first ``room`` steps, or none if the batch is not logged."""
-        room = room if self.logged else 0
+    def log(self, steps: np.ndarray | None) -> Log:
+        """Return an empty log of one run, of these fixed ``steps`` if there are any; it keeps no step if not logged.
+
+        Steps that are cut down need more room.
+        """
+        room = max(_ROOM, 0 if steps is None else 2 * len(steps)) if self.logged else 0
         return Log(np.zeros(4, dtype=np.int64), np.zeros(room, dtype=np.int64), np.zeros(room))
 
     def result(self, reason: SolveError | None, states: MotionState, derivatives: MotionState, log: Log) -> Run:

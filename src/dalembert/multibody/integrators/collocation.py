@@ -142,17 +142,15 @@ class Collocation(Integrator):
         return Schedule(begins, ends, within, opens.astype(np.int64), np.append(0, reached))
 
     def _run(self, batch: Batch, problem: Problem, sample: Sample) -> Run:
-        lowered, schedule = sample.lowered, self.schedule(sample.edges, problem.times)
+        lowered, models, schedule = sample.lowered, sample.models, self.schedule(sample.edges, problem.times)
         rule = make_rule(self.degree, self.gauss_points)
-        model, complex_model = lowered.real.need("rates"), lowered.complex_model.need("rates")
-        calls = model.call(), complex_model.call()
+        calls = lowered.real.call(), lowered.complex_model.need("rates").call()
         linear = not any(kind.takes_reactions for kind in lowered.data)
         walk = prepare(problem, rule, *calls, len(batch.perturbed), linear)
         for own, given in zip((*walk.old, *walk.dold), (*sample.start, *batch.dstates), strict=True):
             own[:] = given
-        models = Models(model.address, complex_model.address, batch.directions)
         moving = models._replace(directions=np.append(np.full(len(walk.c), models.complex), models.directions))
-        out, dout, log = resting(*batch.shape), batch.derivatives(), batch.log(len(schedule.begins))
+        out, dout, log = resting(*batch.shape), batch.derivatives(), batch.log(schedule.begins)
         work = descent(problem, walk)
         if isinstance(self.minimiser, GaussNewton):
             status, time, worst = march(
@@ -161,10 +159,8 @@ class Collocation(Integrator):
         else:
             search = Search(self.minimiser, self.seed, problem, rule, moving, schedule, walk)
             status, time, worst = _search(search, models, out, dout, log, work)
-        reason = None
-        if status != DONE:
-            reason = explain(lowered, int(status), float(time), int(worst), f"the step is {self.step:g} s")
-        return batch.result(reason, out, dout, log)
+        given = lowered, int(status), float(time), int(worst), f"the step is {self.step:g} s"
+        return batch.result(None if status == DONE else explain(*given), out, dout, log)
 
 
 def _search(

@@ -63,24 +63,14 @@ class Balance(NamedTuple):
     converge_along: Address
 
 
-def balance_room(rigid: Rigid, width: int) -> Balance:
-    """Room for the balance of steps of N + 1 = ``width`` unknowns."""
-    count, directions = len(rigid.spin), len(rigid.shifts)
-    return _balance(rigid, count, width, converge.address, converge_along.address if directions else 0)
-
-
-def no_balance(width: int) -> Balance:
-    """What stands in its place where the energy is not balanced."""
-    nothing = np.zeros(0)
-    rigid = Rigid(np.zeros(0, np.int64), nothing, nothing, np.zeros((0, 0)), np.zeros((0, 0, 0), complex))
-    return _balance(rigid, 0, width, 0, 0)
-
-
-def _balance(rigid: Rigid, count: int, width: int, real: int, along: int) -> Balance:
-    motions, complex_state = np.zeros((2, count, width)), np.zeros((2, count, width), complex)
+def balance_room(width: int, rigid: Rigid | None = None) -> Balance:
+    """Room for the balance of steps of N + 1 = ``width`` unknowns; without rigid motions the energy is not balanced."""
+    addresses = (converge.address, converge_along.address if len(rigid.shifts) else 0) if rigid else (0, 0)
+    own = rigid or Rigid(np.zeros(0, np.int64), *np.zeros((2, 0)), np.zeros((0, 0)), np.zeros((0, 0, 0), complex))
+    motions, complex_motions = np.zeros((2, len(own.spin), width)), np.zeros((2, len(own.spin), width), complex)
     return Balance(
-        rigid, motions[0], motions[1], np.zeros(width), np.zeros(3), complex_state[0], complex_state[1],
-        np.zeros(width, complex), np.zeros(3, complex), real, along,
+        own, *motions, np.zeros(width), np.zeros(3), *complex_motions, np.zeros(width, complex), np.zeros(3, complex),
+        *addresses,
     )  # fmt: skip
 
 

@@ -68,4 +68,4 @@ class EnergyMomentum(Variational):
         for model in (lowered.real, *(entry.complex_model for entry in perturbed)):
             model.need("energy")
         energies = first_energies(lowered, perturbed, start, dstarts, within)
-        return *energies, balance_room(rigid_motions(lowered, perturbed), len(start.x))
+        return *energies, balance_room(len(start.x), rigid_motions(lowered, perturbed))

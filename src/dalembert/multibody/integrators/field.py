@@ -6,11 +6,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dalembert.multibody.integrators.batch import Sample
 from dalembert.multibody.integrators.completion import complete, completion, partition
 from dalembert.multibody.integrators.index1 import PARTITIONED, PROJECTED, Terms
 from dalembert.multibody.integrators.problem import DONE, Models, Problem
 from dalembert.multibody.kernels.motion import MotionState, resting
-from dalembert.multibody.lowered import Lowered
 
 
 class _Along(NamedTuple):
@@ -30,29 +30,24 @@ class Field:
     Parameters
     ----------
     problem, terms : Problem, Terms
-    lowered : Lowered
-    directions : array of addresses
-        Complex models.
-    state, dstates : MotionState
-        At the start; overwritten.
+    sample : Sample
+    dstates : MotionState
+        Derivatives of the state at the start; overwritten.
     implicit : bool
         Whether the `jacobian` is needed.
     """
 
-    def __init__(
-        self, problem: Problem, terms: Terms, lowered: Lowered, directions: np.ndarray, state: MotionState,
-        dstates: MotionState, implicit: bool,
-    ) -> None:  # fmt: skip
-        self.problem, self.terms, self.lowered = problem, terms, lowered
-        self.n, self.width, self.count = problem.n, len(state.x), len(dstates.x)
+    def __init__(self, problem: Problem, terms: Terms, sample: Sample, dstates: MotionState, implicit: bool) -> None:
+        self.problem, self.terms, self.lowered = problem, terms, sample.lowered
+        self.n, self.width, self.count = problem.n, len(sample.start.x), len(dstates.x)
         self.moves = terms.way == PROJECTED and self.width - 1 > self.n
         self.within = 0.0
         self.evaluations = 0
-        self._state, self._dstates = state, dstates
-        self._calls = lowered.real.need("rates").call(), lowered.complex_model.call()
+        self._state, self._dstates = sample.start, dstates
+        self._calls = self.lowered.real.call(), self.lowered.complex_model.call()
         works = self._calls[0].address, self._calls[1].address
         self._completion = completion(problem, terms, *works, self.count + implicit)
-        self._perturbed = self._along(directions, dstates)
+        self._perturbed = self._along(sample.models, dstates)
 
     def __call__(self, t: float, y: np.ndarray) -> np.ndarray:
         """Rates, not numbers where there are none: a solver then takes a shorter step."""
@@ -120,10 +115,9 @@ class Field:
     def _units(self) -> _Along:
         """Coordinates and velocities, one after the other, as directions."""
         directions = np.full(2 * self.n, self.lowered.unperturbed.need("rates").address)
-        return self._along(directions, resting(2 * self.n, self.width))
+        return self._along(self._perturbed.models._replace(directions=directions), resting(2 * self.n, self.width))
 
-    def _along(self, directions: np.ndarray, dstates: MotionState) -> _Along:
-        models = Models(self.lowered.real.address, self.lowered.complex_model.address, directions)
+    def _along(self, models: Models, dstates: MotionState) -> _Along:
         own = complete.given(self.problem, self.terms, models, self._state, dstates, self._completion)
         return _Along(models, dstates, own)
 

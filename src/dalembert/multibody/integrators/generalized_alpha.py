@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dalembert.arguments import limited
-from dalembert.errors import SolveError, require_known
+from dalembert.errors import require_known
 from dalembert.kernels.kernel import Compiled, inlined, inner, kernel
 from dalembert.kernels.words import Address, Integers, Integers2, Reals2
 from dalembert.multibody.integrators.batch import Batch, restarts
@@ -41,7 +41,6 @@ from dalembert.multibody.kernels.motion import (
     row,
     rows,
 )
-from dalembert.multibody.lowered import Lowered
 from dalembert.multibody.structure import Structure
 
 STARTS = ("consistent", "zero")
@@ -116,7 +115,9 @@ class GeneralizedAlpha(Integrator):
         problem = batch.problem._replace(projected=self.spectral_radius == 1.0)
         samples, perturbed = batch.samples, batch.perturbed
         out, dout = resting(len(samples), *batch.shape), batch.derivatives()
-        log = batch.log(self._most_logged(samples[0], batch.end))
+        log = batch.log(self.step_ends(batch.end, samples[0].jumps))
+        steps = self.step, self.spectral_radius, self.initial_acceleration == "consistent", self.adaptive
+        settings = Settings(*steps, self.tolerance, self.newton_tolerance, self.most_steps)
         ends = np.zeros((len(samples), 3))
         models = (
             [entry.real.need("rates").reduced() for entry in samples],
@@ -125,26 +126,15 @@ class GeneralizedAlpha(Integrator):
         directions = addresses(entry.complex_model.need("rates").reduced() for entry in perturbed)
         calls = models[0][0].call(), models[1][0].call()
         integrate(
-            problem, restarts(samples, problem), self._settings(), addresses(models[0]), addresses(models[1]),
+            problem, restarts(samples, problem), settings, addresses(models[0]), addresses(models[1]),
             directions, batch.states, batch.dstates, out, dout, log, ends, _workspace(problem, *calls, len(perturbed)),
         )  # fmt: skip
-        runs = []
+        runs, shortened = [], f"the step of {self.step:g} s was cut down {'' if self.adaptive else 'to 1/256 '}for it"
         for number, (lowered, (status, time, moved)) in enumerate(zip(samples, ends, strict=True)):
-            reason = None if status == DONE else self._explain(lowered, int(status), time, int(moved))
+            given = lowered, int(status), time, int(moved), shortened, self.most_steps
+            reason = None if status == DONE else explain(*given)
             runs.append(batch.result(reason, row(out, number), dout, log))
         return runs
-
-    def _settings(self) -> "Settings":
-        steps = self.step, self.spectral_radius, self.initial_acceleration == "consistent", self.adaptive
-        return Settings(*steps, self.tolerance, self.newton_tolerance, self.most_steps)
-
-    def _most_logged(self, lowered: Lowered, end: float) -> int:
-        ends = self.step_ends(end, lowered.jumps)
-        return 100_000 if ends is None else max(len(ends) + 1, 100_000)
-
-    def _explain(self, lowered: Lowered, status: int, time: float, unknown: int) -> SolveError:
-        cut_down = f"the step of {self.step:g} s was cut down {'' if self.adaptive else 'to 1/256 '}for it"
-        return explain(lowered, status, time, unknown, cut_down, self.most_steps)
 
 
 class Settings(NamedTuple):

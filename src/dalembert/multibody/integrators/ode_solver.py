@@ -97,12 +97,8 @@ class OdeSolver(Integrator):
     def run(self, batch: Batch) -> list[Run]:
         """Runs of samples, one after another."""
         problem, terms = posed(self.stabilisation, batch.samples, batch.problem, None)
-        directions, implicit = batch.directions, self.method in IMPLICIT
-        runs = []
-        for lowered, edges, start in batch:
-            own = Field(problem, terms, lowered, directions, start, batch.dstates, implicit)
-            runs.append(self._run(own, edges))
-        return runs
+        implicit = self.method in IMPLICIT
+        return [self._run(Field(problem, terms, sample, batch.dstates, implicit), sample.edges) for sample in batch]
 
     def _run(self, own: Field, edges: np.ndarray) -> Run:
         """The motion of one sample."""

@@ -14,7 +14,7 @@ from dalembert.multibody.integrators.consistent import accelerate_along
 from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.matrices import pattern_of
 from dalembert.multibody.integrators.outputs import record_along
-from dalembert.multibody.integrators.problem import DONE, INEXACT, Models
+from dalembert.multibody.integrators.problem import DONE, INEXACT
 from dalembert.multibody.integrators.radau_coefficients import coefficients
 from dalembert.multibody.integrators.radau_derivatives import differentiate, settle_end_along
 from dalembert.multibody.integrators.radau_loop import integrate
@@ -25,7 +25,6 @@ from dalembert.multibody.lowered import Lowered
 from dalembert.multibody.singular_positions import singular_position
 from dalembert.multibody.structure import Structure
 
-_ROOM = 100_000  # steps whose Newton counts are kept, where their number is not known before
 _ABOVE = 100.0  # times the smallest error: a tolerance at which rounding hardly changes the step
 _FINEST = 1e-12  # tolerance from which rounding does not limit the steps of stiff mechanisms (measured)
 _ROUNDED = 1e-7  # tolerance that no rounding asks for
@@ -103,7 +102,7 @@ class RadauIIA(Integrator):
 
     def run(self, batch: Batch) -> list[Run]:
         """Runs of samples in one compiled loop that leaves the interpreter's lock free."""
-        problem, directions, dout = batch.problem, batch.directions, batch.derivatives()
+        problem, dout = batch.problem, batch.derivatives()
         first = batch.samples[0]
         pattern, method = pattern_of(first.structure), coefficients(self.stages)
         fixed = self.step_ends(batch.end, first.jumps)
@@ -111,16 +110,13 @@ class RadauIIA(Integrator):
         spare = workspace(problem, method, pattern, batch.dstates, *calls)
         run = integrate.given(problem, method, batch.dstates, dout, *spare)
         runs = []
-        for lowered, edges, start in batch:
-            log, states = batch.log(_ROOM if fixed is None else max(_ROOM, len(fixed))), resting(*batch.shape)
-            models = Models(lowered.real.need("rates").address, lowered.complex_model.address, directions)
-            status, time, unknown, least = run(edges, self._settings(lowered), models, start, states, log)
+        for lowered, edges, start, models in batch:
+            log, states = batch.log(fixed), resting(*batch.shape)
+            settings = self.step or 0.0, self.tolerance, self.newton_tolerance, self.most_steps, lowered.dissipates
+            status, time, unknown, least = run(edges, Settings(*settings), models, start, states, log)
             reason = None if status == DONE else self._explain(lowered, status, time, unknown, least, spare.new.x)
             runs.append(batch.result(reason, states, dout, log))
         return runs
-
-    def _settings(self, lowered: Lowered) -> Settings:
-        return Settings(self.step or 0.0, self.tolerance, self.newton_tolerance, self.most_steps, lowered.dissipates)
 
     def _explain(
         self, lowered: Lowered, status: int, time: float, unknown: int, least: float, x: np.ndarray

@@ -93,12 +93,12 @@ def begin(n, h, method, start, s):
 
 
 @inner
-def recall(past, s):
-    """Stages of the step before, as the prediction kept them."""
-    from_x, from_u, from_a, x, u, a = past.x, past.u, past.a, s.x, s.u, s.a
+def recall(x, u, a, s):
+    """Stages of these unknowns and rates, such as those of the step before that the prediction kept."""
+    own_x, own_u, own_a = s.x, s.u, s.a
     for i in range(len(x)):
         for k in range(x.shape[1]):
-            x[i, k], u[i, k], a[i, k] = from_x[i, k], from_u[i, k], from_a[i, k]
+            own_x[i, k], own_u[i, k], own_a[i, k] = x[i, k], u[i, k], a[i, k]
 
 
 @inner
@@ -141,10 +141,8 @@ def extrapolate(n, h, method, before, earlier, past, s, b, weights):
                 change_x[i, k] += weight * own_x[k]
                 change_u[i, k] += weight * own_u[k]
                 change_a[i, k] += weight * own_a[k]
-    recall(s, past)
-    for i in range(count):
-        for k in range(x.shape[1]):
-            x[i, k], u[i, k], a[i, k] = change_x[i, k], change_u[i, k], change_a[i, k]
+    recall(x, u, a, past)
+    recall(change_x, change_u, change_a, s)
 
 
 @inner

@@ -63,5 +63,5 @@ def attempt(
         stages.read(n, s, new)
         accelerate_roughly(problem, matrices, models.real, new, works[end], room.moved)
     else:
-        stages.recall(past, s)
+        stages.recall(past.x, past.u, past.a, s)
     return DONE if converged else NEWTON_FAILED, made, error, speed, iterations, rate, worst

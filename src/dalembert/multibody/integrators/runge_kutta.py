@@ -70,21 +70,20 @@ class RungeKutta4(Integrator):
 
     def run(self, batch: Batch) -> list[Run]:
         """Runs of samples in one compiled loop that leaves the interpreter's lock free."""
-        samples, directions = batch.samples, batch.directions
+        samples, directions = batch.samples, len(batch.perturbed)
         problem, terms = posed(self.stabilisation, samples, batch.problem, self.step)
         works = samples[0].real.call(), samples[0].complex_model.call()
-        own = completion(problem, terms, works[0].address, works[1].address, len(directions))
-        room = _workspace(batch.shape[1], len(directions), own)
+        own = completion(problem, terms, works[0].address, works[1].address, directions)
+        room = _workspace(batch.shape[1], directions, own)
         _fill(room.stage.dstates, batch.dstates)
         steps = self.step_ends(batch.end, samples[0].jumps)
         ends = np.zeros(0) if steps is None or not batch.logged else steps[1:]
         runs = []
-        for lowered, edges, start in batch:
+        for lowered, edges, start, models in batch:
             _fill(room.stage.state, start)
             room.completion.tools.partition.rank[0] = 0  # independent coordinates are chosen anew
-            out = resting(1 + len(directions), *batch.shape)
+            out = resting(1 + directions, *batch.shape)
             counts = np.zeros(4, dtype=np.int64)
-            models = Models(lowered.real.need("rates").address, lowered.complex_model.address, directions)
             status, time = integrate(problem, edges, float(self.step), terms, models, out, counts, room)
             if status == SINGULAR and not np.max(np.abs(room.stage.state.x)) < _UNBOUNDED:
                 status = DIVERGED

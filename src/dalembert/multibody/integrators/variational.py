@@ -8,16 +8,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from dalembert.arguments import limited
-from dalembert.errors import SolveError
 from dalembert.kernels.kernel import Compiled
 from dalembert.multibody.integrators.batch import Batch
 from dalembert.multibody.integrators.consistent import accelerate_along
-from dalembert.multibody.integrators.energy_balance import Balance, no_balance
+from dalembert.multibody.integrators.energy_balance import Balance, balance_room
 from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.matrices import pattern_of
 from dalembert.multibody.integrators.midpoint_loop import Settings, differentiate, integrate, workspace
 from dalembert.multibody.integrators.outputs import record_along
-from dalembert.multibody.integrators.problem import DONE, Models
+from dalembert.multibody.integrators.problem import DONE
 from dalembert.multibody.integrators.run import Run, cut_down, explain
 from dalembert.multibody.kernels.motion import MotionState, resting
 from dalembert.multibody.lowered import Lowered
@@ -67,22 +66,20 @@ class Variational(Integrator):
 
     def run(self, batch: Batch) -> list[Run]:
         """Runs of samples in one compiled loop that leaves the interpreter's lock free."""
-        pattern, directions, dout = pattern_of(batch.samples[0].structure), batch.directions, batch.derivatives()
+        pattern, dout = pattern_of(batch.samples[0].structure), batch.derivatives()
         runs = []
-        for lowered, edges, start in batch:
-            steps = self.step_ends(batch.end, lowered.jumps)
-            log = batch.log(0 if steps is None else 2 * len(steps))  # steps that are cut down need more
+        for lowered, edges, start, models in batch:
+            log = batch.log(self.step_ends(batch.end, lowered.jumps))
             states, middle = resting(*batch.shape), 0.5 * (edges[0] + edges[1])
             energy, denergies, balance = self._balance(lowered, batch.perturbed, start, batch.dstates, middle)
             settings = Settings(float(self.step), float(self.newton_tolerance), lowered.dissipates, energy)
-            real, complex_model = lowered.real.need("rates"), lowered.complex_model
-            calls, complex_calls = [real.call(), real.call()], [complex_model.call(), complex_model.call()]
+            calls = [[model.call(), model.call()] for model in (lowered.real, lowered.complex_model)]
+            room = workspace(batch.problem, pattern, *calls, balance, denergies, batch.dstates)
             status, time, unknown = integrate(
-                batch.problem, edges, settings, Models(real.address, complex_model.address, directions), start,
-                batch.dstates, states, dout, log,
-                *workspace(batch.problem, pattern, calls, complex_calls, balance, denergies, batch.dstates),
-            )  # fmt: skip
-            reason = None if status == DONE else self._explain(lowered, status, time, unknown)
+                batch.problem, edges, settings, models, start, batch.dstates, states, dout, log, *room
+            )
+            given = lowered, status, time, unknown, cut_down(self.step)
+            reason = None if status == DONE else explain(*given)
             runs.append(batch.result(reason, states, dout, log))
         return runs
 
@@ -90,7 +87,4 @@ class Variational(Integrator):
         self, lowered: Lowered, perturbed: Sequence[Lowered], start: MotionState, dstarts: MotionState, within: float
     ) -> tuple[float, np.ndarray, Balance]:
         """Energy at the start with its derivatives, and what keeps it: here nothing does."""
-        return 0.0, np.zeros(len(perturbed)), no_balance(len(start.x))
-
-    def _explain(self, lowered: Lowered, status: int, time: float, unknown: int) -> SolveError:
-        return explain(lowered, status, time, unknown, cut_down(self.step))
+        return 0.0, np.zeros(len(perturbed)), balance_room(len(start.x))

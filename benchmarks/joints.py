@@ -132,7 +132,7 @@ class _Kernel:
         self.model = Model(blocks, whole.signals, whole.callbacks, whole.size, whole.coordinates, self.dtype, rows)
         self.state = np.random.default_rng(1).normal(size=(3, whole.size + 1))
         self.state[:, -1] = 0.0
-        slots, entries, _ = chain.structure.coordinate_layout
+        slots, entries, _ = chain.structure.full.separate
         self.slots = [slots[list(whole.blocks.index).index(place)]]
         self.out = np.zeros((2, max(whole.size + 1, len(entries))))
         self.call = self.model.call().set(**dict(zip("xva", self.state, strict=True)), **self.arguments())

@@ -9,11 +9,6 @@ from dalembert.multibody.components.planar.body import Body, Marker
 from dalembert.multibody.components.points import Point
 
 
-def stated(bodies: Sequence[Body]) -> np.ndarray:
-    """Mask of the frames' rates that the bodies state, (bodies, 3)."""
-    return np.array([[value is not None for value in body.motion] for body in bodies])
-
-
 def carried_rates(
     bodies: Sequence[Body], coordinates: Sequence[np.ndarray], modes: Sequence[np.ndarray], chosen: np.ndarray
 ) -> np.ndarray:

@@ -255,18 +255,9 @@ class _Comparison:
             seconds = _seconds(self.system, self.end, solver, self.times, self.repeats)
         except DalembertError as error:  # it ended early, or is not made for this mechanism
             return Row(method, str(solver), failure=str(error))
-        worst = {level: float(np.max(values)) for level, values in motion.violations.items()}
-        return Row(
-            method,
-            str(solver),
-            _distance(motion.channels(self.channels), known),
-            seconds,
-            int(motion.run.counts[0]),
-            worst["position"],
-            worst["velocity"],
-            worst["acceleration"],
-            _imbalance(motion),
-        )
+        worst: Any = {level: float(np.max(values)) for level, values in motion.violations.items()}
+        error, steps = _distance(motion.channels(self.channels), known), int(motion.run.counts[0])
+        return Row(method, str(solver), error, seconds, steps, **worst, energy=_imbalance(motion))
 
     def _once(self, compute: Callable[[], np.ndarray], *what: object) -> np.ndarray:
         """What the checkpoint holds of this, or what is computed now."""

@@ -14,12 +14,13 @@ from functools import cached_property
 import numpy as np
 
 from dalembert.errors import InputError
-from dalembert.forward.complex_steps import DROPPING, REMEDY, attempted, check_steps, lost_step
+from dalembert.forward.complex_steps import DROPPING, REMEDY, Lost, attempted, check_steps, lost_step
 from dalembert.multibody.callbacks import in_complex_numbers
 from dalembert.multibody.components.planar.user_force import USER_FORCE, UserForce
 from dalembert.multibody.components.signals import Custom
 from dalembert.multibody.evaluate import residual
 from dalembert.multibody.kernels.kind import Kind
+from dalembert.multibody.kernels.model import Model
 from dalembert.multibody.kernels.motion import MotionState
 from dalembert.multibody.lowered import Lowered
 from dalembert.multibody.lowering import lower
@@ -102,20 +103,12 @@ def _numbers(lowered: Lowered) -> np.ndarray:
 
 def _place(lowered: Lowered, entry: int) -> str:
     """The component and the name of a number."""
-    size = len(lowered.x)
-    if entry < 2 * size:
-        what = "a coordinate at the start" if entry < size else "a velocity at the start"
-        return f"{what} of {lowered.structure.owners[entry % size]!r}"
-    entry -= 2 * size
-    if entry < len(lowered.signal_data):
-        return "a function of time"
-    entry -= len(lowered.signal_data)
-    for kind, data in lowered.data.items():
-        if entry < data.size:
-            row, column = divmod(entry, data.shape[1])
-            return f"{kind.numbers[column]!r} of {lowered.parts[kind][row]!r}"
-        entry -= data.size
-    raise IndexError(entry)
+    owners = (*lowered.structure.owners, "")  # nobody owns the last of the unknowns, which is zero
+    names = [f"{what} at the start of {owner!r}" for what in ("a coordinate", "a velocity") for owner in owners]
+    names += ["a function of time"] * len(lowered.signal_data)
+    for kind in lowered.data:
+        names += [f"{number!r} of {part!r}" for part in lowered.parts[kind] for number in kind.numbers]
+    return names[entry]
 
 
 def check_closures(builder: Callable[..., System], parameters: Parameters, vector: np.ndarray, along: Along) -> None:
@@ -126,35 +119,19 @@ def check_closures(builder: Callable[..., System], parameters: Parameters, vecto
     InputError
         It names the parameter and the component.
     """
-    answers = _Answers.of(_built(builder, parameters, vector), along)
-    if answers.parts:
+
+    def answers(vector: np.ndarray) -> list[tuple[str, np.ndarray]]:
+        """What functions return along the motion, each with its name."""
+        system = _built(builder, parameters, vector)
+        return [*_of_signals(system, along), *_of_components(lower(system, along.begin), along)]
+
+    def place(entry: int) -> str:
+        return names[entry]
+
+    names = [name for name, values in answers(vector) for _ in values]
+    if names:
         with in_complex_numbers(strict=True):
-            check_steps(
-                parameters,
-                vector,
-                lambda at: _Answers.of(_built(builder, parameters, at), along).numbers,
-                answers.place,
-            )
-
-
-@dataclass(frozen=True)
-class _Answers:
-    """What functions return along a motion, each with its name."""
-
-    parts: tuple[tuple[str, np.ndarray], ...]
-
-    @classmethod
-    def of(cls, system: System, along: Along) -> "_Answers":
-        return cls((*_of_signals(system, along), *_of_components(lower(system, along.begin), along)))
-
-    @property
-    def numbers(self) -> np.ndarray:
-        return np.concatenate([values for _, values in self.parts])
-
-    def place(self, entry: int) -> str:
-        """The name of what returned a number."""
-        ends = np.cumsum([len(values) for _, values in self.parts])
-        return self.parts[int(np.searchsorted(ends, entry, side="right"))][0]
+            check_steps(parameters, vector, lambda at: np.concatenate([own for _, own in answers(at)]), place)
 
 
 def _of_signals(system: System, along: Along) -> Iterator[tuple[str, np.ndarray]]:
@@ -223,18 +200,23 @@ def _directions(lowered: Lowered, states: MotionState, scale: np.ndarray) -> lis
     return [(signs * scale, still), (still, signs * speed)]
 
 
+def _lost(
+    lowered: Lowered, direction: Sequence[np.ndarray], state: list, numbers: Callable[..., np.ndarray]
+) -> Lost | None:
+    """Which of the numbers of a model and a state (x, v, a) loses the complex step along a direction."""
+    (x, v, a), (dx, dv) = state, direction
+
+    def moved(shift: complex) -> np.ndarray:
+        model, dtype = (lowered.unperturbed, complex) if isinstance(shift, complex) else (lowered.real, float)
+        return numbers(model, *(part.astype(dtype) for part in (x + shift * dx, v + shift * dv, a)))
+
+    return attempted(lambda: lost_step(moved, 1.0))
+
+
 def _check_force(
     lowered: Lowered, kind: Kind, direction: Sequence[np.ndarray], t: float, state: list, remedy: str
 ) -> None:
-    x, v, a = state
-    dx, dv = direction
-
-    def force(shift: complex) -> np.ndarray:
-        if isinstance(shift, complex):
-            return residual(lowered, lowered.unperturbed, x + shift * dx, v + shift * dv, a.astype(complex), t, kind)
-        return residual(lowered, lowered.real, x + shift * dx, v + shift * dv, a, t, kind)
-
-    lost = attempted(lambda: lost_step(force, 1.0))
+    lost = _lost(lowered, direction, state, lambda model, x, v, a: residual(lowered, model, x, v, a, t, kind))
     if lost:
         owners, rows = lowered.parts[kind], lowered.structure.index[kind]
         names = sorted({name for name, own in zip(owners, rows, strict=True) if lost.entry in own})
@@ -248,15 +230,10 @@ def _check_force(
 def _check_channels(
     lowered: Lowered, observer: Observer, direction: Sequence[np.ndarray], state: list, t: float
 ) -> None:
-    x, v, a = state
-    dx, dv = direction
+    def read(model: Model, *moved: np.ndarray) -> np.ndarray:
+        return observer.read(lowered, model, [part[None] for part in moved], np.array([t]))[0]
 
-    def read(shift: complex) -> np.ndarray:
-        model, kind = (lowered.unperturbed, complex) if isinstance(shift, complex) else (lowered.real, float)
-        moved = [part[None].astype(kind) for part in (x + shift * dx, v + shift * dv, a)]
-        return observer.read(lowered, model, moved, np.array([t]))[0]
-
-    lost = attempted(lambda: lost_step(read, 1.0))
+    lost = _lost(lowered, direction, state, read)
     if lost:
         raise InputError(
             f"the channel {observer.channels[lost.entry].name!r} depends on the state, but its derivative is "

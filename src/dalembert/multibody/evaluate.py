@@ -41,7 +41,7 @@ def tangent(
 ) -> csr_matrix:
     """Derivative of the residual along ``by[0] dq + by[1] dv + by[2] da`` and the multipliers, sparse (N, N)."""
     structure, model = lowered.structure, lowered.unperturbed
-    slots, i, j = structure.coordinate_layout
+    slots, i, j = structure.full.separate
     x, v = map(np.ascontiguousarray, (x, v))
     values, a = np.zeros(len(i)), np.zeros_like(x)
     call = model.call().set(

@@ -11,7 +11,7 @@ import numpy as np
 
 from dalembert.errors import InputError, ModelError, shown
 from dalembert.multibody.callbacks import Callback, Failures, force_callback, signal_callback
-from dalembert.multibody.carried_rates import carried_rates, stated
+from dalembert.multibody.carried_rates import carried_rates
 from dalembert.multibody.components.fields import Number
 from dalembert.multibody.components.lowering import Pair
 from dalembert.multibody.components.planar import markers
@@ -28,24 +28,6 @@ _ABSENT = -1
 _ROUNDING = 1e-14  # relative, of differences of times
 
 
-class _Numbers:
-    """Numbers one after the other, lists and arrays of them."""
-
-    def __init__(self, first: Sequence[Number]) -> None:
-        self._parts: list[np.ndarray] = []
-        self.count = 0
-        self.add(first)
-
-    def add(self, numbers: Sequence[Number] | np.ndarray) -> None:
-        if len(numbers):
-            self._parts.append(np.asarray(numbers))
-            self.count += len(numbers)
-
-    @property
-    def array(self) -> np.ndarray:
-        return np.concatenate(self._parts)
-
-
 class SystemLowering:
     """Collects the rows of the kernels while the components write them."""
 
@@ -60,8 +42,8 @@ class SystemLowering:
         self._rows: dict[str, tuple[Kind, int]] = {}
         self._signals: list[tuple[int, int, int, int]] = [(signal_kinds.TIME, 0, 0, 0)]
         self._begin = float(begin)
-        self._signal_data = _Numbers([self._begin])
-        self._knots = _Numbers([0.0])
+        self._signal_data = [np.array([self._begin])]  # parts of an array
+        self._knots = [np.zeros(1)]
         self._callbacks: list[Callback] = []
         self._jumps: set[float] = set()
         self._changes: set[float] = set()
@@ -114,13 +96,13 @@ class SystemLowering:
         """Number of a function of time."""
         signal = as_signal(course)
         kind, data, knots = signal.lower()
-        first = len(self._callbacks) if kind == signal_kinds.CUSTOM else self._signal_data.count
+        first = len(self._callbacks) if kind == signal_kinds.CUSTOM else sum(map(len, self._signal_data))
         if isinstance(signal, Custom):
             functions = signal.function, signal.rate, signal.second
             self._callbacks.append(signal_callback(*functions, self._component, self._failures))
-        self._signals.append((kind, first, len(data), self._knots.count))
-        self._signal_data.add(data)
-        self._knots.add(knots)
+        self._signals.append((kind, first, len(data), sum(map(len, self._knots))))
+        self._signal_data.append(np.asarray(data))
+        self._knots.append(np.asarray(knots))
         (self._changes if signal.steps else self._jumps).update(signal.jumps)
         return len(self._signals) - 1
 
@@ -180,9 +162,8 @@ class SystemLowering:
             marker = self._known(side, owner)
             first = self._first[side.body.name]
             return marker._replace(slots=tuple(None if k is None else first + k for k in marker.slots))
-        place = stand if isinstance(side, Ground) else (side.x, side.y, side.angle)
-        angle = 0.0 if isinstance(side, Ground) else place[2]
-        return Marker(markers.GROUND, (None,) * 4, (place[0], place[1], angle))
+        place = (*stand[:2], 0.0) if isinstance(side, Ground) else (side.x, side.y, side.angle)
+        return Marker(markers.GROUND, (None,) * 4, place)
 
     def _refuse_infinite(self) -> None:
         """Raise for the first number of a component that is not finite."""
@@ -245,12 +226,12 @@ class SystemLowering:
             structure=structure,
             bodies=dict(self._bodies),
             data={kind: np.array(rows).reshape(len(rows), len(kind.numbers)) for kind, rows in self._data.items()},
-            signal_data=self._signal_data.array,
-            knots=self._knots.array,
+            signal_data=np.concatenate(self._signal_data),
+            knots=np.concatenate(self._knots),
             callbacks=tuple(self._callbacks),
             frames=np.array(frames),
             rates=chosen,
-            stated=stated(system.bodies),
+            stated=np.array([[value is not None for value in body.motion] for body in system.bodies]),
             x=x,
             v=np.concatenate([*velocities, tail]),
             jumps=tuple(sorted(self._since(time) for time in self._jumps | self._changes if np.isfinite(time))),

@@ -177,13 +177,9 @@ class MotionSegment(MotionModel):
     def _built(self) -> BuiltModel:
         return self.model
 
-    @property
+    @cached_property
     def parameters(self) -> Parameters:
         """Those of the model, then the numbers of the state."""
-        return self._parameters
-
-    @cached_property
-    def _parameters(self) -> Parameters:
         if self.chart is None:
             return self.model.parameters
         wide = _REACH * self.chart.scales

@@ -144,7 +144,9 @@ def modes(state: System | Equilibrium, count: int | None = None) -> Modes:
     state = state if isinstance(state, Equilibrium) else equilibrium(state)
     lowered, x, n = state.lowered, state.x, state.lowered.structure.n
     still = np.zeros_like(x)
-    _check_tangents(lowered, x)
+    at_rest = still[None]
+    along = Along(Observer((), ()), np.zeros(1), MotionState(x[None], at_rest, at_rest, at_rest))
+    check_forces(lowered, along, scales(lowered), SAFE)  # else stiffness or damping would be wrong
     stiffness = tangent(lowered, x, still, (1.0, 0.0, 0.0)).toarray()
     damping = tangent(lowered, x, still, (0.0, 1.0, 0.0)).toarray()[:n, :n]
     mass = tangent(lowered, x, still, (0.0, 0.0, 1.0)).toarray()[:n, :n]
@@ -160,13 +162,6 @@ def modes(state: System | Equilibrium, count: int | None = None) -> Modes:
     shapes /= shapes[np.argmax(np.abs(shapes), axis=0), np.arange(len(kept))]
     roots = roots[kept]
     return Modes(np.imag(roots) / (2 * np.pi), -np.real(roots) / np.abs(roots), shapes)
-
-
-def _check_tangents(lowered: Lowered, x: np.ndarray) -> None:
-    """Raise where stiffness or damping of a force would be wrong."""
-    at_rest = np.zeros((1, len(x)))
-    along = Along(Observer((), ()), np.zeros(1), MotionState(x[None], at_rest, at_rest, at_rest))
-    check_forces(lowered, along, scales(lowered), SAFE)
 
 
 def _undamped(k: np.ndarray, m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -8,7 +8,6 @@ import numpy as np
 from dalembert.kernels.kernel import Compiled
 from dalembert.multibody.couplings import Couplings
 from dalembert.multibody.kernels.kind import Kind
-from dalembert.multibody.kernels.linear import Layout
 from dalembert.multibody.kernels.nodes import CHANGE, RESTORE, SPREAD
 from dalembert.multibody.kernels.reduction import Reduction, reduction
 
@@ -68,31 +67,6 @@ class Structure:
     def reduced(self) -> Couplings:
         """The system in increments, without internal constraints; the full one of a model that has none."""
         return Couplings(self.reduction.index, self.reduction.size) if self.reduction.nodes else self.full
-
-    @property
-    def coordinate_layout(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Slots that give each local entry of the full matrix its own place, with rows and columns of the places."""
-        return self.full.separate
-
-    @property
-    def entries(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Slots of a list of the full matrix's entries, each once, with their rows and columns."""
-        return self.full.entries
-
-    @property
-    def dense(self) -> tuple[np.ndarray, Layout]:
-        """Slots and layout of the full matrix as a dense one."""
-        return self.full.dense
-
-    @property
-    def fresh(self) -> tuple[np.ndarray, Layout]:
-        """Slots and layout for a full matrix that is factorised at each step."""
-        return self.full.fresh
-
-    @property
-    def linear_kernels(self) -> list[Compiled]:
-        """Kernels of the linear systems of the full matrix."""
-        return self.full.linear_kernels
 
     @property
     def reduced_kernels(self) -> list[Compiled]:

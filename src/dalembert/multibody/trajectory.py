@@ -126,13 +126,9 @@ class Trajectory:
         balance = total - work - total[0]
         return {"kinetic": kinetic, "potential": potential, "total": total, "work": work, "balance": balance}
 
-    @property
+    @cached_property
     def violations(self) -> dict[str, np.ndarray]:
         """Largest constraint violations (m or rad, and per s and s^2), each (samples,)."""
-        return self._violations
-
-    @cached_property
-    def _violations(self) -> dict[str, np.ndarray]:
         states, times = self.states, self.times
         levels = violations(self.lowered, states.x, states.v, states.a, times, beside(self.run.times, -1)[self.rows]).T
         return dict(zip(("position", "velocity", "acceleration"), levels, strict=True))

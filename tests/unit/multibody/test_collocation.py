@@ -134,7 +134,7 @@ def test_swarms_find_the_minimum_of_gauss_and_newton():
 def test_gauss_and_newton_leave_no_more_than_fireflies():
     """From the same states, step after step: the sums of squares of both, by the same compiled function."""
     lowered = assembled(arm(damping=0.5))
-    slots, layout = lowered.structure.dense
+    slots, layout = lowered.structure.full.dense
     problem = make_problem(lowered, np.zeros(0))._replace(exact_slots=slots, exact_layout=layout)
     problem, solver = cut([lowered], problem, 0.3), da.Collocation(step=0.01)
     schedule, rule = solver.schedule(problem.edges[0], problem.times), make_rule(2, 2)

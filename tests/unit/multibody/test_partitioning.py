@@ -34,7 +34,7 @@ def four_bar(length: float = 2.0, bars: int = 2) -> mb.System:
 
 def dense(lowered: Lowered):
     """The problem with a dense matrix, as the partition needs it."""
-    slots, layout = lowered.structure.dense
+    slots, layout = lowered.structure.full.dense
     return make_problem(lowered, np.array([0.0]))._replace(exact_slots=slots, exact_layout=layout)
 
 

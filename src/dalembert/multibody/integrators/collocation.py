@@ -110,7 +110,7 @@ class Collocation(Integrator):
         """The loop, or the parts that a search calls, with what differentiates a state by the unknown accelerations."""
         own = [march] if isinstance(self.minimiser, GaussNewton) else [begin, measure, squares, finish]
         rates = [kind.kernel("rates", complex) for kind in structure.index if kind.has("rates")]
-        linear = [*structure.linear_kernels, *DENSE_KERNELS]
+        linear = [*structure.full.linear_kernels, *DENSE_KERNELS]
         return [*own, settle_along, *rates, *linear, *[respond, accelerate_along] * derivatives]
 
     def run(self, batch: Batch) -> list[Run]:
@@ -126,7 +126,7 @@ class Collocation(Integrator):
                 f"Collocation: a step by {type(self.minimiser).__name__} has no exact derivatives, because the search "
                 "ends near the minimum, not at it; take GaussNewton() or LeastSquares()"
             )
-        slots, layout = batch.samples[0].structure.dense
+        slots, layout = batch.samples[0].structure.full.dense
         problem = batch.problem._replace(exact_slots=slots, exact_layout=layout)
         return [self._run(batch, problem, sample) for sample in batch]
 

@@ -66,11 +66,12 @@ class Balance(NamedTuple):
 def balance_room(width: int, rigid: Rigid | None = None) -> Balance:
     """Room for the balance of steps of N + 1 = ``width`` unknowns; without rigid motions the energy is not balanced."""
     addresses = (converge.address, converge_along.address if len(rigid.shifts) else 0) if rigid else (0, 0)
-    own = rigid or Rigid(np.zeros(0, np.int64), *np.zeros((2, 0)), np.zeros((0, 0)), np.zeros((0, 0, 0), complex))
+    none = np.zeros(0)
+    own = rigid or Rigid(np.zeros(0, np.int64), none, none, np.zeros((0, 0)), np.zeros((0, 0, 0), complex))
     motions, complex_motions = np.zeros((2, len(own.spin), width)), np.zeros((2, len(own.spin), width), complex)
     return Balance(
-        own, *motions, np.zeros(width), np.zeros(3), *complex_motions, np.zeros(width, complex), np.zeros(3, complex),
-        *addresses,
+        own, motions[0], motions[1], np.zeros(width), np.zeros(3), complex_motions[0], complex_motions[1],
+        np.zeros(width, complex), np.zeros(3, complex), *addresses,
     )  # fmt: skip
 
 

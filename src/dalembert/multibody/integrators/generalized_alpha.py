@@ -107,7 +107,7 @@ class GeneralizedAlpha(Integrator):
     def kernels(self, structure: Structure, derivatives: bool) -> list[Compiled]:
         """The loop with its linear systems, and what differentiates a step."""
         along = [differentiate, accelerate_along] * derivatives
-        return [integrate, *structure.linear_kernels, *structure.reduced_kernels, *along]
+        return [integrate, *structure.full.linear_kernels, *structure.reduced_kernels, *along]
 
     def run(self, batch: Batch) -> list[Run]:
         """Runs of samples in one compiled loop that leaves the interpreter's lock free."""

@@ -68,8 +68,8 @@ class Matrices(NamedTuple):
 
 def pattern_of(structure: Structure) -> Pattern:
     """Pattern of a structure; bands where matrices that are factorised often are kept as bands."""
-    slots, rows, columns = structure.entries
-    _, layout = structure.fresh
+    slots, rows, columns = structure.full.entries
+    _, layout = structure.full.fresh
     size = structure.size
     if layout.kind == DENSE:
         wide = dense_layout(2 * size)

@@ -92,7 +92,7 @@ class OdeSolver(Integrator):
     def kernels(self, structure: Structure, derivatives: bool) -> list[Compiled]:
         """What completes states, with its linear systems; an implicit method needs derivatives in any case."""
         derivatives = derivatives or self.method in IMPLICIT
-        return [*structure.linear_kernels, *kernels(self.stabilisation.way, derivatives)]
+        return [*structure.full.linear_kernels, *kernels(self.stabilisation.way, derivatives)]
 
     def run(self, batch: Batch) -> list[Run]:
         """Runs of samples, one after another."""

@@ -98,7 +98,7 @@ class RadauIIA(Integrator):
     def kernels(self, structure: Structure, derivatives: bool) -> list[Compiled]:
         """The loop with its linear systems, and what differentiates a step and an output."""
         along = [differentiate, settle_end_along, record_along, accelerate_along]
-        return [integrate, *structure.linear_kernels, *along * derivatives]
+        return [integrate, *structure.full.linear_kernels, *along * derivatives]
 
     def run(self, batch: Batch) -> list[Run]:
         """Runs of samples in one compiled loop that leaves the interpreter's lock free."""

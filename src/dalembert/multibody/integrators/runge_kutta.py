@@ -66,7 +66,7 @@ class RungeKutta4(Integrator):
 
     def kernels(self, structure: Structure, derivatives: bool) -> list[Compiled]:
         """The loop with its linear systems, and what completes states."""
-        return [integrate, *structure.linear_kernels, *kernels(self.stabilisation.way, derivatives)]
+        return [integrate, *structure.full.linear_kernels, *kernels(self.stabilisation.way, derivatives)]
 
     def run(self, batch: Batch) -> list[Run]:
         """Runs of samples in one compiled loop that leaves the interpreter's lock free."""

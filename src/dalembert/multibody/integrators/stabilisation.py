@@ -140,7 +140,7 @@ def posed(
     if redundant:
         problem = problem._replace(scale=_weighed(problem, samples[0]))
     if redundant or stabilisation.way == PARTITIONED:
-        slots, layout = samples[0].structure.dense
+        slots, layout = samples[0].structure.full.dense
         problem = problem._replace(exact_slots=slots, exact_layout=layout)
     alpha, beta = stabilisation.gains(step)
     limit = float(getattr(stabilisation, "limit", 0.0))

@@ -62,7 +62,7 @@ class Variational(Integrator):
     def kernels(self, structure: Structure, derivatives: bool) -> list[Compiled]:
         """The loop with its linear systems, and what differentiates a step."""
         along = [differentiate, accelerate_along, record_along] * derivatives
-        return [integrate, *structure.linear_kernels, *along]
+        return [integrate, *structure.full.linear_kernels, *along]
 
     def run(self, batch: Batch) -> list[Run]:
         """Runs of samples in one compiled loop that leaves the interpreter's lock free."""
@@ -73,8 +73,8 @@ class Variational(Integrator):
             states, middle = resting(*batch.shape), 0.5 * (edges[0] + edges[1])
             energy, denergies, balance = self._balance(lowered, batch.perturbed, start, batch.dstates, middle)
             settings = Settings(float(self.step), float(self.newton_tolerance), lowered.dissipates, energy)
-            calls = [[model.call(), model.call()] for model in (lowered.real, lowered.complex_model)]
-            room = workspace(batch.problem, pattern, *calls, balance, denergies, batch.dstates)
+            calls, complex_calls = ([own.call(), own.call()] for own in (lowered.real, lowered.complex_model))
+            room = workspace(batch.problem, pattern, calls, complex_calls, balance, denergies, batch.dstates)
             status, time, unknown = integrate(
                 batch.problem, edges, settings, models, start, batch.dstates, states, dout, log, *room
             )

@@ -11,13 +11,7 @@ from dalembert.forward.python_model import PythonModel
 from dalembert.forward.recorded import Recorded
 from dalembert.forward.refinement import Refinable, Refinement, error_factor, refined
 from dalembert.forward.responses import Responses
-from dalembert.forward.restart import (
-    Restartable,
-    StateChart,
-    begun_later,
-    restartable,
-    restarted,
-)
+from dalembert.forward.restart import Restartable, StateChart, begun_later, restartable, restarted
 from dalembert.forward.sensors import Sensor, Sensors
 from dalembert.forward.wrapped import clock, findings_at, starting
 

@@ -11,7 +11,6 @@ from contextlib import closing, suppress
 from pathlib import Path
 from threading import Lock
 from time import monotonic, perf_counter
-from types import TracebackType
 from typing import Self
 
 import numpy as np
@@ -95,9 +94,7 @@ class Checkpoint:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         self.close()
 
     def recall(self, key: bytes) -> Arrays | None:

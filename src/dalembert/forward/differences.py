@@ -22,8 +22,7 @@ def central_differences(model: ForwardModel, vector: np.ndarray) -> tuple[np.nda
     steps = RELATIVE_STEP * model.parameters.scale
     moved = np.diag(steps)
     responses = model.evaluate(np.concatenate([vector[None], vector + moved, vector - moved]))
-    for reason in responses.failures:
-        if reason is not None:
-            raise SolveError(reason)
+    for reason in filter(None, responses.failures):
+        raise SolveError(reason)
     response, ahead, behind = np.split(responses.values, [1, 1 + len(vector)])
     return response[0], np.moveaxis((ahead - behind) / (2 * steps[:, None, None]), 0, -1)

@@ -9,7 +9,7 @@ results are those of this process alone, bit for bit. What a worker was not aske
 import pickle
 from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import closing, suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import partial
 from typing import Any, NoReturn, TypeVar
 
@@ -58,20 +58,33 @@ def prefetched(model: ForwardModel, work: Work[Item], items: Sequence[Item]) -> 
     if len(items) < 2 or not any(_distributed(model)):
         yield from items
         return
-    copy = _Copy.of(model)
+    parts: list[Distributed] = []
+    kept: list[Answers] = []
+
+    def answering(one: ForwardModel) -> ForwardModel | None:
+        """The models of workers: those whose batches go to a cluster keep their answers."""
+        if isinstance(one, Recorded):
+            return rebuilt(one.model, answering)
+        if isinstance(one, Distributed):
+            parts.append(one)
+            kept.append({})
+            return _Answering(bare(one.model), kept[-1])
+        return None
+
+    there = rebuilt(model, answering)
     silent = rebuilt(model, lambda one: _Unasked(one.model) if isinstance(one, Distributed) else None)
     missing = [not _known(silent, work, item) for item in items]
-    asked = partial(_answers, packed((work, copy.model, copy.answers)), _threads())
+    asked = partial(_answers, packed((work, there, kept)), _threads())
     wanted = [item for item, lacks in zip(items, missing, strict=True) if lacks]
-    with closing(ensemble(asked, wanted, executor=copy.parts[0].client)) as found:
+    with closing(ensemble(asked, wanted, executor=parts[0].client)) as found:
         for item, lacks in zip(items, missing, strict=True):
             if lacks:
-                for part, answers in zip(copy.parts, next(found), strict=True):
+                for part, answers in zip(parts, next(found), strict=True):
                     part.prefetched.update(answers)
             try:
                 yield item
             finally:
-                for part in copy.parts:
+                for part in parts:
                     part.prefetched.clear()
 
 
@@ -114,31 +127,6 @@ class _Unasked(Wrapped):
         raise _Unknown
 
 
-@dataclass(frozen=True)
-class _Copy:
-    """A model for the workers, the parts of it whose batches go to a cluster, and for each of them its answers."""
-
-    model: ForwardModel
-    parts: list[Distributed] = field(default_factory=list)
-    answers: list[Answers] = field(default_factory=list)
-
-    @classmethod
-    def of(cls, model: ForwardModel) -> "_Copy":
-        parts: list[Distributed] = []
-        answers: list[Answers] = []
-
-        def placed(one: ForwardModel) -> ForwardModel | None:
-            if isinstance(one, Recorded):
-                return rebuilt(one.model, placed)
-            if isinstance(one, Distributed):
-                parts.append(one)
-                answers.append({})
-                return _Answering(bare(one.model), answers[-1])
-            return None
-
-        return cls(rebuilt(model, placed), parts, answers)
-
-
 def _distributed(model: ForwardModel) -> Iterator[bool]:
     """Whether batches go to a cluster, of a model and of those that it holds."""
     yield isinstance(model, Distributed)
@@ -151,11 +139,10 @@ def _distributed(model: ForwardModel) -> Iterator[bool]:
 def _known(silent: ForwardModel, work: Work[Item], item: Item) -> bool:
     """Whether checkpoints have all answers that work on an item asks for, as those of a run that is resumed may."""
     try:
-        work(silent, item)
+        with suppress(Exception):  # told where the work is done
+            work(silent, item)
     except _Unknown:
         return False
-    except Exception:  # told where the work is done
-        return True
     return True
 
 

@@ -3,7 +3,8 @@
 import hashlib
 import inspect
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from copy import copy
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -107,13 +108,10 @@ class PythonModel:
     def jacobian(self, vector: np.ndarray) -> np.ndarray:
         """Derivative of the response, shape (samples, channels, parameters)."""
         vector = self.parameters.real_vector(vector)
+        derivative = self._complex_step if self.derivative == COMPLEX_STEP else self._central_difference
         jacobian = np.empty((*self._shape, len(vector)))
-        for column, scale in enumerate(self.parameters.scale):
-            jacobian[:, :, column] = (
-                self._complex_step(vector, column)
-                if self.derivative == COMPLEX_STEP
-                else self._central_difference(vector, column, scale * RELATIVE_STEP)
-            )
+        for column in range(len(vector)):
+            jacobian[:, :, column] = derivative(vector, column)
         if not self._compared.vectors:
             self.check_derivatives(vector)
         return jacobian
@@ -127,7 +125,8 @@ class PythonModel:
             Where the function drops the imaginary part of a parameter.
         """
         if self.derivative == COMPLEX_STEP:
-            self._compared.once(vector, lambda thorough: self._compare(vector, thorough))
+            given = self.parameters, vector, self._numbers, self._place
+            self._compared.once(vector, lambda thorough: check_steps(*given, thorough=thorough))
 
     def linearise(self, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Response (samples, channels) and its jacobian (samples, channels, parameters)."""
@@ -135,17 +134,9 @@ class PythonModel:
 
     def first(self, samples: int) -> ForwardModel:
         """The same model, cut to its first ``samples`` samples."""
-        own = PythonModel(
-            self.function,
-            self.parameters,
-            self.channels,
-            self.coordinate.values,
-            coordinate=self.coordinate.name,
-            unit=self.coordinate.unit,
-            derivative=self.derivative,
-            kept=samples,
-        )
-        vars(own)["_compared"] = self._compared
+        check_whole("PythonModel", "kept", samples, 0)
+        own, along = copy(self), replace(self.coordinate, values=self.coordinate.values[:samples])
+        vars(own).update(coordinate=along, kept=samples, _compared=self._compared)
         return own
 
     @property
@@ -188,9 +179,6 @@ class PythonModel:
     def _compared(self) -> Compared:
         return Compared()
 
-    def _compare(self, vector: np.ndarray, thorough: bool) -> None:
-        check_steps(self.parameters, vector, self._numbers, self._place, thorough=thorough)
-
     def _numbers(self, vector: np.ndarray) -> np.ndarray:
         """The response as a vector; NaN where the function fails."""
         try:
@@ -202,9 +190,9 @@ class PythonModel:
         sample, channel = divmod(entry, len(self.channels))
         return f"channel {self.channels[channel].name!r} (sample {sample + 1}) of {self._named}"
 
-    def _complex_step(self, vector: np.ndarray, column: int, step: float = STEP) -> np.ndarray:
+    def _complex_step(self, vector: np.ndarray, column: int) -> np.ndarray:
         moved = vector.astype(complex)
-        moved[column] += 1j * step
+        moved[column] += 1j * STEP
         try:
             response = self._call(moved)
         except SolveError as error:
@@ -219,9 +207,9 @@ class PythonModel:
                 f"{self._named} drops the imaginary part of its parameters, so its complex-step derivative would be "
                 "zero; give derivative='central-differences', or make it complex-safe"
             )
-        return np.imag(response) / step
+        return np.imag(response) / STEP
 
-    def _central_difference(self, vector: np.ndarray, column: int, step: float) -> np.ndarray:
-        moved = np.zeros_like(vector)
+    def _central_difference(self, vector: np.ndarray, column: int) -> np.ndarray:
+        moved, step = np.zeros_like(vector), self.parameters.scale[column] * RELATIVE_STEP
         moved[column] = step
         return (self._call(vector + moved) - self._call(vector - moved)) / (2 * step)

@@ -145,7 +145,7 @@ class Sensors:
         inner = self.model.evaluate(vectors[:, : len(self.model.parameters)])
         values = np.full((len(vectors), len(self.coordinate.values), len(self.channels)), np.nan)
         for row in np.flatnonzero(inner.ok):
-            values[row] = self._read(vectors[row], inner.values[row])
+            values[row], _ = self._read(vectors[row], inner.values[row][:, :, None])
         return Responses(values, inner.failures)
 
     def jacobian(self, vector: np.ndarray) -> np.ndarray:
@@ -155,28 +155,8 @@ class Sensors:
     def linearise(self, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Readings (samples, channels) and their jacobian (samples, channels, parameters)."""
         vector = np.asarray(vector, dtype=float)
-        own = len(self.model.parameters)
-        response, slopes = self.model.linearise(vector[:own])
-        table = np.concatenate([response[:, :, None], slopes], axis=2)
-        read = np.empty((len(self.coordinate.values), len(self.channels)))
-        jacobian = np.zeros((*read.shape, len(vector)))
-        for column, channel in enumerate(self.channels):
-            at = {what: self._column(channel.name, what) for what in QUANTITIES}
-            _, _, gain, offset = (self._value(vector, channel.name, what) for what in QUANTITIES)
-            there, rate, by_lag = self._seen(vector, channel.name, table[:, column])
-            read[:, column] = gain * there[:, 0] + offset
-            jacobian[:, column, :own] = gain * there[:, 1:]
-            for what, slope in (
-                ("delay", -gain * rate),
-                ("lag", gain * by_lag),
-                ("gain", there[:, 0]),
-                ("offset", 1.0),
-            ):
-                if at[what] is not None:
-                    jacobian[:, column, at[what]] = slope
-            if START in self.parameters.names:
-                jacobian[:, column, self.parameters.names.index(START)] = -gain * rate
-        return read, jacobian
+        response, slopes = self.model.linearise(vector[: len(self.model.parameters)])
+        return self._read(vector, np.concatenate([response[:, :, None], slopes], axis=2))
 
     def check_derivatives(self, vector: np.ndarray) -> None:
         """Compare the complex step of the model with differences at a vector (parameters,)."""
@@ -202,14 +182,24 @@ class Sensors:
             return None
         return replace(finer, model=Sensors(finer.model, self.sensors, self.coordinate.values, self.start))
 
-    def _read(self, vector: np.ndarray, response: np.ndarray) -> np.ndarray:
-        """Readings (samples, channels) of one response of the model."""
+    def _read(self, vector: np.ndarray, table: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Readings (samples, channels) and their jacobian (samples, channels, parameters).
+
+        ``table`` (model's samples, channels, -) is a response of the model, then its derivatives where they are needed.
+        """
+        names = self.parameters.names
         read = np.empty((len(self.coordinate.values), len(self.channels)))
+        jacobian = np.zeros((*read.shape, len(vector)))
         for column, channel in enumerate(self.channels):
-            _, _, gain, offset = (self._value(vector, channel.name, what) for what in QUANTITIES)
-            there, _, _ = self._seen(vector, channel.name, response[:, column, None])
-            read[:, column] = gain * there[:, 0] + offset
-        return read
+            there, rate, by_lag = self._seen(vector, channel.name, table[:, column])
+            gain = self._value(vector, f"{channel.name} gain", 1.0)
+            read[:, column] = gain * there[:, 0] + self._value(vector, f"{channel.name} offset")
+            jacobian[:, column, : there.shape[1] - 1] = gain * there[:, 1:]
+            slopes = {"delay": -gain * rate, "lag": gain * by_lag, "gain": there[:, 0], "offset": 1.0}
+            by_name = {START: slopes["delay"]} | {f"{channel.name} {what}": slope for what, slope in slopes.items()}
+            for name in by_name.keys() & set(names):
+                jacobian[:, column, names.index(name)] = by_name[name]
+        return read, jacobian
 
     def _seen(self, vector: np.ndarray, channel: str, table: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Columns (model's samples, columns) of a channel, late; derivatives of the first by time and by the lag."""
@@ -217,45 +207,31 @@ class Sensors:
         if not self._is_late(channel) and (rows := _rows(own, stamps)) is not None:
             return table[rows], np.zeros(len(stamps)), np.zeros(len(stamps))
         spline = make_interp_spline(own, table, k=min(DEGREE, len(own) - 1))
-        asked = stamps - self._value(vector, channel, "delay")
+        asked = stamps - self._delay(vector, channel)
         before = asked < own[0]
         at = np.clip(asked, own[0], own[-1])  # what lies beyond by rounding
-        there, rate, by_lag = lagged(spline, own, at, self._value(vector, channel, "lag"))
+        there, rate, by_lag = lagged(spline, own, at, self._value(vector, f"{channel} lag"))
         rate, by_lag = (np.where(before, 0.0, column[:, 0]) for column in (rate, by_lag))
         return np.where(before[:, None], table[0], there), rate, by_lag
 
-    def _column(self, channel: str, what: str) -> int | None:
-        """Where a quantity of a sensor stands among the parameters, if it is one."""
-        return self._place(f"{channel} {what}")
-
-    def _place(self, name: str) -> int | None:
-        return self.parameters.names.index(name) if name in self.parameters.names else None
-
-    def _value(self, vector: np.ndarray, channel: str, what: str) -> float:
-        """A quantity of a sensor; a delay with the time stamp at which the motion begins."""
-        column = self._column(channel, what)
-        own = self._known(f"{channel} {what}", QUANTITIES[what]) if column is None else float(vector[column])
-        if what != "delay":
-            return own
-        column = self._place(START)
-        return own + (self._known(START, 0.0) if column is None else float(vector[column]))
-
-    def _known(self, name: str, perfect: float) -> float:
-        """Value of a quantity that no method varies: that of a fixed parameter, or of a perfect sensor."""
+    def _value(self, values: np.ndarray, name: str, perfect: float = 0.0) -> float:
+        """A quantity by its name, of parameters (parameters,); that of a perfect sensor where it is no parameter."""
+        if name in self.parameters.names:
+            return float(values[self.parameters.names.index(name)])
         return next((float(item.lower) for item in self.parameters.fixed if item.name == name), perfect)
 
+    def _delay(self, values: np.ndarray, channel: str) -> float:
+        """Delay of a channel, with the time stamp at which the motion begins."""
+        return self._value(values, f"{channel} delay") + self._value(values, START)
+
     def _is_late(self, channel: str) -> bool:
-        lags = self._column(channel, "lag") is not None or self._known(f"{channel} lag", 0.0) != 0
+        lag = f"{channel} lag"
+        lags = lag in self.parameters.names or self._value(self.parameters.lower, lag) != 0
         return lags or self._bounds(channel) != (0.0, 0.0)
 
     def _bounds(self, channel: str) -> tuple[float, float]:
-        """Least and largest delay of a channel, with the time stamp at which the motion begins."""
-        least, most = 0.0, 0.0
-        for name in (f"{channel} delay", START):
-            column, known = self._place(name), self._known(name, 0.0)
-            least += known if column is None else self.parameters.lower[column]
-            most += known if column is None else self.parameters.upper[column]
-        return least, most
+        """Least and largest delay of a channel."""
+        return self._delay(self.parameters.lower, channel), self._delay(self.parameters.upper, channel)
 
     def _check_reach(self) -> None:
         """Refuse readings of times at which the model says nothing."""

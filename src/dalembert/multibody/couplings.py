@@ -10,14 +10,7 @@ from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from dalembert.kernels.kernel import Compiled
 from dalembert.multibody.kernels.kind import Kind
-from dalembert.multibody.kernels.linear import (
-    BAND_KERNELS,
-    DENSE_KERNELS,
-    Layout,
-    band_layout,
-    dense_layout,
-    padded,
-)
+from dalembert.multibody.kernels.linear import BAND_KERNELS, DENSE_KERNELS, Layout, band_layout, dense_layout, padded
 
 _SMALL = 90  # unknowns up to which a kept dense inverse is faster than a kept band factorisation
 

@@ -9,15 +9,7 @@ from dalembert.kernels.words import Integers, Reals, Reals2, Reals3
 from dalembert.multibody.integrators.collocation_rule import Rule
 from dalembert.multibody.integrators.consistent import Consistency, accelerate, consistency
 from dalembert.multibody.integrators.ends import write
-from dalembert.multibody.integrators.partitioning import (
-    Partition,
-    choose,
-    dependence,
-    invert,
-    linearise,
-    room,
-    settle,
-)
+from dalembert.multibody.integrators.partitioning import Partition, choose, dependence, invert, linearise, room, settle
 from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR, VELOCITY, Models, Problem
 from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.model import Call

@@ -1,6 +1,6 @@
 """Whole states from coordinates and velocities: onto the constraints, then what the equations of index 1 demand."""
 
-from typing import NamedTuple
+import numpy as np
 
 from dalembert.kernels.kernel import Compiled, inner, kernel
 from dalembert.kernels.words import Address
@@ -11,39 +11,36 @@ from dalembert.multibody.integrators.index1 import (
     Tools,
     demand,
     demand_along,
-    make_tools,
 )
+from dalembert.multibody.integrators.least_squares import surplus_room
 from dalembert.multibody.integrators.partitioning import (
     Partition,
     choose,
     dependence,
     invert,
     linearise,
+    room,
     settle,
     settle_along,
 )
 from dalembert.multibody.integrators.problem import DIVERGED, DONE, NEWTON_FAILED, SINGULAR, VELOCITY, Models, Problem
 from dalembert.multibody.integrators.projection import project, project_along
 from dalembert.multibody.kernels.assembly import set_signals
-from dalembert.multibody.kernels.motion import MotionState, MotionStates
+from dalembert.multibody.kernels.linear import storage
+from dalembert.multibody.kernels.motion import MotionState, MotionStates, resting
 
 
-class Completion(NamedTuple):
-    """Work of completing states; addresses of the kernels that only some stabilisations need, else 0."""
-
-    tools: Tools
-    partition: Address
-    settle: Address
-    project: Address
-    project_along: Address
-
-
-def completion(problem: Problem, terms: Terms, work: int, complex_work: int, directions: int) -> Completion:
+def make_tools(problem: Problem, terms: Terms, work: int, complex_work: int, directions: int) -> Tools:
     """Work for a model, with derivatives if there are any directions."""
-    tools, projected = make_tools(problem, terms, work, complex_work, directions), terms.way == PROJECTED
-    parting = (partition.address, settle.address) if terms.way == PARTITIONED else (0, 0)
-    along = project_along.address if projected and directions else 0
-    return Completion(tools, *parting, project.address if projected else 0, along)
+    width, parted, projected = problem.exact_layout.size + 1, terms.way == PARTITIONED, terms.way == PROJECTED
+    vector = np.zeros((4, width))
+    return Tools(
+        work, complex_work, storage(problem.exact_layout), np.zeros((7, width), np.complex128), vector[0], vector[1],
+        vector[2], vector[3], room(problem, directions if parted else 0),
+        surplus_room(problem, terms.redundant, directions), resting(width), resting(width),
+        demand_along.address if directions else 0, partition.address if parted else 0, settle.address if parted else 0,
+        project.address if projected else 0, project_along.address if projected and directions else 0,
+    )  # fmt: skip
 
 
 def kernels(way: int, derivatives: bool) -> list[Compiled]:
@@ -81,24 +78,23 @@ def _finite(n, state):
 
 @kernel
 def complete(
-    problem: Problem, terms: Terms, models: Models, state: MotionState, dstates: MotionStates, c: Completion, t: float,
+    problem: Problem, terms: Terms, models: Models, state: MotionState, dstates: MotionStates, tools: Tools, t: float,
     within: float, projected: bool,
 ) -> int:  # fmt: skip
     """Bring a state to the constraints as its stabilisation has it, then find what it demands: status.
 
     ``projected``: whether a projection is due. What changes from call to call stands last, for `Field`.
     """
-    tools = c.tools
     if not _finite(problem.n, state):
         return DIVERGED
     if terms.way == PARTITIONED:
         if not _settle_at(
-            c.settle, problem, models, t, within, VELOCITY, state, dstates, tools.work, tools.complex_work,
+            tools.settle, problem, models, t, within, VELOCITY, state, dstates, tools.work, tools.complex_work,
             tools.complex_state, tools.partition,
         ):  # fmt: skip
             return NEWTON_FAILED
     if projected:
-        if not _project_at(c.project, problem, terms, models, t, within, state, dstates, tools, c.project_along):
+        if not _project_at(tools.project, problem, terms, models, t, within, state, dstates, tools):
             return NEWTON_FAILED
     return DONE if demand(problem, terms, models, t, within, state, dstates, tools) else SINGULAR
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dalembert.multibody.integrators.batch import Sample
-from dalembert.multibody.integrators.completion import complete, completion, partition
+from dalembert.multibody.integrators.completion import complete, make_tools, partition
 from dalembert.multibody.integrators.index1 import PARTITIONED, PROJECTED, Terms
 from dalembert.multibody.integrators.problem import DONE, Models, Problem
 from dalembert.multibody.kernels.motion import MotionState, resting
@@ -43,10 +43,10 @@ class Field:
         self.moves = terms.way == PROJECTED and self.width - 1 > self.n
         self.within = 0.0
         self.evaluations = 0
-        self._state, self._dstates = sample.start, dstates
+        self.state, self._dstates = sample.start, dstates
         self._calls = self.lowered.real.call(), self.lowered.complex_model.call()
         works = self._calls[0].address, self._calls[1].address
-        self._completion = completion(problem, terms, *works, self.count + implicit)
+        self._tools = make_tools(problem, terms, *works, self.count + implicit)
         self._perturbed = self._along(sample.models, dstates)
 
     def __call__(self, t: float, y: np.ndarray) -> np.ndarray:
@@ -69,21 +69,16 @@ class Field:
     def put(self, y: np.ndarray) -> None:
         """Take coordinates and velocities, and their derivatives, from a vector."""
         parts = y.reshape(1 + self.count, 2, self.n)
-        self._state.x[: self.n], self._state.v[: self.n] = parts[0]
+        self.state.x[: self.n], self.state.v[: self.n] = parts[0]
         self._dstates.x[:, : self.n], self._dstates.v[:, : self.n] = parts[1:, 0], parts[1:, 1]
-
-    @property
-    def unknowns(self) -> np.ndarray:
-        """Unknowns of the present state, (N + 1,)."""
-        return self._state.x
 
     def gathered(self) -> np.ndarray:
         """The vector of the present state."""
-        return self._joined(self._state.x, self._state.v, self._dstates.x, self._dstates.v)
+        return self._joined(self.state.x, self.state.v, self._dstates.x, self._dstates.v)
 
     def rates(self) -> np.ndarray:
         """The rates of the present state."""
-        return self._joined(self._state.v, self._state.a, self._dstates.v, self._dstates.a)
+        return self._joined(self.state.v, self.state.a, self._dstates.v, self._dstates.a)
 
     def complete(self, t: float, *, projected: bool) -> int:
         """Bring the state to the constraints, then find what it demands: status."""
@@ -93,15 +88,15 @@ class Field:
         """Choose independent coordinates if they are parted and that is needed; whether it was done."""
         if self.terms.way != PARTITIONED:
             return False
-        complex_model, tools = self.lowered.complex_model.address, self._completion.tools
+        complex_model, tools = self.lowered.complex_model.address, self._tools
         return partition(
-            self.problem, self.terms, complex_model, float(t), self.within, self._state, tools.complex_work,
+            self.problem, self.terms, complex_model, float(t), self.within, self.state, tools.complex_work,
             tools.partition,
         )  # fmt: skip
 
     def record(self, out: MotionState, dout: MotionState, due: int) -> None:
         """Write the present state as that of an output time."""
-        for target, values in zip(out, self._state, strict=True):
+        for target, values in zip(out, self.state, strict=True):
             target[due] = values
         for target, values in zip(dout, self._dstates, strict=True):
             target[:, due] = values
@@ -118,7 +113,7 @@ class Field:
         return self._along(self._perturbed.models._replace(directions=directions), resting(2 * self.n, self.width))
 
     def _along(self, models: Models, dstates: MotionState) -> _Along:
-        own = complete.given(self.problem, self.terms, models, self._state, dstates, self._completion)
+        own = complete.given(self.problem, self.terms, models, self.state, dstates, self._tools)
         return _Along(models, dstates, own)
 
     def _complete(self, along: _Along, t: float, *, projected: bool) -> int:

@@ -119,14 +119,12 @@ class GeneralizedAlpha(Integrator):
         steps = self.step, self.spectral_radius, self.initial_acceleration == "consistent", self.adaptive
         settings = Settings(*steps, self.tolerance, self.newton_tolerance, self.most_steps)
         ends = np.zeros((len(samples), 3))
-        models = (
-            [entry.real.need("rates").reduced() for entry in samples],
-            [entry.complex_model.reduced() for entry in samples],
-        )
+        real = [entry.real.need("rates").reduced() for entry in samples]
+        complex_models = [entry.complex_model.reduced() for entry in samples]
         directions = addresses(entry.complex_model.need("rates").reduced() for entry in perturbed)
-        calls = models[0][0].call(), models[1][0].call()
+        calls = real[0].call(), complex_models[0].call()
         integrate(
-            problem, restarts(samples, problem), settings, addresses(models[0]), addresses(models[1]),
+            problem, restarts(samples, problem), settings, addresses(real), addresses(complex_models),
             directions, batch.states, batch.dstates, out, dout, log, ends, _workspace(problem, *calls, len(perturbed)),
         )  # fmt: skip
         runs, shortened = [], f"the step of {self.step:g} s was cut down {'' if self.adaptive else 'to 1/256 '}for it"

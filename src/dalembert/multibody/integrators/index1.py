@@ -5,8 +5,6 @@
 
 from typing import NamedTuple
 
-import numpy as np
-
 from dalembert.kernels.kernel import inner, kernel
 from dalembert.kernels.words import Address, Complexes2, Integers, Reals
 from dalembert.multibody.integrators.consistent import fill_motion
@@ -14,17 +12,16 @@ from dalembert.multibody.integrators.least_squares import (
     Surplus,
     invert_on_range,
     keep_in_range,
-    surplus_room,
     turn_range,
 )
-from dalembert.multibody.integrators.partitioning import Partition, room
+from dalembert.multibody.integrators.partitioning import Partition
 from dalembert.multibody.integrators.problem import Models, Problem
 from dalembert.multibody.integrators.settling import balanced, largest
 from dalembert.multibody.kernels.assembly import constraint_rates, residual, set_signals
 from dalembert.multibody.kernels.elementary import STEP
-from dalembert.multibody.kernels.linear import Factors, factorise, storage
+from dalembert.multibody.kernels.linear import Factors, factorise
 from dalembert.multibody.kernels.linear import solve as solve_linear
-from dalembert.multibody.kernels.motion import MotionState, MotionStates, perturb, resting, row, subtract
+from dalembert.multibody.kernels.motion import MotionState, MotionStates, perturb, row, subtract
 
 AS_THEY_COME, PROJECTED, PARTITIONED = range(3)  # what is done about positions and velocities off the constraints
 _MOST_ITERATIONS = 12
@@ -49,9 +46,8 @@ class Tools(NamedTuple):
     """Work of the index-1 methods, made once a run.
 
     ``work``, ``complex_work``: calls in real and in complex numbers. ``partition`` is that of the coordinates;
-    ``surplus``
-    serves redundant constraints, ``base`` and ``change`` projections. ``along``: address of the kernel for derivatives,
-    0 if there are none.
+    ``surplus`` serves redundant constraints, ``base`` and ``change`` projections. ``along``: address of the kernel for
+    derivatives, 0 if there are none. The last four are addresses of kernels that only some stabilisations need, else 0.
     """
 
     work: Address
@@ -67,18 +63,10 @@ class Tools(NamedTuple):
     base: MotionState
     change: MotionState
     along: Address
-
-
-def make_tools(problem: Problem, terms: Terms, work: int, complex_work: int, directions: int) -> Tools:
-    """Work for a model, with derivatives if there are any directions."""
-    width = problem.exact_layout.size + 1
-    vector = np.zeros((4, width))
-    return Tools(
-        work, complex_work, storage(problem.exact_layout), np.zeros((7, width), np.complex128), vector[0], vector[1],
-        vector[2], vector[3], room(problem, directions if terms.way == PARTITIONED else 0),
-        surplus_room(problem, terms.redundant, directions), resting(width), resting(width),
-        demand_along.address if directions else 0,
-    )  # fmt: skip
+    choose: Address
+    settle: Address
+    project: Address
+    project_along: Address
 
 
 @inner

@@ -135,7 +135,7 @@ class OdeSolver(Integrator):
                 raise self._explain(own, solver.t, message)
             reached = min(solver.t, end)
             short = short + 1 if solver.step_size < _SHORT * (end - begin) else 0
-            if short == _STUCK and (singular := singular_position(own.lowered, own.unknowns, reached)):
+            if short == _STUCK and (singular := singular_position(own.lowered, own.state.x, reached)):
                 raise singular
             last = due
             while last < len(times) and times[last] <= reached * (1 + 1e-14):
@@ -190,7 +190,7 @@ class OdeSolver(Integrator):
     def _explain(self, own: Field, time: float, message: str | None) -> SolveError:
         if own.lowered.failures.errors:
             return explain(own.lowered, DONE, time, 0, "")
-        if singular := singular_position(own.lowered, own.unknowns, time):
+        if singular := singular_position(own.lowered, own.state.x, time):
             return singular
         why = f"{message[0].lower()}{message[1:].rstrip('.')}" if message else "no reason was given"
         return SolveError(

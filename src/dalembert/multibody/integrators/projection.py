@@ -4,7 +4,7 @@ q - w with M w + J^T m = 0 and Phi(q - w) = 0, by Newton's iteration; velocities
 """
 
 from dalembert.kernels.kernel import inner, kernel
-from dalembert.kernels.words import Address, Integers
+from dalembert.kernels.words import Integers
 from dalembert.multibody.integrators.index1 import Terms, Tools, factorise_motion
 from dalembert.multibody.integrators.partitioning import fill_gap
 from dalembert.multibody.integrators.problem import POSITION, VELOCITY, Models, Problem
@@ -84,13 +84,12 @@ def _follow(problem, level, model, t, within, state, dstate, tools, change):
 @kernel
 def project(
     problem: Problem, terms: Terms, models: Models, t: float, within: float, state: MotionState, dstates: MotionStates,
-    tools: Tools, along: Address,
+    tools: Tools,
 ) -> bool:  # fmt: skip
     """Move coordinates, then velocities, onto the constraints, with their derivatives; whether that was possible.
 
     With the state's mass matrix M and Jacobian J: M w + J^T m = 0 such that the constraints of q - w vanish, by
-    Newton's iteration with J kept; then v alike, which is linear. ``along``: address of `project_along`, 0 if there are
-    no derivatives.
+    Newton's iteration with J kept; then v alike, which is linear.
     """
     n, last, base, change = problem.n, len(state.x) - 1, tools.base, tools.change
     set_signals(models.real, t, within, tools.work)
@@ -113,7 +112,7 @@ def project(
         if not moved <= _MAGNIFIED * (1.0 if level == POSITION else 1.0 + largest(state.v, 0, n)):
             return False
         if len(dstates.x) > 0:
-            _project_along_at(along, problem, level, models.directions, t, within, state, dstates, tools)
+            _project_along_at(tools.project_along, problem, level, models.directions, t, within, state, dstates, tools)
     return True
 
 

@@ -11,9 +11,9 @@ from dalembert.arguments import limited
 from dalembert.kernels.kernel import Compiled, inner, kernel
 from dalembert.kernels.words import Integers, Reals
 from dalembert.multibody.integrators.batch import Batch
-from dalembert.multibody.integrators.completion import Completion, complete, completion, kernels, partition
+from dalembert.multibody.integrators.completion import complete, kernels, make_tools, partition
 from dalembert.multibody.integrators.ends import write
-from dalembert.multibody.integrators.index1 import PARTITIONED, PROJECTED, Terms
+from dalembert.multibody.integrators.index1 import PARTITIONED, PROJECTED, Terms, Tools
 from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.problem import DIVERGED, DONE, SINGULAR, Log, Models, Problem
 from dalembert.multibody.integrators.run import Run, explain
@@ -73,22 +73,21 @@ class RungeKutta4(Integrator):
         samples, directions = batch.samples, len(batch.perturbed)
         problem, terms = posed(self.stabilisation, samples, batch.problem, self.step)
         works = samples[0].real.call(), samples[0].complex_model.call()
-        own = completion(problem, terms, works[0].address, works[1].address, directions)
-        room = _workspace(batch.shape[1], directions, own)
+        tools = make_tools(problem, terms, works[0].address, works[1].address, directions)
+        room = _workspace(batch.shape[1], directions, tools)
         _fill(room.stage.dstates, batch.dstates)
         steps = self.step_ends(batch.end, samples[0].jumps)
         ends = np.zeros(0) if steps is None or not batch.logged else steps[1:]
         runs = []
         for lowered, edges, start, models in batch:
             _fill(room.stage.state, start)
-            room.completion.tools.partition.rank[0] = 0  # independent coordinates are chosen anew
+            tools.partition.rank[0] = 0  # independent coordinates are chosen anew
             out = resting(1 + directions, *batch.shape)
             counts = np.zeros(4, dtype=np.int64)
             status, time = integrate(problem, edges, float(self.step), terms, models, out, counts, room)
             if status == SINGULAR and not np.max(np.abs(room.stage.state.x)) < _UNBOUNDED:
                 status = DIVERGED
             reason = None if status == DONE else explain(lowered, status, time, 0, f"the step is {self.step:g} s")
-            counts[1] = 0
             parts = MotionState(*(values[0] for values in out)), MotionState(*(values[1:] for values in out))
             runs.append(batch.result(reason, *parts, Log(counts, np.zeros(len(ends), dtype=np.int64), ends)))
         return runs
@@ -105,23 +104,23 @@ class Stage(NamedTuple):
 class Workspace(NamedTuple):
     """States of a step with their derivatives: at a stage, between steps, at the step's begin, and their sum.
 
-    And the work of completing states.
+    And the ``tools`` that complete states.
     """
 
     stage: Stage
     between: Stage
     old: MotionStates
     total: MotionStates
-    completion: Completion
+    tools: Tools
 
 
-def _workspace(width: int, directions: int, own: Completion) -> Workspace:
+def _workspace(width: int, directions: int, tools: Tools) -> Workspace:
     stages, shape = [], (1 + directions, width)
     for _ in range(2):
         stack = MotionStates(*resting(*shape))
         parts = MotionState(*(values[0] for values in stack)), MotionStates(*(values[1:] for values in stack))
         stages.append(Stage(stack, *parts))
-    return Workspace(stages[0], stages[1], MotionStates(*resting(*shape)), MotionStates(*resting(*shape)), own)
+    return Workspace(stages[0], stages[1], MotionStates(*resting(*shape)), MotionStates(*resting(*shape)), tools)
 
 
 def _fill(target: NamedTuple, source: NamedTuple) -> None:
@@ -168,6 +167,15 @@ def _record(stack, out, due):
 _partition_at = partition.at
 
 
+@inner
+def _choose(problem, terms, models, t, within, state, tools):
+    """Choose independent coordinates if they are parted and that is needed."""
+    if terms.way == PARTITIONED:
+        _partition_at(
+            tools.choose, problem, terms, models.complex, t, within, state, tools.complex_work, tools.partition
+        )
+
+
 @kernel
 def integrate(
     problem: Problem, edges: Reals, step: float, terms: Terms, models: Models, out: Histories, counts: Integers,
@@ -185,24 +193,19 @@ def integrate(
     models : Models
     out : Histories
         At the output times, (1 + directions, times, N + 1): states, then their derivatives.
-    counts : array (2,)
-        Steps, and how often independent coordinates were chosen anew.
+    counts : array (4,)
+        Steps, and zeros.
     room : Workspace
         With the state at the start, and its derivatives, in ``stage``; overwritten.
     """
-    n, own, tools = problem.n, room.completion, room.completion.tools
-    stage, between = room.stage, room.between
+    n, tools, stage, between = problem.n, room.tools, room.stage, room.between
     projects = terms.way == PROJECTED and len(stage.state.x) - 1 > n
     due = 0
     for stretch in range(len(edges) - 1):
         begin, end = edges[stretch], edges[stretch + 1]
         within = 0.5 * (begin + end)
-        if terms.way == PARTITIONED:
-            _partition_at(
-                own.partition, problem, terms, models.complex, begin, within, stage.state, tools.complex_work,
-                tools.partition,
-            )  # fmt: skip
-        status = complete(problem, terms, models, stage.state, stage.dstates, own, begin, within, False)
+        _choose(problem, terms, models, begin, within, stage.state, tools)
+        status = complete(problem, terms, models, stage.state, stage.dstates, tools, begin, within, False)
         if status != DONE:
             return status, begin
         while stretch == 0 and due < len(problem.times) and problem.times[due] <= begin:
@@ -222,14 +225,10 @@ def integrate(
                 _push(n, share * h, weight * h, room.old, stage.stack, room.total)
                 if last:
                     _take(n, room.total, stage.stack)
-                    if terms.way == PARTITIONED and _partition_at(
-                        own.partition, problem, terms, models.complex, target, within, stage.state, tools.complex_work,
-                        tools.partition,
-                    ):  # fmt: skip
-                        counts[1] += 1
+                    _choose(problem, terms, models, target, within, stage.state, tools)
                 now = target if last else t + share * h
                 status = complete(
-                    problem, terms, models, stage.state, stage.dstates, own, now, within, last and projects
+                    problem, terms, models, stage.state, stage.dstates, tools, now, within, last and projects
                 )
                 if status != DONE:
                     return status, t
@@ -239,7 +238,7 @@ def integrate(
                 _interpolate(n, h, share, room.old, stage.stack, between.stack)
                 if share < 1.0 - 1e-9:
                     status = complete(
-                        problem, terms, models, between.state, between.dstates, own, problem.times[due], within,
+                        problem, terms, models, between.state, between.dstates, tools, problem.times[due], within,
                         projects,
                     )  # fmt: skip
                     if status != DONE:

@@ -1,7 +1,7 @@
 """Which rows and columns of a matrix each component couples, and where the entries are kept."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -29,6 +29,7 @@ class Couplings:
 
     index: Mapping[Kind, np.ndarray]
     size: int
+    _kept_alive: list[np.ndarray] = field(default_factory=list, init=False, repr=False)
 
     @cached_property
     def _pairs(self) -> tuple[np.ndarray, np.ndarray]:
@@ -43,10 +44,6 @@ class Couplings:
         self._kept_alive.append(places)
         counts = [index.shape[0] * index.shape[1] ** 2 for index in self.index.values()]
         return places.ctypes.data + 8 * np.cumsum([0, *counts], dtype=np.int64)[: len(counts)]
-
-    @cached_property
-    def _kept_alive(self) -> list[np.ndarray]:
-        return []
 
     @cached_property
     def separate(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

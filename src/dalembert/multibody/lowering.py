@@ -35,10 +35,7 @@ class SystemLowering:
         self.gravity = system.gravity
         self.kinks: list[tuple[float, str]] = []
         self._system = system
-        self._index: dict[Kind, list] = {}
-        self._integers: dict[Kind, list] = {}
-        self._data: dict[Kind, list] = {}
-        self._parts: dict[Kind, list[str]] = {}
+        self._written: dict[Kind, list[tuple]] = {}  # index, integers, numbers and component of each row
         self._rows: dict[str, tuple[Kind, int]] = {}
         self._signals: list[tuple[int, int, int, int]] = [(signal_kinds.TIME, 0, 0, 0)]
         self._begin = float(begin)
@@ -71,20 +68,15 @@ class SystemLowering:
                 f"{len(integers)} integers; the kind declares {kind.width}, {len(kind.numbers)} and "
                 f"{len(kind.integers)}. Correct its 'lower'"
             )
-        rows = self._index.setdefault(kind, [])
+        rows = self._written.setdefault(kind, [])
         if name:
             self._rows[name] = (kind, len(rows))
-        rows.append([_ABSENT if entry is None else entry for entry in index])
-        self._integers.setdefault(kind, []).append(list(integers))
-        self._data.setdefault(kind, []).append(numbers)
-        self._parts.setdefault(kind, []).append(self._component)
+        rows.append(([_ABSENT if entry is None else entry for entry in index], integers, numbers, self._component))
 
     def add_many(self, kind: Kind, index: np.ndarray, numbers: Sequence[Number]) -> None:
         """Components of a kind, index (count, width), that share their numbers."""
-        self._index.setdefault(kind, []).extend(index.tolist())
-        self._integers.setdefault(kind, []).extend([[]] * len(index))
-        self._data.setdefault(kind, []).extend([numbers] * len(index))
-        self._parts.setdefault(kind, []).extend([self._component] * len(index))
+        rows = self._written.setdefault(kind, [])
+        rows.extend((entry, (), numbers, self._component) for entry in index.tolist())
 
     def multipliers(self, owner: str, count: int) -> list[int | None]:
         """Unknowns of ``count`` constraints of a joint."""
@@ -211,21 +203,22 @@ class SystemLowering:
         chosen = np.array([[0.0 if value is None else value for value in body.motion] for body in system.bodies])
         rates = carried_rates(system.bodies, places, modes, chosen[:, :, None])[:, :, 0]
         velocities = [own @ rate for own, rate in zip(modes, rates, strict=True)]
+        columns = {kind: [*zip(*rows, strict=True)] for kind, rows in self._written.items()}
         structure = Structure(
             n=n,
             size=size,
             owners=tuple(self._owners),
             first=dict(self._first),
             kinds=tuple(kinds),
-            index={kind: _integers(rows, kind.width, size) for kind, rows in self._index.items()},
-            meta={kind: _integers(rows, max(len(kind.integers), 1), 0) for kind, rows in self._integers.items()},
+            index={kind: _integers(own[0], kind.width, size) for kind, own in columns.items()},
+            meta={kind: _integers(own[1], max(len(kind.integers), 1), 0) for kind, own in columns.items()},
             rows=dict(self._rows),
             signals=np.array(self._signals, dtype=np.int64),
         )
         lowered = Lowered(
             structure=structure,
             bodies=dict(self._bodies),
-            data={kind: np.array(rows).reshape(len(rows), len(kind.numbers)) for kind, rows in self._data.items()},
+            data={kind: np.array(own[2]).reshape(len(own[2]), len(kind.numbers)) for kind, own in columns.items()},
             signal_data=np.concatenate(self._signal_data),
             knots=np.concatenate(self._knots),
             callbacks=tuple(self._callbacks),
@@ -238,7 +231,7 @@ class SystemLowering:
             changes=frozenset(self._since(time) for time in self._changes - self._jumps),
             kinks=tuple((self._since(time), name) for time, name in self.kinks),
             failures=self._failures,
-            parts={kind: tuple(names) for kind, names in self._parts.items()},
+            parts={kind: own[3] for kind, own in columns.items()},
         )
         if not all(np.all(np.isfinite(array)) for array in (x, lowered.v, lowered.signal_data, *lowered.data.values())):
             self._refuse_infinite()
@@ -268,7 +261,7 @@ def _finite(value: object) -> bool:
     return not isinstance(value, float | complex) or bool(np.isfinite(value))
 
 
-def _integers(rows: list, width: int, absent: int) -> np.ndarray:
+def _integers(rows: Sequence, width: int, absent: int) -> np.ndarray:
     array = np.zeros((len(rows), width), dtype=np.int64)
     array[:, : len(rows[0])] = rows
     array[array == _ABSENT] = absent

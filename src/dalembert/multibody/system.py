@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import Any, TypeVar
 
 from dalembert.arguments import is_number, names_of
-from dalembert.errors import InputError, ModelError, require_known, shown, unknown
+from dalembert.errors import InputError, ModelError, require_known, shown
 from dalembert.findings import Finding
 from dalembert.multibody.components.fields import Number
 from dalembert.multibody.components.planar.body import Body
@@ -86,7 +86,6 @@ class System:
 
     def body(self, name: str) -> Body:
         """The body of this name."""
-        for body in self.bodies:
-            if body.name == name:
-                return body
-        raise InputError(unknown("body", name, [body.name for body in self.bodies]))
+        bodies = {body.name: body for body in self.bodies}
+        require_known("body", name, bodies)
+        return bodies[name]

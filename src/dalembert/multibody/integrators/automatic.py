@@ -57,10 +57,6 @@ class Automatic(Integrator):
             return self._redundant()
         return RadauIIA(tolerance=self.tolerance)
 
-    def refined(self) -> tuple[Integrator, int | None]:
-        """Return the same choice at a tolerance 100 times tighter."""
-        return replace(self, tolerance=self.tolerance / 100), None
-
     def instead(self, reason: SolveError | None) -> Integrator | None:
         """The method for redundant constraints where a singular position stopped the run."""
         return replace(self._redundant(), most_steps=_MOST_STEPS) if isinstance(reason, SingularPositionError) else None

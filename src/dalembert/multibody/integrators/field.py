@@ -40,6 +40,8 @@ class Field:
     def __init__(self, problem: Problem, terms: Terms, sample: Sample, dstates: MotionState, implicit: bool) -> None:
         self.problem, self.terms, self.lowered = problem, terms, sample.lowered
         self.n, self.width, self.count = problem.n, len(sample.start.x), len(dstates.x)
+        shape = len(problem.times), self.width
+        self.out, self.dout = resting(*shape), resting(self.count, *shape)
         self.moves = terms.way == PROJECTED and self.width - 1 > self.n
         self.within = 0.0
         self.evaluations = 0
@@ -94,11 +96,11 @@ class Field:
             tools.partition,
         )  # fmt: skip
 
-    def record(self, out: MotionState, dout: MotionState, due: int) -> None:
-        """Write the present state as that of an output time."""
-        for target, values in zip(out, self.state, strict=True):
+    def record(self, due: int) -> None:
+        """Write the present state as that of an output time, into ``out`` and ``dout``."""
+        for target, values in zip(self.out, self.state, strict=True):
             target[due] = values
-        for target, values in zip(dout, self._dstates, strict=True):
+        for target, values in zip(self.dout, self._dstates, strict=True):
             target[:, due] = values
 
     def _joined(self, first: np.ndarray, second: np.ndarray, dfirst: np.ndarray, dsecond: np.ndarray) -> np.ndarray:

@@ -2,7 +2,7 @@
 
 __all__ = ["GeneralizedAlpha"]
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -94,10 +94,6 @@ class GeneralizedAlpha(Integrator):
     def convergence(self) -> int:
         """Order in the step: 2; 1 without accelerations at the start."""
         return 2 if self.initial_acceleration == "consistent" else 1
-
-    def refined(self) -> tuple[Integrator, int | None] | None:
-        """Return the method at half the step, or at a tolerance 100 times tighter where it is adaptive."""
-        return (replace(self, tolerance=self.tolerance / 100), None) if self.adaptive else super().refined()
 
     @property
     def fixed_step(self) -> float | None:

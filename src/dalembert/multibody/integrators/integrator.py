@@ -77,9 +77,10 @@ class Integrator(Checked, ABC):
 
         Methods that choose their step: at a tolerance 100 times tighter, and None for the order.
         """
-        if self.fixed_step is None or self.convergence is None:
-            return None
-        return replace(cast(Any, self), step=self.fixed_step / 2), self.convergence
+        own, tolerance = cast(Any, self), getattr(self, "tolerance", None)
+        if self.fixed_step is None:
+            return None if tolerance is None else (replace(own, tolerance=tolerance / 100), None)
+        return None if self.convergence is None else (replace(own, step=self.fixed_step / 2), self.convergence)
 
     def instead(self, reason: SolveError | None) -> "Integrator | None":
         """The integrator to try where the suiting one stopped for a ``reason``; None but for one that chooses."""

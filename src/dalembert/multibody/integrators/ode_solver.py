@@ -20,7 +20,6 @@ from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.problem import DONE, TOO_MANY_STEPS
 from dalembert.multibody.integrators.run import Run, explain
 from dalembert.multibody.integrators.stabilisation import Projection, Stabilisation, posed
-from dalembert.multibody.kernels.motion import MotionState, resting
 from dalembert.multibody.singular_positions import singular_position
 from dalembert.multibody.structure import Structure
 
@@ -102,8 +101,6 @@ class OdeSolver(Integrator):
 
     def _run(self, own: Field, edges: np.ndarray) -> Run:
         """The motion of one sample."""
-        shape = len(own.problem.times), own.width
-        out, dout = resting(*shape), resting(own.count, *shape)
         ends: list[float] = []
         due, reason = 0, None
         try:
@@ -113,17 +110,15 @@ class OdeSolver(Integrator):
                 if (status := own.complete(begin, projected=False)) != DONE:
                     raise explain(own.lowered, status, begin, 0, "the motion begins there")
                 while due < len(own.problem.times) and own.problem.times[due] <= begin and not ends:
-                    own.record(out, dout, due)
+                    own.record(due)
                     due += 1
-                due = self._stretch(own, begin, end, out, dout, due, ends)
+                due = self._stretch(own, begin, end, due, ends)
         except SolveError as error:
             reason = error
-        counts = np.array([len(ends), 0, own.evaluations, 0])
-        return Run(reason, own.problem.times, out, dout, counts, np.zeros(len(ends), dtype=np.int64), np.array(ends))
+        counts, iterations = np.array([len(ends), 0, own.evaluations, 0]), np.zeros(len(ends), dtype=np.int64)
+        return Run(reason, own.problem.times, own.out, own.dout, counts, iterations, np.array(ends))
 
-    def _stretch(
-        self, own: Field, begin: float, end: float, out: MotionState, dout: MotionState, due: int, ends: list[float]
-    ) -> int:
+    def _stretch(self, own: Field, begin: float, end: float, due: int, ends: list[float]) -> int:
         """Run one smooth stretch, and return the number of the next output."""
         times, solver, short = own.problem.times, self._solver(own, begin, end), 0
         while solver.status == "running":
@@ -147,7 +142,7 @@ class OdeSolver(Integrator):
                 own.put(path(min(times[number], reached)))
                 if (status := own.complete(times[number], projected=True)) != DONE:
                     raise self._explain(own, times[number], str(status))
-                own.record(out, dout, number)
+                own.record(number)
             due = last
             own.put(solver.y)
             if own.moves or own.choose(reached):

@@ -2,7 +2,7 @@
 
 __all__ = ["RadauIIA"]
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -90,10 +90,6 @@ class RadauIIA(Integrator):
     @property
     def convergence(self) -> int:
         return self.order
-
-    def refined(self) -> tuple[Integrator, int | None] | None:
-        """Return the method at half the step, or at a tolerance 100 times tighter where it chooses the step."""
-        return (replace(self, tolerance=self.tolerance / 100), None) if self.step is None else super().refined()
 
     def kernels(self, structure: Structure, derivatives: bool) -> list[Compiled]:
         """The loop with its linear systems, and what differentiates a step and an output."""

@@ -22,7 +22,8 @@ def rigid_motions(lowered: Lowered, perturbed: Sequence[Lowered]) -> Rigid:
     partner[vectors[::2]], partner[vectors[1::2]] = vectors[1::2], vectors[::2]
     sign[vectors[::2]], sign[vectors[1::2]] = -1.0, 1.0
     held, points = _held(lowered)
-    gravity = _gravity(lowered)
+    weights = [np.real(data[:, kind.columns(kind.gravity)]) for kind, data in lowered.data.items() if kind.gravity]
+    gravity = np.vstack([np.zeros((0, 2)), *weights])  # that acts on each component, (components, 2)
     free = [not held and len(points) == 0 and not np.any(gravity[:, axis]) for axis in range(2)]
     turns = not held and not np.any(gravity) and not np.any(np.ptp(np.real(points), axis=0) if len(points) else 0.0)
     shifts = []
@@ -40,12 +41,6 @@ def rigid_motions(lowered: Lowered, perturbed: Sequence[Lowered]) -> Rigid:
     spin = np.array([0.0] * sum(free) + [1.0] * turns)
     along = np.array(shifts[1:], dtype=complex).reshape(len(perturbed), *shifts[0].shape)
     return Rigid(partner, sign, spin, np.ascontiguousarray(shifts[0].real), along)
-
-
-def _gravity(lowered: Lowered) -> np.ndarray:
-    """The gravity that acts on each component, (components, 2)."""
-    weights = [np.real(data[:, kind.columns(kind.gravity)]) for kind, data in lowered.data.items() if kind.gravity]
-    return np.vstack([np.zeros((0, 2)), *weights])
 
 
 def _held(lowered: Lowered) -> tuple[bool, np.ndarray]:

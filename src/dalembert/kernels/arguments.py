@@ -13,10 +13,9 @@ from numba.core.datamodel import models
 from numba.core.typing.templates import AttributeTemplate, infer_getattr
 from numba.extending import lower_cast, lower_getattr_generic, register_model
 
-from dalembert.kernels.views import array_at
+from dalembert.kernels.views import WORD, array_at
 from dalembert.kernels.words import count, fields, leaves
 
-WORD = ir.IntType(64)
 _SCALARS = {int: types.int64, float: types.float64, bool: types.boolean}
 _ITEMS = {"u1": types.uint8, "i8": types.int64, "f8": types.float64, "c16": types.complex128}
 

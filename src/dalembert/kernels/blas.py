@@ -4,6 +4,7 @@ import ctypes
 from functools import cache
 from typing import Any
 
+from llvmlite import ir
 from numba import types
 from numba.core import cgutils
 
@@ -77,26 +78,18 @@ def _matrix(context: Any, builder: Any, signature: Any, values: Any, k: int) -> 
 
 
 def _length(builder: Any, value: Any) -> Any:
-    import llvmlite.ir as ir
-
     short = ir.IntType(32)
     return cgutils.alloca_once_value(builder, short(value) if isinstance(value, int) else builder.trunc(value, short))
 
 
 def _number(builder: Any, value: float) -> Any:
-    import llvmlite.ir as ir
-
     return cgutils.alloca_once_value(builder, ir.DoubleType()(value))
 
 
 def _letter(builder: Any, letter: str) -> Any:
-    import llvmlite.ir as ir
-
     return cgutils.alloca_once_value(builder, ir.IntType(8)(ord(letter)))
 
 
 def _call(builder: Any, address: Any, arguments: list[Any]) -> None:
-    import llvmlite.ir as ir
-
     kind = ir.FunctionType(ir.VoidType(), [argument.type for argument in arguments])
     builder.call(builder.inttoptr(address, kind.as_pointer()), arguments)

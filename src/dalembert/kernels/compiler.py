@@ -22,10 +22,10 @@ from numba.core.registry import cpu_target as _cpu_target
 from numba.core.typing.templates import AbstractTemplate, infer_global, make_concrete_template
 from numba.extending import lower_builtin
 
-from dalembert.kernels.arguments import WORD, accepted, load_words, numba_type, read_words, store_words
+from dalembert.kernels.arguments import accepted, load_words, numba_type, read_words, store_words
 from dalembert.kernels.pipeline import PIPELINE, hastened
 from dalembert.kernels.refusals import refusals
-from dalembert.kernels.views import intrinsic
+from dalembert.kernels.views import WORD, intrinsic
 from dalembert.kernels.words import count
 
 cpu_target: Any = _cpu_target  # its type stubs lack the contexts

@@ -7,7 +7,7 @@ comments do not matter; of the value of each constant; and of the files of funct
 import dis
 import hashlib
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from functools import cache
 from pathlib import Path
 from types import CodeType, FunctionType, ModuleType
@@ -32,24 +32,21 @@ def needs(function: FunctionType) -> list[Any]:
 
 def _closure(function: FunctionType) -> list[FunctionType]:
     """A function and all Python functions whose code becomes part of its kernel."""
-    reached, ahead = {function: None}, [function]
-    while ahead:
-        for other in _own(ahead.pop())[1]:
-            if other not in reached:
-                reached[other] = None
-                ahead.append(other)
-    return list(reached)
+    return _reached(function, lambda own: _own(own)[1])
 
 
 def inner_functions(function: FunctionType) -> list[FunctionType]:
     """A function and all functions under ``inner`` that it calls."""
+    return _reached(function, lambda own: [value.py_func for _, value in _named(own) if hasattr(value, "py_func")])
+
+
+def _reached(function: FunctionType, called: Callable[[FunctionType], Iterable[FunctionType]]) -> list[FunctionType]:
     reached, ahead = {function: None}, [function]
     while ahead:
-        for _, value in _named(ahead.pop()):
-            own = getattr(value, "py_func", None)
-            if own is not None and own not in reached:
-                reached[own] = None
-                ahead.append(own)
+        for other in called(ahead.pop()):
+            if other not in reached:
+                reached[other] = None
+                ahead.append(other)
     return list(reached)
 
 

@@ -11,6 +11,8 @@ from numba.core import types
 from numba.core.base import BaseContext
 from numba.core.compiler import CompilerBase, Flags
 from numba.core.compiler_machinery import PassManager
+from numba.core.postproc import PostProcessor, VariableLifetime
+from numba.core.transforms import canonicalize_cfg
 from numba.core.typed_passes import (
     AnnotateTypes,
     InlineOverloads,
@@ -113,17 +115,31 @@ def _complex_parts(self: Any, builder: Any, typ: Any, value: Any = None) -> Any:
     return _make_complex(self, builder, typ) if value is None else _Fields(self, builder, typ, value)
 
 
+_post_process: Any = PostProcessor.run
+
+
+def _lifetimes(self: Any, emit_dels: bool = False, extend_lifetimes: bool = False) -> None:
+    """Numba's analysis after a pass, without what is alive in each block, which only generators need."""
+    self.func_ir.blocks = canonicalize_cfg(self.func_ir.blocks)
+    self.func_ir.variable_lifetime, self.func_ir.generator_info = VariableLifetime(self.func_ir.blocks), None
+    if emit_dels:
+        self._insert_var_dels(extend_lifetimes=extend_lifetimes)
+
+
 @contextmanager
 def hastened() -> Iterator[None]:
-    """Compare flags, resolve calls and read arrays at less cost in this block; the optimised code stays the same."""
+    """Compare flags, resolve calls, read arrays and analyse lifetimes at less cost in this block.
+
+    The optimised code stays the same.
+    """
     flags: Any = Flags
     usual = flags.__eq__, flags.__hash__
     flags.__eq__, flags.__hash__ = _same_flags, _flags_hash
     BaseFunction.get_call_type, arrayobj.make_array = _call_type, _array_fields
-    BaseContext.make_complex = _complex_parts
+    BaseContext.make_complex, PostProcessor.run = _complex_parts, _lifetimes
     try:
         yield
     finally:
         flags.__eq__, flags.__hash__ = usual
         BaseFunction.get_call_type, arrayobj.make_array = _resolve, _make_array
-        BaseContext.make_complex = _make_complex
+        BaseContext.make_complex, PostProcessor.run = _make_complex, _post_process

@@ -5,9 +5,12 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from llvmlite import ir
 from numba import from_dtype, types
 from numba.core import cgutils
 from numba.extending import intrinsic as _typed_intrinsic
+
+WORD = ir.IntType(64)
 
 
 def intrinsic(plain: Callable[..., Any], **options: Any) -> Callable[[Callable], Any]:
@@ -23,11 +26,8 @@ def intrinsic(plain: Callable[..., Any], **options: Any) -> Callable[[Callable],
 
 def array_at(context: Any, builder: Any, kind: types.Array, address: Any, shape: list) -> Any:
     """Generate an array structure over memory that the caller keeps alive."""
-    import llvmlite.ir as ir
-
-    word = ir.IntType(64)
     item = context.get_data_type(kind.dtype)
-    size = word(context.get_abi_sizeof(item))
+    size = WORD(context.get_abi_sizeof(item))
     strides, step = [size], size
     for length in reversed(shape[1:]):
         step = builder.mul(step, length)
@@ -54,6 +54,7 @@ def memory(dtype: Any, address: int, *shape: int) -> np.ndarray:
 
 
 def _view(dtype: Any, axes: int) -> Any:
+    """An intrinsic: the vector, the matrix by rows or the stack of matrices at an address."""
     kind: Any = types.Array(from_dtype(np.dtype(dtype)), axes, "C")
 
     def plain(address: int, *shape: int) -> np.ndarray:
@@ -63,26 +64,13 @@ def _view(dtype: Any, axes: int) -> Any:
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         return array_at(context, builder, kind, arguments[0], list(arguments[1:]))
 
-    if axes == 1:
-
-        @intrinsic(plain)
-        def view(typingctx, address, length):
-            """The vector at an address."""
-            return kind(types.int64, types.int64), generate
-    elif axes == 3:
-
-        @intrinsic(plain)
-        def view(typingctx, address, blocks, rows, columns):
-            """The stack of matrices at an address."""
-            return kind(types.int64, types.int64, types.int64, types.int64), generate
-    else:
-
-        @intrinsic(plain)
-        def view(typingctx, address, rows, columns):
-            """The matrix at an address, by rows."""
-            return kind(types.int64, types.int64, types.int64), generate
-
-    return view
+    answer = kind(*[types.int64] * (1 + axes)), generate
+    definitions: dict[int, Callable] = {
+        1: lambda typingctx, address, length: answer,
+        2: lambda typingctx, address, rows, columns: answer,
+        3: lambda typingctx, address, blocks, rows, columns: answer,
+    }
+    return intrinsic(plain)(definitions[axes])
 
 
 integers, integers2 = _view("i8", 1), _view("i8", 2)
@@ -116,10 +104,8 @@ def address_of(typingctx, array):
     """Address of an array's first entry."""
 
     def generate(context, builder, signature, arguments):
-        import llvmlite.ir as ir
-
         data = cgutils.create_struct_proxy(signature.args[0])(context, builder, value=arguments[0]).data
-        return builder.ptrtoint(data, ir.IntType(64))
+        return builder.ptrtoint(data, WORD)
 
     return types.int64(array), generate
 
@@ -134,10 +120,7 @@ def call(typingctx, address, first, second):
     signature = types.void(types.int64, types.int64, types.int64)
 
     def generate(context, builder, signature, arguments):
-        import llvmlite.ir as ir
-
-        word = ir.IntType(64)
-        kind = ir.FunctionType(ir.VoidType(), [word, word])
+        kind = ir.FunctionType(ir.VoidType(), [WORD, WORD])
         builder.call(builder.inttoptr(arguments[0], kind.as_pointer()), arguments[1:])
         return context.get_dummy_value()
 
@@ -156,8 +139,6 @@ def call_with(typingctx, address, *arrays):
     signature = types.void(types.int64, given)
 
     def generate(context, builder, signature, arguments):
-        import llvmlite.ir as ir
-
         byte, pointers = ir.IntType(8).as_pointer(), []
         values = cgutils.unpack_tuple(builder, arguments[1])
         for kind, value in zip(signature.args[1], values, strict=True):
@@ -172,12 +153,9 @@ def call_with(typingctx, address, *arrays):
 
 def _on_stack(context: Any, builder: Any, kind: types.Array, shape: tuple[int, ...]) -> Any:
     """Generate an array on the stack of the function, the same one at each call from one place."""
-    import llvmlite.ir as ir
-
-    word = ir.IntType(64)
     with builder.goto_entry_block():
         cells = builder.alloca(context.get_data_type(kind.dtype), size=int(np.prod(shape)))
-    return array_at(context, builder, kind, builder.ptrtoint(cells, word), [word(length) for length in shape])
+    return array_at(context, builder, kind, builder.ptrtoint(cells, WORD), [WORD(length) for length in shape])
 
 
 def local(dtype: type, *shape: int) -> Any:

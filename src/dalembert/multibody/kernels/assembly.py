@@ -54,11 +54,12 @@ def reduced_residual(model, increments, x, v, a, work, scale, r):
 
 
 @inlined
-def _add_tangents(blocks, count, slots, by, rows, work, matrix):
+def _add_tangents(blocks, count, increments, last_row, slots, by, rows, work, matrix):
     for i in range(len(matrix)):
         matrix[i] = 0.0
     own = call_at(work)
     own.matrix, own.entries, own.mode = address_of(matrix), len(matrix), TANGENT
+    own.increments, own.last_row = increments, last_row
     own.by_x, own.by_v, own.by_a = by
     own.motion, own.constraint = rows
     for k in range(count):
@@ -75,15 +76,16 @@ def tangent(complex_model, slots, n, x, v, a, by, rows, work, matrix):
     ``complex_model`` is the model in complex numbers, ``slots`` where each block finds the positions of its entries.
     """
     _place(work, x, v, a)
-    _add_tangents(model_at(complex_model).blocks, model_at(complex_model).block_count, slots, by, rows, work, matrix)
+    table = model_at(complex_model)
+    _add_tangents(table.blocks, table.block_count, n, len(x) - 1, slots, by, rows, work, matrix)
 
 
 @inner
 def reduced_tangent(complex_model, slots, increments, last_row, x, v, a, by, rows, work, matrix):
     """The tangent of the reduced system, along increments of dq, dv and da, and of multipliers."""
-    own = _place(work, x, v, a)
-    own.increments, own.last_row = increments, last_row
-    _add_tangents(model_at(complex_model).reduced, model_at(complex_model).reduced_count, slots, by, rows, work, matrix)
+    _place(work, x, v, a)
+    table = model_at(complex_model)
+    _add_tangents(table.reduced, table.reduced_count, increments, last_row, slots, by, rows, work, matrix)
 
 
 @inner

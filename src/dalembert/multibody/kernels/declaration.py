@@ -157,9 +157,7 @@ class Declaration:
             "energy": self.energy is not None or self.residual is not None,
             "outputs": self.observe is not None,
             "reduced": self.chart is None and not self.is_flat,
-            "spread": self.chart is not None,
-            "change": self.chart is not None,
-            "restore": self.chart is not None,
+            **dict.fromkeys(("spread", "change", "restore"), self.chart is not None),
         }[role]
 
     @cached_property

@@ -6,6 +6,7 @@ it gives a column of the constraint's Jacobian. Its numbers are real, or complex
 """
 
 import operator
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -53,9 +54,10 @@ class Jet:
     def __rtruediv__(self, other: Any) -> "Jet":
         return _jet(other) * elementary.reciprocal(self)
 
-    def function(self, value: Any, slope: Any, curvature: Any) -> "Jet":
-        """A function of the jet, by its value and derivatives there."""
-        return Jet(value, slope * self.first, curvature * self.first * self.first + slope * self.second)
+    @staticmethod
+    def of_jets(function: Callable, *given: Any) -> Any:
+        """An elementary function of jets."""
+        return _RULES[function](*given)
 
     @property
     def real(self) -> Any:
@@ -246,12 +248,8 @@ class _Numbers:
         return function(self._builder, list(values))
 
 
-def _add(n: _Numbers, u: list, v: list) -> list:
-    return [n(operator.add, a, b) for a, b in zip(u, v, strict=True)]
-
-
-def _subtract(n: _Numbers, u: list, v: list) -> list:
-    return [n(operator.sub, a, b) for a, b in zip(u, v, strict=True)]
+def _by_parts(symbol: Any) -> Any:
+    return lambda n, u, v: [n(symbol, a, b) for a, b in zip(u, v, strict=True)]
 
 
 def _multiply(n: _Numbers, u: list, v: list) -> list:
@@ -264,7 +262,7 @@ def _multiply(n: _Numbers, u: list, v: list) -> list:
 _binary(
     operator.add,
     {
-        "jets": _add,
+        "jets": _by_parts(operator.add),
         "jet, number": lambda n, u, s: [n(operator.add, u[0], s), *u[1:]],
         "number, jet": lambda n, s, u: [n(operator.add, s, u[0]), *u[1:]],
     },
@@ -272,7 +270,7 @@ _binary(
 _binary(
     operator.sub,
     {
-        "jets": _subtract,
+        "jets": _by_parts(operator.sub),
         "jet, number": lambda n, u, s: [n(operator.sub, u[0], s), *u[1:]],
         "number, jet": lambda n, s, u: [n(operator.sub, s, u[0]), *(n(operator.neg, part) for part in u[1:])],
     },
@@ -311,83 +309,63 @@ def _divide(u, v):
 # -- functions -------------------------------------------------------------------------------------------------------
 
 
-def _is_jet(kind: types.Type) -> bool:
-    return isinstance(kind, JetType)
-
-
 @overload(elementary.real)
 def _real(x):
-    return (lambda x: elementary.real(parts(x)[0])) if _is_jet(x) else None
+    return (lambda x: elementary.real(parts(x)[0])) if isinstance(x, JetType) else None
 
 
-@overload(elementary.reciprocal)
+_RULES: dict[Callable, Callable] = {}
+
+
+def _rule_of(function: Callable) -> Callable[[Callable], Callable]:
+    """Let an elementary function take jets: by the decorated function, in kernels and in Python."""
+
+    def declared(rule: Callable) -> Callable:
+        _RULES[function] = rule
+        overload(function, strict=False)(lambda *given: rule if isinstance(given[0], JetType) else None)
+        return rule
+
+    return declared
+
+
+@_rule_of(elementary.reciprocal)
 def _reciprocal(x):
-    if not _is_jet(x):
-        return None
-
-    def reciprocal(x):
-        u, first, second = parts(x)
-        r = elementary.reciprocal(u)
-        square = r * r
-        return jet(r, -first * square, (2.0 * first * first * r - second) * square)
-
-    return reciprocal
+    u, first, second = parts(x)
+    r = elementary.reciprocal(u)
+    square = r * r
+    return jet(r, -first * square, (2.0 * first * first * r - second) * square)
 
 
-@overload(elementary.sin_cos)
+@_rule_of(elementary.sin_cos)
 def _sin_cos(x):
-    if not _is_jet(x):
-        return None
-
-    def sin_cos(x):
-        u, first, second = parts(x)
-        s, c = elementary.sin_cos(u)
-        square = first * first
-        return jet(s, c * first, c * second - s * square), jet(c, -s * first, -s * second - c * square)
-
-    return sin_cos
+    u, first, second = parts(x)
+    s, c = elementary.sin_cos(u)
+    square = first * first
+    return jet(s, c * first, c * second - s * square), jet(c, -s * first, -s * second - c * square)
 
 
-@overload(elementary.root)
+@_rule_of(elementary.root)
 def _root(x):
-    if not _is_jet(x):
-        return None
-
-    def root(x):
-        u, first, second = parts(x)
-        r = elementary.root(u)
-        half = 0.5 * elementary.reciprocal(r)
-        rate = first * half
-        return jet(r, rate, (second - 2.0 * rate * rate) * half)
-
-    return root
+    u, first, second = parts(x)
+    r = elementary.root(u)
+    half = 0.5 * elementary.reciprocal(r)
+    rate = first * half
+    return jet(r, rate, (second - 2.0 * rate * rate) * half)
 
 
-@overload(elementary.tanh)
+@_rule_of(elementary.tanh)
 def _tanh(x):
-    if not _is_jet(x):
-        return None
-
-    def tanh(x):
-        u, first, second = parts(x)
-        t = elementary.tanh(u)
-        slope = 1.0 - t * t
-        return jet(t, slope * first, slope * (second - 2.0 * t * first * first))
-
-    return tanh
+    u, first, second = parts(x)
+    t = elementary.tanh(u)
+    slope = 1.0 - t * t
+    return jet(t, slope * first, slope * (second - 2.0 * t * first * first))
 
 
-@overload(elementary.angle_of)
+@_rule_of(elementary.angle_of)
 def _angle_of(x, y):
-    if not _is_jet(x):
-        return None
-
-    def angle_of(x, y):
-        u, du, ddu = parts(x)
-        w, dw, ddw = parts(y)
-        inverse = elementary.reciprocal(u * u + w * w)
-        rate = (u * dw - w * du) * inverse
-        second = (u * ddw - w * ddu - 2.0 * rate * (u * du + w * dw)) * inverse
-        return jet(elementary.angle_of(u, w), rate, second)
-
-    return angle_of
+    u, du, ddu = parts(x)
+    w, dw, ddw = parts(y)
+    inverse = elementary.reciprocal(u * u + w * w)
+    rate = (u * dw - w * du) * inverse
+    second = (u * ddw - w * ddu - 2.0 * rate * (u * du + w * dw)) * inverse
+    return jet(elementary.angle_of(u, w), rate, second)

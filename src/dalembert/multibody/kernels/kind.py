@@ -3,12 +3,12 @@
 from dataclasses import dataclass, field
 
 from dalembert.kernels.kernel import Compiled
-from dalembert.multibody.kernels import loops, reduced
+from dalembert.multibody.kernels import loops, nodes
 from dalembert.multibody.kernels.debugging import plain
 from dalembert.multibody.kernels.declaration import Declaration
 from dalembert.multibody.kernels.loops import BlockKernel
 
-_MAKERS = {**loops.MAKERS, **reduced.MAKERS}
+_MAKERS = {**loops.MAKERS, **nodes.MAKERS}
 
 
 @dataclass(frozen=True, eq=False)

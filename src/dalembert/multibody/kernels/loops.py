@@ -1,10 +1,16 @@
-"""Kernels of a kind: loops over the components of a block, around the functions of the kind."""
+"""Kernels of a kind: loops over the components of a block, around the functions of the kind.
+
+Residuals and tangents are those of the full system, or of the reduced one, in increments and without internal
+constraints: forces N^T r.
+"""
 
 from collections.abc import Callable
-from typing import Any
+from functools import cache
+from typing import Any, NamedTuple
 
 from dalembert.kernels.kernel import BlockKernel, inlined
 from dalembert.kernels.views import complexes, complexes2, integers, integers2, local, reals, reals2, records
+from dalembert.multibody.kernels.charts import projecting, spreading
 from dalembert.multibody.kernels.declaration import Declaration
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.records import TANGENT, Inputs, block_at, call_at
@@ -18,34 +24,47 @@ def made(loop: Callable[[Any, Any], None], kind: Declaration, role: str, dtype: 
     return BlockKernel(loop, f"dal_kind_{kind.name}_{role}_{dtype.__name__}", (kind, role, dtype))
 
 
-def residual(kind: Declaration, dtype: type) -> BlockKernel:
-    """Add the residuals; in complex numbers, by the call's mode, the tangent instead."""
-    return _complex(kind) if dtype is complex else _real(kind)
-
-
-def _real(kind: Declaration) -> BlockKernel:
-    function, width = kind.residual_function, kind.width
-    numbers, whole = records(kind.number_record(float)), records(kind.integer_record)
-    local_x, local_v, local_a, local_r = (local(float, width) for _ in range(4))
+def _each(kind: Declaration, role: str, dtype: type, step: Callable[..., None]) -> BlockKernel:
+    """Call ``step(x, v, a, p, m, inputs, call, block, e)`` for component ``e`` of a block, with its local vectors."""
+    view, view2 = arithmetic(dtype)
+    own_step, width = step, kind.width
+    numbers, whole = records(kind.number_record(dtype)), records(kind.integer_record)
+    local_x, local_v, local_a = (local(dtype, width) for _ in range(3))
 
     def loop(call_address, block_address):
         call, block = call_at(call_address), block_at(block_address)
         count, size = block.count, call.last + 1
         index = integers2(block.index, count, width)
         p, m = numbers(block.numbers, count), whole(block.integers, count)
-        x, v, a, r = reals(call.x, size), reals(call.v, size), reals(call.a, size), reals(call.r, size)
-        inputs = Inputs(reals2(call.signals, call.signal_count, 3), integers(call.callbacks, call.callback_count))
-        own_x, own_v, own_a, own_r = local_x(), local_v(), local_a(), local_r()
+        x, v, a = view(call.x, size), view(call.v, size), view(call.a, size)
+        inputs = Inputs(view2(call.signals, call.signal_count, 3), integers(call.callbacks, call.callback_count))
+        own_x, own_v, own_a = local_x(), local_v(), local_a()
         for e in range(count):
             for i in range(width):
                 g = index[e, i]
                 own_x[i], own_v[i], own_a[i] = x[g], v[g], a[g]
-                own_r[i] = 0.0
-            function(own_x, own_v, own_a, p[e], m[e], inputs, own_r)
-            for i in range(width):
-                r[index[e, i]] += own_r[i]
+            own_step(own_x, own_v, own_a, p[e], m[e], inputs, call, block, e)
 
-    return made(loop, kind, "residual", float)
+    return made(loop, kind, role, dtype)
+
+
+# -- residuals and tangents ------------------------------------------------------------------------------------------
+
+
+class _System(NamedTuple):
+    """Equations that a kind adds to: those of the full system, or of the reduced one.
+
+    ``rows``: local ones. ``project(x, r, s)`` returns the local residual in these rows, for which it may fill ``s``.
+    ``perturb(j, call, x, v, a)`` adds the imaginary step along local row j; it returns the range of the unknowns that
+    it changes. ``known`` and ``tangent``: the formula, and where it holds.
+    """
+
+    role: str
+    rows: int
+    project: Any
+    perturb: Any
+    known: Any
+    tangent: Any
 
 
 @inlined
@@ -58,25 +77,110 @@ def _no_tangent(x, p, m, by_x, by_a, matrix):
     pass
 
 
-def _complex(kind: Declaration) -> BlockKernel:
-    function, width = kind.residual_function, kind.width
-    known, formula = kind.known or _never, kind.tangent or _no_tangent
+@inlined
+def _unprojected(x, r, s):
+    return r
+
+
+@cache
+def _perturbing_one(coordinates: int) -> Any:
+    @inlined
+    def perturb(j, call, x, v, a):
+        if j < coordinates:
+            x[j] += 1j * STEP * call.by_x
+            v[j] += 1j * STEP * call.by_v
+            a[j] += 1j * STEP * call.by_a
+        else:
+            x[j] += 1j * STEP
+        return j, j + 1
+
+    return perturb
+
+
+def _full(kind: Declaration) -> _System:
+    perturb = _perturbing_one(kind.coordinates)
+    return _System("residual", kind.width, _unprojected, perturb, kind.known or _never, kind.tangent or _no_tangent)
+
+
+def _reduced(kind: Declaration) -> _System:
+    width, coordinates, increments = kind.width, kind.coordinates, kind.increments
+    others = width - coordinates
+    project, spread = projecting(kind.parts), spreading(kind.parts)
+    local_d, local_dx = local(complex, increments), local(complex, coordinates)
+
+    @inlined
+    def projected(x, r, s):
+        project(x, r, s)
+        for i in range(others):
+            s[increments + i] = r[coordinates + i]
+        return s
+
+    @inlined
+    def perturb(j, call, x, v, a):
+        if j < increments:
+            d, dx = local_d(), local_dx()
+            for i in range(increments):
+                d[i] = 0.0
+            d[j] = 1.0
+            spread(x, d, dx)
+            for i in range(coordinates):
+                x[i] += 1j * STEP * call.by_x * dx[i].real
+                v[i] += 1j * STEP * call.by_v * dx[i].real
+                a[i] += 1j * STEP * call.by_a * dx[i].real
+        else:
+            x[coordinates + j - increments] += 1j * STEP
+        return 0, width
+
+    return _System("reduced", kind.reduced_width, projected, perturb, _never, _no_tangent)
+
+
+def residual(kind: Declaration, dtype: type) -> BlockKernel:
+    """Add the residuals; in complex numbers, by the call's mode, the tangent instead."""
+    return (_complex if dtype is complex else _real)(kind, _full(kind))
+
+
+def reduced(kind: Declaration, dtype: type) -> BlockKernel:
+    """Add the residuals N^T r, without internal constraints; in complex numbers, by the call's mode, the tangent."""
+    return (_complex if dtype is complex else _real)(kind, _reduced(kind))
+
+
+def _real(kind: Declaration, system: _System) -> BlockKernel:
+    function, width, narrow, project = kind.residual_function, kind.width, system.rows, system.project
+    local_r, local_s = local(float, width), local(float, narrow)
+
+    @inlined
+    def step(x, v, a, p, m, inputs, call, block, e):
+        rows, r = integers2(block.rows, block.count, narrow), reals(call.r, call.last + 1)
+        own_r = local_r()
+        for i in range(width):
+            own_r[i] = 0.0
+        function(x, v, a, p, m, inputs, own_r)
+        forces = project(x, own_r, local_s())
+        for i in range(narrow):
+            r[rows[e, i]] += forces[i]
+
+    return _each(kind, system.role, float, step)
+
+
+def _complex(kind: Declaration, system: _System) -> BlockKernel:
+    function, width, narrow = kind.residual_function, kind.width, system.rows
+    project, perturb, known, formula = system.project, system.perturb, system.known, system.tangent
     numbers, whole = records(kind.number_record(complex)), records(kind.integer_record)
-    local_x, local_v, local_a, local_r = (local(complex, width) for _ in range(4))
+    local_x, local_v, local_a, local_r, local_s = (local(complex, width) for _ in range(5))
     real_x, real_matrix = local(float, width), local(float, width, width)
 
     def loop(call_address, block_address):
         call, block = call_at(call_address), block_at(block_address)
-        count, size, n = block.count, call.last + 1, call.coordinates
-        index = integers2(block.index, count, width)
+        count, size = block.count, call.last + 1
+        index, rows = integers2(block.index, count, width), integers2(block.rows, count, narrow)
         p, m = numbers(block.numbers, count), whole(block.integers, count)
         inputs = Inputs(complexes2(call.signals, call.signal_count, 3), integers(call.callbacks, call.callback_count))
         own_x, own_v, own_a, own_r = local_x(), local_v(), local_a(), local_r()
-        own_real, own_matrix = real_x(), real_matrix()
+        own_s, own_real, own_matrix = local_s(), real_x(), real_matrix()
         x, v, a = complexes(call.x, size), complexes(call.v, size), complexes(call.a, size)
         r, real_position = complexes(call.r, size), reals(call.x, size)
         real_velocity, real_acceleration = reals(call.v, size), reals(call.a, size)
-        matrix, slots = reals(call.matrix, call.entries), integers2(call.slots, count, width * width)
+        matrix, slots = reals(call.matrix, call.entries), integers2(call.slots, count, narrow * narrow)
         tangent = call.mode == TANGENT
         for e in range(count):
             if tangent and known(p[e], m[e]):
@@ -84,7 +188,7 @@ def _complex(kind: Declaration) -> BlockKernel:
                     own_real[i] = real_position[index[e, i]]
                 formula(own_real, p[e], m[e], call.by_x, call.by_a, own_matrix)
                 for i in range(width):
-                    row = call.motion if index[e, i] < n else call.constraint
+                    row = call.motion if index[e, i] < call.increments else call.constraint
                     for j in range(width):
                         if own_matrix[i, j] != 0.0:
                             matrix[slots[e, i * width + j]] += own_matrix[i, j] * row
@@ -95,117 +199,78 @@ def _complex(kind: Declaration) -> BlockKernel:
                     own_x[i], own_v[i], own_a[i] = real_position[g], real_velocity[g], real_acceleration[g]
                 else:
                     own_x[i], own_v[i], own_a[i] = x[g], v[g], a[g]
-            for j in range(width if tangent else 1):
-                column = index[e, j]
+            for j in range(narrow if tangent else 1):
+                first = last = 0
                 if tangent:
-                    if column == call.last:
+                    if rows[e, j] == call.last_row:
                         continue
-                    if column < n:
-                        own_x[j] += 1j * STEP * call.by_x
-                        own_v[j] += 1j * STEP * call.by_v
-                        own_a[j] += 1j * STEP * call.by_a
-                    else:
-                        own_x[j] += 1j * STEP
+                    first, last = perturb(j, call, own_x, own_v, own_a)
                 for i in range(width):
                     own_r[i] = 0.0
                 function(own_x, own_v, own_a, p[e], m[e], inputs, own_r)
-                if tangent:
-                    own_x[j], own_v[j] = real_position[column], real_velocity[column]
-                    own_a[j] = real_acceleration[column]
-                    for i in range(width):
-                        row = index[e, i]
-                        if row < call.last:
-                            factor = call.motion if row < n else call.constraint
-                            matrix[slots[e, i * width + j]] += own_r[i].imag / STEP * factor
-                else:
-                    for i in range(width):
-                        r[index[e, i]] += own_r[i]
+                forces = project(own_x, own_r, own_s)
+                for i in range(first, last):
+                    g = index[e, i]
+                    own_x[i], own_v[i], own_a[i] = real_position[g], real_velocity[g], real_acceleration[g]
+                for i in range(narrow):
+                    row = rows[e, i]
+                    if not tangent:
+                        r[row] += forces[i]
+                    elif row < call.last_row:
+                        factor = call.motion if row < call.increments else call.constraint
+                        matrix[slots[e, i * narrow + j]] += forces[i].imag / STEP * factor
 
-    return made(loop, kind, "residual", complex)
+    return made(loop, kind, system.role, complex)
+
+
+# -- other roles -----------------------------------------------------------------------------------------------------
 
 
 def rates(kind: Declaration, dtype: type) -> BlockKernel:
     """Fill the first and second time derivatives of the constraints."""
-    view, view2 = arithmetic(dtype)
     function, width, coordinates, multipliers = kind.rates_function, kind.width, kind.coordinates, kind.multipliers
-    numbers, whole = records(kind.number_record(dtype)), records(kind.integer_record)
-    local_x, local_v, local_a = (local(dtype, width) for _ in range(3))
+    view, _ = arithmetic(dtype)
     local_rate, local_second = (local(dtype, max(multipliers, 1)) for _ in range(2))
 
-    def loop(call_address, block_address):
-        call, block = call_at(call_address), block_at(block_address)
-        count, size = block.count, call.last + 1
-        index = integers2(block.index, count, width)
-        p, m = numbers(block.numbers, count), whole(block.integers, count)
-        x, v, a = view(call.x, size), view(call.v, size), view(call.a, size)
-        rate, second = view(call.rate, size), view(call.second, size)
-        inputs = Inputs(view2(call.signals, call.signal_count, 3), integers(call.callbacks, call.callback_count))
-        own_x, own_v, own_a = local_x(), local_v(), local_a()
-        own_rate, own_second = local_rate(), local_second()
-        for e in range(count):
-            for i in range(width):
-                g = index[e, i]
-                own_x[i], own_v[i], own_a[i] = x[g], v[g], a[g]
-            function(own_x, own_v, own_a, p[e], m[e], inputs, own_rate, own_second)
-            for i in range(multipliers):
-                row = index[e, coordinates + i]
-                rate[row], second[row] = own_rate[i], own_second[i]
+    @inlined
+    def step(x, v, a, p, m, inputs, call, block, e):
+        rate, second = view(call.rate, call.last + 1), view(call.second, call.last + 1)
+        index, own_rate, own_second = integers2(block.index, block.count, width), local_rate(), local_second()
+        function(x, v, a, p, m, inputs, own_rate, own_second)
+        for i in range(multipliers):
+            row = index[e, coordinates + i]
+            rate[row], second[row] = own_rate[i], own_second[i]
 
-    return made(loop, kind, "rates", dtype)
+    return _each(kind, "rates", dtype, step)
 
 
 def energy(kind: Declaration, dtype: type) -> BlockKernel:
     """Add kinetic energy, potential energy and power."""
-    view, view2 = arithmetic(dtype)
-    function, width = kind.energy_function, kind.width
-    numbers, whole = records(kind.number_record(dtype)), records(kind.integer_record)
-    local_x, local_v = (local(dtype, width) for _ in range(2))
+    function, (view, _) = kind.energy_function, arithmetic(dtype)
 
-    def loop(call_address, block_address):
-        call, block = call_at(call_address), block_at(block_address)
-        count, size = block.count, call.last + 1
-        index = integers2(block.index, count, width)
-        p, m = numbers(block.numbers, count), whole(block.integers, count)
-        x, v, totals = view(call.x, size), view(call.v, size), view(call.totals, 3)
-        inputs = Inputs(view2(call.signals, call.signal_count, 3), integers(call.callbacks, call.callback_count))
-        own_x, own_v = local_x(), local_v()
-        for e in range(count):
-            for i in range(width):
-                g = index[e, i]
-                own_x[i], own_v[i] = x[g], v[g]
-            kinetic, potential, power = function(own_x, own_v, p[e], m[e], inputs)
-            totals[0] += kinetic
-            totals[1] += potential
-            totals[2] += power
+    @inlined
+    def step(x, v, a, p, m, inputs, call, block, e):
+        kinetic, potential, power = function(x, v, p, m, inputs)
+        totals = view(call.totals, 3)
+        totals[0] += kinetic
+        totals[1] += potential
+        totals[2] += power
 
-    return made(loop, kind, "energy", dtype)
+    return _each(kind, "energy", dtype, step)
 
 
 def outputs(kind: Declaration, dtype: type) -> BlockKernel:
     """Fill the outputs of the components, (count, outputs), at the call's ``r``."""
-    view, view2 = arithmetic(dtype)
     function: Any = kind.observe
-    width, wide = kind.width, len(kind.outputs)
-    numbers, whole = records(kind.number_record(dtype)), records(kind.integer_record)
-    local_x, local_v, local_a = (local(dtype, width) for _ in range(3))
+    wide, (_, view2) = len(kind.outputs), arithmetic(dtype)
 
-    def loop(call_address, block_address):
-        call, block = call_at(call_address), block_at(block_address)
-        count, size = block.count, call.last + 1
-        index = integers2(block.index, count, width)
-        p, m = numbers(block.numbers, count), whole(block.integers, count)
-        x, v, a, out = view(call.x, size), view(call.v, size), view(call.a, size), view2(call.r, count, wide)
-        inputs = Inputs(view2(call.signals, call.signal_count, 3), integers(call.callbacks, call.callback_count))
-        own_x, own_v, own_a = local_x(), local_v(), local_a()
-        for e in range(count):
-            for i in range(width):
-                g = index[e, i]
-                own_x[i], own_v[i], own_a[i] = x[g], v[g], a[g]
-            function(own_x, own_v, own_a, p[e], m[e], inputs, out[e])
+    @inlined
+    def step(x, v, a, p, m, inputs, call, block, e):
+        function(x, v, a, p, m, inputs, view2(call.r, block.count, wide)[e])
 
-    return made(loop, kind, "outputs", dtype)
+    return _each(kind, "outputs", dtype, step)
 
 
 MAKERS: dict[str, Callable[[Declaration, type], BlockKernel]] = {
-    "residual": residual, "rates": rates, "energy": energy, "outputs": outputs,
+    "residual": residual, "reduced": reduced, "rates": rates, "energy": energy, "outputs": outputs,
 }  # fmt: skip

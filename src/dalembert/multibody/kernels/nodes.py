@@ -1,8 +1,78 @@
-"""Kernels of all nodes of a model: what increments change of its unknowns."""
+"""Kernels of nodes: what increments change of their coordinates, for one kind of nodes, and for all of a model.
+
+A node is a component of a kind that has a chart: coordinates, and the internal constraints that hold them.
+"""
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any
 
 from dalembert.kernels.kernel import BlockKernel, inlined
-from dalembert.kernels.views import call, complexes, integers, reals
+from dalembert.kernels.views import call, complexes, integers, integers2, local, reals, records
+from dalembert.multibody.kernels.declaration import Declaration
+from dalembert.multibody.kernels.loops import arithmetic, made
 from dalembert.multibody.kernels.records import BLOCK_SIZE, block_at, call_at, model_at
+
+
+def _kernel(role: str, kind: Declaration, dtype: type) -> BlockKernel:
+    """Fill the changes of the nodes' coordinates by a function of their chart.
+
+    Those of increments are N(x) delta (``spread``), or what the finite increments -by_x delta change, divided by -by_x
+    (``change``). Those that move the coordinates onto the internal constraints (``restore``) are divided by -by_x, too.
+    """
+    view, _ = arithmetic(dtype)
+    given: Any = getattr(kind.chart, role)
+    is_finite, used = role != "spread", 0 if role == "restore" else kind.increments
+    width, coordinates, increments = kind.width, kind.coordinates, kind.increments
+    numbers, whole = records(kind.number_record(dtype)), records(kind.integer_record)
+    local_x, local_dx, local_d = local(dtype, coordinates), local(dtype, coordinates), local(dtype, increments)
+
+    @inlined
+    def moved(x, d, p, m, dx):
+        given(x, d, dx)
+
+    @inlined
+    def restored(x, d, p, m, dx):
+        given(x, p, m, dx)
+
+    function = restored if role == "restore" else moved
+
+    def loop(call_address, block_address):
+        call, block = call_at(call_address), block_at(block_address)
+        count, size, scale = block.count, call.last + 1, 1.0
+        if is_finite:
+            scale = -call.by_x
+        index, rows = integers2(block.index, count, width), integers2(block.rows, count, increments)
+        p, m = numbers(block.numbers, count), whole(block.integers, count)
+        x, delta, change = view(call.x, size), view(call.delta, call.last_row + 1), view(call.change, size)
+        own_x, own_d, own_dx = local_x(), local_d(), local_dx()
+        for e in range(count):
+            for i in range(coordinates):
+                own_x[i] = x[index[e, i]]
+            for j in range(used):
+                own_d[j] = scale * delta[rows[e, j]]
+            function(own_x, own_d, p[e], m[e], own_dx)
+            for i in range(coordinates):
+                change[index[e, i]] = own_dx[i] / scale
+
+    return made(loop, kind, role, dtype)
+
+
+MAKERS = {role: partial(_kernel, role) for role in ("spread", "change", "restore")}
+
+
+def _of_all(role: Callable[..., int], begin: Callable[..., None], symbol: str) -> BlockKernel:
+    """The kernel that begins with the changes of what belongs to no node, and calls the nodes' kernels of a role."""
+    address, first = role, begin
+
+    def nodes(work, model):
+        own, table = call_at(work), model_at(model)
+        first(own, table)
+        for k in range(table.node_count):
+            node = table.nodes + k * BLOCK_SIZE
+            call(address(block_at(node)), work, node)
+
+    return BlockKernel(nodes, symbol)
 
 
 @inlined
@@ -14,37 +84,19 @@ def _deal(own, table):
         change[i] = delta[rows[i]]
 
 
-def _spread(work, model):
-    table = model_at(model)
-    _deal(call_at(work), table)
-    for k in range(table.node_count):
-        node = table.nodes + k * BLOCK_SIZE
-        call(block_at(node).spread, work, node)
-
-
-def _change(work, model):
-    table = model_at(model)
-    _deal(call_at(work), table)
-    for k in range(table.node_count):
-        node = table.nodes + k * BLOCK_SIZE
-        call(block_at(node).change, work, node)
-
-
 def _restore(dtype: type) -> BlockKernel:
     view = complexes if dtype is complex else reals
 
-    def restore(work, model):
-        own, table = call_at(work), model_at(model)
+    @inlined
+    def clear(own, table):
         change = view(own.change, own.last + 1)
         for i in range(len(change)):
             change[i] = 0.0
-        for k in range(table.node_count):
-            node = table.nodes + k * BLOCK_SIZE
-            call(block_at(node).restore, work, node)
 
-    return BlockKernel(restore, f"dal_nodes_restore_{dtype.__name__}")
+    return _of_all(inlined(lambda node: node.restore), clear, f"dal_nodes_restore_{dtype.__name__}")
 
 
-SPREAD, CHANGE = BlockKernel(_spread, "dal_nodes_spread"), BlockKernel(_change, "dal_nodes_change")
+SPREAD = _of_all(inlined(lambda node: node.spread), _deal, "dal_nodes_spread")
+CHANGE = _of_all(inlined(lambda node: node.change), _deal, "dal_nodes_change")
 RESTORE_REAL, RESTORE_COMPLEX = _restore(float), _restore(complex)
 RESTORE = {float: RESTORE_REAL, complex: RESTORE_COMPLEX}

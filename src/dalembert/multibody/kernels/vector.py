@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from llvmlite import ir
 from numba import types
 from numba.core import cgutils
 
@@ -32,8 +33,6 @@ def add_two_multiples(typingctx, target, at, source, begin, factor, other, weigh
 
 
 def _sum_multiples(context, builder, signature, arguments):
-    import llvmlite.ir as ir
-
     def start(number, offset):
         data = cgutils.create_struct_proxy(signature.args[number])(context, builder, value=arguments[number]).data
         return builder.gep(data, [offset])

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.lowering import Lowering
-from dalembert.multibody.components.planar import pairs
 from dalembert.multibody.components.planar.load import Load
 from dalembert.multibody.components.planar.markers import direction, spin, twist
 from dalembert.multibody.components.planar.pairs import (
+    pair_kind,
     push_pair,
     relative_angle,
     relative_spin,
@@ -20,7 +20,6 @@ from dalembert.multibody.components.planar.pairs import (
 )
 from dalembert.multibody.components.points import Side, require_direction
 from dalembert.multibody.kernels.elementary import wrapped
-from dalembert.multibody.kernels.kind import Kind
 
 
 @inlined
@@ -74,19 +73,14 @@ def _observe(x, v, a, p, m, inputs, out):
     out[3], out[4], out[5] = _loads(x, v, p, m)
 
 
-BUSHING = Kind(
-    "bushing",
-    coordinates=pairs.COORDINATES,
-    numbers=(
-        *pairs.NUMBERS, "rest_x", "rest_y", "rest_angle", "stiffness_x", "stiffness_y", "stiffness_angle",
-        "damping_x", "damping_y", "damping_angle",
-    ),
-    integers=pairs.INTEGERS,
+LAWS = ("stiffness_x", "stiffness_y", "stiffness_angle", "damping_x", "damping_y", "damping_angle")
+BUSHING = pair_kind(
+    "bushing", ("rest_x", "rest_y", "rest_angle", *LAWS),
     residual=_residual,
     energy=_energy,
     outputs=(("x", "m"), ("y", "m"), ("angle", "rad"), ("force_x", "N"), ("force_y", "N"), ("torque", "N*m")),
     observe=_observe,
-    dissipates=("damping_x", "damping_y", "damping_angle"),
+    dissipates=LAWS[3:],
     holds=True,
 )  # fmt: skip
 
@@ -136,6 +130,5 @@ class Bushing(Load):
     def lower(self, lowering: Lowering) -> None:
         require_direction(f"bushing {self.name!r}", "a spring, or a rigid body", self.a, self.b)
         pair = lowering.pair(self.a, self.b, self.name)
-        laws = [getattr(self, name) for name in BUSHING.numbers[9:]]
-        numbers = [*pair.data, *pair.relative, pair.rest_angle, *laws]
+        numbers = [*pair.data, *pair.relative, pair.rest_angle, *(getattr(self, name) for name in LAWS)]
         lowering.add(BUSHING, pair.slots, numbers, pair.integers, self.name)

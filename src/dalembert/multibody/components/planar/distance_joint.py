@@ -10,11 +10,9 @@ from dalembert.errors import ModelError
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.lowering import Lowering
-from dalembert.multibody.components.planar import pairs
-from dalembert.multibody.components.planar.joint import OUTPUTS, Joint, observe_joint
+from dalembert.multibody.components.planar.joint import Joint, joint_kind, observe_joint
 from dalembert.multibody.components.planar.pairs import push_pair, separation
 from dalembert.multibody.kernels.elementary import root
-from dalembert.multibody.kernels.kind import Kind
 
 
 @inlined
@@ -36,19 +34,8 @@ def _observe(x, v, a, p, m, inputs, out):
     observe_joint(x, v, p, m, -x[8] * dx / length, -x[8] * dy / length, 0.0 * x[8], out)
 
 
-DISTANCE = Kind(
-    "distance",
-    coordinates=pairs.COORDINATES,
-    multipliers=1,
-    numbers=(*pairs.NUMBERS, "length"),
-    integers=pairs.INTEGERS,
-    constraint=_constraint,
-    forces=_forces,
-    outputs=OUTPUTS,
-    observe=_observe,
-    lengths=("a_x", "a_y", "b_x", "b_y"),
-    holds=True,
-    holds_frame=False,
+DISTANCE = joint_kind(
+    "distance", 1, ("length",), constraint=_constraint, forces=_forces, observe=_observe, holds_frame=False
 )
 
 

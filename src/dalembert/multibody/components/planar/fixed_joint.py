@@ -6,11 +6,9 @@ from dataclasses import dataclass
 
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.lowering import Lowering
-from dalembert.multibody.components.planar import pairs
-from dalembert.multibody.components.planar.joint import OUTPUTS, Joint, observe_joint
+from dalembert.multibody.components.planar.joint import Joint, joint_kind, observe_joint
 from dalembert.multibody.components.planar.pairs import push_pair, relative_angle, separation, twist_pair
 from dalembert.multibody.kernels.elementary import sin_cos
-from dalembert.multibody.kernels.kind import Kind
 
 
 @inlined
@@ -36,19 +34,7 @@ def _observe(x, v, a, p, m, inputs, out):
     observe_joint(x, v, p, m, -x[8], -x[9], -x[10], out)
 
 
-FIXED = Kind(
-    "fixed",
-    coordinates=pairs.COORDINATES,
-    multipliers=3,
-    numbers=(*pairs.NUMBERS, "rest_angle"),
-    integers=pairs.INTEGERS,
-    constraint=_constraint,
-    forces=_forces,
-    outputs=OUTPUTS,
-    observe=_observe,
-    lengths=("a_x", "a_y", "b_x", "b_y"),
-    holds=True,
-)
+FIXED = joint_kind("fixed", 3, ("rest_angle",), constraint=_constraint, forces=_forces, observe=_observe)
 
 
 @dataclass(frozen=True)

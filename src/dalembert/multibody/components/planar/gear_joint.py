@@ -10,10 +10,9 @@ from dalembert.errors import InputError, ModelError
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.lowering import Lowering
-from dalembert.multibody.components.planar import pairs
 from dalembert.multibody.components.planar.joint import OUTPUTS, Joint, observe_joint
 from dalembert.multibody.components.planar.markers import angle
-from dalembert.multibody.kernels.kind import Kind
+from dalembert.multibody.components.planar.pairs import pair_kind
 
 
 @inlined
@@ -27,16 +26,7 @@ def _observe(x, v, a, p, m, inputs, out):
     observe_joint(x, v, p, m, 0.0 * x[8], 0.0 * x[8], -x[8], out)
 
 
-GEAR = Kind(
-    "gear",
-    coordinates=pairs.COORDINATES,
-    multipliers=1,
-    numbers=(*pairs.NUMBERS, "ratio", "offset"),
-    integers=pairs.INTEGERS,
-    constraint=_constraint,
-    outputs=OUTPUTS,
-    observe=_observe,
-)
+GEAR = pair_kind("gear", ("ratio", "offset"), multipliers=1, constraint=_constraint, outputs=OUTPUTS, observe=_observe)
 
 
 @dataclass(frozen=True)

@@ -5,18 +5,26 @@ __all__ = ["Joint"]
 from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from dalembert.arguments import Checked
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number
 from dalembert.multibody.components.lowering import Lowering, Pair
 from dalembert.multibody.components.planar.friction import Smoothing
-from dalembert.multibody.components.planar.pairs import relative_angle, relative_spin
+from dalembert.multibody.components.planar.pairs import pair_kind, relative_angle, relative_spin
 from dalembert.multibody.components.points import Side, require_direction
 from dalembert.multibody.kernels.kind import Kind
 
 OUTPUTS = (("angle", "rad"), ("rate", "rad/s"), ("force_x", "N"), ("force_y", "N"), ("torque", "N*m"))
+
+
+def joint_kind(
+    name: str, multipliers: int, numbers: tuple[str, ...] = (), integers: tuple[str, ...] = (), **declared: Any
+) -> Kind:
+    """Kind of a joint that holds points, with the outputs of all joints if it declares no others."""
+    common = {"outputs": OUTPUTS, "lengths": ("a_x", "a_y", "b_x", "b_y"), "holds": True}
+    return pair_kind(name, numbers, integers, multipliers=multipliers, **common | declared)
 
 
 @dataclass(frozen=True)

@@ -10,9 +10,9 @@ from dalembert.errors import InputError, ModelError
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.lowering import Lowering
-from dalembert.multibody.components.planar import pairs
 from dalembert.multibody.components.planar.load import Load
 from dalembert.multibody.components.planar.pairs import (
+    pair_kind,
     relative_angle,
     relative_spin,
     relative_spin_rate,
@@ -102,11 +102,10 @@ def drive_kind(
         out[4] = p.resistance * current + p.back_emf * p.ratio * rate
 
     residual.__module__ = commanded.__module__  # where other processes find the kind
-    return Kind(
+    return pair_kind(
         name,
-        coordinates=pairs.COORDINATES,
-        numbers=(*pairs.NUMBERS, *NUMBERS, *numbers),
-        integers=(*pairs.INTEGERS, *INTEGERS, *integers),
+        (*NUMBERS, *numbers),
+        (*INTEGERS, *integers),
         residual=residual,
         energy=energy,
         outputs=(("angle", "rad"), ("rate", "rad/s"), ("torque", "N*m"), ("current", "A"), ("voltage", "V")),

@@ -4,6 +4,8 @@ Local coordinates: marker a (slots 0-3) and b (4-7). Numbers: ``a_x a_y a_angle 
 and ``b_kind``, see :mod:`markers`, and ``wraps``: 1 where a node's angle must be wrapped.
 """
 
+from typing import Any
+
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.planar.markers import (
     acceleration,
@@ -15,10 +17,17 @@ from dalembert.multibody.components.planar.markers import (
     twist,
     velocity,
 )
+from dalembert.multibody.kernels.kind import Kind
 
 COORDINATES = 8
 NUMBERS = ("a_x", "a_y", "a_angle", "b_x", "b_y", "b_angle")
 INTEGERS = ("a_kind", "b_kind", "wraps")
+
+
+def pair_kind(name: str, numbers: tuple[str, ...] = (), integers: tuple[str, ...] = (), **declared: Any) -> Kind:
+    """Kind of a component between two markers; ``numbers`` and ``integers`` are the columns that follow theirs."""
+    numbers, integers = (*NUMBERS, *numbers), (*INTEGERS, *integers)
+    return Kind(name, coordinates=COORDINATES, numbers=numbers, integers=integers, **declared)
 
 
 @inlined

@@ -7,12 +7,10 @@ from dataclasses import dataclass
 from dalembert.errors import InputError, require_known
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.lowering import Lowering
-from dalembert.multibody.components.planar import pairs
-from dalembert.multibody.components.planar.joint import OUTPUTS, Joint, observe_joint
+from dalembert.multibody.components.planar.joint import Joint, joint_kind, observe_joint
 from dalembert.multibody.components.planar.pairs import push_pair, relative_angle, separation, twist_pair
 from dalembert.multibody.components.signals import Course, Step, Table, as_signal
 from dalembert.multibody.kernels.elementary import wrapped
-from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.kernels.time_inputs import signal
 
 _X, _Y, _ANGLE = range(3)
@@ -56,21 +54,10 @@ def _observe(x, v, a, p, m, inputs, out):
     observe_joint(x, v, p, m, fx, fy, -x[8] if m.coordinate == _ANGLE else nothing, out)
 
 
-MOTION = Kind(
-    "prescribed_motion",
-    coordinates=pairs.COORDINATES,
-    multipliers=1,
-    numbers=pairs.NUMBERS,
-    integers=(*pairs.INTEGERS, "coordinate", "motion"),
-    constraint=_constraint,
-    forces=_forces,
-    energy=_energy,
-    outputs=OUTPUTS,
-    observe=_observe,
-    lengths=("a_x", "a_y", "b_x", "b_y"),
-    driven=True,
-    holds=True,
-)
+MOTION = joint_kind(
+    "prescribed_motion", 1, (), ("coordinate", "motion"),
+    constraint=_constraint, forces=_forces, energy=_energy, observe=_observe, driven=True,
+)  # fmt: skip
 
 
 @dataclass(frozen=True)

@@ -7,10 +7,11 @@ from dataclasses import dataclass
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.lowering import Lowering
-from dalembert.multibody.components.planar import friction, pairs
-from dalembert.multibody.components.planar.joint import OUTPUTS, Joint, observe_joint
+from dalembert.multibody.components.planar import friction
+from dalembert.multibody.components.planar.joint import OUTPUTS, Joint, joint_kind, observe_joint
 from dalembert.multibody.components.planar.markers import direction, twist
 from dalembert.multibody.components.planar.pairs import (
+    pair_kind,
     push_pair,
     relative_angle,
     separation,
@@ -18,7 +19,6 @@ from dalembert.multibody.components.planar.pairs import (
     twist_pair,
 )
 from dalembert.multibody.kernels.elementary import root, sin_cos
-from dalembert.multibody.kernels.kind import Kind
 
 
 @inlined
@@ -66,19 +66,10 @@ def _observe(x, v, a, p, m, inputs, out):
     out[5] = _sliding(x, v, p, m)
 
 
-PRISMATIC = Kind(
-    "prismatic",
-    coordinates=pairs.COORDINATES,
-    multipliers=2,
-    numbers=(*pairs.NUMBERS, "rest_angle", "axis_angle"),
-    integers=pairs.INTEGERS,
-    constraint=_constraint,
-    forces=_forces,
-    outputs=(*OUTPUTS, ("sliding_velocity", "m/s")),
-    observe=_observe,
-    lengths=("a_x", "a_y", "b_x", "b_y"),
-    holds=True,
-)
+PRISMATIC = joint_kind(
+    "prismatic", 2, ("rest_angle", "axis_angle"),
+    constraint=_constraint, forces=_forces, outputs=(*OUTPUTS, ("sliding_velocity", "m/s")), observe=_observe,
+)  # fmt: skip
 
 
 @inlined
@@ -101,16 +92,10 @@ def _friction_energy(x, v, p, m, inputs):
     return 0.0 * rate, 0.0 * rate, -rate * force
 
 
-PRISMATIC_FRICTION = Kind(
-    "prismatic_friction",
-    coordinates=pairs.COORDINATES,
-    reactions=2,
-    numbers=(*pairs.NUMBERS, "axis_angle", *friction.NUMBERS),
-    integers=pairs.INTEGERS,
-    residual=_friction_residual,
-    energy=_friction_energy,
-    dissipates=True,
-)
+PRISMATIC_FRICTION = pair_kind(
+    "prismatic_friction", ("axis_angle", *friction.NUMBERS),
+    reactions=2, residual=_friction_residual, energy=_friction_energy, dissipates=True,
+)  # fmt: skip
 
 
 @dataclass(frozen=True)

@@ -8,12 +8,11 @@ from dalembert.errors import InputError
 from dalembert.kernels.kernel import inlined, inner
 from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.lowering import Lowering
-from dalembert.multibody.components.planar import friction, pairs
-from dalembert.multibody.components.planar.joint import OUTPUTS, Joint, observe_joint
+from dalembert.multibody.components.planar import friction
+from dalembert.multibody.components.planar.joint import Joint, joint_kind, observe_joint
 from dalembert.multibody.components.planar.markers import GROUND, RIGID
-from dalembert.multibody.components.planar.pairs import push_pair, relative_spin, separation, twist_pair
+from dalembert.multibody.components.planar.pairs import pair_kind, push_pair, relative_spin, separation, twist_pair
 from dalembert.multibody.kernels.elementary import root
-from dalembert.multibody.kernels.kind import Kind
 
 
 @inlined
@@ -52,22 +51,10 @@ def _observe(x, v, a, p, m, inputs, out):
     observe_joint(x, v, p, m, -x[8], -x[9], 0.0 * x[8], out)
 
 
-REVOLUTE = Kind(
-    "revolute",
-    coordinates=pairs.COORDINATES,
-    multipliers=2,
-    numbers=pairs.NUMBERS,
-    integers=pairs.INTEGERS,
-    constraint=_constraint,
-    forces=_forces,
-    tangent=_tangent,
-    known=_joins_points,
-    outputs=OUTPUTS,
-    observe=_observe,
-    lengths=("a_x", "a_y", "b_x", "b_y"),
-    holds=True,
-    holds_frame=False,
-)
+REVOLUTE = joint_kind(
+    "revolute", 2,
+    constraint=_constraint, forces=_forces, tangent=_tangent, known=_joins_points, observe=_observe, holds_frame=False,
+)  # fmt: skip
 
 
 @inlined
@@ -87,16 +74,10 @@ def _friction_energy(x, v, p, m, inputs):
     return 0.0 * rate, 0.0 * rate, -rate * _resistance(x, rate, p)
 
 
-REVOLUTE_FRICTION = Kind(
-    "revolute_friction",
-    coordinates=pairs.COORDINATES,
-    reactions=2,
-    numbers=(*pairs.NUMBERS, *friction.NUMBERS),
-    integers=pairs.INTEGERS,
-    residual=_friction_residual,
-    energy=_friction_energy,
-    dissipates=True,
-)
+REVOLUTE_FRICTION = pair_kind(
+    "revolute_friction", friction.NUMBERS,
+    reactions=2, residual=_friction_residual, energy=_friction_energy, dissipates=True,
+)  # fmt: skip
 
 
 @dataclass(frozen=True)

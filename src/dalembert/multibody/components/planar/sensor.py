@@ -1,8 +1,8 @@
 """Sensors: what is read off a marker against another one, or against the ground."""
 
 from dalembert.kernels.kernel import inlined
-from dalembert.multibody.components.planar import pairs
 from dalembert.multibody.components.planar.pairs import (
+    pair_kind,
     relative_angle,
     relative_spin,
     relative_spin_rate,
@@ -10,7 +10,6 @@ from dalembert.multibody.components.planar.pairs import (
     separation_rate,
     separation_second,
 )
-from dalembert.multibody.kernels.kind import Kind
 
 
 @inlined
@@ -23,11 +22,8 @@ def _observe(x, v, a, p, m, inputs, out):
     out[8] = relative_spin_rate(x, v, a, m)
 
 
-SENSOR = Kind(
+SENSOR = pair_kind(
     "sensor",
-    coordinates=pairs.COORDINATES,
-    numbers=pairs.NUMBERS,
-    integers=pairs.INTEGERS,
     outputs=(
         ("x", "m"), ("y", "m"), ("angle", "rad"),
         ("vx", "m/s"), ("vy", "m/s"), ("rate", "rad/s"),

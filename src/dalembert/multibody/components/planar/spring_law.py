@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import Any
 
 from dalembert.kernels.kernel import inlined
-from dalembert.multibody.components.planar import pairs
+from dalembert.multibody.components.planar.pairs import pair_kind
 from dalembert.multibody.kernels.kind import Kind
 
 
@@ -32,11 +32,9 @@ def spring_kind(name: str, stretch: Callable[..., Any], residual: Callable[..., 
         elongation, rate = elongation_and_rate(x, v, p, m)
         out[0], out[1] = elongation, tension(elongation, rate, p)
 
-    return Kind(
+    return pair_kind(
         name,
-        coordinates=pairs.COORDINATES,
-        numbers=(*pairs.NUMBERS, "rest", "stiffness", "damping", "cubic"),
-        integers=pairs.INTEGERS,
+        ("rest", "stiffness", "damping", "cubic"),
         residual=residual,
         energy=energy,
         outputs=(("elongation", "m"), ("force", "N")),

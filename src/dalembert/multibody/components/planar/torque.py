@@ -7,12 +7,10 @@ from dataclasses import dataclass
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import number
 from dalembert.multibody.components.lowering import Lowering
-from dalembert.multibody.components.planar import pairs
 from dalembert.multibody.components.planar.load import Load
-from dalembert.multibody.components.planar.pairs import relative_spin, twist_pair
+from dalembert.multibody.components.planar.pairs import pair_kind, relative_spin, twist_pair
 from dalembert.multibody.components.points import Side, require_direction
 from dalembert.multibody.components.signals import Course
-from dalembert.multibody.kernels.kind import Kind
 
 
 @inlined
@@ -27,15 +25,7 @@ def _energy(x, v, p, m, inputs):
     return 0.0 * torque, 0.0 * torque, -torque * relative_spin(x, v, m)
 
 
-TORQUE = Kind(
-    "torque",
-    coordinates=pairs.COORDINATES,
-    numbers=pairs.NUMBERS,
-    integers=(*pairs.INTEGERS, "torque"),
-    residual=_residual,
-    energy=_energy,
-    loads=True,
-)
+TORQUE = pair_kind("torque", integers=("torque",), residual=_residual, energy=_energy, loads=True)
 
 
 @dataclass(frozen=True)

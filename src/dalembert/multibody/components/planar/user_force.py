@@ -14,12 +14,10 @@ from dalembert.kernels.kernel import inlined
 from dalembert.kernels.views import call_with, stack
 from dalembert.multibody.callbacks import ANSWER, GIVEN
 from dalembert.multibody.components.lowering import Lowering
-from dalembert.multibody.components.planar import pairs
 from dalembert.multibody.components.planar.load import Load
 from dalembert.multibody.components.planar.markers import angle, position, spin, velocity
-from dalembert.multibody.components.planar.pairs import push_pair, twist_pair
+from dalembert.multibody.components.planar.pairs import pair_kind, push_pair, twist_pair
 from dalembert.multibody.components.points import Side
-from dalembert.multibody.kernels.kind import Kind
 
 _TIME = 0  # signal that holds the time
 
@@ -61,15 +59,7 @@ def _energy(x, v, p, m, inputs):
     return 0.0 * given[0], 0.0 * given[0], power
 
 
-USER_FORCE = Kind(
-    "user_force",
-    coordinates=pairs.COORDINATES,
-    numbers=pairs.NUMBERS,
-    integers=(*pairs.INTEGERS, "function"),
-    residual=_residual,
-    energy=_energy,
-    dissipates=True,
-)
+USER_FORCE = pair_kind("user_force", integers=("function",), residual=_residual, energy=_energy, dissipates=True)
 
 
 @dataclass(frozen=True)

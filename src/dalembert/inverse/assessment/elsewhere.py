@@ -8,7 +8,6 @@ import scipy
 from dalembert.errors import SolveError
 from dalembert.inverse.assessment.walk import Walk, walked
 from dalembert.inverse.least_squares.descent import Memo
-from dalembert.inverse.problem.prefetch import prefetched
 from dalembert.inverse.problem.problem import Problem
 from dalembert.inverse.starts.neighbours import dips
 
@@ -33,7 +32,7 @@ def elsewhere(
     """
     found = [interval]
     starts = list(_starts(problem, vector, k, interval))
-    for point in prefetched(problem, partial(_around, k, walk, found[:1]), starts):
+    for point in problem.prefetched(partial(_around, k, walk, found[:1]), starts):
         further = _around(k, walk, found, problem, point)
         if further is not None:
             found.append(further)

@@ -20,7 +20,6 @@ from dalembert.inverse.experiments.experiment import Experiment
 from dalembert.inverse.experiments.experiments import joint, placed
 from dalembert.inverse.fit.fit import Fit, check_level
 from dalembert.inverse.problem.journal import Journal
-from dalembert.inverse.problem.prefetch import prefetched
 from dalembert.inverse.problem.problem import Linearisation, Problem, pose
 from dalembert.optimize import LeastSquares
 
@@ -130,7 +129,7 @@ def profile(
     walks = [Walk(best, noise * factor, threshold, points, LeastSquares(trials=30)) for factor in factors.tolist()]
     ways = [(fit.parameters.names.index(name), side) for name in chosen for side in (-1, 1)]
     curves, sides = [], []
-    for k, side in prefetched(problem, partial(_ahead, at, walks), ways):
+    for k, side in problem.prefetched(partial(_ahead, at, walks), ways):
         sides.append(walked(problem, at, k, side, walks[k]))
         if side < 0:
             continue

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 from dalembert.arguments import numbers_of
 from dalembert.errors import InputError, SolveError, StorageError, require_known, told
 from dalembert.forward import ForwardModel, check_derivatives
+from dalembert.inverse.problem.simulated import named
 
 
 def noise_of(
@@ -57,7 +58,7 @@ def linearised(model: ForwardModel, vector: np.ndarray) -> tuple[np.ndarray, np.
         Where the simulation fails, or is not finite.
     """
     check_derivatives(model, vector)
-    at = ", ".join(f"{name} = {value:.6g}" for name, value in model.parameters.mapping(vector).items())
+    at = named(model, vector)
     try:
         response, jacobian = model.linearise(vector)
     except (InputError, StorageError):  # no other vector will do better

@@ -1,6 +1,6 @@
 """One start of least squares: a local descent, its horizon growing if asked."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -85,6 +85,15 @@ def descend(ladder: Sequence[Problem], method: Squares, point: np.ndarray, fitne
         residual = memo.residual(led)
         led = led if residual @ residual <= fitness else point
     return _local(memo, method, led)
+
+
+def recorded(problem: Problem, point: np.ndarray, descent: Callable[[], End]) -> End:
+    """End of a descent from a search point (parameters,), told to the journal as a start."""
+    values = problem.search.vectors(point)
+    problem.journal.began(values)
+    end = descent()
+    problem.journal.ended(values, problem.search.vectors(end.point), end.fitness, end.success, end.message)
+    return end
 
 
 def refine(problem: Problem, method: Squares, end: End) -> End:

@@ -1,12 +1,16 @@
 """The weighted misfit between a model and measurements."""
 
+from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any, TypeAlias, TypeVar, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from dalembert import forward
 from dalembert.data import Measurements
-from dalembert.errors import DalembertError, InputError, SolveError, StorageError, told
+from dalembert.errors import DalembertError, SolveError, StorageError
 from dalembert.forward import ForwardModel
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.loss import Loss
@@ -20,7 +24,7 @@ from dalembert.inverse.problem.matching import (
 )
 from dalembert.inverse.problem.prior import check_priors, prior_residual, prior_slopes
 from dalembert.inverse.problem.search_coordinates import SearchCoordinates
-from dalembert.inverse.problem.simulated import named, simulated
+from dalembert.inverse.problem.simulated import failing_at, simulated
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,6 +34,10 @@ class Linearisation:
     vector: np.ndarray
     response: np.ndarray
     jacobian: np.ndarray
+
+
+Item = TypeVar("Item")
+Work: TypeAlias = Callable[["Problem", Item], object]
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,6 +82,14 @@ class Problem:
         """Number of parameters of which something is known before the data."""
         return sum(item.deviation is not None for item in self.model.parameters)
 
+    def prefetched(self, work: Work[Item], items: Sequence[Item]) -> Generator[Item, None, None]:
+        """Yield the items in their order; where the model is on a cluster, answers for work on each come first.
+
+        ``work`` is called on the workers with a problem that tells nobody of its events.
+        """
+        alone = replace(self, model=cast(Any, None), journal=Journal(self.samples))
+        return forward.prefetched(self.model, partial(_posed, alone, work), items)
+
     def first(self, samples: int) -> "Problem":
         """The same problem over the first ``samples`` samples."""
         if samples == self.samples:
@@ -116,15 +132,10 @@ class Problem:
             Whatever goes wrong in the simulation at this vector.
         """
         self.journal.simulations += 1 + len(vector)
-        try:
+        with failing_at(self.model, self.journal, vector):
             response, jacobian = self.model.linearise(vector)
             if not (np.all(np.isfinite(response)) and np.all(np.isfinite(jacobian))):
                 raise SolveError("the response or its jacobian is not finite")
-        except (InputError, StorageError):  # no other vector will do better
-            raise
-        except Exception as error:  # whatever a user's function raises is this vector's failure
-            self.journal.failures.append(f"{told(error)} (at {named(self.model, vector)})")
-            raise SolveError(told(error)) from error
         self.journal.computed(vector, response[:, self.columns])
         return Linearisation(vector, response[:, self.columns], jacobian[:, self.columns])
 
@@ -169,6 +180,10 @@ class Problem:
         except SolveError:
             return np.zeros_like(point)
         return 2 * self.slopes(at).T @ self.residuals(at.vector, at.response)
+
+
+def _posed(alone: Problem, work: Work[Item], model: ForwardModel, item: Item) -> None:
+    work(replace(alone, model=model), item)
 
 
 def pose(model: ForwardModel, data: Measurements, weights: ArrayLike | None, journal: Journal) -> Problem:

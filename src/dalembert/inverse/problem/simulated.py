@@ -1,7 +1,11 @@
 """Runs of a model, counted, with the reasons of those that fail."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 import numpy as np
 
+from dalembert.errors import InputError, SolveError, StorageError, told
 from dalembert.forward import ForwardModel
 from dalembert.inverse.problem.journal import Journal
 
@@ -20,6 +24,24 @@ def simulated(model: ForwardModel, columns: np.ndarray, journal: Journal, vector
     if len(vectors):
         journal.computed(vectors[0], values[0])
     return values
+
+
+@contextmanager
+def failing_at(model: ForwardModel, journal: Journal, vector: np.ndarray) -> Iterator[None]:
+    """Keep the failure of a simulation at a parameter vector (parameters,) in the journal.
+
+    Raises
+    ------
+    SolveError
+        Whatever goes wrong in the simulation at this vector.
+    """
+    try:
+        yield
+    except (InputError, StorageError):  # no other vector will do better
+        raise
+    except Exception as error:  # whatever a user's function raises is this vector's failure
+        journal.failures.append(f"{told(error)} (at {named(model, vector)})")
+        raise SolveError(told(error)) from error
 
 
 def named(model: ForwardModel, vector: np.ndarray) -> str:

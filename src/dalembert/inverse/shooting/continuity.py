@@ -1,18 +1,18 @@
 """Segments of a motion that must meet: least squares under the conditions of continuity."""
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from functools import cached_property, reduce
 
 import numpy as np
 
-from dalembert.errors import InputError, SolveError, StorageError, told
+from dalembert.errors import SolveError
 from dalembert.inverse.least_squares.estimate import UNSEEN
 from dalembert.inverse.problem.prior import prior_residual, prior_slopes
 from dalembert.inverse.problem.problem import Linearisation, Problem
 from dalembert.inverse.problem.search_coordinates import SearchCoordinates
-from dalembert.inverse.problem.simulated import named
+from dalembert.inverse.problem.simulated import failing_at
 from dalembert.inverse.shooting.segments import Response, Segments, Tangent
 from dalembert.optimize import LeastSquares, Progress
 
@@ -96,7 +96,7 @@ class Chain:
         Where the steps to the exact conditions fail, the weight grows further, and multipliers close the gaps. Segments
         that were ``merged`` from others which met have no such gaps: where the steps fail, they are too long.
         """
-        found = ChainEnd(point, np.inf, self._gap(point))
+        found = ChainEnd(point, np.inf, float(np.max(np.abs(self._linearise(point).response.gaps), initial=0.0)))
         if merged:
             return self._met(found.point)
         for tightness in LADDER[np.searchsorted(-LADDER, -max(10 * found.gap, LADDER[-1])) :]:
@@ -342,9 +342,6 @@ class Chain:
             parts.append(rows)
         return np.concatenate(parts)
 
-    def _gap(self, point: np.ndarray) -> float:
-        return float(np.max(np.abs(self._linearise(point).response.gaps), initial=0.0))
-
     def _response(self, point: np.ndarray) -> Response:
         """Response of the segments at a search point; together they are one simulation."""
         vector = self.search.vectors(point)
@@ -363,17 +360,10 @@ class Chain:
                 self._kept[:] = [self.segments.linearise(vector)]
         return self._kept[0]
 
-    @contextmanager
-    def _failures(self, vector: np.ndarray) -> Iterator[None]:
+    def _failures(self, vector: np.ndarray) -> AbstractContextManager[None]:
         """Failures of a simulation, kept by the journal."""
-        try:
-            yield
-        except (InputError, StorageError):  # no other vector will do better
-            raise
-        except Exception as error:  # whatever a user's function raises is this vector's failure
-            own = vector[: len(self.problem.model.parameters)]
-            self.problem.journal.failures.append(f"{told(error)} (at {named(self.problem.model, own)})")
-            raise SolveError(told(error)) from error
+        model = self.problem.model
+        return failing_at(model, self.problem.journal, vector[: len(model.parameters)])
 
 
 def _turned(rows: np.ndarray) -> np.ndarray:

@@ -10,9 +10,8 @@ from threadpoolctl import threadpool_limits
 
 from dalembert.arguments import Checked, limited
 from dalembert.errors import InputError, SolveError
-from dalembert.inverse.least_squares.descent import End, descend
+from dalembert.inverse.least_squares.descent import End, descend, recorded
 from dalembert.inverse.problem.noise import NoiseFloor
-from dalembert.inverse.problem.prefetch import prefetched
 from dalembert.inverse.problem.problem import Problem
 from dalembert.inverse.shooting.continuity import Chain, ChainEnd
 from dalembert.inverse.shooting.cuts import Cut, guess, named_cut, segments
@@ -126,21 +125,12 @@ def shots(
     """Ends of up to ``starts`` shots, the first from the search point ``start``, as soon as one reaches the floor."""
     ends: list[End] = []
     others = list(spread_points(problem, starts, seed, spread)[1:]) if starts > 1 else []
-    for point in chain([start], prefetched(problem, partial(_ahead, shooting, method, floor), others)):
-        values = problem.search.vectors(point)
-        problem.journal.began(values)
-        end = _shot(problem, shooting, method, floor, values)
-        found = problem.search.vectors(end.point)
-        problem.journal.ended(values, found, end.fitness, end.success, end.message)
-        ends.append(end)
-        if end.fitness <= floor.fitness:
+    shot = partial(_shot, shooting, method, floor)
+    for point in chain([start], problem.prefetched(shot, others)):
+        ends.append(recorded(problem, point, partial(shot, problem, point)))
+        if ends[-1].fitness <= floor.fitness:
             break
     return ends
-
-
-def _ahead(shooting: MultipleShooting, method: Squares, floor: NoiseFloor, problem: Problem, point: np.ndarray) -> None:
-    """The same shot on a worker of a cluster."""
-    _shot(problem, shooting, method, floor, problem.search.vectors(point))
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,8 +142,9 @@ class Level:
     found: ChainEnd
 
 
-def _shot(problem: Problem, shooting: MultipleShooting, method: Squares, floor: NoiseFloor, values: np.ndarray) -> End:
-    """Segments that meet, merged as far as they can be."""
+def _shot(shooting: MultipleShooting, method: Squares, floor: NoiseFloor, problem: Problem, point: np.ndarray) -> End:
+    """Segments that meet, from a search point, merged as far as they can be."""
+    values = problem.search.vectors(point)
     with threadpool_limits(1):  # for the many small linear systems
         try:
             return _merged(problem, list(_levels(problem, shooting, values)), method, floor, len(values))

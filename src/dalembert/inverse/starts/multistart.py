@@ -8,10 +8,9 @@ from typing import TypeAlias
 
 import numpy as np
 
-from dalembert.inverse.least_squares.descent import End, descend
+from dalembert.inverse.least_squares.descent import End, descend, recorded
 from dalembert.inverse.problem.noise import NoiseFloor, random_residuals
-from dalembert.inverse.problem.prefetch import Work, prefetched
-from dalembert.inverse.problem.problem import Problem
+from dalembert.inverse.problem.problem import Problem, Work
 from dalembert.inverse.problem.search_coordinates import SearchCoordinates
 from dalembert.inverse.starts.neighbours import neighbours
 from dalembert.inverse.starts.spread import spread_points
@@ -58,22 +57,12 @@ def multistart(
     hasty = method if starts == 1 else replace(method, gain=max(1e-3, method.gain))
     ends: list[End] = []
     for point, rung, fitness in _attempts(ladder, partial(_ahead, sizes, hasty), starts, seed, spread, start, ends):
-        ends.append(_descent(ladder[rung:], hasty, point, fitness))
+        ends.append(recorded(problem, point, partial(descend, ladder[rung:], hasty, point, fitness)))
         if floor.conclusive and ends[-1].fitness <= floor.fitness:
             return ends
         if len(ends) == starts or (len(ends) >= 3 and _reproduced(problem, ends)):
             break
     return ends if starts == 1 else ends + _beside(problem, hasty, min(ends, key=lambda end: end.fitness), starts)
-
-
-def _descent(ladder: list[Problem], method: Squares, point: np.ndarray, fitness: float | None = None) -> End:
-    """End of a descent, told to the journal."""
-    journal, search = ladder[-1].journal, ladder[-1].search
-    values = search.vectors(point)
-    journal.began(values)
-    end = descend(ladder, method, point, fitness)
-    journal.ended(values, search.vectors(end.point), end.fitness, end.success, end.message)
-    return end
 
 
 def _ahead(sizes: Sequence[int], method: Squares, problem: Problem, attempt: Attempt) -> None:
@@ -88,8 +77,8 @@ def _beside(problem: Problem, method: Squares, best: End, most: int) -> list[End
     ahead = partial(_ahead, [problem.samples], method)
     while True:
         points = neighbours(problem, best)[: min(BESIDE, most - len(ends))]
-        for point, *_ in prefetched(problem, ahead, [(point, 0, None) for point in points]):
-            ends.append(_descent([problem], method, point))
+        for point, *_ in problem.prefetched(ahead, [(point, 0, None) for point in points]):
+            ends.append(recorded(problem, point, partial(descend, [problem], method, point)))
             if ends[-1].fitness < (1 - method.gain) * best.fitness:
                 best = ends[-1]
                 break
@@ -130,7 +119,7 @@ def _attempts(
         starts -= 1
     points, scores = _screen(ladder, SCREENED * starts * len(first), seed, spread)
     others = [*islice(_chosen(ladder[-1].search, points, scores), starts - 1 - len(again)), *again]
-    yield from prefetched(ladder[-1], ahead, others)
+    yield from ladder[-1].prefetched(ahead, others)
 
 
 def _chosen(search: SearchCoordinates, points: np.ndarray, scores: np.ndarray) -> Iterator[Attempt]:

@@ -8,7 +8,6 @@ from numpy.typing import ArrayLike
 
 from dalembert.inverse.least_squares.descent import End, refine
 from dalembert.inverse.problem.noise import NoiseFloor
-from dalembert.inverse.problem.prefetch import prefetched
 from dalembert.inverse.problem.problem import Problem
 from dalembert.inverse.starts.spread import spread_points
 from dalembert.optimize import Minimiser, Minimum, Objective, OnIteration, Progress, Squares
@@ -47,19 +46,13 @@ def runs(
     if isinstance(method, Minimiser):
         points[1:] = list(spread_points(problem, starts, seed, spread))[1:]
     ends: list[End] = []
-    attempts = list(enumerate(points))
-    alone = isinstance(method, Minimiser) and not method.batched
-    for number, point in prefetched(problem, partial(_ahead, method, seed), attempts) if alone else attempts:
-        ends.append(_run(problem, method, seed + number, point))
+    attempts = list(enumerate(points, seed))
+    alone, run = isinstance(method, Minimiser) and not method.batched, partial(_run, method)
+    for attempt in problem.prefetched(run, attempts) if alone else attempts:
+        ends.append(run(problem, attempt))
         if floor.conclusive and ends[-1].fitness <= floor.fitness:
             break
     return ends
-
-
-def _ahead(method: Method, seed: int, problem: Problem, attempt: tuple[int, np.ndarray | None]) -> None:
-    """The same run on a worker of a cluster."""
-    number, point = attempt
-    _run(problem, method, seed + number, point)
 
 
 def polished(problem: Problem, method: Squares, best: End) -> End:
@@ -71,8 +64,9 @@ def polished(problem: Problem, method: Squares, best: End) -> End:
     return end if end.fitness <= best.fitness else best
 
 
-def _run(problem: Problem, method: Method, seed: int, point: np.ndarray | None) -> End:
-    journal, search = problem.journal, problem.search
+def _run(method: Method, problem: Problem, attempt: tuple[int, np.ndarray | None]) -> End:
+    """End of a run with a seed, from a search point if there is one."""
+    (seed, point), journal, search = attempt, problem.journal, problem.search
     begin = None if point is None else search.vectors(point)
     minimise = method.minimise
     if isinstance(method, Minimiser):

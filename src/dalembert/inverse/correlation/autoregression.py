@@ -1,6 +1,7 @@
 """Autoregressive noise of evenly sampled residuals, gaps allowed."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -83,8 +84,9 @@ class Moments:
     sums: np.ndarray
     covariances: np.ndarray
 
+    @cached_property
     def process(self) -> Autoregression:
-        """Return the process of the order of least AICc.
+        """The process of the order of least AICc.
 
         Nearly perfect correlation makes the equations of high orders singular: orders whose process is not stationary,
         by rounding, are left out.
@@ -101,14 +103,14 @@ class Moments:
                 return process
         raise AssertionError("a process of order 1 is stationary")
 
-    def corrected(self, process: Autoregression, common: np.ndarray) -> "Moments":
+    def corrected(self, common: np.ndarray) -> "Moments":
         """Return the moments with the bias that the fit of parameters causes taken off.
 
         Residuals are r = (I − QQᵀ) e, so that E[r rᵀ] = Σ − QQᵀΣ − ΣQQᵀ + Q (QᵀΣQ) Qᵀ; ``common`` is QᵀΣQ of all
         residuals. The variance is at least half and at most twice that of the residuals: a larger bias is that of
         residuals that are no noise.
         """
-        applied = process.applied(self.basis)
+        applied = self.process.applied(self.basis)
         applied[on_grid(self._grid, np.ones(len(self._grid))) == 0] = 0.0
         reduced = self.basis @ common
         bias = np.array(

@@ -1,11 +1,10 @@
 """The covariance of weighted residuals, as far as they are correlated."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
-from dalembert.inverse.correlation.autoregression import Autoregression, Moments, moments
+from dalembert.inverse.correlation.autoregression import Autoregression, moments
 from dalembert.inverse.correlation.correlated import CorrelatedResiduals, NoiseProcess
 from dalembert.inverse.correlation.ornstein_uhlenbeck import OrnsteinUhlenbeck, ornstein_uhlenbeck
 from dalembert.inverse.correlation.series import Series, series_of
@@ -94,34 +93,15 @@ def fitted_processes(
     series: Sequence[Series], residual: np.ndarray, basis: np.ndarray, variance: float
 ) -> list[tuple[Series, Process]]:
     """Return a noise process for each series, from weighted residuals (values,); all others have ``variance``."""
-    attempts = [_Attempt.at(own, residual[own.rows], basis[own.rows]) for own in series]
+    parts = {own: (own, residual[own.rows], basis[own.rows]) for own in series}
+    even = {own: moments(*part) for own, part in parts.items() if own.grid is not None}
+    uneven = {own: ornstein_uhlenbeck(*part) for own, part in parts.items() if own.grid is None}
+    found: dict[Series, Process] = {own: uneven[own] if own in uneven else even[own].process for own in series}
     for _ in range(ROUNDS):
-        processes = [(attempt.series, attempt.process) for attempt in attempts]
-        common = noise_along(processes, basis, variance)
-        attempts = [attempt.corrected(common) for attempt in attempts]
-    return [(attempt.series, attempt.process) for attempt in attempts]
-
-
-@dataclass(frozen=True, eq=False)
-class _Attempt:
-    """The process of a series so far; the moments of an even one."""
-
-    series: Series
-    process: Process
-    moments: Moments | None
-
-    @classmethod
-    def at(cls, series: Series, values: np.ndarray, basis: np.ndarray) -> "_Attempt":
-        if series.grid is None:
-            return cls(series, ornstein_uhlenbeck(series, values, basis), None)
-        first = moments(series, values, basis)
-        return cls(series, first.process(), first)
-
-    def corrected(self, common: np.ndarray) -> "_Attempt":
-        if not isinstance(self.process, Autoregression) or self.moments is None:
-            return self
-        better = self.moments.corrected(self.process, common)
-        return _Attempt(self.series, better.process(), better)
+        common = noise_along(list(found.items()), basis, variance)
+        even = {own: table.corrected(common) for own, table in even.items()}
+        found |= {own: table.process for own, table in even.items()}
+    return list(found.items())
 
 
 def noise_along(processes: Sequence[tuple[Series, Process]], basis: np.ndarray, variance: float) -> np.ndarray:
@@ -157,30 +137,25 @@ def summaries(
     basis: np.ndarray,
 ) -> tuple[NoiseProcess, ...]:
     """Return what is known of fitted processes; ``found`` has the series' probabilities to be white noise."""
-    return tuple(
-        _summary(
-            own,
-            process,
-            found[own],
-            response.ravel()[own.rows],
-            first_order=is_first_order(own, process.first, residual[own.rows], basis[own.rows]),
+    told = []
+    for own, process in fitted:
+        values = response.ravel()[own.rows]
+        rate = np.sqrt(np.mean(np.gradient(values, own.along) ** 2))
+        period = 2 * np.pi * np.std(values) / rate if rate > 0 else np.inf
+        first_order = is_first_order(own, process.first, residual[own.rows], basis[own.rows])
+        time = -own.step / np.log(process.first) if first_order else process.decay(own.step)
+        told.append(
+            NoiseProcess(
+                channel=own.name,
+                p_value=found[own],
+                first=process.first,
+                order=process.order,
+                even=own.grid is not None,
+                variance=process.variance,
+                time=float(min(time, own.length)),
+                period=float(min(period, own.length / 3)),
+                unit=own.unit,
+                first_order=first_order,
+            )
         )
-        for own, process in fitted
-    )
-
-
-def _summary(own: Series, process: Process, p_value: float, response: np.ndarray, *, first_order: bool) -> NoiseProcess:
-    rate = np.sqrt(np.mean(np.gradient(response, own.along) ** 2))
-    period = 2 * np.pi * np.std(response) / rate if rate > 0 else np.inf
-    return NoiseProcess(
-        channel=own.name,
-        p_value=p_value,
-        first=process.first,
-        order=process.order,
-        even=own.grid is not None,
-        variance=process.variance,
-        time=float(min(-own.step / np.log(process.first) if first_order else process.decay(own.step), own.length)),
-        period=float(min(period, own.length / 3)),
-        unit=own.unit,
-        first_order=first_order,
-    )
+    return tuple(told)

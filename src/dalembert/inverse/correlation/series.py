@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dalembert.forward import Coordinate
 from dalembert.inverse.experiments.experiments import JointModel
 from dalembert.inverse.problem.problem import Problem
 
@@ -33,6 +34,10 @@ class Series:
         Interval of the grid, or the median interval of uneven samples.
     unit : str
         Of the coordinate.
+    experiment : str
+        Empty for a single one.
+    channel : str
+        Its name within the experiment.
     """
 
     name: str
@@ -41,6 +46,8 @@ class Series:
     grid: np.ndarray | None
     step: float
     unit: str
+    experiment: str = ""
+    channel: str = ""
 
     @property
     def length(self) -> float:
@@ -55,24 +62,13 @@ def series_of(problem: Problem, weights: np.ndarray | None = None) -> Iterator[S
     """
     weights = problem.weights if weights is None else weights
     width = weights.shape[1]
-    for column, (name, rows, along, unit) in enumerate(_channels(problem)):
+    for column, (name, (experiment, channel, rows, coordinate)) in enumerate(_channels(problem)):
         kept = weights[rows, column] > 0
         if np.count_nonzero(kept) > 1:
-            grid, step = even_grid(along[kept])
-            yield Series(name, rows[kept] * width + column, along[kept], grid, step, unit)
-
-
-def records_of(problem: Problem) -> dict[str, tuple[str, str]]:
-    """Return the experiment and the channel within it, by the channel's joint name; no experiment for a single one."""
-    model = problem.model
-    if not isinstance(model, JointModel):
-        return {name: ("", name) for name in problem.data.channels}
-    names = [channel.name for channel in model.channels]
-    return {
-        names[column]: (part.name, channel)
-        for part in model.parts
-        for column, channel in zip(part.columns, part.channels, strict=True)
-    }
+            along = coordinate.values[kept]
+            grid, step = even_grid(along)
+            unit = coordinate.unit
+            yield Series(name, rows[kept] * width + column, along, grid, step, unit, experiment, channel)
 
 
 def even_grid(along: np.ndarray) -> tuple[np.ndarray | None, float]:
@@ -90,14 +86,14 @@ def even_grid(along: np.ndarray) -> tuple[np.ndarray | None, float]:
     return np.concatenate([[0], np.cumsum(counts)]).astype(int), step
 
 
-def _channels(problem: Problem) -> Iterator[tuple[str, np.ndarray, np.ndarray, str]]:
-    """Name, rows (samples,), coordinate (samples,) and its unit, of each channel of the data."""
+def _channels(problem: Problem) -> list[tuple[str, tuple[str, str, np.ndarray, Coordinate]]]:
+    """Joint name of each channel of the data, and its experiment, name there, rows (samples,) and coordinate."""
     data, model = problem.data, problem.model
     if not isinstance(model, JointModel):
-        for name in data.channels:
-            yield name, np.arange(problem.samples), data.coordinate.values, data.coordinate.unit
-        return
-    places = {model.channels[column].name: part for part in model.parts for column in part.columns}
-    for name in data.channels:
-        part = places[name]
-        yield name, part.rows, part.coordinate.values, part.coordinate.unit
+        return [(name, ("", name, np.arange(problem.samples), data.coordinate)) for name in data.channels]
+    known = {
+        model.channels[column].name: (part.name, channel, part.rows, part.coordinate)
+        for part in model.parts
+        for column, channel in zip(part.columns, part.channels, strict=True)
+    }
+    return [(name, known[name]) for name in data.channels]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dalembert.findings import Finding
-from dalembert.inverse.correlation.series import records_of, series_of
+from dalembert.inverse.correlation.series import series_of
 from dalembert.inverse.correlation.whiteness import LEVEL, p_value
 from dalembert.inverse.problem.problem import Problem
 
@@ -69,18 +69,16 @@ def explained(problem: Problem, response: np.ndarray, weights: np.ndarray, fitte
     """
     data = problem.data
     values, residual = data.continuous.ravel(), (np.sqrt(weights) * problem.misfit(response)).ravel()
-    records = records_of(problem)
     series = list(series_of(problem, weights))
     found = []
     for own in series:
         left, here, size = residual[own.rows], values[own.rows], weights.ravel()[own.rows]
         variation = float(np.sum(size * (here - np.average(here, weights=size)) ** 2))
         squares = float(left @ left)
-        record, channel = records[own.name]
         found.append(
             Explained(
-                record=record,
-                channel=channel,
+                record=own.experiment,
+                channel=own.channel,
                 share=1 - squares / variation if variation > 0 else np.nan,
                 variation=variation,
                 ratio=float(np.sqrt(squares / len(left)) / fitted) if fitted > 0 else np.inf,

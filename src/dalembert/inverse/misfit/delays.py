@@ -101,7 +101,7 @@ def _rates(residuals: Residuals) -> dict[str, np.ndarray]:
     weights = np.sqrt(residuals.problem.weights).ravel()
     for own in residuals.series:
         if own.unit == TIME and len(own.rows) > 2:
-            column = found.setdefault(residuals.records[own.name][1], np.zeros(len(weights)))
+            column = found.setdefault(own.channel, np.zeros(len(weights)))
             column[own.rows] = weights[own.rows] * _rate(residuals, own)
     return {**found, "": sum(found.values(), np.zeros(len(weights)))} if len(found) > 1 else found
 

@@ -112,10 +112,9 @@ def _misfit(residuals: Residuals, own: Series, process: NoiseProcess) -> ModelMi
         return None
     rows = windows[outside[0]]
     first = rows[np.argmax(np.abs(values[rows]) > OUTSIDE * noise)]
-    experiment, channel = residuals.records[own.name]
     return ModelMisfit(
-        experiment,
-        channel,
+        own.experiment,
+        own.channel,
         float(own.along[first]),
         _followed(residuals, own, windows, limit),
         own.unit,

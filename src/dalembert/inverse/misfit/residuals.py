@@ -15,7 +15,7 @@ from dalembert.inverse.correlation.correlation import (
     noise_along,
     summaries,
 )
-from dalembert.inverse.correlation.series import Series, records_of, series_of
+from dalembert.inverse.correlation.series import Series, series_of
 from dalembert.inverse.least_squares.estimate import left_vectors
 from dalembert.inverse.misfit.local_noise import local_deviation
 from dalembert.inverse.problem.noise import quantum
@@ -75,11 +75,6 @@ class Residuals:
     def series(self) -> tuple[Series, ...]:
         """Each channel of each experiment."""
         return tuple(series_of(self.problem))
-
-    @cached_property
-    def records(self) -> dict[str, tuple[str, str]]:
-        """Experiment and channel of a series, by its name."""
-        return records_of(self.problem)
 
     @cached_property
     def variance(self) -> float:

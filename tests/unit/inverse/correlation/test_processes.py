@@ -59,11 +59,10 @@ def test_the_bias_of_a_short_record_is_taken_off(coefficient, number):
     for seed in range(300):
         values, basis = left(autoregressive(seed, number, coefficient), polynomials(np.arange(number), 2))
         own = moments(series(np.arange(number, dtype=float)), values, basis)
-        plain.append(own.process().covariances[:2])
+        plain.append(own.process.covariances[:2])
         for _ in range(4):
-            process = own.process()
-            own = own.corrected(process, process.product(own.series, basis))
-        corrected.append(own.process().covariances[:2])
+            own = own.corrected(own.process.product(own.series, basis))
+        corrected.append(own.process.covariances[:2])
     before, after = np.mean(plain, axis=0), np.mean(corrected, axis=0)
     assert abs(after[0] - 1) < 0.1
     assert abs(after[1] / after[0] - coefficient) < max(0.03, abs(before[1] / before[0] - coefficient) / 1.5)
@@ -89,6 +88,6 @@ def test_a_process_is_stationary_where_corrected_covariances_are_not_those_of_on
     """The equations of high orders were almost singular, and autocorrelations of 3e6 came out."""
     own = series(np.arange(201.0))
     impossible = replace(moments(own, np.ones(201), np.zeros((201, 1))), covariances=(-1.5) ** np.arange(11))
-    process = impossible.process()
+    process = impossible.process
     assert np.max(np.abs(process.covariances)) <= process.variance * (1 + 1e-9)
     assert np.isfinite(process.decay(own.step))

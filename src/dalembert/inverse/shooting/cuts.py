@@ -1,14 +1,13 @@
 """How motions are cut into segments: at samples where each begins anew at a state."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
-from typing import Protocol
 
 import numpy as np
 
 from dalembert.data import derivative
-from dalembert.forward import StateChart, begun_later, restarted
+from dalembert.forward import StateChart, restarted
 from dalembert.inverse.problem.problem import Problem
 from dalembert.inverse.shooting.segments import Piece, Segments, ShootingState
 from dalembert.inverse.shooting.tracks import Track
@@ -57,95 +56,22 @@ class Node:
         ]  # fmt: skip
 
 
-class Way(Protocol):
-    """How segments of a motion are made, and begin at the same numbers as the motion does."""
-
-    @property
-    def first(self) -> tuple[str, ...]:
-        """Parameters of the model that are its initial state; none where it follows from others."""
-        ...
-
-    def piece(
-        self, track: Track, begin: Node | None, end: Node | None, own: np.ndarray, after: np.ndarray, last: int
-    ) -> Piece:
-        """Return a segment.
-
-        Parameters
-        ----------
-        track : Track
-        begin, end : Node or None
-            None at the first sample and the last one.
-        own, after : array of int, shape (states,)
-            Where the numbers of both nodes stand among all unknowns.
-        last : int
-            Its last sample.
-        """
-        ...
-
-
 @dataclass(frozen=True, eq=False)
-class Named:
-    """Segments whose states are parameters of the model's initial state.
+class Cut:
+    """One motion with the nodes at which it is cut.
 
     Parameters
     ----------
+    track : Track
+    nodes : tuple of Node
     states : mapping of str to ShootingState
-        By the model's parameters.
+        By the model's parameters of the initial state, which the segments' states are. Without any, segments begin at
+        independent coordinates and rates of a model that can begin anew at them.
     """
 
-    states: Mapping[str, ShootingState]
-
-    @property
-    def first(self) -> tuple[str, ...]:
-        return tuple(self.states)
-
-    def piece(
-        self, track: Track, begin: Node | None, end: Node | None, own: np.ndarray, after: np.ndarray, last: int
-    ) -> Piece:
-        """Return a segment: the beginning of the motion with other parameters of the initial state."""
-        sample = 0 if begin is None else begin.sample
-        names, channels = track.model.parameters.names, [channel.name for channel in track.model.channels]
-        places = track.wiring.copy()
-        if begin is not None:
-            places[[names.index(name) for name in self.states]] = own
-        times = track.times[sample : last + 1] - track.times[sample]
-        later = begun_later(track.model, float(track.times[sample]), times) if sample else None
-        model = track.model.first(last + 1 - sample) if later is None else later
-        ends = [] if end is None else [channels.index(state.channel) for state in self.states.values()]
-        rows = track.rows[sample + (sample > 0) : last + 1]
-        return Piece(model, places, rows, track.columns, track.picked, np.array(ends, dtype=int), after)
-
-
-@dataclass(frozen=True, eq=False)
-class Begun:
-    """Segments that begin at independent coordinates and rates of a model that can begin anew at them."""
-
-    @property
-    def first(self) -> tuple[str, ...]:
-        return ()
-
-    def piece(
-        self, track: Track, begin: Node | None, end: Node | None, own: np.ndarray, after: np.ndarray, last: int
-    ) -> Piece:
-        """Return a segment of the motion."""
-        sample = 0 if begin is None else begin.sample
-        origin = float(track.times[sample]) if begin is not None else 0.0
-        times = track.times[sample : last + 1] - origin
-        chart, ends = (None if node is None else node.chart for node in (begin, end))
-        model = restarted(track.model, origin, times, chart, ends)
-        places = np.concatenate([track.wiring, own])
-        kept = len(track.model.channels) + np.arange(len(after))
-        rows = track.rows[sample + (sample > 0) : last + 1]
-        return Piece(model, places, rows, track.columns, track.picked, kept, after)
-
-
-@dataclass(frozen=True, eq=False)
-class Cut:
-    """One motion with the nodes at which it is cut."""
-
     track: Track
-    way: Way
     nodes: tuple[Node, ...]
+    states: Mapping[str, ShootingState] = field(default_factory=dict)
 
     @property
     def count(self) -> int:
@@ -154,7 +80,35 @@ class Cut:
 
     def merged(self) -> "Cut":
         """The same with every second node, or the middle one of three."""
-        return self if len(self.nodes) < 2 else Cut(self.track, self.way, self.nodes[1::2])
+        return self if len(self.nodes) < 2 else replace(self, nodes=self.nodes[1::2])
+
+    def piece(self, begin: Node | None, end: Node | None, own: np.ndarray, after: np.ndarray) -> Piece:
+        """Return a segment.
+
+        Parameters
+        ----------
+        begin, end : Node or None
+            None at the first sample and the last one.
+        own, after : array of int, shape (states,)
+            Where the numbers of both nodes stand among all unknowns.
+        """
+        track, sample = self.track, 0 if begin is None else begin.sample
+        last = len(track.times) - 1 if end is None else end.sample
+        if self.states:  # the beginning of the motion with other parameters of the initial state
+            names, channels = track.model.parameters.names, [channel.name for channel in track.model.channels]
+            model, places = track.between(sample, last), track.wiring.copy()
+            if begin is not None:
+                places[[names.index(name) for name in self.states]] = own
+            ends = [] if end is None else [channels.index(state.channel) for state in self.states.values()]
+            kept = np.array(ends, dtype=int)
+        else:
+            origin = float(track.times[sample]) if begin is not None else 0.0
+            chart, later = (None if node is None else node.chart for node in (begin, end))
+            model = restarted(track.model, origin, track.times[sample : last + 1] - origin, chart, later)
+            places = np.concatenate([track.wiring, own])
+            kept = len(track.model.channels) + np.arange(len(after))
+        rows = track.rows[sample + (sample > 0) : last + 1]
+        return Piece(model, places, rows, track.columns, track.picked, kept, after)
 
 
 def segments(problem: Problem, cuts: Sequence[Cut]) -> Segments:
@@ -167,8 +121,7 @@ def segments(problem: Problem, cuts: Sequence[Cut]) -> Segments:
         ends: list[Node | None] = [*cut.nodes, None]
         for begin, end in zip([None, *cut.nodes], ends, strict=True):
             after = place + np.arange(0 if end is None else len(end.names))
-            last = len(cut.track.times) - 1 if end is None else end.sample
-            pieces.append(cut.way.piece(cut.track, begin, end, own, after, last))
+            pieces.append(cut.piece(begin, end, own, after))
             own, place = after, place + len(after)
     ranges = [node.ranges for cut in cuts for node in cut.nodes]
     parameters = Parameters((*problem.model.parameters.declared, *states))
@@ -196,20 +149,17 @@ def named_cut(
     values = track.model.parameters.clip(values)
     units = tuple(next(item.unit for item in track.model.parameters if item.name == name) for name in states)
     lower, upper = (np.array([getattr(state, side) for state in states.values()]) for side in ("lower", "upper"))
-    way, own, nodes = Named(states), values.copy(), []
+    own, nodes = values.copy(), []
     places = np.rint(np.linspace(0, len(track.times) - 1, count + 1)).astype(int)
     for begin, end in pairwise(places[:-1]):
-        times = track.times[begin : end + 1] - track.times[begin]
-        later = begun_later(track.model, float(track.times[begin]), times) if begin else None
-        model = track.model.first(int(end - begin) + 1) if later is None else later
-        ran = model.evaluate(own[None]).values[0, -1]
+        ran = track.between(begin, end).evaluate(own[None]).values[0, -1]
         for name, state in states.items():
             value = seen[name][end] if np.isfinite(seen[name][end]) else ran[channels.index(state.channel)]
             value = value if np.isfinite(value) else (state.lower + state.upper) / 2
             own[names.index(name)] = np.clip(value, state.lower, state.upper)
         state = own[[names.index(name) for name in states]]
         nodes.append(Node(int(end), tuple(states), units, state, lower, upper, upper - lower))
-    return Cut(track, way, tuple(nodes)), values
+    return Cut(track, tuple(nodes), states), values
 
 
 def _seen(track: Track, states: Mapping[str, ShootingState], values: np.ndarray) -> dict[str, np.ndarray]:

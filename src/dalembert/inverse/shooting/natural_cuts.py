@@ -1,6 +1,6 @@
 """Motions cut where their growth of errors asks for it, at states that are estimated from the data."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -10,7 +10,7 @@ from dalembert.errors import DalembertError, InputError, SolveError
 from dalembert.forward import Restartable, StateChart, restartable, restarted
 from dalembert.inverse.experiments.smoothed import Smoothed, smoothed
 from dalembert.inverse.problem.problem import Problem
-from dalembert.inverse.shooting.cuts import TURN, Begun, Cut, Node
+from dalembert.inverse.shooting.cuts import TURN, Cut, Node
 from dalembert.inverse.shooting.tracks import Track
 
 GROWTH = 10.0
@@ -41,14 +41,14 @@ ITERATIONS = 4
 
 
 def natural_cuts(
-    problem: Problem, tracks: Sequence[Track], values: np.ndarray, count: int | None
+    problem: Problem, tracks: Iterable[Track], values: np.ndarray, count: int | None
 ) -> tuple[list[Cut], np.ndarray]:
     """Return all motions in segments, and the parameters (parameters,) with initial states as measured.
 
     Parameters
     ----------
     problem : Problem
-    tracks : sequence of Track
+    tracks : iterable of Track
     values : array, shape (parameters,)
     count : int or None
         Even segments of each motion; if None as many as its growth of errors asks for.
@@ -73,7 +73,7 @@ def natural_cuts(
             own = values[track.wiring]
             grown = [_passed(track, begin, end, own) for begin, end in pairwise(nodes)]
             nodes = [nodes[0], *_chosen(nodes[1:], grown[1:], FINE, len(places) // FEWEST)]
-        cuts.append(Cut(track, Begun(), tuple(nodes[1:])))
+        cuts.append(Cut(track, tuple(nodes[1:])))
     return cuts, values
 
 
@@ -189,10 +189,10 @@ class _Estimates:
         Least squares by Gauss and Newton: channels have the measured values, and their derivative by the coordinates
         times the rates gives the measured rates of change.
         """
-        track, numbers = self.track, chart.values
-        half, channels = len(numbers) // 2, track.picked
+        track, seen, numbers = self.track, self.seen, chart.values
+        half, channels, sizes = len(numbers) // 2, track.picked, self._sizes(chart)
         model = restarted(track.model, float(track.times[sample]), [0.0, self._instant], chart, None)
-        far = FREE * self._sizes(chart)
+        far = FREE * sizes
         for _ in range(ITERATIONS):
             try:
                 values, jacobian = model.linearise(np.concatenate([own, numbers]))
@@ -200,31 +200,18 @@ class _Estimates:
                 return numbers
             slopes = jacobian[0][channels][:, len(own) :]
             placed = np.abs(slopes[:, half:]).max(axis=1) * self.frequency <= 1e-6 * np.abs(slopes).max(axis=1)
-            step = self._step(slopes, values[0, channels], placed, numbers, chart, sample)
+            noise = np.maximum(seen.deviations, 1e-6 * np.abs(slopes * sizes).max(axis=1) + 1e-300)
+            rows = [slopes / noise[:, None], np.diag(1 / far)]
+            left = [(seen.values[sample] + self.offsets - values[0, channels]) / noise, (chart.values - numbers) / far]
+            for channel in np.flatnonzero(placed & np.isfinite(seen.rates[sample])):
+                rate = np.concatenate([np.zeros(half), slopes[channel, :half]])
+                rows.append(rate[None] / seen.errors[channel])
+                left.append([(seen.rates[sample, channel] - rate @ numbers) / seen.errors[channel]])
+            step = np.linalg.lstsq(np.concatenate(rows), np.concatenate(left), rcond=None)[0]
             numbers = chart.values + np.clip(numbers + step - chart.values, -far, far)
-            if np.all(np.abs(step) <= 1e-4 * self._sizes(chart)):
+            if np.all(np.abs(step) <= 1e-4 * sizes):
                 break
         return numbers
-
-    def _step(
-        self,
-        slopes: np.ndarray,
-        values: np.ndarray,
-        placed: np.ndarray,
-        numbers: np.ndarray,
-        chart: StateChart,
-        sample: int,
-    ) -> np.ndarray:
-        """One step of Gauss and Newton for the numbers of a state."""
-        half, sizes, seen = len(numbers) // 2, self._sizes(chart), self.seen
-        noise = np.maximum(seen.deviations, 1e-6 * np.abs(slopes * sizes).max(axis=1) + 1e-300)
-        rows = [slopes / noise[:, None], np.diag(1 / (FREE * sizes))]
-        left = [(seen.values[sample] + self.offsets - values) / noise, (chart.values - numbers) / (FREE * sizes)]
-        for channel in np.flatnonzero(placed & np.isfinite(seen.rates[sample])):
-            rate = np.concatenate([np.zeros(half), slopes[channel, :half]])
-            rows.append(rate[None] / seen.errors[channel])
-            left.append([(seen.rates[sample, channel] - rate @ numbers) / seen.errors[channel]])
-        return np.linalg.lstsq(np.concatenate(rows), np.concatenate(left), rcond=None)[0]
 
     def _next(self, own: np.ndarray, chart: StateChart, state: np.ndarray, begin: float, end: float) -> StateChart:
         """Chart where a segment ends; where it began if it cannot be simulated."""

@@ -115,9 +115,7 @@ def _check_continued(track: Track, shooting: MultipleShooting, own: np.ndarray) 
                 "parameter, and give bodies velocities that go together"
             )
         again[place] = whole[length, column]
-    times = track.times[length : 2 * length + 1] - track.times[length]
-    later = begun_later(model, float(track.times[length]), times)
-    anew = (model.first(length + 1) if later is None else later).evaluate(again[None]).values[0]
+    anew = track.between(length, 2 * length).evaluate(again[None]).values[0]
     _check_same(names, length, whole, anew, f"states, which are {', '.join(map(repr, states))}")
 
 

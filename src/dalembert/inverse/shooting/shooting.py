@@ -234,9 +234,9 @@ def _nodes(level: Level, count: int) -> Nodes:
         table[0, row, columns], table[1, row, columns] = begins[own] + gaps[own], begins[own]
         place += len(columns)
     wiring = [
-        np.array([cut.track.wiring[cut.track.model.parameters.names.index(name)] for name in cut.way.first], dtype=int)
+        np.array([cut.track.wiring[cut.track.model.parameters.names.index(name)] for name in cut.states], dtype=int)
         for cut in level.cuts
-        if cut.way.first
+        if cut.states
     ]
     return Nodes(
         tuple(units),

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dalembert.data import Measurements
-from dalembert.forward import ForwardModel
+from dalembert.forward import ForwardModel, begun_later
 from dalembert.inverse.experiments.experiments import JointModel
 from dalembert.inverse.problem.problem import Problem
 
@@ -42,6 +42,15 @@ class Track:
         """Values of the coordinate, shape (samples,)."""
         return self.data.coordinate.values
 
+    def between(self, begin: int, end: int) -> ForwardModel:
+        """The model from one sample to another one; of one that cannot begin later, as many samples of its beginning.
+
+        Its time is that since the first of them.
+        """
+        times = self.times[begin : end + 1] - self.times[begin]
+        later = begun_later(self.model, float(self.times[begin]), times) if begin else None
+        return self.model.first(int(end - begin) + 1) if later is None else later
+
     @property
     def prefix(self) -> str:
         """What stands before the names of its states."""
@@ -53,12 +62,8 @@ class Track:
         return f"experiment {self.name!r}: " if self.name else ""
 
 
-def tracks(problem: Problem) -> tuple[Track, ...]:
-    """Return the experiments of a problem."""
-    return tuple(_tracks(problem))
-
-
-def _tracks(problem: Problem) -> Iterator[Track]:
+def tracks(problem: Problem) -> Iterator[Track]:
+    """Yield the experiments of a problem."""
     model, data = problem.model, problem.data
     if not isinstance(model, JointModel):
         samples, channels = (np.arange(size) for size in data.values.shape)

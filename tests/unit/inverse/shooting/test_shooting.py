@@ -11,7 +11,7 @@ from dalembert.inverse import Experiment, Fit, MultipleShooting, ShootingState, 
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.problem import pose
 from dalembert.inverse.shooting.continuity import Chain
-from dalembert.inverse.shooting.cuts import Cut, Named, Node, guess, segments
+from dalembert.inverse.shooting.cuts import Cut, Node, guess, segments
 from dalembert.inverse.shooting.shooting import first_cuts
 from dalembert.inverse.shooting.tracks import tracks
 from support import says
@@ -48,7 +48,7 @@ def chain(noise=0.01, states=STATES, cuts=(10, 21)):
     (track,) = tracks(problem)
     lower, upper = (np.array([getattr(state, side) for state in states.values()]) for side in ("lower", "upper"))
     nodes = [Node(cut, tuple(states), ("", ""), np.zeros(2), lower, upper, upper - lower) for cut in cuts]
-    return Chain(problem, segments(problem, [Cut(track, Named(states), tuple(nodes))]))
+    return Chain(problem, segments(problem, [Cut(track, tuple(nodes), states)]))
 
 
 def test_segments_of_one_motion_are_that_motion_and_meet():

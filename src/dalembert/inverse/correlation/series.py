@@ -5,8 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dalembert.forward import Coordinate
-from dalembert.inverse.experiments.experiments import JointModel
+from dalembert.inverse.experiments.tracks import tracks
 from dalembert.inverse.problem.problem import Problem
 
 EVEN = 0.1
@@ -61,14 +60,15 @@ def series_of(problem: Problem, weights: np.ndarray | None = None) -> Iterator[S
     ``weights`` (samples, channels) replace those of the problem: only values of positive weight are part of a series.
     """
     weights = problem.weights if weights is None else weights
-    width = weights.shape[1]
-    for column, (name, (experiment, channel, rows, coordinate)) in enumerate(_channels(problem)):
-        kept = weights[rows, column] > 0
-        if np.count_nonzero(kept) > 1:
-            along = coordinate.values[kept]
-            grid, step = even_grid(along)
-            unit = coordinate.unit
-            yield Series(name, rows[kept] * width + column, along, grid, step, unit, experiment, channel)
+    names = problem.data.channels
+    for track in tracks(problem):
+        unit = track.data.coordinate.unit
+        for column, channel in zip(track.columns, track.data.channels, strict=True):
+            kept = weights[track.rows, column] > 0
+            if np.count_nonzero(kept) > 1:
+                along, rows = track.times[kept], track.rows[kept] * len(names) + column
+                grid, step = even_grid(along)
+                yield Series(names[column], rows, along, grid, step, unit, track.name, channel)
 
 
 def even_grid(along: np.ndarray) -> tuple[np.ndarray | None, float]:
@@ -84,16 +84,3 @@ def even_grid(along: np.ndarray) -> tuple[np.ndarray | None, float]:
     if not even or np.sum(counts) > SPARSE * len(along):
         return None, step
     return np.concatenate([[0], np.cumsum(counts)]).astype(int), step
-
-
-def _channels(problem: Problem) -> list[tuple[str, tuple[str, str, np.ndarray, Coordinate]]]:
-    """Joint name of each channel of the data, and its experiment, name there, rows (samples,) and coordinate."""
-    data, model = problem.data, problem.model
-    if not isinstance(model, JointModel):
-        return [(name, ("", name, np.arange(problem.samples), data.coordinate)) for name in data.channels]
-    known = {
-        model.channels[column].name: (part.name, channel, part.rows, part.coordinate)
-        for part in model.parts
-        for column, channel in zip(part.columns, part.channels, strict=True)
-    }
-    return [(name, known[name]) for name in data.channels]

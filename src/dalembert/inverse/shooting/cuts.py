@@ -8,9 +8,9 @@ import numpy as np
 
 from dalembert.data import derivative
 from dalembert.forward import StateChart, restarted
+from dalembert.inverse.experiments.tracks import Track
 from dalembert.inverse.problem.problem import Problem
 from dalembert.inverse.shooting.segments import Piece, Segments, ShootingState
-from dalembert.inverse.shooting.tracks import Track
 from dalembert.parameters import Parameter, Parameters
 
 TURN = 2 * np.pi

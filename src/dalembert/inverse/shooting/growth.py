@@ -8,9 +8,9 @@ import numpy as np
 from dalembert.errors import DalembertError
 from dalembert.findings import Finding
 from dalembert.forward import restartable
+from dalembert.inverse.experiments.tracks import Track, tracks
 from dalembert.inverse.problem.problem import Problem
 from dalembert.inverse.shooting.natural_cuts import MOST_STATES
-from dalembert.inverse.shooting.tracks import Track, tracks
 
 CHAOTIC = 100.0
 """Growth of a small change of the initial state from which on a misfit has many false minima."""

@@ -6,9 +6,9 @@ import numpy as np
 
 from dalembert.errors import InputError, require_known, unknown
 from dalembert.forward import begun_later, restartable
+from dalembert.inverse.experiments.tracks import Track, tracks
 from dalembert.inverse.problem.problem import Problem
 from dalembert.inverse.shooting.shooting import MultipleShooting
-from dalembert.inverse.shooting.tracks import Track, tracks
 
 SAME = 1e-6
 """Difference, as a part of a state's range, up to which a motion is said to begin with it."""

@@ -10,6 +10,7 @@ from threadpoolctl import threadpool_limits
 
 from dalembert.arguments import Checked, limited
 from dalembert.errors import InputError, SolveError
+from dalembert.inverse.experiments.tracks import tracks
 from dalembert.inverse.least_squares.descent import End, descend, recorded
 from dalembert.inverse.problem.noise import NoiseFloor
 from dalembert.inverse.problem.problem import Problem
@@ -18,7 +19,6 @@ from dalembert.inverse.shooting.cuts import Cut, guess, named_cut, segments
 from dalembert.inverse.shooting.natural_cuts import coarser, natural_cuts
 from dalembert.inverse.shooting.nodes import Nodes
 from dalembert.inverse.shooting.segments import ShootingState
-from dalembert.inverse.shooting.tracks import tracks
 from dalembert.inverse.starts.spread import spread_points
 from dalembert.optimize import Squares
 

@@ -64,6 +64,14 @@ def test_whole_experiments_are_predicted(tmp_path):
     assert back.validation.weights.tobytes() == fit.validation.weights.tobytes()
 
 
+def test_the_first_of_several_experiments_is_predicted_although_residuals_are_correlated():
+    """The growth of errors was looked for in channels of experiments that are not among the fitted data."""
+    data = Measurements.of(TIMES, {"x": 2 * np.exp(-0.8 * TIMES) + 0.05 * TIMES**2}, 0.01)
+    fit = identify([Experiment(name, DECAY, data) for name in "abc"], validation="a")
+    assert {item.record for item in fit.validation.explained} == {"a"}
+    assert {item.channel for item in fit.correlated.processes} == {"b.x", "c.x"}
+
+
 def test_the_ends_of_all_experiments_are_predicted():
     fit = identify(experiments(), validation=0.25)
     assert fit.validation.what == "what comes after 75 % of each experiment's time"

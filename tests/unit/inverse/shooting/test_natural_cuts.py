@@ -7,11 +7,11 @@ import dalembert as da
 from conclusions import only
 from dalembert.errors import InputError
 from dalembert.inverse import MultipleShooting, identify
+from dalembert.inverse.experiments.tracks import tracks
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.problem import pose
 from dalembert.inverse.shooting.growth import error_growth
 from dalembert.inverse.shooting.natural_cuts import natural_cuts
-from dalembert.inverse.shooting.tracks import tracks
 
 RNG = np.random.default_rng(7)
 EVEN = np.linspace(0.0, 4.0, 201)

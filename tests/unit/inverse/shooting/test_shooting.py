@@ -8,12 +8,12 @@ from dalembert.data import Measurements
 from dalembert.errors import InputError
 from dalembert.forward import PythonModel
 from dalembert.inverse import Experiment, Fit, MultipleShooting, ShootingState, identify, predict, profile
+from dalembert.inverse.experiments.tracks import tracks
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.problem import pose
 from dalembert.inverse.shooting.continuity import Chain
 from dalembert.inverse.shooting.cuts import Cut, Node, guess, segments
 from dalembert.inverse.shooting.shooting import first_cuts
-from dalembert.inverse.shooting.tracks import tracks
 from support import says
 
 TIMES = np.linspace(0, 4, 41)

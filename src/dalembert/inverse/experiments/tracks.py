@@ -1,7 +1,7 @@
 """The experiments of a problem, each with its model, its place in the joint response and its parameters."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -71,4 +71,7 @@ def tracks(problem: Problem) -> Iterator[Track]:
         return
     for part, own, picked, wiring in zip(model.parts, model.models, model.picked, model.wiring, strict=True):
         if part.name in model.active:
-            yield Track(part.name, own, part.data(data), picked, part.rows, part.columns, wiring)
+            names = [model.channels[column].name for column in part.columns]
+            columns = np.array([data.channels.index(name) for name in names])  # without validation data, fewer
+            measured = replace(part, columns=columns).data(data)
+            yield Track(part.name, own, measured, picked, part.rows, columns, wiring)

@@ -42,6 +42,7 @@ from dalembert.inverse.starts.rivals import rival_findings, rivals
 from dalembert.inverse.starts.runs import Method, polished, runs
 from dalembert.inverse.starts.spread import SPREADS
 from dalembert.optimize import LeastSquares, Minimiser, Squares
+from dalembert.stored_fields import encoded
 
 
 @takes_executor
@@ -160,7 +161,8 @@ def identify(
     squares = isinstance(method, Squares)
     if shooting is not None:
         _check_shooting(method, validation)
-    starts = _starts(starts, 3 if shooting is not None else 8 if squares else 1)
+    starts = starts if starts is not None else 3 if shooting is not None else 8 if squares else 1
+    check_whole("identify", "starts", starts, 1)
     if horizon not in HORIZONS:
         raise InputError(unknown("horizon", str(horizon), [name for name in HORIZONS if name]))
     if spread not in SPREADS:
@@ -228,10 +230,7 @@ def identify(
     fit = Fit(
         parameters=model.parameters,
         values=vector,
-        deviations=estimated.deviations,
-        correlation=estimated.correlation,
-        singular_values=estimated.singular_values,
-        directions=estimated.directions,
+        **vars(estimated),
         fitness=best.fitness,
         response=whole,
         data=data,
@@ -293,12 +292,6 @@ def _method(given: Squares | Method | str | None) -> Squares | Method:
             f"ImprovedParticleSwarm(), Firefly(), or a Minimiser or its name{hint}"
         )
     return given
-
-
-def _starts(given: int | None, usual: int) -> int:
-    if given is not None:
-        check_whole("identify", "starts", given, 1)
-    return usual if given is None else given
 
 
 def _origin(problem: Problem, start: Mapping[str, float] | ArrayLike) -> np.ndarray:
@@ -369,19 +362,7 @@ def _check_shooting(method: Squares | Method, validation: object) -> None:
         )
 
 
-def _plain(validation: float | str | Sequence[str] | Mapping[str, float]) -> object:
-    """What is held out, as JSON can hold it."""
-    if isinstance(validation, Mapping):
-        return dict(validation)
-    return validation if isinstance(validation, (float, int, str)) else list(validation)
-
-
-def _beyond(
-    loss: str,
-    posed: Problem,
-    validation: HeldOut,
-    shooting: MultipleShooting | None,
-) -> dict[str, object]:
+def _beyond(loss: str, posed: Problem, validation: HeldOut, shooting: MultipleShooting | None) -> dict[str, object]:
     """Settings of the provenance that are not the usual ones."""
     told: dict[str, object] = {}
     if shooting is not None:
@@ -389,7 +370,9 @@ def _beyond(
     if posed.loss is not None:
         told["loss"] = {"name": loss, "scale": posed.loss.scale}
     if validation is not None:
-        told["validation"] = _plain(validation)
+        told["validation"] = encoded(
+            validation if isinstance(validation, float | int | str | Mapping) else list(validation)
+        )
     if isinstance(posed.model, JointModel):
         told["experiments"] = [part.name for part in posed.model.parts]
     return told

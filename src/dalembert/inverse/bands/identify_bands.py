@@ -105,7 +105,7 @@ def identify_bands(
     problem = pose(model, bands, weights, unknowns, journal)
     found = chosen.search(problem, seed)
     at, checked = found.candidate, found.check
-    concluded = conclusions(problem, found)
+    concluded = tuple(conclusions(problem, found))
     ends = tuple(unknowns.search.vectors(end) for end in (at.lower, at.upper))
     estimated = _estimated(problem, found)
     d = len(model.parameters)

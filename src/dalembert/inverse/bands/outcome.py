@@ -72,39 +72,20 @@ def _differences(problem: BandProblem, found: BandSolution) -> Iterator[Finding]
         yield Finding("uncorrelated-residuals", "note", {}, "The remaining differences are not correlated.")
 
 
-def conclusions(problem: BandProblem, found: BandSolution) -> tuple[Finding, ...]:
-    """Return the findings: bands that no box has, and a best end that only one of the descents reached."""
-    findings = []
-    share = inconsistency(problem, found)
-    if share:
-        findings.append(
-            Finding(
-                "inconsistent-bands",
-                "error" if share > CLEAR else "warning",
-                {"share": share},
-                "The bands are inconsistent: no box of the parameters has them. The best box differs by "
-                f"{100 * share:.2g} % of their mean width.",
-                "Check the bands, the model and the bounds of the parameters.",
-            )
-        )
-    if found.reached == 1:
-        findings.append(
-            Finding(
-                "minimum-reached-once",
-                "warning",
-                {"reached": 1},
-                "Only one of the descents reached the best fitness: another minimum may be better.",
-                "Increase starts.",
-            )
-        )
-    return tuple(findings)
-
-
-def inconsistency(problem: BandProblem, found: BandSolution) -> float:
-    """Rms difference of reproduced and given bands, as part of their mean width, if it is not random; else 0."""
+def conclusions(problem: BandProblem, found: BandSolution) -> Iterator[Finding]:
+    """Yield the findings: bands that no box has, and a best end that only one of the descents reached."""
     apart = _apart(problem, found)
     share = float(_shares(problem, apart).max())
-    return 0.0 if share <= SMALL or _rounded(problem, apart) or _random(problem, apart) else share
+    if share > SMALL and not _rounded(problem, apart) and not _random(problem, apart):
+        message = (
+            "The bands are inconsistent: no box of the parameters has them. The best box differs by "
+            f"{100 * share:.2g} % of their mean width."
+        )
+        advice = "Check the bands, the model and the bounds of the parameters."
+        yield Finding("inconsistent-bands", "error" if share > CLEAR else "warning", {"share": share}, message, advice)
+    if found.reached == 1:
+        message = "Only one of the descents reached the best fitness: another minimum may be better."
+        yield Finding("minimum-reached-once", "warning", {"reached": 1}, message, "Increase starts.")
 
 
 def _apart(problem: BandProblem, found: BandSolution) -> np.ndarray:

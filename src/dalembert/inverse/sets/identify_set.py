@@ -16,10 +16,9 @@ from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.matching import check_finite, check_kinds, check_samples, check_sizes, columns_of
 from dalembert.inverse.problem.search_coordinates import SearchCoordinates
 from dalembert.inverse.problem.simulated import named, simulated
-from dalembert.inverse.sets.conclusions import conclusions
+from dalembert.inverse.sets.conclusions import conclusions, outcome
 from dalembert.inverse.sets.inner_box import inner_box
 from dalembert.inverse.sets.inversion import Inversion
-from dalembert.inverse.sets.outcome import outcome
 from dalembert.inverse.sets.parameter_set import ParameterSet
 from dalembert.surrogate import Adaptive
 from dalembert.surrogate.scheme import Scheme
@@ -129,8 +128,10 @@ def identify_set(
     inner = inner_box(paving.inside)
     believed = inner is None or inversion.consistent(inner)
     left_out = inversion.outside(paving)
-    findings = conclusions(inversion, surrogate, paving, left_out, names := model.parameters.names)
+    findings = tuple(conclusions(inversion, surrogate, paving, left_out, names := model.parameters.names))
     nearest = inversion.nearest
+    at = "" if nearest is None else named(model, search.vectors(nearest.point))
+    share = float(np.max(surrogate.error / errors.ravel()))
     outer = None if paving.hull is None else Box(names, *(search.vectors(corner) for corner in paving.hull))
     found = ParameterSet(
         parameters=model.parameters,
@@ -145,17 +146,7 @@ def identify_set(
         runs=journal.simulations,
         seconds=clock(model) - began,
         success=paving.finished and believed and not len(left_out),
-        outcome=tuple(
-            outcome(
-                data,
-                float(np.max(surrogate.error / errors.ravel())),
-                paving,
-                nearest,
-                "" if nearest is None else named(model, search.vectors(nearest.point)),
-                believed,
-                journal.failures,
-            )
-        ),
+        outcome=tuple(outcome(data, share, paving, nearest, at, believed, journal.failures)),
         provenance=provenance(
             model,
             chosen,

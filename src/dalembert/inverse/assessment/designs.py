@@ -80,13 +80,9 @@ class Designs(EndedResult):
     def _outcome(self) -> Iterator[Finding]:
         if not self.success:
             lost = int(self.unseen[0])
-            yield Finding(
-                "insufficient-design",
-                "error",
-                {"combinations": lost},
-                f"No design identifies all parameters: the best one does not see {_counted(lost, 'combination')}.",
-                "Measure other channels, or fix parameters.",
-            )
+            message = f"No design identifies all parameters: the best one does not see {_counted(lost, 'combination')}."
+            advice = "Measure other channels, or fix parameters."
+            yield Finding("insufficient-design", "error", {"combinations": lost}, message, advice)
             return
         best, score = self.named(0), float(self.scores[0])
         message = f"The best design is {best}: {CRITERIA[self.criterion]} {score:.3g} of the scales."
@@ -111,13 +107,8 @@ class Designs(EndedResult):
                 "Measure more exactly, or longer.",
             )
         at = listed([f"{name} = {value:.6g}" for name, value in self.parameters.mapping(self.at).items()])
-        yield Finding(
-            "local-design",
-            "note",
-            {},
-            f"The ranking holds near {at}.",
-            "Compare designs elsewhere too if the true values may be far from these.",
-        )
+        advice = "Compare designs elsewhere too if the true values may be far from these."
+        yield Finding("local-design", "note", {}, f"The ranking holds near {at}.", advice)
 
     def summary(self) -> str:
         """The ranking as a text table, at most twenty designs, with its status."""

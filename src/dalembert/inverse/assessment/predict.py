@@ -141,14 +141,12 @@ def _ended(model: ForwardModel, names: Sequence[str], ends: Sequence[int | None]
         if end is None:
             continue
         at = float(along.values[end])
-        yield Finding(
-            "band-ends",
-            "warning",
-            {"channel": name, "at": at},
+        message = (
             f"The band of {name!r} ends at {f'{at:.4g} {along.unit}'.rstrip()}, where it is as wide as the motion. "
-            "Beyond, these data do not predict the motion.",
-            "Predict a shorter time, or determine the initial state more exactly.",
+            "Beyond, these data do not predict the motion."
         )
+        advice = "Predict a shorter time, or determine the initial state more exactly."
+        yield Finding("band-ends", "warning", {"channel": name, "at": at}, message, advice)
 
 
 def _wiring(names: list[str], fit: Fit) -> np.ndarray:

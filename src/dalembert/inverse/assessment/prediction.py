@@ -101,13 +101,11 @@ class Prediction(EndedResult):
             return
         lost = [name for name, wide in zip(self.channels, self.deviations.T, strict=True) if np.isinf(wide).any()]
         if lost:
-            yield Finding(
-                "infinite-band",
-                "error",
-                {"channels": ", ".join(lost)},
+            message = (
                 f"The band of {listed(list(map(repr, lost)))} is infinitely wide: it depends on a combination of the "
-                "parameters that the data do not identify.",
+                "parameters that the data do not identify."
             )
+            yield Finding("infinite-band", "error", {"channels": ", ".join(lost)}, message)
         widest = np.fmax.reduce(self.deviations, axis=0)
         ratio = 2 * self.quantile * widest / np.maximum(np.ptp(self.response, axis=0), 1e-300)
         finite = np.flatnonzero(np.isfinite(ratio))
@@ -121,13 +119,11 @@ class Prediction(EndedResult):
                 f"range of the response, in {self.channels[worst]!r}.",
             )
         source = "given standard deviations" if self.known else "residuals"
-        yield Finding(
-            "band-assumptions",
-            "note",
-            {"noise_is_known": self.known},
+        message = (
             f"The noise level follows from {source}. The bands assume that the model is right and nearly linear in the "
-            "parameters within their intervals.",
+            "parameters within their intervals."
         )
+        yield Finding("band-assumptions", "note", {"noise_is_known": self.known}, message)
 
     def summary(self) -> str:
         """Widths of the bands as a text table with the status."""

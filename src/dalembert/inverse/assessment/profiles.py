@@ -177,24 +177,20 @@ class Profiles(EndedResult):
                 message = f"The {side} side of the profile of {curve.name!r} is incomplete: {reason}."
                 yield Finding("incomplete-profile", "error", values, message)
         if all(curve.open):
-            yield Finding(
-                "unidentifiable-parameter",
-                "warning",
-                {"parameter": curve.name},
+            message = (
                 f"{curve.name!r} is not identifiable: all values between its bounds explain the data within their "
-                "noise.",
-                "Fix it, or measure a quantity that depends on it.",
+                "noise."
             )
+            advice = "Fix it, or measure a quantity that depends on it."
+            yield Finding("unidentifiable-parameter", "warning", {"parameter": curve.name}, message, advice)
         elif any(curve.open):
             side = "lower" if curve.open[0] else "upper"
             bound = float(getattr(item, side))
-            yield Finding(
-                "open-interval",
-                "warning",
-                {"parameter": curve.name, "side": side, "bound": bound},
+            message = (
                 f"The data give no {side} limit of {curve.name!r}: up to its bound {bound:.6g} they are explained "
-                "within their noise.",
+                "within their noise."
             )
+            yield Finding("open-interval", "warning", {"parameter": curve.name, "side": side, "bound": bound}, message)
         elif not any(curve.broken):
             below, above = value - curve.lower, curve.upper - value
             if max(below, above) > ASYMMETRIC * min(below, above):

@@ -35,13 +35,11 @@ def outcome(problem: BandProblem, found: BandSolution) -> Iterator[Finding]:
         yield Finding("surrogate-unchecked", "note", {}, "The bounds of the surrogate are not checked by true runs.")
     else:
         worst, points = float(np.max(found.check.error / scale(problem))), len(found.check.points)
-        yield Finding(
-            "surrogate-checked",
-            "note",
-            {"points": points, "difference": worst},
+        message = (
             f"The surrogate differs from true runs at {points} points, where it takes its bounds, by at most "
-            f"{worst:.1g} of a channel's range.",
+            f"{worst:.1g} of a channel's range."
         )
+        yield Finding("surrogate-checked", "note", {"points": points, "difference": worst}, message)
 
 
 def _differences(problem: BandProblem, found: BandSolution) -> Iterator[Finding]:
@@ -58,11 +56,9 @@ def _differences(problem: BandProblem, found: BandSolution) -> Iterator[Finding]
     by = f"{share[worst]:.2g} of their mean width at rms in {name!r}"
     if not width[worst] > 0:
         by = f"{rms[worst]:.2g} at rms in {name!r}, where the given bands have no width"
+    message = f"The reproduced bands differ from the given ones by {by}, {_largest(problem, apart)}."
     yield Finding(
-        "bands-differ",
-        "note",
-        {"channel": name, "share": float(share[worst]), "rms": float(rms[worst])},
-        f"The reproduced bands differ from the given ones by {by}, {_largest(problem, apart)}.",
+        "bands-differ", "note", {"channel": name, "share": float(share[worst]), "rms": float(rms[worst])}, message
     )
     largest = _standing_out(problem, apart)
     if largest:

@@ -95,13 +95,9 @@ def _compared(
         yield Finding("residuals-as-given", "note", {}, message)
     elif floor.known:
         ratio = float(np.sqrt(best.fitness / floor.fitness))
-        yield Finding(
-            "misfit-above-noise",
-            "warning",
-            {"ratio": ratio},
-            f"The residuals are {ratio:.2g} times as large as the given standard deviations allow.",
-            "Check the standard deviations and the model structure, or increase starts.",
-        )
+        message = f"The residuals are {ratio:.2g} times as large as the given standard deviations allow."
+        advice = "Check the standard deviations and the model structure, or increase starts."
+        yield Finding("misfit-above-noise", "warning", {"ratio": ratio}, message, advice)
     elif not correlated:
         advice = "Give the standard deviations of the data to compare the residuals with them."
         yield Finding("uncorrelated-residuals", "note", {}, "The residuals are not correlated.", advice)

@@ -49,14 +49,12 @@ def foreseen(parameters: Parameters, expected: Estimate, *, noise_known: bool) -
     """Yield findings before anything is identified; ``expected`` is the estimate from sensitivities alone."""
     yield from prior_findings(parameters, expected.deviations, expected.correlation)
     if not noise_known:
-        yield Finding(
-            "unknown-noise",
-            "note",
-            {},
+        message = (
             "The noise of the data is not given: only parameters that exact data of these channels cannot identify "
-            "are listed.",
-            "Give the standard deviations of the data.",
+            "are listed."
         )
+        advice = "Give the standard deviations of the data."
+        yield Finding("unknown-noise", "note", {}, message, advice)
     yield from unidentifiable(parameters.names, parameters.upper - parameters.lower, parameters.scale, expected)
 
 

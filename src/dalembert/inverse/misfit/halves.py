@@ -110,14 +110,12 @@ def halves_findings(found: Halves | None, problem: Problem) -> Iterator[Finding]
         "second": float(found.values[1, worst]),
         "deviations": size,
     }
-    yield Finding(
-        "parameters-drift",
-        "warning",
-        values,
+    message = (
         f"The two halves of the record have different parameters: {name!r} is {first} in the first and {second} in the "
-        f"second half, {size:.3g} standard deviations apart.{also}",
-        "Look for what changes with time or amplitude, such as friction or a nonlinear stiffness.",
+        f"second half, {size:.3g} standard deviations apart.{also}"
     )
+    advice = "Look for what changes with time or amplitude, such as friction or a nonlinear stiffness."
+    yield Finding("parameters-drift", "warning", values, message, advice)
 
 
 def _masks(residuals: Residuals) -> tuple[np.ndarray, np.ndarray]:

@@ -24,14 +24,12 @@ def growth_findings(problem: Problem, vector: np.ndarray) -> Iterator[Finding]:
     growth = error_growth(problem, vector)
     if growth < CHAOTIC:
         return
-    yield Finding(
-        "errors-grow",
-        "warning",
-        {"growth": growth},
+    message = (
         f"A small change of the initial state grows {growth:.2g} times along the motion, so that the misfit has many "
-        "false minima.",
-        "Fit in segments: write shooting = true in [identify], or shooting=MultipleShooting() in Python.",
+        "false minima."
     )
+    advice = "Fit in segments: write shooting = true in [identify], or shooting=MultipleShooting() in Python."
+    yield Finding("errors-grow", "warning", {"growth": growth}, message, advice)
 
 
 def error_growth(problem: Problem, vector: np.ndarray) -> float:

@@ -1,17 +1,17 @@
 """Parameters from measurements."""
 
-from dalembert.inverse.assessment import (
-    Designs,
-    Prediction,
-    Profile,
-    Profiles,
-    design,
-    identifiability,
-    predict,
-    profile,
-)
-from dalembert.inverse.bands import BandFit, GlobalSurrogate, Nested, identify_bands
-from dalembert.inverse.correlation import CorrelatedResiduals, NoiseProcess
+from dalembert.inverse.assessment.design import design
+from dalembert.inverse.assessment.designs import Designs
+from dalembert.inverse.assessment.identifiability import identifiability
+from dalembert.inverse.assessment.predict import predict
+from dalembert.inverse.assessment.prediction import Prediction
+from dalembert.inverse.assessment.profile import profile
+from dalembert.inverse.assessment.profiles import Profile, Profiles
+from dalembert.inverse.bands.band_fit import BandFit
+from dalembert.inverse.bands.global_surrogate import GlobalSurrogate
+from dalembert.inverse.bands.identify_bands import identify_bands
+from dalembert.inverse.bands.nested import Nested
+from dalembert.inverse.correlation.correlated import CorrelatedResiduals, NoiseProcess
 from dalembert.inverse.events import (
     Checked,
     Event,
@@ -30,7 +30,8 @@ from dalembert.inverse.experiments.validation import Validation
 from dalembert.inverse.fit.fit import Fit
 from dalembert.inverse.identify import identify
 from dalembert.inverse.least_squares.estimate import Identifiability
-from dalembert.inverse.sets import ParameterSet, identify_set
+from dalembert.inverse.sets.identify_set import identify_set
+from dalembert.inverse.sets.parameter_set import ParameterSet
 from dalembert.inverse.shooting.nodes import Nodes
 from dalembert.inverse.shooting.segments import ShootingState
 from dalembert.inverse.shooting.shooting import MultipleShooting

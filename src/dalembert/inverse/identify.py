@@ -11,7 +11,9 @@ from dalembert.data import Measurements
 from dalembert.errors import InputError, SolveError, shown, unknown
 from dalembert.forward import Executor, ForwardModel, check_derivatives, findings_at, takes_executor
 from dalembert.forward.provenance import provenance
-from dalembert.inverse.correlation import CorrelatedResiduals, correlation, correlation_findings
+from dalembert.inverse.correlation.correlated import CorrelatedResiduals
+from dalembert.inverse.correlation.correlation import correlation
+from dalembert.inverse.correlation.findings import correlation_findings
 from dalembert.inverse.events import Finished, OnEvent
 from dalembert.inverse.experiments.coverage import with_coverage
 from dalembert.inverse.experiments.experiment import Experiment, Part
@@ -27,7 +29,7 @@ from dalembert.inverse.least_squares.descent import End
 from dalembert.inverse.least_squares.estimate import Estimate, estimate, estimate_of, unknown_estimate
 from dalembert.inverse.least_squares.roughness import roughness_findings
 from dalembert.inverse.least_squares.too_few import too_few_findings
-from dalembert.inverse.misfit import misfit_conclusions
+from dalembert.inverse.misfit.misfit import misfit_conclusions
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.loss import loss_of
 from dalembert.inverse.problem.matching import check_kinds

@@ -1,4 +1,4 @@
-"""True runs where a surrogate has its bounds."""
+"""True runs where a surrogate has its bounds, and the best candidate that they check."""
 
 from dataclasses import dataclass
 
@@ -37,6 +37,32 @@ class Check:
     def upper(self) -> np.ndarray:
         """Largest outputs of the true runs, shape (outputs,)."""
         return self.values.max(axis=0)
+
+
+@dataclass(frozen=True, eq=False)
+class BandSolution:
+    """The best candidate, on the surrogate that bounds it.
+
+    Parameters
+    ----------
+    polynomial : ChebyshevPolynomial
+    candidate : Candidate
+    error : array, shape (outputs,)
+        Estimate of the surrogate's largest error on the candidate's box.
+    check : Check or None
+    success : bool
+    message : str
+    reached : int or None
+        Number of descents that ended there; None for a method without descents.
+    """
+
+    polynomial: ChebyshevPolynomial
+    candidate: Candidate
+    error: np.ndarray
+    check: Check | None
+    success: bool
+    message: str
+    reached: int | None = None
 
 
 def check(problem: BandProblem, polynomial: ChebyshevPolynomial, at: Candidate) -> Check | None:

@@ -9,10 +9,9 @@ from dalembert.arguments import Checked as CheckedArguments
 from dalembert.arguments import limited
 from dalembert.inverse.bands.band_problem import BandProblem
 from dalembert.inverse.bands.candidate import Candidate, candidate
-from dalembert.inverse.bands.check import Check, check, scale
+from dalembert.inverse.bands.check import BandSolution, check, scale
 from dalembert.inverse.bands.correction import corrected
 from dalembert.inverse.bands.descent import descend, screened
-from dalembert.inverse.bands.method import BandSolution
 from dalembert.inverse.events import Checked
 from dalembert.inverse.problem.matching import place
 from dalembert.inverse.problem.surrogates import surrogate_of
@@ -145,7 +144,8 @@ class GlobalSurrogate(CheckedArguments):
             checked = check(problem, polynomial, at)
             if checked is None:
                 break
-            _tell(problem, checked)
+            fitness, largest = float(problem.fitness(checked.lower, checked.upper)), float(checked.error.max())
+            problem.journal.tell(Checked(len(checked.points), problem.journal.simulations, fitness, largest))
             worst = float(np.max(checked.error / scale(problem)))
             if worst > sharpest:  # the correction made it worse
                 break
@@ -169,9 +169,3 @@ def _misfit(problem: BandProblem, at: Candidate) -> float:
     """Root mean square of the difference between the bounds and the given ones."""
     apart = problem.residual(at.bounds.lower, at.bounds.upper)
     return float(np.sqrt(np.sum(apart**2) / (2 * np.sum(problem.weights))))
-
-
-def _tell(problem: BandProblem, checked: Check) -> None:
-    fitness = float(problem.fitness(checked.lower, checked.upper))
-    journal = problem.journal
-    journal.tell(Checked(len(checked.points), journal.simulations, fitness, float(checked.error.max())))

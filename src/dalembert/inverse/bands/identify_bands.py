@@ -1,6 +1,7 @@
 """Intervals of parameters from bands of a response."""
 
 from collections.abc import Iterable
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,8 +15,8 @@ from dalembert.intervals import Box
 from dalembert.inverse.bands.band_fit import BandFit
 from dalembert.inverse.bands.band_problem import BandProblem, pose
 from dalembert.inverse.bands.candidate import slopes
+from dalembert.inverse.bands.check import BandSolution
 from dalembert.inverse.bands.global_surrogate import GlobalSurrogate
-from dalembert.inverse.bands.method import BandSolution, Method
 from dalembert.inverse.bands.nested import Nested
 from dalembert.inverse.bands.outcome import conclusions, outcome
 from dalembert.inverse.bands.unknowns import unknowns_of
@@ -23,6 +24,16 @@ from dalembert.inverse.events import Finished, OnEvent
 from dalembert.inverse.least_squares.estimate import Estimate, estimate
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.matching import check_kinds
+
+
+class Method(Protocol):
+    """A way to identify bands, made of settings."""
+
+    @property
+    def name(self) -> str: ...
+
+    def search(self, problem: BandProblem, seed: int) -> BandSolution: ...
+
 
 METHODS = {"global": GlobalSurrogate, "nested": Nested}
 

@@ -8,8 +8,7 @@ from dalembert.arguments import Checked
 from dalembert.errors import InputError, SolveError
 from dalembert.inverse.bands.band_problem import BandProblem
 from dalembert.inverse.bands.candidate import candidate
-from dalembert.inverse.bands.check import check
-from dalembert.inverse.bands.method import BandSolution
+from dalembert.inverse.bands.check import BandSolution, check
 from dalembert.inverse.problem.surrogates import surrogate_of
 from dalembert.optimize import ImprovedParticleSwarm, ParticleSwarm, Progress
 from dalembert.surrogate import ChebyshevPolynomial, TotalDegree, bounds

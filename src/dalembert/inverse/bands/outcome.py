@@ -7,8 +7,7 @@ from scipy.special import ndtri
 
 from dalembert.findings import Finding
 from dalembert.inverse.bands.band_problem import BandProblem
-from dalembert.inverse.bands.check import scale
-from dalembert.inverse.bands.method import BandSolution
+from dalembert.inverse.bands.check import BandSolution, scale
 from dalembert.inverse.fit.outcome import converged, failed_simulations
 from dalembert.inverse.problem.matching import place
 from dalembert.inverse.problem.noise import quantum, random_residuals

@@ -154,21 +154,14 @@ def _experiments(problem: Problem, lengths: Mapping[str, float], fitted: np.ndar
             )
     columns = np.concatenate([part.columns for part in model.parts if part.name in kept])
     data, weights = problem.data, np.where(missing, 0.0, problem.weights)
-    values = np.where(missing, np.nan, data.values)
     channels = tuple(data.channels[column] for column in columns)
+    both = Part("", data.coordinate, channels, np.arange(problem.samples), columns)
     part = replace(
         problem,
         model=model.only(kept),
         columns=problem.columns[columns],
         weights=weights[:, columns],
-        data=replace(
-            data,
-            channels=channels,
-            values=values[:, columns],
-            deviations=None if data.deviations is None else data.deviations[columns],
-            wraps=tuple(name for name in data.wraps if name in channels),
-            sampled=None if data.sampled is None else data.sampled[:, columns],
-        ),
+        data=both.data(replace(data, values=np.where(missing, np.nan, data.values))),
     )
     return Split(problem, part, fitted, _in_words(model, lengths))
 

@@ -7,8 +7,7 @@ import numpy as np
 from scipy.special import chdtri
 
 from dalembert.findings import Finding
-from dalembert.inverse.correlation import NoiseProcess
-from dalembert.inverse.correlation.correlated import CLEAR
+from dalembert.inverse.correlation.correlated import CLEAR, NoiseProcess
 from dalembert.inverse.correlation.series import Series
 from dalembert.inverse.misfit.residuals import Residuals
 

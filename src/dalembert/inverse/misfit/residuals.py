@@ -7,7 +7,7 @@ from typing import Self
 
 import numpy as np
 
-from dalembert.inverse.correlation import NoiseProcess
+from dalembert.inverse.correlation.correlated import NoiseProcess
 from dalembert.inverse.correlation.correlation import (
     Process,
     correlated_series,

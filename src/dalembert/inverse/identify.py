@@ -209,21 +209,13 @@ def identify(
     exact = reached and floor.source == "arithmetic"
     estimated, correlated = _estimated(problem, response, at, best, known=known, exact=exact)
     rounded = reached and floor.source == "rounded"
-    findings = correlation_findings(correlated, estimated.deviations, explained=rounded)
+    deviations = estimated.deviations
     found = integration_bias(problem, at, best.nodes)
-    biased = (
-        ()
-        if exact
-        else integration_findings(
-            found, problem, estimated.deviations, best.fitness, known=known, white=correlated is None
-        )
-    )
     undetermined = repeated(problem, vector, response) if best.nodes is None else ()
-    rough = () if exact else roughness_findings(problem, best, at, estimated.deviations)
     one_run = best.nodes is None or best.nodes.segments == 1
     looked = None if exact or rounded or not one_run else at
     parts_of_time, followed = misfit_conclusions(problem, looked, known=known)
-    others = rivals(problem, best, floor, estimated.deviations, known=known)
+    others = rivals(problem, best, floor, deviations, known=known)
     whole = response if problem is posed else posed.responses(vector[None])[0]
     predicted = parted.validation(whole)
     unexplained = () if predicted is None else explained_findings(predicted.explained)
@@ -265,10 +257,12 @@ def identify(
             *too_few_findings(problem, known=known),
             *rival_findings(problem, best, others, floor),
             *unit_findings(problem, vector, response),
-            *rough,
-            *findings,
+            *roughness_findings(problem, best, None if exact else at, deviations),
+            *correlation_findings(correlated, deviations, explained=rounded),
             *followed,
-            *biased,
+            *integration_findings(
+                None if exact else found, problem, deviations, best.fitness, known=known, white=correlated is None
+            ),
             *unexplained,
             *grown,
             *findings_at(model, vector),

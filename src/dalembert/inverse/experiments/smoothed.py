@@ -1,6 +1,6 @@
 """Measurements smoothed by local polynomials: what a segment begins with, and how exact the data are."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -66,17 +66,11 @@ def smooth_noise(data: Measurements, parts: Sequence[Part]) -> np.ndarray:
     return found
 
 
-def noise_findings(data: Measurements, noise: np.ndarray | None) -> tuple[Finding, ...]:
-    """Return the finding that the noise of the data was estimated by local polynomials; none where it was not."""
+def noise_findings(data: Measurements, noise: np.ndarray | None) -> Iterator[Finding]:
+    """Yield the finding that the noise of the data was estimated by local polynomials; none where it was not."""
     if noise is None:
-        return ()
-    listed = ", ".join(f"{name!r} {own:.3g}" for name, own in zip(data.channels, noise, strict=True))
-    return (
-        Finding(
-            "smoothed-noise",
-            "note",
-            dict(zip(data.channels, map(float, noise), strict=True)),
-            f"The data have no deviations. Their noise was estimated by local polynomials: {listed}.",
-            "Give deviations if you know them.",
-        ),
-    )
+        return
+    values = dict(zip(data.channels, map(float, noise), strict=True))
+    listed = ", ".join(f"{name!r} {own:.3g}" for name, own in values.items())
+    message = f"The data have no deviations. Their noise was estimated by local polynomials: {listed}."
+    yield Finding("smoothed-noise", "note", values, message, "Give deviations if you know them.")

@@ -22,6 +22,7 @@ from dalembert.inverse.fit.stored_search import History, Starts
 from dalembert.inverse.least_squares.estimate import Estimate, Identifiability
 from dalembert.inverse.least_squares.identifiable import identifiability_findings
 from dalembert.inverse.misfit.halves import Halves
+from dalembert.inverse.problem.combinations import amounts
 from dalembert.inverse.problem.prior import priors
 from dalembert.inverse.shooting.nodes import Nodes
 from dalembert.results import EndedResult, fact_lines, fixed_lines, text_table
@@ -247,12 +248,8 @@ def _integration_facts(fit: Fit) -> list[str]:
     found = fit.integration
     if found is None or found.failed:
         return []
-    biases = ", ".join(
-        f"{item.name} {f'{bias:.2g} {item.unit}'.rstrip()}"
-        for item, bias in zip(fit.parameters, found.bias, strict=True)
-    )
     return [
-        f"integrator   bias of the values {biases} (by one simulation {found.how})",
+        f"integrator   bias of the values {amounts(fit.parameters, found.bias)} (by one simulation {found.how})",
         f"             fitness with converged steps {found.fitness:.6g}, with corrected values {found.corrected:.6g}",
     ]
 

@@ -24,16 +24,12 @@ class History:
     def store(self, to: Store, settings: dict[str, Any], name: str, value: Sequence[Step]) -> None:
         size = len(to.coordinates[self.over][1])
         for count in COUNTS:
-            numbers = [getattr(step, count) for step in value]
-            to.variables[f"step_{count}"] = ("step", np.array(numbers, dtype=np.int64))
-        to.variables["step_best"] = ("step", np.array([step.best for step in value], dtype=float))
-        values = np.array([step.values for step in value]).reshape(-1, size)
-        to.variables["step_values"] = (("step", self.over), values)
+            to.variables[f"step_{count}"] = ("step", _column(value, count, np.int64))
+        to.variables["step_best"] = ("step", _column(value, "best"))
+        to.variables["step_values"] = (("step", self.over), _column(value, "values").reshape(-1, size))
         to.variables.update(_stored_steps(value))
         if any(step.gap is not None for step in value):
-            for variable, attribute in OPTIONAL.items():
-                numbers = [getattr(step, attribute) for step in value]
-                to.variables[variable] = ("step", np.array(numbers, dtype=float))
+            to.variables.update({name: ("step", _column(value, own)) for name, own in OPTIONAL.items()})
         settings["samples"] = value[-1].samples if value else 0
 
     def load(self, source: Source, settings: Mapping[str, Any], name: str) -> tuple[Step, ...]:
@@ -56,12 +52,10 @@ class Starts:
 
     def store(self, to: Store, settings: dict[str, Any], name: str, value: Sequence[StartEnd]) -> None:
         size = len(to.coordinates[self.over][1])
-        for variable, attribute in (("start_values", "start"), ("end_values", "end")):
-            values = np.array([getattr(start, attribute) for start in value]).reshape(-1, size)
-            to.variables[variable] = (("start", self.over), values)
-        to.variables["end_fitness"] = ("start", np.array([start.fitness for start in value], dtype=float))
-        counts = [start.simulations for start in value]
-        to.variables["start_simulations"] = ("start", np.array(counts, dtype=np.int64))
+        for end in ("start", "end"):
+            to.variables[f"{end}_values"] = (("start", self.over), _column(value, end).reshape(-1, size))
+        to.variables["end_fitness"] = ("start", _column(value, "fitness"))
+        to.variables["start_simulations"] = ("start", _column(value, "simulations", np.int64))
         settings["ends"] = [{"success": start.success, "message": start.message} for start in value]
 
     def load(self, source: Source, settings: Mapping[str, Any], name: str) -> tuple[StartEnd, ...]:
@@ -71,6 +65,11 @@ class Starts:
             StartEnd(start, end, float(fitness), bool(how["success"]), str(how["message"]), int(simulations))
             for start, end, fitness, simulations, how in columns
         )
+
+
+def _column(items: Sequence[object], attribute: str, kind: type = float) -> np.ndarray:
+    """An attribute of all items, NaN for None."""
+    return np.array([getattr(item, attribute) for item in items], dtype=kind)
 
 
 def _finite(stored: float) -> float | None:
@@ -86,8 +85,8 @@ def _stored_steps(history: Sequence[Step]) -> dict[str, Any]:
     if not any(accounts):
         return {}
     points = max(len(account.weights) for account in accounts if account)
-    numbers = {name: ("step", np.array([_number(account, name) for account in accounts])) for name in NUMBERS}
-    trials = np.array([account.trials if account else 0 for account in accounts], dtype=np.int64)
+    numbers = {name: ("step", np.array([getattr(one, name, np.nan) for one in accounts])) for name in NUMBERS}
+    trials = np.array([getattr(one, "trials", 0) for one in accounts], dtype=np.int64)
     curves = {
         name: (("step", "curve_point"), np.array([_padded(account, name, points) for account in accounts]))
         for name in CURVES
@@ -110,10 +109,6 @@ def _steps_of(arrays: Mapping[str, np.ndarray], number: int) -> Iterator[Regular
         )
 
 
-def _number(account: RegularisedStep | None, name: str) -> float:
-    return getattr(account, name) if account else np.nan
-
-
 def _padded(account: RegularisedStep | None, name: str, points: int) -> np.ndarray:
-    curve = getattr(account, name) if account else np.empty(0)
+    curve = getattr(account, name, np.empty(0))
     return np.pad(curve, (0, points - len(curve)), constant_values=np.nan)

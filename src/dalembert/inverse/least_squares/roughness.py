@@ -7,6 +7,7 @@ import numpy as np
 from dalembert.findings import Finding
 from dalembert.inverse.least_squares.descent import End
 from dalembert.inverse.least_squares.estimate import UNSEEN
+from dalembert.inverse.problem.combinations import amounts
 from dalembert.inverse.problem.problem import Linearisation, Problem
 
 LARGE = 0.5
@@ -41,13 +42,9 @@ def roughness_findings(
         return
     values = {"foreseen": foreseen, "deviations": float(ratios[worst])}
     values |= {name: float(abs(change)) for name, change in zip(parameters.names, step, strict=True)}
-    close = ", ".join(
-        f"{item.name} {f'{abs(change):.2g} {item.unit}'.rstrip()}"
-        for item, change in zip(parameters, step, strict=True)
-    )
     message = (
         f"The misfit is rough below {100 * foreseen:.2g} % of its value. The identified values are determined to about "
-        f"{close}, at most {ratios[worst]:.2g} standard deviations."
+        f"{amounts(parameters, np.abs(step))}, at most {ratios[worst]:.2g} standard deviations."
     )
     advice = "Use smaller steps or a tighter tolerance of the solver, and smoother laws, such as a larger slip_rate."
     yield Finding("rough-misfit", "warning" if ratios[worst] > LARGE else "note", values, message, advice)

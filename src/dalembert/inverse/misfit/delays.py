@@ -52,7 +52,8 @@ def suspect_delays(residuals: Residuals) -> tuple[tuple[SuspectDelay, ...], Resi
     found: list[SuspectDelay] = []
     rates = _rates(residuals)
     while rates:
-        best = max(filter(None, (_estimated(residuals, name, rate) for name, rate in rates.items())), default=None)
+        estimates = filter(None, (_estimated(residuals, name, rate) for name, rate in rates.items()))
+        best = max(estimates, key=lambda item: item.gain, default=None)
         if best is None or not best.accepted:
             break
         found.append(best.suspect)
@@ -90,9 +91,6 @@ class _Estimated:
     left: Residuals
     gain: float
     accepted: bool
-
-    def __lt__(self, other: "_Estimated") -> bool:
-        return self.gain < other.gain
 
 
 def _rates(residuals: Residuals) -> dict[str, np.ndarray]:

@@ -6,12 +6,23 @@ import numpy as np
 from scipy import linalg
 
 from dalembert.errors import listed
+from dalembert.parameters import Parameters
 
 SHOWN = 0.1
 """Part of its width by which the parameter that moves most moves in a sentence."""
 
 MEMBER = 0.1
 """Parameters that move by less than this part of the largest move, both as parts of their widths, are not named."""
+
+
+def amounts(parameters: Parameters, values: np.ndarray) -> str:
+    """Numbers (parameters,) with the names and units of parameters.
+
+    >>> amounts(Parameters.of({"mass": (1.0, 2.0), "angle": (0.0, 1.0)}), np.array([0.1, 2e-5]))
+    'mass 0.1, angle 2e-05'
+    """
+    pairs = zip(parameters, values, strict=True)
+    return ", ".join(f"{item.name} {value:.2g} {item.unit}".rstrip() for item, value in pairs)
 
 
 def separated(rows: np.ndarray) -> np.ndarray:

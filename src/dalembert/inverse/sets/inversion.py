@@ -97,7 +97,9 @@ class Inversion:
     def paved(self, surrogate: Surrogate, resolution: float) -> Paving:
         """Paving of the box of a surrogate."""
         limits = Limits(self.data, self.error, surrogate.error, self.wraps)
-        return pave(surrogate.polynomial, limits, resolution, self.most_boxes, self._told)
+        return pave(
+            surrogate.polynomial, limits, resolution, self.most_boxes, lambda *boxes: self.journal.tell(Paved(*boxes))
+        )
 
     def consistent(self, box: np.ndarray) -> bool:
         """Whether true runs at the corners of a box (2, d) keep within the error; two opposite ones of many."""
@@ -131,6 +133,3 @@ class Inversion:
         if self.nearest is None or worst[best] < self.nearest.excess:
             self.nearest = Nearest(points[best], float(worst[best]), int(np.argmax(excess[best])))
         return values
-
-    def _told(self, inside: int, boundary: int, waiting: int) -> None:
-        self.journal.tell(Paved(inside, boundary, waiting))

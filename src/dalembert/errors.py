@@ -119,6 +119,15 @@ def listed(words: Sequence[str]) -> str:
     return " and ".join(filter(None, [", ".join(words[:-1]), words[-1]]))
 
 
+def counted(number: int, what: str) -> str:
+    """A number of things.
+
+    >>> counted(1, "value"), counted(3, "value")
+    ('1 value', '3 values')
+    """
+    return f"{number} {what}" + ("" if number == 1 else "s")
+
+
 def shown(value: object) -> str:
     """A value as a sentence can hold it: in one line, and not long.
 

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from dalembert.arguments import check_whole, takes_checked
 from dalembert.data import Measurements
-from dalembert.errors import InputError, SolveError, shown, unknown
+from dalembert.errors import InputError, SolveError, require_known, shown
 from dalembert.forward import Executor, ForwardModel, check_derivatives, findings_at, takes_executor
 from dalembert.forward.provenance import provenance
 from dalembert.inverse.correlation.correlated import CorrelatedResiduals
@@ -24,11 +24,10 @@ from dalembert.inverse.experiments.suspect_units import unit_findings
 from dalembert.inverse.experiments.validation import HeldOut, split
 from dalembert.inverse.fit.fit import Fit
 from dalembert.inverse.fit.integration import integration_bias, integration_findings
-from dalembert.inverse.fit.outcome import outcome
+from dalembert.inverse.fit.outcome import outcome, too_few_findings
 from dalembert.inverse.least_squares.descent import End
 from dalembert.inverse.least_squares.estimate import Estimate, estimate, estimate_of, unknown_estimate
 from dalembert.inverse.least_squares.roughness import roughness_findings
-from dalembert.inverse.least_squares.too_few import too_few_findings
 from dalembert.inverse.misfit.misfit import misfit_conclusions
 from dalembert.inverse.problem.journal import Journal
 from dalembert.inverse.problem.loss import loss_of
@@ -165,10 +164,9 @@ def identify(
         _check_shooting(method, validation)
     starts = starts if starts is not None else 3 if shooting is not None else 8 if squares else 1
     check_whole("identify", "starts", starts, 1)
-    if horizon not in HORIZONS:
-        raise InputError(unknown("horizon", str(horizon), [name for name in HORIZONS if name]))
-    if spread not in SPREADS:
-        raise InputError(unknown("spread", str(spread), SPREADS))
+    if horizon is not None:
+        require_known("horizon", str(horizon), HORIZONS)
+    require_known("spread", str(spread), SPREADS)
     model, data, weights, parts = _joined(begun(placed(model, executor), start), data, weights)
     given = data.deviations is not None and weights is None
     smooth = None if shooting is None or given or weights is not None else smooth_noise(data, parts)

@@ -22,7 +22,6 @@ SECTIONS = sorted(path.relative_to(SOURCE).as_posix() for path in (SOURCE / "rep
 SOURCES = [
     "inverse/least_squares/descent.py",
     "inverse/least_squares/estimate.py",
-    "inverse/least_squares/too_few.py",
     "inverse/problem/prior.py",
     "inverse/correlation/findings.py",
     "inverse/least_squares/identifiable.py",
@@ -30,7 +29,7 @@ SOURCES = [
     *(f"inverse/experiments/{name}.py" for name in ("coverage", "explained", "suspect_units", "validation")),
     *(f"inverse/misfit/{name}.py" for name in ("delays", "halves", "model_misfit")),
     *(f"inverse/bands/{name}.py" for name in ("band_fit", "outcome")),
-    "inverse/sets/outcome.py",
+    "inverse/sets/conclusions.py",
     *(f"inverse/assessment/{name}.py" for name in ("designs", "prediction", "profiles", "walk")),
     *(f"optimize/{name}.py" for name in ("least_squares", "response_sensitivity", "swarm")),
     *(f"uncertainty/{name}.py" for name in ("chebyshev", "comparison", "optimise", "propagate", "taylor")),

@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 
 from dalembert.contents import Contents
-from dalembert.errors import listed
+from dalembert.errors import counted, listed
 from dalembert.findings import Finding
 from dalembert.results import EndedResult, fixed_lines, text_table
 from dalembert.stored_fields import Over, StoredParameters
@@ -80,7 +80,7 @@ class Designs(EndedResult):
     def _outcome(self) -> Iterator[Finding]:
         if not self.success:
             lost = int(self.unseen[0])
-            message = f"No design identifies all parameters: the best one does not see {_counted(lost, 'combination')}."
+            message = f"No design identifies all parameters: the best one does not see {counted(lost, 'combination')}."
             advice = "Measure other channels, or fix parameters."
             yield Finding("insufficient-design", "error", {"combinations": lost}, message, advice)
             return
@@ -94,7 +94,7 @@ class Designs(EndedResult):
             yield Finding("worst-design", "note", {"design": last, "ratio": ratio}, message)
         lost = len(self.scores) - len(enough)
         if lost:
-            message = f"{_counted(lost, 'design')} would leave a combination of the parameters unidentifiable."
+            message = f"{counted(lost, 'design')} would leave a combination of the parameters unidentifiable."
             yield Finding("unusable-designs", "note", {"designs": lost}, message)
         widths = (self.parameters.upper - self.parameters.lower) / np.sqrt(12)
         weak = [name for name, ill in zip(self.parameters.names, self.deviations[0] > widths, strict=True) if ill]
@@ -123,7 +123,3 @@ class Designs(EndedResult):
         found = super().contents()
         horizons = ("design", self.horizons, {"units": self.unit})
         return replace(found, variables={**found.variables, "horizons": horizons})
-
-
-def _counted(number: int, what: str) -> str:
-    return f"{number} {what}" + ("" if number == 1 else "s")

@@ -78,10 +78,5 @@ def identifiability(
     slopes = (np.sqrt(weights) / noise)[:, :, None] * linearised(model, vector)[1][:, columns] * parameters.scale
     rows = [slopes.reshape(-1, len(vector))] + ([prior_slopes(parameters, parameters.scale)] if known else [])
     told = estimate(np.concatenate(rows), parameters.scale, 1.0 if known else np.nan)
-    return Identifiability(
-        told.singular_values,
-        told.directions,
-        tuple(foreseen(parameters, told, noise_known=known)),
-        told.deviations,
-        told.correlation,
-    )
+    findings = tuple(foreseen(parameters, told, noise_known=known))
+    return Identifiability(told.singular_values, told.directions, findings, told.deviations, told.correlation)

@@ -111,7 +111,8 @@ class Moments:
         residuals that are no noise.
         """
         applied = self.process.applied(self.basis)
-        applied[on_grid(self._grid, np.ones(len(self._grid))) == 0] = 0.0
+        assert self.series.grid is not None
+        applied[np.delete(np.arange(len(applied)), self.series.grid)] = 0.0  # gaps
         reduced = self.basis @ common
         bias = np.array(
             [
@@ -123,11 +124,6 @@ class Moments:
         if abs(bias[0]) > most:
             bias *= most / abs(bias[0])
         return Moments(self.series, self.basis, self.count, self.sums, (self.sums - bias) / self.count)
-
-    @property
-    def _grid(self) -> np.ndarray:
-        assert self.series.grid is not None
-        return self.series.grid
 
 
 def moments(series: Series, values: np.ndarray, basis: np.ndarray) -> Moments:

@@ -45,14 +45,9 @@ class SuspectUnit:
     ratio: float
 
     @property
-    def prefix(self) -> bool:
-        """Whether the factor is that of a metric prefix, not that of degrees."""
-        return self.factor in (PREFIX, 1 / PREFIX)
-
-    @property
     def question(self) -> str:
         """What may be wrong, as a question."""
-        if self.prefix:
+        if self.factor in (PREFIX, 1 / PREFIX):
             return "Is a metric prefix wrong, such as mm for m?"
         return "Are the data in degrees?" if self.factor > 1 else "Were data in radians converted from degrees?"
 

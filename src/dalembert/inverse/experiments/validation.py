@@ -43,11 +43,9 @@ class Validation:
     covered: float = np.nan
 
     def __str__(self) -> str:
-        return " ".join(filter(None, [self._compared, percentages(self.explained), self._covered]))
-
-    @property
-    def _covered(self) -> str:
-        return "" if np.isnan(self.covered) else f"The 95 % bands contain {100 * self.covered:.3g} % of these values."
+        covered = f"The 95 % bands contain {100 * self.covered:.3g} % of these values."
+        texts = [self._compared, percentages(self.explained), "" if np.isnan(self.covered) else covered]
+        return " ".join(filter(None, texts))
 
     @property
     def _compared(self) -> str:

@@ -16,8 +16,7 @@ from dalembert.inverse.events import StartEnd, Step
 from dalembert.inverse.experiments.experiment import ExperimentFit, Part, experiment_fit
 from dalembert.inverse.experiments.validation import Validation
 from dalembert.inverse.fit.integration import IntegrationBias
-from dalembert.inverse.fit.stored_data import StoredData
-from dalembert.inverse.fit.stored_parts import StoredParts
+from dalembert.inverse.fit.stored_data import StoredData, StoredParts
 from dalembert.inverse.fit.stored_search import History, Starts
 from dalembert.inverse.least_squares.estimate import Estimate, Identifiability
 from dalembert.inverse.least_squares.identifiable import identifiability_findings

@@ -1,12 +1,12 @@
-"""How an identification ended, as findings."""
+"""How an identification ended, and whether there are enough data for it, as findings."""
 
 from collections.abc import Iterator
 
 import numpy as np
 
+from dalembert.errors import counted
 from dalembert.findings import Finding
 from dalembert.inverse.least_squares.descent import End
-from dalembert.inverse.least_squares.too_few import lacking
 from dalembert.inverse.problem.noise import NoiseFloor, signal
 from dalembert.inverse.problem.problem import Problem
 from dalembert.inverse.shooting.nodes import Nodes
@@ -19,6 +19,10 @@ _SOURCES = {
     "rounded": "estimated from their rounding",
     "arithmetic": "rounding errors of the arithmetic",
 }
+_MORE = (
+    "Measure more samples or channels, fix parameters by equal bounds, or give the deviation of what is known before "
+    "the data."
+)
 
 
 def outcome(
@@ -61,6 +65,36 @@ def outcome(
         yield from _compared(problem, best, response, floor, correlated=correlated)
 
 
+def lacking(problem: Problem) -> bool:
+    """Whether there are fewer values than parameters."""
+    return problem.compared < len(problem.model.parameters)
+
+
+def too_few_findings(problem: Problem, *, known: bool) -> Iterator[Finding]:
+    """Return a finding where values are fewer than parameters, or leave no residual to estimate the noise from.
+
+    Parameters
+    ----------
+    problem : Problem
+    known : bool
+        Whether the noise of the data is.
+    """
+    values, parameters = problem.compared, len(problem.model.parameters)
+    counts = {"values": values, "parameters": parameters}
+    if lacking(problem):
+        message = (
+            f"{counted(values, 'value')} cannot determine {counted(parameters, 'parameter')}: other parameters "
+            "explain the data as well."
+        )
+        yield Finding("too-few-data", "warning", counts, message, _MORE)
+    elif values == parameters and not known:
+        message = (
+            f"There are as many parameters as values ({values}), so no residuals are left to estimate the standard "
+            "deviations or to test the model."
+        )
+        yield Finding("too-few-data", "warning", counts, message, _MORE)
+
+
 def converged(success: bool, reason: str, message: str = "Converged.") -> Finding:
     """Return whether a search converged; ``reason`` is why it stopped."""
     if success:
@@ -71,8 +105,8 @@ def converged(success: bool, reason: str, message: str = "Converged.") -> Findin
 def failed_simulations(failures: list[str]) -> Iterator[Finding]:
     """Yield a finding if simulations failed; ``failures`` are their reasons."""
     if failures:
-        count = f"{len(failures)} simulation{'s' * (len(failures) > 1)}"
-        message = f"{count} failed and {'were' if len(failures) > 1 else 'was'} left out; the first: {failures[0]}."
+        failed = f"{counted(len(failures), 'simulation')} failed and {'were' if len(failures) > 1 else 'was'} left out"
+        message = f"{failed}; the first: {failures[0]}."
         yield Finding("failed-simulations", "note", {"failures": len(failures), "first": failures[0]}, message)
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dalembert.arguments import is_number
-from dalembert.errors import InputError, shown, unknown
+from dalembert.errors import InputError, require_known, shown
 
 Curve = Callable[[np.ndarray], np.ndarray]
 
@@ -109,8 +109,7 @@ def loss_of(name: str, scale: float | None, *, known: bool) -> Loss | None:
     InputError
         For an unknown name, a scale that is not positive or has nothing to scale, none where none is usual.
     """
-    if not isinstance(name, str) or name not in NAMES:
-        raise InputError(unknown("loss", str(name), NAMES))
+    require_known("loss", str(name), NAMES)
     if name == "linear":
         if scale is not None:
             raise InputError("loss_scale was given, but the loss is 'linear', which has none; leave it out")

@@ -1,23 +1,11 @@
 """Whether data along a coordinate, measurements or bands, fit to a model."""
 
-from typing import Protocol
-
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dalembert.data import Measurements
+from dalembert.data import Bands, Measurements
 from dalembert.errors import DataError, InputError, shown, unknown
-from dalembert.forward import Coordinate, ForwardModel
-
-
-class Labelled(Protocol):
-    """What measurements and bands have in common."""
-
-    @property
-    def coordinate(self) -> Coordinate: ...
-
-    @property
-    def channels(self) -> tuple[str, ...]: ...
+from dalembert.forward import ForwardModel
 
 
 def check_kinds(owner: str, model: object, data: object, kind: type = Measurements) -> None:
@@ -39,7 +27,7 @@ def check_kinds(owner: str, model: object, data: object, kind: type = Measuremen
         )
 
 
-def columns_of(model: ForwardModel, data: Labelled) -> np.ndarray:
+def columns_of(model: ForwardModel, data: Measurements | Bands) -> np.ndarray:
     """Where the data's channels stand among the model's, shape (channels,).
 
     Raises
@@ -54,7 +42,7 @@ def columns_of(model: ForwardModel, data: Labelled) -> np.ndarray:
     return np.array([names.index(channel) for channel in data.channels])
 
 
-def check_samples(model: ForwardModel, data: Labelled) -> None:
+def check_samples(model: ForwardModel, data: Measurements | Bands) -> None:
     """Refuse data whose samples lie elsewhere than the model's.
 
     Raises
@@ -109,20 +97,14 @@ def check_sizes(data: Measurements) -> None:
     ------
     DataError
     """
-    for name, largest in zip(
-        data.channels, np.max(np.abs(np.where(data.present, data.values, 0.0)), axis=0), strict=True
-    ):
-        if largest > MOST:
-            raise DataError(
-                f"channel {name!r}: its largest absolute value is {largest:.3g}; expected at most {MOST:g}; {UNITS}"
-            )
-    if data.deviations is None:
-        return
-    for name, deviation in zip(data.channels, data.deviations, strict=True):
-        if not 1 / MOST <= deviation <= MOST:
-            raise DataError(
-                f"channel {name!r}: its deviation is {deviation:.3g}; expected {1 / MOST:g} to {MOST:g}; {UNITS}"
-            )
+    sizes = np.max(np.abs(np.where(data.present, data.values, 0.0)), axis=0)
+    limits = [("largest absolute value", sizes, 0.0, f"at most {MOST:g}")]
+    if data.deviations is not None:
+        limits.append(("deviation", data.deviations, 1 / MOST, f"{1 / MOST:g} to {MOST:g}"))
+    for what, numbers, least, expected in limits:
+        for name, number in zip(data.channels, numbers, strict=True):
+            if not least <= number <= MOST:
+                raise DataError(f"channel {name!r}: its {what} is {number:.3g}; expected {expected}; {UNITS}")
 
 
 UNITS = "use other units"
@@ -169,7 +151,7 @@ def weights_of(given: ArrayLike | None, shape: tuple[int, ...]) -> np.ndarray:
     return np.broadcast_to(weights, shape)
 
 
-def place(data: Labelled, output: int) -> str:
+def place(data: Measurements | Bands, output: int) -> str:
     """Where one of samples × channels outputs lies, for example ``"channel 'AB.end.x', time 0.5 s"``."""
     sample, column = divmod(output, len(data.channels))
     along = data.coordinate

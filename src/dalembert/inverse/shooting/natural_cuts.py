@@ -58,7 +58,8 @@ def natural_cuts(
         estimates = _Estimates(track, smoothed(track.data))
         values = values.copy()
         values[track.wiring] = np.clip(estimates.fitted(values[track.wiring]), lower[track.wiring], upper[track.wiring])
-        fewest = _fewest(track, estimates)
+        # a segment has at least twice as many values as numbers of its state
+        fewest = max(4, -(-2 * len(estimates.start.names) // len(track.columns)))
         tried = min(TRIED, (len(track.times) - 1) // fewest) if count is None else count
         if tried < 2 or (len(track.times) - 1) // tried < 2:
             raise InputError(
@@ -75,11 +76,6 @@ def natural_cuts(
             nodes = [nodes[0], *_chosen(nodes[1:], grown[1:], FINE, len(places) // FEWEST)]
         cuts.append(Cut(track, tuple(nodes[1:])))
     return cuts, values
-
-
-def _fewest(track: Track, estimates: "_Estimates") -> int:
-    """Samples of a segment at least: twice as many values as numbers of its state."""
-    return max(4, -(-2 * len(estimates.start.names) // len(track.columns)))
 
 
 def coarser(cuts: Sequence[Cut], grown: Sequence[Sequence[np.ndarray]]) -> list[Cut]:

@@ -28,15 +28,13 @@ def check_segments(problem: Problem, shooting: MultipleShooting) -> None:
         names.
     """
     for track in tracks(problem):
-        if shooting.states is None:
-            if restartable(track.model) is None:
-                raise InputError(
-                    f"shooting: {track.where}the model cannot begin at a later state; leave out "
-                    "sensors and an unknown start, or name its states: MultipleShooting({parameter: "
-                    "ShootingState(channel, lower, upper)})"
-                )
-            continue
-        _check_named(track, shooting)
+        if shooting.states is not None:
+            _check_named(track, shooting)
+        elif restartable(track.model) is None:
+            raise InputError(
+                f"shooting: {track.where}the model cannot begin at a later state; leave out sensors and an unknown "
+                "start, or name its states: MultipleShooting({parameter: ShootingState(channel, lower, upper)})"
+            )
 
 
 def _check_named(track: Track, shooting: MultipleShooting) -> None:

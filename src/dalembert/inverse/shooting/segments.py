@@ -153,8 +153,9 @@ class Segments:
             Where a segment cannot be simulated.
         """
         runs = [piece.model.linearise(vector[piece.places]) for piece in self.pieces]
-        blocks = tuple(slopes[-len(piece.rows) :][:, piece.picked] for piece, (_, slopes) in self._with(runs))
-        ends = tuple(slopes[-1, piece.ends] for piece, (_, slopes) in self._with(runs))
+        slopes = [(piece, own) for piece, (_, own) in zip(self.pieces, runs, strict=True)]
+        blocks = tuple(own[-len(piece.rows) :][:, piece.picked] for piece, own in slopes)
+        ends = tuple(own[-1, piece.ends] for piece, own in slopes)
         return Tangent(vector, self._response(vector, [values for values, _ in runs]), blocks, ends)
 
     def jacobian(self, at: Tangent) -> np.ndarray:
@@ -174,12 +175,9 @@ class Segments:
             first += len(rows)
         return slopes / self.ranges[:, None]
 
-    def _with(self, runs: Sequence) -> zip:
-        return zip(self.pieces, runs, strict=True)
-
     def _response(self, vector: np.ndarray, runs: Sequence[np.ndarray]) -> Response:
         values, gaps = np.zeros(self.shape), [np.zeros(0)]
-        for piece, run in self._with(runs):
+        for piece, run in zip(self.pieces, runs, strict=True):
             values[piece.block] = run[-len(piece.rows) :][:, piece.picked]
             gaps.append(run[-1, piece.ends] - vector[piece.begins])
         gap = np.concatenate(gaps) / self.ranges

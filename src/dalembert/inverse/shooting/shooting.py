@@ -226,13 +226,10 @@ def _nodes(level: Level, count: int) -> Nodes:
     begins, gaps = level.chain.met(level.found.point)
     nodes = [(cut.track, node) for cut in level.cuts for node in cut.nodes]
     units = {name: unit for _, node in nodes for name, unit in zip(node.names, node.units, strict=True)}
+    rows = np.repeat(np.arange(len(nodes)), [len(node.names) for _, node in nodes])
+    columns = [list(units).index(name) for _, node in nodes for name in node.names]
     table = np.full((2, len(nodes), len(units)), np.nan)
-    place = 0
-    for row, (_, node) in enumerate(nodes):
-        columns = [list(units).index(name) for name in node.names]
-        own = slice(place, place + len(columns))
-        table[0, row, columns], table[1, row, columns] = begins[own] + gaps[own], begins[own]
-        place += len(columns)
+    table[:, rows, columns] = begins + gaps, begins
     wiring = [
         np.array([cut.track.wiring[cut.track.model.parameters.names.index(name)] for name in cut.states], dtype=int)
         for cut in level.cuts

@@ -20,7 +20,7 @@ Attempt: TypeAlias = tuple[np.ndarray, int, float | None]
 """A search point (parameters,) to start from, the rung of the ladder of horizons to begin on, and the point's fitness
 over all samples if it is known."""
 
-HORIZONS = ("growing", None)
+HORIZONS = ("growing",)
 
 SCREENED = 8
 """Points simulated to choose starts from, a parameter and start."""

@@ -87,12 +87,9 @@ def rival_findings(problem: Problem, best: End, others: list[End], floor: NoiseF
 
 def _new(problem: Problem, end: End, known: list[End], reach: np.ndarray) -> bool:
     """Return True if an end lies apart from the known ones."""
-    return all(_apart(problem, end, other, reach) for other in known)
-
-
-def _apart(problem: Problem, one: End, other: End, reach: np.ndarray) -> bool:
-    a, b = (problem.search.vectors(end.point) for end in (one, other))
-    return bool(np.any(np.abs(a - b) > np.fmax(reach, SAME * np.maximum(np.abs(a), np.abs(b)))))
+    here, *others = (problem.search.vectors(one.point) for one in (end, *known))
+    sizes = [np.fmax(reach, SAME * np.maximum(np.abs(here), np.abs(there))) for there in others]
+    return all(np.any(np.abs(here - there) > size) for there, size in zip(others, sizes, strict=True))
 
 
 def _one_valley(problem: Problem, best: End, end: End, deviations: np.ndarray, most: float, reach: np.ndarray) -> bool:

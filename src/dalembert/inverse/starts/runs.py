@@ -1,31 +1,18 @@
 """Starts of any other method than least squares, and the least squares that may polish them."""
 
 from functools import partial
-from typing import Protocol
+from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from dalembert.inverse.least_squares.descent import End, refine
 from dalembert.inverse.problem.noise import NoiseFloor
 from dalembert.inverse.problem.problem import Problem
 from dalembert.inverse.starts.spread import spread_points
-from dalembert.optimize import Minimiser, Minimum, Objective, OnIteration, Progress, Squares
+from dalembert.optimize import Minimiser, Progress, Squares, Swarm
 
-
-class Method(Protocol):
-    """A minimiser of a fitness that comes in batches, such as the swarms and :class:`~dalembert.optimize.Minimiser`."""
-
-    def minimise(
-        self,
-        objective: Objective,
-        lower: ArrayLike,
-        upper: ArrayLike,
-        seed: int,
-        *,
-        start: ArrayLike | None = None,
-        on_iteration: OnIteration | None = None,
-    ) -> Minimum: ...
+Method: TypeAlias = Swarm | Minimiser
+"""A minimiser of a fitness that comes in batches."""
 
 
 def runs(

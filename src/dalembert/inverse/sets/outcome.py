@@ -1,0 +1,77 @@
+"""How a set inversion ended, as findings."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from dalembert.data import Measurements
+from dalembert.findings import Finding
+from dalembert.inverse.fit.outcome import failed_simulations
+from dalembert.inverse.problem.matching import place
+from dalembert.inverse.sets.inversion import Nearest
+from dalembert.inverse.sets.paving import Paving
+
+NOTICED = 0.1
+"""Part of the data's error from which that of the surrogate is mentioned."""
+
+TIGHTER = "Use a scheme with a smaller tolerance."
+
+
+def outcome(
+    data: Measurements,
+    share: float,
+    paving: Paving,
+    nearest: Nearest | None,
+    at: str,
+    believed: bool,
+    failures: list[str],
+) -> Iterator[Finding]:
+    """Yield whether the set is empty, whether the paving was finished, and what the surrogate's error does.
+
+    Parameters
+    ----------
+    data : Measurements
+    share : float
+        Largest error of the surrogate, in units of that of the data.
+    paving : Paving
+    nearest : Nearest or None
+    at : str
+        The nearest run's parameters as text.
+    believed : bool
+        Whether true runs at the corners of the inner box keep within the error.
+    failures : list of str
+        Reasons of failed simulations.
+    """
+    yield from _paved(data, paving, nearest, at)
+    yield from failed_simulations(failures)
+    if share > NOTICED:
+        message = (
+            f"The surrogate's error is up to {share:.2g} times that of the data and widens the boundary by as much."
+        )
+        yield Finding("surrogate-error", "note", {"share": share}, message, TIGHTER)
+    if not believed:
+        message = (
+            "True runs at the corners of the inner box exceed the error: the surrogate is worse than its estimate."
+        )
+        yield Finding("inner-box-contradicted", "error", {}, message, TIGHTER)
+
+
+def _paved(data: Measurements, paving: Paving, nearest: Nearest | None, at: str) -> Iterator[Finding]:
+    if paving.hull is None:
+        message = "No consistent parameters: the surrogate exceeds the error everywhere within the bounds."
+        yield Finding("empty-set", "note", {}, message)
+        if nearest is not None and np.isfinite(nearest.excess):
+            where = place(data, nearest.output)
+            message = f"The nearest run, at {at}, differs by {nearest.excess:.3g} times the error in {where}."
+            advice = "Increase the error, widen the bounds, or check the model structure."
+            yield Finding("nearest-run", "note", {"ratio": float(nearest.excess)}, message, advice)
+    elif not paving.finished:
+        message = (
+            "The paving stopped before its boundary was sharp: it contains the set, but more boxes may lie inside."
+        )
+        yield Finding("paving-unfinished", "error", {}, message, "Increase most_boxes or the resolution.")
+    elif not len(paving.inside):
+        message = "Paved, but no box lies completely in the set: it is thinner than the resolution."
+        yield Finding("thin-set", "note", {}, message, "Decrease the resolution.")
+    else:
+        yield Finding("paved", "note", {}, "Paved down to the resolution.")

@@ -152,10 +152,18 @@ def index(homes: Mapping[str, str], kinds: Mapping[str, Iterable[str]]) -> str:
     short = {name: module.removeprefix(f"{PACKAGE}.") for name, module in sorted(homes.items())}
     return INDEX.format(
         homes="".join(f'    "{name}": "{module}",\n' for name, module in short.items()),
-        kinds="".join(
-            f'    "{base}": (\n' + "".join(f'        "{name}",\n' for name in names) + "    ),\n"
-            for base, names in kinds.items()
-        ),
+        kinds="".join(entry(base, names) for base, names in kinds.items()),
+    )
+
+
+def entry(base: str, names: Iterable[str]) -> str:
+    """Entry of a dictionary with the names of a base, as Ruff formats it."""
+    quoted = [f'"{name}"' for name in names]
+    line = f'    "{base}": ({", ".join(quoted)}),\n'
+    return (
+        line
+        if len(line) <= 121
+        else f'    "{base}": (\n' + "".join(f"        {name},\n" for name in quoted) + "    ),\n"
     )
 
 

@@ -55,40 +55,10 @@ HOMES = {
 """Module in ``dalembert.multibody`` of each public name."""
 
 KINDS = {
-    "Body": (
-        "AncfBeam",
-        "AncfCable",
-        "PointMass",
-        "RigidBar",
-        "RigidBarBetween",
-        "RigidBody",
-    ),
-    "Joint": (
-        "DistanceJoint",
-        "FixedJoint",
-        "GearJoint",
-        "PrescribedMotion",
-        "PrismaticJoint",
-        "RevoluteJoint",
-    ),
-    "Load": (
-        "Bushing",
-        "Force",
-        "Motor",
-        "Servo",
-        "Spring",
-        "Torque",
-        "TorsionSpring",
-        "UserForce",
-    ),
-    "Signal": (
-        "Constant",
-        "Custom",
-        "Harmonic",
-        "Polynomial",
-        "Step",
-        "Table",
-    ),
+    "Body": ("AncfBeam", "AncfCable", "PointMass", "RigidBar", "RigidBarBetween", "RigidBody"),
+    "Joint": ("DistanceJoint", "FixedJoint", "GearJoint", "PrescribedMotion", "PrismaticJoint", "RevoluteJoint"),
+    "Load": ("Bushing", "Force", "Motor", "Servo", "Spring", "Torque", "TorsionSpring", "UserForce"),
+    "Signal": ("Constant", "Custom", "Harmonic", "Polynomial", "Step", "Table"),
     "Integrator": (
         "Automatic",
         "Collocation",

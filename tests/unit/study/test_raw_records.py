@@ -5,8 +5,9 @@ import re
 import numpy as np
 import pytest
 
+import raw_records
 from dalembert.errors import DataError
-from dalembert.study import load, plan, raw_records, run_study
+from dalembert.study import load, plan, run_study
 from dalembert.study.template import begin, templates
 
 NUMBER = re.compile(r"-?\d+[.,]?\d*")

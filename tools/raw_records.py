@@ -1,4 +1,4 @@
-"""Four records of a driven pendulum as instruments write them: ``python -m dalembert.study.raw_records FOLDER``.
+"""Four records of a driven pendulum as instruments write them: ``python tools/raw_records.py FOLDER``.
 
 They are the files of the template ``records``. A motor of which the current was recorded turns a bar on a pin. The
 equations are integrated by SciPy, apart from the package. Each file has the habits of another instrument; all angles

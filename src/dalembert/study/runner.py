@@ -171,20 +171,6 @@ def _noting(compiled: list[Compilation], listener: Listener | None) -> Callable[
     return progress
 
 
-def takes(study: Study) -> str:
-    """About how long a study would take, from a timed part of a simulation, in a sentence."""
-    with users_code():
-        effort = TASKS[study.task].effort(study)
-        return duration(effort, timed(effort))
-
-
-def foreseen(study: Study) -> tuple[str, ...]:
-    """Sentences on what a study would tell, and findings on its mechanism, from a look at its first guesses."""
-    with users_code():
-        findings = study.system().findings if study.has_system else ()
-        return (*map(str, findings), *TASKS[study.task].foreseen(study))
-
-
 def looked(study: Study, limit: float = inf) -> Iterator[str]:
     """Yield sentences on how long a study takes and what comes out, from few simulations.
 

@@ -9,7 +9,7 @@ import pytest
 from dalembert.errors import InputError
 from dalembert.study import load
 from dalembert.study.duration import Effort, duration, timed, too_long, within
-from dalembert.study.runner import takes
+from dalembert.study.runner import looked
 
 MODEL = """
 import numpy as np
@@ -57,7 +57,7 @@ def sentence(tmp_path):
 
     def of(text):
         (tmp_path / "study.toml").write_text(text)
-        return takes(load(tmp_path / "study.toml"))
+        return next(looked(load(tmp_path / "study.toml")))
 
     return of
 

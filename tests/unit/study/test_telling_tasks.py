@@ -8,8 +8,7 @@ import dalembert as da
 from dalembert.errors import DalembertError
 from dalembert.inverse import Designs, Prediction, Profiles
 from dalembert.study import load, plan, report_run, run_study
-from dalembert.study.runner import foreseen
-from dalembert.study.tasks import telling
+from dalembert.study.tasks import TASKS, telling
 from pages import read_page
 from support import says
 
@@ -101,6 +100,10 @@ def test_profiles_and_prediction_stand_beside_the_result_and_in_summary_and_repo
 def test_without_the_keys_there_are_no_such_files(write):
     folder, _ = run_study(write(IDENTIFY.replace("true", "false")))
     assert not list(folder.path.glob("pr*.nc"))
+
+
+def foreseen(study):
+    return TASKS[study.task].foreseen(study)
 
 
 def test_a_check_foresees_what_the_data_tell(write):

@@ -2,14 +2,14 @@
 
 import json
 from collections.abc import Sequence
-from dataclasses import fields, replace
+from dataclasses import replace
 from pathlib import Path
+from pkgutil import resolve_name
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from dalembert.contents import Contents
 from dalembert.files import read_dataset, write_contents
 from dalembert.findings import Finding, stored_findings, unclassified
-from dalembert.hooks import hook
 from dalembert.parameters import Parameter
 from dalembert.stored_fields import Source, Store, restore, store
 
@@ -77,11 +77,11 @@ class Result:
 
     def figures(self, *beside: object, **options: Any) -> dict[str, Any]:
         """Plotly figures by name; arguments as those of :func:`dalembert.report.figures`."""
-        return hook("figures")(self, *beside, **options)
+        return resolve_name("dalembert.report:figures")(self, *beside, **options)
 
     def report(self, path: str | Path, *beside: object, **options: Any) -> Any:
         """Write an HTML report that opens offline; arguments as those of :func:`dalembert.report.report`."""
-        return hook("report")(self, path, *beside, **options)
+        return resolve_name("dalembert.report:report")(self, path, *beside, **options)
 
 
 class EndedResult(Result):
@@ -149,38 +149,6 @@ def text_table(rows: Sequence[Sequence[str]]) -> list[str]:
     return [lines[0], "─" * (sum(widths) + 2 * (len(widths) - 1)), *lines[1:]]
 
 
-def stored_facts(result: Result, names: Sequence[str], **settings: Any) -> dict[str, Any]:
-    """Return the attributes of a dataset: the format of a result, facts by name, and its settings as JSON."""
-    settings = {**settings, "findings": stored_findings(result.findings)}
-    texts = {}
-    if isinstance(result, EndedResult):
-        settings["outcome"], texts["status"] = stored_findings(result.outcome), result.status
-    return {
-        "format": result.FORMAT,
-        **texts,
-        **plain_facts(result, names),
-        "settings": json.dumps(settings, sort_keys=True),
-    }
-
-
-def plain_facts(result: Result, names: Sequence[str]) -> dict[str, Any]:
-    """Numbers and words of a result by name; NetCDF has no truth values, so these are 0 or 1."""
-    types = _types(type(result))
-    facts = {name: getattr(result, name) for name in names}
-    return {name: int(fact) if types.get(name) is bool else fact for name, fact in facts.items()}
-
-
-def facts_of(kind: type[Result], dataset: "Dataset", names: Sequence[str]) -> dict[str, Any]:
-    """Numbers and words of a result that :func:`plain_facts` gave, each of the type of its field."""
-    types = _types(kind)
-    return {name: types[name](dataset.attrs[name]) for name in names}
-
-
 def stored_settings(dataset: "Dataset") -> dict[str, Any]:
     """Return the settings of a stored result."""
     return json.loads(dataset.attrs["settings"])
-
-
-def _types(kind: type[Result]) -> dict[str, Any]:
-    """Types of the fields of a dataclass."""
-    return {field.name: field.type for field in fields(kind)}  # pyright: ignore[reportArgumentType]

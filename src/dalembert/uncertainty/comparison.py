@@ -1,5 +1,6 @@
 """Bounds over the same box by several methods."""
 
+import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -9,9 +10,9 @@ import numpy as np
 from dalembert.arguments import takes_checked
 from dalembert.contents import Contents
 from dalembert.errors import ClusterError, DalembertError, InputError, StorageError
-from dalembert.findings import Finding
+from dalembert.findings import Finding, stored_findings
 from dalembert.forward import Executor, ForwardModel, on_cluster, takes_executor
-from dalembert.results import EndedResult, stored_facts, stored_settings, text_table
+from dalembert.results import EndedResult, stored_settings, text_table
 from dalembert.uncertainty.events import OnEvent
 from dalembert.uncertainty.method import Method
 from dalembert.uncertainty.methods import label, method_of
@@ -114,8 +115,14 @@ class Comparison(EndedResult):
             over = (over,) if isinstance(over, str) else over
             variables[name] = ("method", *over), np.stack([part.variables.get(name, missing)[1] for part in parts])
         coordinates = {**parts[0].coordinates, "method": ("method", [result.method for result in self.results])}
-        facts = stored_facts(self, ("reference",), results=own, refused=self.refused)
-        return Contents(variables, coordinates, facts)
+        settings = {
+            "results": own,
+            "refused": self.refused,
+            "findings": stored_findings(self.findings),
+            "outcome": stored_findings(self.outcome),
+        }
+        facts = {"format": self.FORMAT, "status": self.status, "reference": self.reference}
+        return Contents(variables, coordinates, facts | {"settings": json.dumps(settings, sort_keys=True)})
 
     @classmethod
     def from_xarray(cls, dataset: Any) -> "Comparison":

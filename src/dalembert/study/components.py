@@ -18,7 +18,7 @@ from pydantic import AfterValidator, Discriminator, Field, Tag, create_model
 from dalembert.study.functions import FunctionName
 from dalembert.study.numbers import fixed, number
 from dalembert.study.places import place
-from dalembert.study.table import Name, StudyTable, checked
+from dalembert.study.table import Name, StudyTable, checked, told_apart
 
 FORM = "form"  # the key for an argument that is called kind, since the key kind names the dataclass
 _PLACES = {"Point", "GroundPoint", "Ground"}
@@ -104,12 +104,17 @@ def settings_of(
     """
     tables = {name: table_of(target, name, varying=varying, part=part) for name, target in kinds.items()}
     usual = AfterValidator(lambda name: tables[name].model_validate({"kind": name}))
-    key = Annotated[
-        Annotated[Literal[tuple(kinds)], usual, Tag("name")]  # pyright: ignore[reportInvalidTypeForm]
-        | Annotated[one_of(tables.values()), Tag("table")],
-        Discriminator(lambda value: "name" if isinstance(value, str) else "table"),
-    ]
+    name = Annotated[Literal[tuple(kinds)], usual]  # pyright: ignore[reportInvalidTypeForm]
+    key = told_apart(lambda value: isinstance(value, str), name, one_of(tables.values()))
     return key if varying else Annotated[key, AfterValidator(buildable)]
+
+
+def chosen(
+    kinds: Mapping[str, type], more: str, part: Callable[[str], Any] = lambda name: None, *, varying: bool = False
+) -> tuple[Any, Any]:
+    """Key that takes settings of one of several kinds as :func:`settings_of` does, or none; ``more`` follows names."""
+    names = ", ".join(f"'{name}'" for name in kinds)
+    return settings_of(kinds, part, varying=varying) | None, Field(None, description=f"{names}, {more}")
 
 
 def buildable_table(target: type) -> Any:
@@ -139,7 +144,7 @@ def _key(name: str, hint: Any, numeric: Any, signal: Any, part: Callable[[str], 
     for own in filter(None, map(part, sorted(names))):
         return own
     if signal is not None and "Signal" in names:
-        return _told_apart(dict, "signal", signal, "number", numeric)
+        return told_apart(lambda value: isinstance(value, dict | KindTable), signal, numeric)
     if Callable in leaves:
         return FunctionName
     return _plain(hint, numeric)
@@ -154,7 +159,7 @@ def _plain(hint: Any, numeric: Any) -> Any:
         kinds = [argument for argument in arguments if argument not in (_NONE, float, complex)]
         plain = reduce(or_, (_plain(kind, numeric) for kind in kinds)) if kinds else numeric
         if kinds and {float, complex} & set(arguments):
-            plain = _told_apart(list, "list", plain, "number", numeric)
+            plain = told_apart(lambda value: isinstance(value, list | KindTable), plain, numeric)
         return plain | None if _NONE in arguments else plain
     if origin is tuple and Ellipsis not in arguments:
         return Annotated[
@@ -165,15 +170,6 @@ def _plain(hint: Any, numeric: Any) -> Any:
     if isinstance(origin, type) and issubclass(origin, Iterable):
         return list[_plain(arguments[0], numeric)]
     return hint
-
-
-def _told_apart(kind: type, tag: str, given: Any, other_tag: str, other: Any) -> Any:
-    """Type of a key that takes one of two things, told apart by the kind of the value."""
-    kinds = (kind, KindTable)
-    return Annotated[
-        Annotated[given, Tag(tag)] | Annotated[other, Tag(other_tag)],
-        Discriminator(lambda value: tag if isinstance(value, kinds) else other_tag),
-    ]
 
 
 def _settled(value: Any) -> Any:

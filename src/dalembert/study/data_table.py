@@ -23,8 +23,8 @@ from dalembert.errors import unknown
 from dalembert.forward.sensors import START
 from dalembert.parameters import Parameter
 from dalembert.study.context import Context
-from dalembert.study.numbers import fixed, read_number, samples
-from dalembert.study.table import Read, StudyTable, checked, problem
+from dalembert.study.numbers import Number, Samples, Seconds, fixed, pair, read_number
+from dalembert.study.table import Read, StudyTable, checked, problem, told_apart
 
 if TYPE_CHECKING:
     from dalembert.data import Bands, Measurements
@@ -84,7 +84,7 @@ class FileTable(StudyTable):
     @property
     def how(self) -> dict[str, Any]:
         """Arguments that say how the file is read."""
-        own = {"format": self.format, "units": self.units, "separator": self.separator, "decimal": self.decimal}
+        own = self.picked("format", "units", "separator", "decimal")
         return own if self.frequency is None else {**own, "frequency": self.frequency}
 
     @property
@@ -102,11 +102,8 @@ class DerivativeTable(StudyTable):
     degree: int = Field(3, ge=1, description="of the polynomials")
 
 
-Differentiated = Annotated[
-    Annotated[str, AfterValidator(lambda name: DerivativeTable.model_validate({"of": name})), Tag("name")]
-    | Annotated[DerivativeTable, Tag("table")],
-    Discriminator(lambda value: "name" if isinstance(value, str) else "table"),
-]
+_Name = Annotated[str, AfterValidator(lambda name: DerivativeTable.model_validate({"of": name}))]
+Differentiated = told_apart(lambda value: isinstance(value, str), _Name, DerivativeTable)
 
 
 def _along(value: Any, handler: ValidatorFunctionWrapHandler, info: ValidationInfo) -> Any:
@@ -119,16 +116,15 @@ def _along(value: Any, handler: ValidatorFunctionWrapHandler, info: ValidationIn
     return handler(value)
 
 
-Ends = Annotated[list[Annotated[float, Read(fixed(None))]], Field(min_length=2, max_length=2)] | None
-Samples = Annotated[tuple[float, ...], Read(samples(None))] | None
+Ends = Annotated[list[float], Read(pair(Number))] | None
 
 
 class StartTable(StudyTable):
     """A time of the file at which the motion begins that is not known: its bounds, and optionally a first guess."""
 
-    lower: Annotated[float, Read(fixed("s"))]
-    upper: Annotated[float, Read(fixed("s"))]
-    start: Annotated[float, Read(fixed("s"))] | None = None
+    lower: Seconds
+    upper: Seconds
+    start: Seconds | None = None
 
     def _wrong(self) -> list[str]:
         checked(lambda: self.parameter)
@@ -155,9 +151,7 @@ class ChannelFile(FileTable):
         min_length=1,
         description="column of each channel: 'AB.end.x' = 'case1_x', or its number from 1 in a text file",
     )
-    deviations: dict[str, Annotated[float, Read(fixed(None))]] | None = Field(
-        None, description="standard deviation of each channel's noise"
-    )
+    deviations: dict[str, Number] | None = Field(None, description="standard deviation of each channel's noise")
     missing: Literal["refuse", "leave-out"] = Field("refuse", description="what becomes of values that are not there")
     wraps: list[str] = Field([], description="channels that are angles known up to whole turns")
     lowpass: Annotated[float, Read(fixed("Hz"))] | None = Field(
@@ -199,14 +193,14 @@ class DataTable(ChannelFile):
     between: Annotated[Ends, WrapValidator(_along)] = Field(
         None, description="times, or frequencies, between which samples are kept"
     )
-    gap: Annotated[float, Read(fixed(None))] | None = Field(
+    gap: Number | None = Field(
         None,
         gt=0,
         description="longest step of the times, or frequencies, that is no gap to derivatives and resample; 1.5 times "
         "the usual one if not given",
     )
     every: int | None = Field(None, ge=1, description="keep every n-th sample, without a filter")
-    resample: Annotated[Samples, WrapValidator(_along)] = Field(
+    resample: Annotated[Samples | None, WrapValidator(_along)] = Field(
         None, description="times, or frequencies, at which splines through the samples are taken"
     )
 
@@ -282,7 +276,7 @@ class DataTable(ChannelFile):
 class BandsTable(FileTable):
     """Bounds of channels: a file, its column of times, and two columns of each channel."""
 
-    columns: dict[str, Annotated[list[str], Field(min_length=2, max_length=2)]] = Field(
+    columns: dict[str, Annotated[list[str], Read(pair(str))]] = Field(
         min_length=1, description="columns of each channel, the lower bounds first: 'AB.end.x' = ['x_lower', 'x_upper']"
     )
 

@@ -10,12 +10,12 @@ from dalembert.forward import Sensor
 from dalembert.forward.sensors import QUANTITIES, START
 from dalembert.study.data_table import DataTable
 from dalembert.study.inputs import InputTable
-from dalembert.study.numbers import fixed
+from dalembert.study.numbers import Number, Seconds, pair
 from dalembert.study.parameters import OwnParameterTable, ParameterTable
 from dalembert.study.table import Name, Read, StudyTable, problem
 
-TimeBounds = Annotated[list[Annotated[float, Read(fixed("s"))]], Field(min_length=2, max_length=2)]
-Bounds = Annotated[list[Annotated[float, Read(fixed(None))]], Field(min_length=2, max_length=2)]
+TimeBounds = Annotated[list[float], Read(pair(Seconds))]
+Bounds = Annotated[list[float], Read(pair(Number))]
 
 
 class SensorTable(StudyTable):
@@ -28,7 +28,7 @@ class SensorTable(StudyTable):
     at_rest: bool = Field(False, description="whether the channel rests at its first value before the motion begins")
 
     def _wrong(self) -> list[str]:
-        given = {what: getattr(self, what) for what in QUANTITIES if getattr(self, what) is not None}
+        given = {what: bounds for what, bounds in self.picked(*QUANTITIES).items() if bounds is not None}
         wrong = [
             f"{what} is between {lower:g} and {upper:g}; expected the lower bound first"
             for what, (lower, upper) in given.items()
@@ -43,8 +43,8 @@ class SensorTable(StudyTable):
     @property
     def sensor(self) -> Sensor:
         """The sensor."""
-        pairs = {what: getattr(self, what) for what in QUANTITIES}
-        return Sensor(**{what: pair and tuple(pair) for what, pair in pairs.items()}, at_rest=self.at_rest)
+        bounds = {what: given and tuple(given) for what, given in self.picked(*QUANTITIES).items()}
+        return Sensor(**bounds, at_rest=self.at_rest)
 
 
 class ExperimentTable(DataTable):
@@ -58,9 +58,7 @@ class ExperimentTable(DataTable):
         description="parameters that are not shared with the other experiments: names, or a table with the bounds and "
         "first guesses that differ here",
     )
-    constants: dict[str, Annotated[float, Read(fixed(None))]] = Field(
-        {}, description="constants that have another value in this experiment"
-    )
+    constants: dict[str, Number] = Field({}, description="constants that have another value in this experiment")
     arguments: dict[str, Any] = Field({}, description="arguments of the model's function in this experiment")
     inputs: dict[str, InputTable] = Field({}, description="keys of [inputs.NAME] that differ in this experiment")
 

@@ -5,14 +5,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
-from pydantic import Discriminator, Field, Tag
+from pydantic import Field
 
 from dalembert.data.stretches import gaps
 from dalembert.errors import DataError, unknown
 from dalembert.study.data_table import Column, DataFile, DataTable, FileTable, Start, StartTable
 from dalembert.study.expressions import Expression
 from dalembert.study.numbers import fixed, number
-from dalembert.study.table import Read, StudyTable, problem
+from dalembert.study.table import Read, StudyTable, problem, told_apart
 
 if TYPE_CHECKING:
     from dalembert.multibody import Table
@@ -67,7 +67,7 @@ class InputTable(FileTable):
         """This table with the keys that it leaves out from the shared one."""
         if shared is None:
             return self
-        return shared.model_copy(update={name: getattr(self, name) for name in self.model_fields_set})
+        return shared.model_copy(update=self.picked(*self.model_fields_set))
 
     def read(self, name: str, beside: DataTable | None) -> "MeasuredInput":
         """The samples of the input, from its file or that of the data ``beside``.
@@ -80,8 +80,7 @@ class InputTable(FileTable):
         assert self.column is not None  # or the study was refused
         table = beside
         if self.file is not None:
-            own = {key: getattr(self, key) for key in (*FileTable.model_fields, "start")}
-            table = DataTable.model_construct(**own)
+            table = DataTable.model_construct(**self.picked(*FileTable.model_fields, "start"))
         if table is None:
             raise DataError(f"[inputs.{name}]: no file is given, and there are no [data]; give a file")
         column = str(self.column)
@@ -162,10 +161,7 @@ class MeasuredInput:
 
 def signal_or_input(signal: Any) -> Any:
     """Type of a key that takes a signal's table, or the name of an input."""
-    return Annotated[
-        Annotated[signal, Tag("signal")] | Annotated[InputReference, Tag("measured")],
-        Discriminator(lambda value: "measured" if _refers(value) else "signal"),
-    ]
+    return told_apart(_refers, InputReference, signal)
 
 
 def _refers(value: Any) -> bool:

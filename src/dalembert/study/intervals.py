@@ -6,10 +6,9 @@ from pydantic import BeforeValidator, WithJsonSchema
 
 from dalembert.errors import InputError
 from dalembert.intervals import Interval
-from dalembert.study.numbers import fixed
-from dalembert.study.table import Read, StudyTable, problem
+from dalembert.study.numbers import Number
+from dalembert.study.table import StudyTable, problem
 
-Number = Annotated[float, Read(fixed(None))]
 _WAYS = "[lower, upper], { middle, radius }, { middle, relative } or one number"
 _FORMS = ({"lower", "upper"}, {"middle", "radius"}, {"middle", "relative"})
 

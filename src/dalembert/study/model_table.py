@@ -3,17 +3,17 @@
 from functools import lru_cache
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, create_model
+from pydantic import Field
 
 from dalembert.errors import unknown
 from dalembert.study.catalogue import Words, kinds_of
 from dalembert.study.components import one_of, table_of
 from dalembert.study.functions import FunctionName
 from dalembert.study.inputs import signal_or_input
-from dalembert.study.numbers import number
+from dalembert.study.numbers import number, pair
 from dalembert.study.places import Place
 from dalembert.study.structure_table import PARTS, StructureTable, part_tables, structure_table, wrong_structure
-from dalembert.study.table import Read, StudyTable, problem
+from dalembert.study.table import Read, StudyTable, completed, problem
 from dalembert.units import is_quantity, si
 
 _TABLES = ("body", "joint", "load")
@@ -30,7 +30,7 @@ class ModelTable(StudyTable):
     function: FunctionName | None = None
     forward: FunctionName | None = None
     arguments: dict[str, Any] = Field({}, description="fixed arguments of the function")
-    gravity: Annotated[list[Annotated[Any, Read(number("m/s^2"))]], Field(min_length=2, max_length=2)] | None = None
+    gravity: Annotated[list[Any], Read(pair(number("m/s^2")))] | None = None
     driving: list[str] = Field(
         [], description="placement coordinates kept while a closed loop is assembled: 'AB.angle'"
     )
@@ -136,4 +136,4 @@ def model_table(words: Words = None) -> type[ModelTable]:
     if words is None or not words.isdisjoint((*PARTS, "structure")):
         lists |= {name: (kind, []) for name, kind in part_tables().items()}
         lists["structure"] = (structure_table() | None, None)
-    return create_model("Model", __base__=ModelTable, __doc__=ModelTable.__doc__, **lists)
+    return completed(ModelTable, **lists)

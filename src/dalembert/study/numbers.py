@@ -9,19 +9,17 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import (
     AfterValidator,
-    Discriminator,
+    Field,
     GetJsonSchemaHandler,
     PlainValidator,
-    Tag,
     ValidationInfo,
-    create_model,
 )
 from pydantic_core import CoreSchema
 
 from dalembert.errors import InputError, unknown
 from dalembert.study.context import Context
 from dalembert.study.expressions import Expression
-from dalembert.study.table import StudyTable, checked, problem
+from dalembert.study.table import Read, StudyTable, checked, completed, problem, told_apart
 from dalembert.units import expected, is_quantity, sentence, si
 
 MOST = 1_000_000  # numbers of a range
@@ -114,13 +112,14 @@ class Grid(StudyTable):
 def samples(unit: str | None) -> Any:
     """Type of a key that takes increasing numbers: a list of them, or a :class:`Grid`; read as a tuple."""
     one = fixed(unit)
-    fields: dict[str, Any] = {"start": (one, 0.0), "end": (one, ...), "every": (one | None, None)}
-    grid = create_model("Grid", __base__=Grid, **fields)
-    return Annotated[
-        Annotated[grid, Tag("grid")] | Annotated[list[one], Tag("list")],
-        Discriminator(lambda value: "grid" if isinstance(value, (dict, Grid)) else "list"),
-        AfterValidator(_increasing),
-    ]
+    grid = completed(Grid, start=(one, 0.0), end=(one, ...), every=(one | None, None))
+    either = told_apart(lambda value: isinstance(value, dict | Grid), grid, list[one])
+    return Annotated[either, AfterValidator(_increasing)]
+
+
+def pair(of: Any) -> Any:
+    """Type of a key that takes a list of two numbers of a type."""
+    return Annotated[list[of], Field(min_length=2, max_length=2)]
 
 
 def _increasing(given: Grid | list[float]) -> tuple[float, ...]:
@@ -131,3 +130,15 @@ def _increasing(given: Grid | list[float]) -> tuple[float, ...]:
         if later <= earlier:
             raise problem(f"{later:g} follows {earlier:g}; expected numbers that increase")
     return tuple(numbers)
+
+
+Number = Annotated[float, Read(fixed(None))]
+Seconds = Annotated[float, Read(fixed("s"))]
+Samples = Annotated[tuple[float, ...], Read(samples(None))]
+Times = Annotated[tuple[float, ...], Read(samples("s"))]
+Frequencies = Annotated[tuple[float, ...], Read(samples("Hz"))]
+FrequencyEnds = Annotated[list[float], Read(pair(fixed("Hz")))]
+NumberOfEach = Annotated[
+    float | dict[str, float], Read(told_apart(lambda value: isinstance(value, dict), dict[str, Number], Number))
+]
+"""One number for all channels, or one for each."""

@@ -1,7 +1,7 @@
 """The schema of study files, with all tasks and kinds that there are."""
 
 from collections.abc import Iterator, Mapping
-from functools import lru_cache
+from functools import cache, lru_cache
 from typing import Any, ClassVar
 
 from pydantic import create_model
@@ -11,6 +11,7 @@ from dalembert.study.components import buildable_table
 from dalembert.study.model_table import model_table
 from dalembert.study.solvers import solver
 from dalembert.study.study_file import StudyFile
+from dalembert.study.table import StudyTable
 from dalembert.study.tasks import TASKS
 
 
@@ -27,7 +28,7 @@ def study_file(words: Words = None) -> type[StudyFile]:
     Most of the kinds take some time to be imported and to be made tables of, and a document uses few of them.
     """
     fields: dict[str, Any] = {
-        name: (task.table() | None, None) for name, task in TASKS.items() if words is None or name in words
+        name: (_task_table(name) | None, None) for name in TASKS if words is None or name in words
     }
     fields["model"] = (model_table(words), ...)
     if words is None or "solver" in words:
@@ -35,6 +36,12 @@ def study_file(words: Words = None) -> type[StudyFile]:
     if words is None or "harmonic_balance" in words:
         fields["harmonic_balance"] = (buildable_table(balance()) | None, None)
     return create_model("Study", __base__=_KnownFile, __doc__=StudyFile.__doc__, **fields)
+
+
+@cache
+def _task_table(name: str) -> type[StudyTable]:
+    """Schema of a task's table; to make one takes some time."""
+    return TASKS[name].table()
 
 
 def words_of(document: Mapping[str, Any]) -> frozenset[str]:

@@ -1,18 +1,18 @@
 """The tables of a study file that describe a structure and what acts on it."""
 
 from functools import cache
-from typing import Any
+from typing import Annotated, Any
 
-from pydantic import Field, create_model
+from pydantic import Field
 
 from dalembert.errors import unknown
 from dalembert.structure.read_structure import ROLES
 from dalembert.study.catalogue import dampings, laws, structure_parts
-from dalembert.study.components import one_of, settings_of, table_of
+from dalembert.study.components import chosen, one_of, settings_of, table_of
 from dalembert.study.data_table import DataFile
 from dalembert.study.functions import FunctionName
 from dalembert.study.numbers import number
-from dalembert.study.table import StudyTable, problem
+from dalembert.study.table import Read, StudyTable, completed, problem
 
 PARTS = ("mass", "spring", "force", "contact")
 
@@ -39,7 +39,9 @@ class StructureTable(StudyTable):
     sets: dict[str, list[str]] = Field({}, description="named lists of nodes: { feet = ['12', '13'] }")
     fixed: list[str] = Field([], description="degrees of freedom, nodes or sets that are clamped")
     damping: Any = None
-    loss_factor: Any = None
+    loss_factor: Annotated[Any, Read(number(""))] | None = Field(
+        None, description="of the matrices: hysteretic damping D = loss_factor K"
+    )
     reduction: ReductionTable | None = Field(None, description="to few coordinates, by Craig and Bampton")
 
     @property
@@ -71,11 +73,7 @@ class StructureTable(StudyTable):
 @cache
 def structure_table() -> Any:
     """The table with all kinds of damping that there are."""
-    kinds = ", ".join(f"'{name}'" for name in dampings())
-    damping = settings_of(dampings(), varying=True) | None, Field(None, description=f"{kinds}, with settings")
-    loss = number("") | None, Field(None, description="of the matrices: hysteretic damping D = loss_factor K")
-    fields: dict[str, Any] = {"damping": damping, "loss_factor": loss}
-    return create_model("StructureTable", __base__=StructureTable, __doc__=StructureTable.__doc__, **fields)
+    return completed(StructureTable, damping=chosen(dampings(), "with settings", varying=True))
 
 
 @cache

@@ -10,9 +10,12 @@ from pydantic import (
     BaseModel,
     BeforeValidator,
     ConfigDict,
+    Discriminator,
     Field,
     GetCoreSchemaHandler,
+    Tag,
     ValidationInfo,
+    create_model,
     model_validator,
 )
 from pydantic_core import CoreSchema, PydanticCustomError
@@ -36,6 +39,10 @@ class StudyTable(BaseModel):
             info.context.remember(data, cls.model_fields)
         return data
 
+    def picked(self, *keys: str) -> dict[str, Any]:
+        """Return some keys with their values."""
+        return {key: getattr(self, key) for key in keys}
+
     def _wrong(self) -> list[str]:
         """Sentences about keys that do not fit together."""
         return []
@@ -45,6 +52,9 @@ class StudyTable(BaseModel):
         if wrong := self._wrong():
             raise problem(*wrong)
         return self
+
+
+Table = TypeVar("Table", bound=StudyTable)
 
 
 def problem(*sentences: str) -> PydanticCustomError:
@@ -83,6 +93,26 @@ class Read:
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         return handler.generate_schema(self.type)
+
+
+def completed(table: type[Table], **keys: Any) -> type[Table]:
+    """Return a table with further keys, or other types of its keys: those that depend on the kinds that there are.
+
+    Parameters
+    ----------
+    table : type
+    **keys : (type, default)
+        As `pydantic.create_model` takes them.
+    """
+    return create_model(table.__name__, __base__=table, __doc__=table.__doc__, __module__=table.__module__, **keys)
+
+
+def told_apart(is_first: Callable[[Any], bool], first: Any, other: Any) -> Any:
+    """Type of a key that takes one of two things, told apart by a test of what is given."""
+    return Annotated[
+        Annotated[first, Tag("#1")] | Annotated[other, Tag("#2")],
+        Discriminator(lambda value: "#1" if is_first(value) else "#2"),
+    ]
 
 
 Name = Annotated[str, BeforeValidator(_name), Field(pattern=_NAME)]

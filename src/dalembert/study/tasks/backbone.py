@@ -7,7 +7,7 @@ from pydantic import Field
 
 from dalembert.study.duration import Effort, whole
 from dalembert.study.events import Emit
-from dalembert.study.numbers import fixed, samples
+from dalembert.study.numbers import fixed, pair, samples
 from dalembert.study.study import Study
 from dalembert.study.table import Read, StudyTable, placed, problem
 from dalembert.study.tasks.task import Outcome, ResultTask
@@ -20,7 +20,7 @@ class BackboneTable(StudyTable):
     amplitudes: Annotated[tuple[float, ...], Read(samples("m"))] | None = Field(
         None, description="of the first harmonic of dof: a list, or a range"
     )
-    between: Annotated[list[Annotated[float, Read(fixed("m"))]], Field(min_length=2, max_length=2)] | None = Field(
+    between: Annotated[list[float], Read(pair(fixed("m")))] | None = Field(
         None, description="two amplitudes, from the first to the second past folds of the amplitude"
     )
     mode: int = Field(1, ge=1, description="number among the linear modes at rest, where loaded contacts stick")

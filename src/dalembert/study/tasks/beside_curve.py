@@ -1,16 +1,15 @@
 """What stands beside a response over frequency: its motion at the peak, points of it in time, a nonlinear mode."""
 
-from functools import cache
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
-from pydantic import Field, create_model
+from pydantic import Field
 
 from dalembert.study.components import buildable_table
-from dalembert.study.numbers import samples
+from dalembert.study.numbers import Frequencies
 from dalembert.study.study import Study
-from dalembert.study.table import Read, StudyTable
+from dalembert.study.table import StudyTable, completed
 from dalembert.study.tasks.task import loaded_beside
 
 COMPARISON, BACKBONE, DEFORMATION = "time_comparison", "backbone", "deformation"
@@ -20,21 +19,19 @@ COMPARISON, BACKBONE, DEFORMATION = "time_comparison", "backbone", "deformation"
 class CompareInTimeTable(StudyTable):
     """Points of a curve beside integration in time."""
 
-    frequencies: Annotated[tuple[float, ...], Read(samples("Hz"))] | None = Field(
+    frequencies: Frequencies | None = Field(
         None, description="the nearest points are taken; the largest response and some spread ones if not given"
     )
     way: Literal["long run", "shooting"] = Field("long run", description="how the periodic motion is found")
     method: Any = None
 
 
-@cache
 def compare_in_time_table() -> type[CompareInTimeTable]:
     """The table with the settings of the integration."""
     from dalembert.vibration import Newmark
 
     method = buildable_table(Newmark) | None, Field(None, description="settings of the integration")
-    fields: dict[str, Any] = {"method": method}
-    return create_model("CompareInTimeTable", __base__=CompareInTimeTable, __doc__=CompareInTimeTable.__doc__, **fields)
+    return completed(CompareInTimeTable, method=method)
 
 
 def beside(study: Study, curve: Any, system: Any) -> dict[str, Any]:

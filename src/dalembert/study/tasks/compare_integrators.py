@@ -1,17 +1,17 @@
 """Work and precision: integrators compared on the study's mechanism."""
 
 from dataclasses import replace
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
-from pydantic import Field, create_model
+from pydantic import Field
 
 from dalembert.study.duration import Effort, shortest_of
 from dalembert.study.events import Emit
-from dalembert.study.numbers import MOST, fixed
+from dalembert.study.numbers import MOST, Seconds, pair
 from dalembert.study.solvers import solver
 from dalembert.study.study import Study
-from dalembert.study.table import Read, StudyTable, checked, placed, problem
+from dalembert.study.table import StudyTable, checked, completed, placed, problem
 from dalembert.study.tasks.task import Outcome, ResultTask
 from dalembert.study.tasks.wrong import needs_mechanism
 
@@ -46,7 +46,7 @@ class SeriesTable(StudyTable):
 class WorkPrecisionTable(StudyTable):
     """Compare integrators on the mechanism's motion at the first guesses: error against run time."""
 
-    end: Annotated[float, Read(fixed("s"))] = Field(gt=0)
+    end: Seconds = Field(gt=0)
     channels: list[str] = Field(min_length=1, description="what errors are measured on: 'AB.end.x'")
     samples: int = Field(41, ge=2, le=MOST, description="output times, evenly from 0 to end")
     repeats: int = Field(3, ge=1, le=1000, description="timed runs of each; the fastest counts")
@@ -58,19 +58,13 @@ class CompareIntegrators(ResultTask):
     name = "work_precision"
     kind = "dalembert.multibody:WorkPrecision"
     rank = 8
+    schema = WorkPrecisionTable
     needs = (needs_mechanism,)
 
-    def table(self) -> type[StudyTable]:
-        series = create_model("Series", __base__=SeriesTable, __doc__=SeriesTable.__doc__, solver=(solver(), ...))
-        references = Field(
-            min_length=2, max_length=2, description="two fine ones: the second says how good the first is"
-        )
-        fields: dict[str, Any] = {
-            "series": (list[series], Field(min_length=1)),
-            "reference": (list[solver()], references),  # pyright: ignore[reportInvalidTypeForm]
-        }
-        doc = WorkPrecisionTable.__doc__
-        return create_model("WorkPrecision", __base__=WorkPrecisionTable, __doc__=doc, **fields)
+    def keys(self) -> dict[str, Any]:
+        series = completed(SeriesTable, solver=(solver(), ...))
+        described = Field(description="two fine ones: the second says how good the first is")
+        return {"series": (list[series], Field(min_length=1)), "reference": (pair(solver()), described)}
 
     def wrong(self, file: Any) -> list[str]:
         labels = [series.label for series in file.work_precision.series]

@@ -3,38 +3,33 @@
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import Discriminator, Field, Tag
+from pydantic import Field
 
 from dalembert.study.duration import Effort, evaluated
 from dalembert.study.events import Emit
-from dalembert.study.intervals import Number
-from dalembert.study.numbers import samples
+from dalembert.study.numbers import Frequencies, Number, NumberOfEach, Samples, Times
 from dalembert.study.study import Study
-from dalembert.study.table import StudyTable
+from dalembert.study.table import Read, StudyTable, told_apart
 from dalembert.study.tasks.task import Outcome, ResultTask
 from dalembert.study.tasks.wrong import needs_parameters, needs_samples, needs_solver, response, unnamed
 
-Deviations = Annotated[
-    Annotated[dict[str, Number], Tag("channels")] | Annotated[Number, Tag("number")],
-    Discriminator(lambda value: "channels" if isinstance(value, dict) else "number"),
-]
 Sets = Annotated[
-    Annotated[Literal["singles", "pairs", "all"], Tag("name")] | Annotated[list[list[str]], Tag("sets")],
-    Discriminator(lambda value: "name" if isinstance(value, str) else "sets"),
+    str | list[list[str]],
+    Read(told_apart(lambda value: isinstance(value, str), Literal["singles", "pairs", "all"], list[list[str]])),
 ]
 
 
 class DesignTable(StudyTable):
     """Rank experiments by how well they would tell the parameters, before anything is measured."""
 
-    times: samples("s") | None = Field(None, description="times of a mechanism's samples: a list, or a range")  # pyright: ignore[reportInvalidTypeForm]
-    frequencies: samples("Hz") | None = Field(None, description="of a structure's response: a list, or a range")  # pyright: ignore[reportInvalidTypeForm]
+    times: Times | None = Field(None, description="times of a mechanism's samples: a list, or a range")
+    frequencies: Frequencies | None = Field(None, description="of a structure's response: a list, or a range")
     channels: list[str] | None = Field(
         None, min_length=1, description="what could be measured on a mechanism or a structure"
     )
-    deviations: Deviations = Field(description="standard deviation of the noise: a number, or one for each channel")
+    deviations: NumberOfEach = Field(description="standard deviation of the noise: a number, or one for each channel")
     sensors: Sets = Field("singles", description="'singles', 'pairs', 'all', or lists of channels")
-    horizons: samples(None) | None = Field(None, description="ends of the measurement; the last sample if not given")  # pyright: ignore[reportInvalidTypeForm]
+    horizons: Samples | None = Field(None, description="ends of the measurement; the last sample if not given")
     criterion: Literal["D", "E"] = Field("D", description="'D' the mean deviation, 'E' the largest")
     at: dict[str, Number] = Field({}, description="values of parameters; first guesses where not given")
 
@@ -46,11 +41,7 @@ class Design(ResultTask):
     kind = "dalembert.inverse:Designs"
     rank = 7
     schema = DesignTable
-    needs = (
-        needs_parameters,
-        needs_samples,
-        needs_solver,
-    )
+    needs = (needs_parameters, needs_samples, needs_solver)
 
     def wrong(self, file: Any) -> list[str]:
         return [*super().wrong(file), *unnamed(file.design.at, file.parameters, "[design.at]")]
@@ -70,15 +61,8 @@ class Design(ResultTask):
     def result(self, study: Study, emit: Emit) -> Any:
         from dalembert.inverse import design
 
-        table = study.table
-        return design(
-            response(study),
-            _at(study),
-            deviations=table.deviations,
-            sensors=table.sensors,
-            horizons=table.horizons,
-            criterion=table.criterion,
-        )
+        options = study.table.picked("deviations", "sensors", "horizons", "criterion")
+        return design(response(study), _at(study), **options)
 
     def outcome(self, study: Study, designs: Any) -> Outcome:
         """Outcome of designs, with the best one's score and the deviations that it foresees."""

@@ -3,17 +3,17 @@
 from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from pydantic import Field, create_model
+from pydantic import Field
 
 from dalembert.errors import DalembertError, InputError, unknown
 from dalembert.study.duration import Effort, whole
 from dalembert.study.events import Emit
-from dalembert.study.numbers import fixed, samples
+from dalembert.study.numbers import Frequencies, FrequencyEnds
 from dalembert.study.study import Study
-from dalembert.study.table import Read, StudyTable, placed
+from dalembert.study.table import StudyTable, placed
 from dalembert.study.tasks import beside_curve
 from dalembert.study.tasks.backbone import BackboneTable
 from dalembert.study.tasks.beside_curve import beside, beside_family, compare_in_time_table
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 
 MOST_DRAWN = 6
 """Degrees of freedom that a figure shows by themselves; of more the report chooses."""
-Frequency = Annotated[float, Read(fixed("Hz"))]
 VISCOUS = {"stability": "stability", "compare_in_time": "motions in time", "backbone": "nonlinear modes"}
 """What is not defined with hysteretic damping, by the key that asks for it."""
 
@@ -43,10 +42,8 @@ class FamilyTable(StudyTable):
 class FrequencyResponseTable(StudyTable):
     """Follow the periodic response of a structure over frequency."""
 
-    frequencies: Annotated[tuple[float, ...], Read(samples("Hz"))] | None = Field(
-        None, description="of the points: a list, or a range"
-    )
-    between: Annotated[list[Frequency], Field(min_length=2, max_length=2)] | None = Field(
+    frequencies: Frequencies | None = Field(None, description="of the points: a list, or a range")
+    between: FrequencyEnds | None = Field(
         None, description="two frequencies, from the first to the second with as many points as the curve needs"
     )
     continuation: Literal["natural", "arc-length"] = Field(
@@ -136,13 +133,12 @@ class FrequencyResponseTask(Task):
     name = "frequency_response"
     rank = 9
     of_structures = True
+    schema = FrequencyResponseTable
     needs = (needs_structure,)
 
-    def table(self) -> type[StudyTable]:
-        compared = compare_in_time_table() | None, Field(None, description="points of the curve in time")
-        fields: dict[str, Any] = {"compare_in_time": compared}
-        doc = FrequencyResponseTable.__doc__
-        return create_model("FrequencyResponseTable", __base__=FrequencyResponseTable, __doc__=doc, **fields)
+    def keys(self) -> dict[str, Any]:
+        described = Field(None, description="points of the curve in time")
+        return {"compare_in_time": (compare_in_time_table() | None, described)}
 
     def wrong(self, file: Any) -> list[str]:
         table = file.frequency_response
@@ -252,13 +248,8 @@ class FrequencyResponseTask(Task):
 
 def _options(study: Study) -> dict[str, Any]:
     """Settings of a curve, or of each curve of a family."""
-    table = study.table
-    return {
-        "continuation": table.continuation,
-        "observe": _observed(study),
-        "stability": table.stability,
-        "checkpoint": study.checkpoint,
-    }
+    own = study.table.picked("continuation", "stability")
+    return {**own, "observe": _observed(study), "checkpoint": study.checkpoint}
 
 
 def _any_curve(study: Study) -> None:

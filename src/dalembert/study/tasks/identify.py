@@ -1,12 +1,11 @@
 """Identify: parameters from measured data."""
 
 from collections.abc import Mapping
-from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
-from pydantic import AfterValidator, Discriminator, Field, Tag, create_model
+from pydantic import AfterValidator, Field
 
 from dalembert.errors import InputError, unknown
 from dalembert.optimize import Minimiser, Squares, Swarm
@@ -16,10 +15,10 @@ from dalembert.study.components import one_of, table_of
 from dalembert.study.duration import TOGETHER, Effort, evaluated
 from dalembert.study.events import Emit, teller
 from dalembert.study.experiments import measured_channels
-from dalembert.study.numbers import fixed
+from dalembert.study.numbers import Number, Seconds
 from dalembert.study.posing import posed, unknown_names
 from dalembert.study.study import Study
-from dalembert.study.table import Read, StudyTable, checked
+from dalembert.study.table import StudyTable, checked, told_apart
 from dalembert.study.tasks import telling
 from dalembert.study.tasks.shooting import Shooting, ShootingTable
 from dalembert.study.tasks.task import Outcome, Task
@@ -33,9 +32,6 @@ STEPS_IN_SEGMENTS = 80  # of multiple shooting from one start, about: 57 to 105 
 
 MOST_MOTIONS = 4
 """Experiments whose motion the report draws: each drawing adds to the size of its page."""
-
-
-Length = Annotated[float, Read(fixed("s"))]
 
 
 class IdentifyTable(StudyTable):
@@ -55,14 +51,12 @@ class IdentifyTable(StudyTable):
     spread: Literal["latin-hypercube", "sobol"] = Field(
         "latin-hypercube", description="how the points that starts are chosen from are spread over the bounds"
     )
-    weights: dict[str, Annotated[float, Read(fixed(None))]] | None = Field(
-        None, description="weight of each channel; from deviations if not given"
-    )
+    weights: dict[str, Number] | None = Field(None, description="weight of each channel; from deviations if not given")
     loss: Literal["linear", "huber", "soft-l1", "cauchy"] = Field(
         "linear", description="what is summed of the residuals: squares, or less of those that are large"
     )
     loss_scale: float | None = Field(None, gt=0, description="weighted residual from which one counts as an outlier")
-    validation: Annotated[float, Field(gt=0, lt=1)] | list[str] | dict[str, Length] | None = Field(
+    validation: Annotated[float, Field(gt=0, lt=1)] | list[str] | dict[str, Seconds] | None = Field(
         None,
         description="share of the samples at the end, or names of experiments, that are predicted, not fitted; a table "
         "gives the length of the first part of each experiment that is fitted",
@@ -74,21 +68,6 @@ class IdentifyTable(StudyTable):
     profile: bool = Field(False, description="whether to make the profile likelihood of each parameter too")
     prediction: bool = Field(False, description="whether to make bands of the response and of new measurements too")
     level: float = Field(0.95, gt=0, lt=1, description="probability of profiles' intervals and of bands")
-
-
-@cache
-def identify_table() -> type[IdentifyTable]:
-    """The task's table with all the methods that there are."""
-    tables = one_of([table_of(target, name, varying=False) for name, target in methods().items()])
-    method = Annotated[
-        Annotated[str, Tag("name")] | Annotated[tables, Tag("table")],
-        Discriminator(lambda value: "name" if isinstance(value, str) else "table"),
-        AfterValidator(_buildable),
-    ]
-    own = ", ".join(f"'{name}'" for name in methods() if name != "scipy")
-    name = f"{own}, a minimiser of SciPy, or a table with kind and settings"
-    fields: dict[str, Any] = {"method": (method, Field(DEFAULT, description=name))}
-    return create_model("Identify", __base__=IdentifyTable, **fields)
 
 
 def settings(method: Any) -> Any:
@@ -103,22 +82,29 @@ def settings(method: Any) -> Any:
     return Minimiser(method)
 
 
-def _cost(method: Any, starts: int | None, parameters: int, shooting: ShootingTable | None) -> str:
-    """A method's name, and about how many simulations it takes."""
+def _cost(table: Any, parameters: int) -> tuple[str, int | None, int | None]:
+    """A method's name and about how many simulations it takes; at least and at most, None where it decides later."""
+    from dalembert.inverse.starts.multistart import SCREENED
+
+    method, starts, shooting = settings(table.method), table.starts, table.shooting
     name = type(method).__name__
     if shooting is not None:
         one, most = STEPS_IN_SEGMENTS * (1 + parameters), starts or 3
+        words = f"{name} in {_segments(shooting)} that must meet"
         return (
-            f"{name} in {_segments(shooting)} that must meet: about {one} simulations a start, sensitivities counted, "
-            f"and at most {most} starts"
+            f"{words}: about {one} simulations a start, sensitivities counted, and at most {most} starts",
+            one,
+            most * one,
         )
     if isinstance(method, Squares):
-        one = 10 * (1 + parameters)
-        return f"{name}: about {one} simulations a start, sensitivities counted, and at most {starts or 8} starts"
+        one, most = 10 * (1 + parameters), starts or 8
+        words = f"{name}: about {one} simulations a start, sensitivities counted, and at most {most} starts"
+        return words, one, one if most == 1 else most * (one + SCREENED * parameters)
     if isinstance(method, Swarm):
+        count = method.particles * method.iterations * (starts or 1)
         sizes = f"{starts or 1} x {method.particles} particles x {method.iterations} iterations"
-        return f"{name}: {sizes} = {method.particles * method.iterations * (starts or 1)} simulations"
-    return f"{name} {getattr(method, 'name', '')}: as many simulations as it asks for"
+        return f"{name}: {sizes} = {count} simulations", count, count
+    return f"{name} {getattr(method, 'name', '')}: as many simulations as it asks for", None, None
 
 
 def _segments(shooting: ShootingTable) -> str:
@@ -126,24 +112,6 @@ def _segments(shooting: ShootingTable) -> str:
     if shooting.segments is None and shooting.states is None:
         return "segments within which errors grow at most tenfold, and"
     return f"{shooting.settings().count} segments"
-
-
-def _expected(
-    method: Any, starts: int | None, parameters: int, shooting: ShootingTable | None
-) -> tuple[int | None, int | None]:
-    """About how many simulations a method takes at least and at most; None where it decides on the way."""
-    from dalembert.inverse.starts.multistart import SCREENED
-
-    if isinstance(method, Swarm):
-        count = method.particles * method.iterations * (starts or 1)
-        return count, count
-    if not isinstance(method, Squares):
-        return None, None
-    if shooting is not None:
-        one = STEPS_IN_SEGMENTS * (1 + parameters)
-        return one, (starts or 3) * one
-    one, number = 10 * (1 + parameters), starts or 8
-    return one, one if number == 1 else number * (one + SCREENED * parameters)
 
 
 def _buildable(method: Any) -> Any:
@@ -184,10 +152,15 @@ class Identify(Task):
 
     name = "identify"
     rank = 2
+    schema = IdentifyTable
     needs = (needs_parameters, needs_solver)
 
-    def table(self) -> type[StudyTable]:
-        return identify_table()
+    def keys(self) -> dict[str, Any]:
+        own = ", ".join(f"'{name}'" for name in methods() if name != "scipy")
+        tables = one_of([table_of(target, name, varying=False) for name, target in methods().items()])
+        method = Annotated[told_apart(lambda value: isinstance(value, str), str, tables), AfterValidator(_buildable)]
+        names = f"{own}, a minimiser of SciPy, or a table with kind and settings"
+        return {"method": (method, Field(DEFAULT, description=names))}
 
     def wrong(self, file: Any) -> list[str]:
         wrong = super().wrong(file)
@@ -204,22 +177,15 @@ class Identify(Task):
         return [*wrong, *_wrong_shooting(file)]
 
     def plan(self, study: Study) -> str:
-        from dalembert.inverse.experiments.experiments import joint
-
-        table = study.table
         model, data = posed(study)
-        whole = joint(model)[0] if isinstance(model, list) else model
-        cost = _cost(settings(table.method), table.starts, len(whole.parameters), table.shooting)
-        return f"identifies {', '.join(whole.parameters.names)} from {_measured(model, data)} by {cost}"
+        names = _whole(model).parameters.names
+        return f"identifies {', '.join(names)} from {_measured(model, data)} by {_cost(study.table, len(names))[0]}"
 
     def effort(self, study: Study) -> Effort:
-        from dalembert.inverse.experiments.experiments import joint
-
-        model, _ = posed(study)
-        whole = joint(model)[0] if isinstance(model, list) else model
-        method = settings(study.table.method)
-        least, most = _expected(method, study.table.starts, len(whole.parameters), study.table.shooting)
-        return evaluated(whole, whole.parameters.start, least, most, TOGETHER if isinstance(method, Swarm) else 1)
+        model = _whole(posed(study)[0])
+        _, least, most = _cost(study.table, len(model.parameters))
+        batch = TOGETHER if isinstance(settings(study.table.method), Swarm) else 1
+        return evaluated(model, model.parameters.start, least, most, batch)
 
     def foresight(self, study: Study) -> int:
         return 2 + len(unknown_names(study))
@@ -244,17 +210,11 @@ class Identify(Task):
             model,
             data,
             method=settings(table.method),
-            starts=table.starts,
-            seed=table.seed,
             weights=_weights(table.weights, model, data),
-            polish=table.polish,
             horizon=None if table.horizon == "whole" else table.horizon,
-            spread=table.spread,
-            loss=table.loss,
-            loss_scale=table.loss_scale,
-            validation=table.validation,
             shooting=None if table.shooting is None else table.shooting.settings(),
             on_event=teller(emit, as_record),
+            **table.picked("starts", "seed", "polish", "spread", "loss", "loss_scale", "validation"),
         )
         return _identified(study, fit, telling.beyond(table, model, data, fit, teller(emit, as_record)))
 
@@ -286,6 +246,13 @@ def _wrong_shooting(file: Any) -> list[str]:
     if not isinstance(settings(table.method), Squares):
         wrong.append("[identify.shooting] is a way of least squares; leave it or the method out")
     return wrong
+
+
+def _whole(model: Any) -> Any:
+    """The model, or the one that all experiments together are."""
+    from dalembert.inverse.experiments.experiments import joint
+
+    return joint(model)[0] if isinstance(model, list) else model
 
 
 def _measured(model: Any, data: Any) -> str:

@@ -1,15 +1,15 @@
 """Identify intervals of parameters from bands of the response."""
 
-from functools import cache
 from typing import Any
 
-from pydantic import Field, create_model
+from pydantic import Field
 
 from dalembert.study.catalogue import band_methods, part
-from dalembert.study.components import settings_of
+from dalembert.study.components import chosen
 from dalembert.study.duration import TOGETHER, Effort, evaluated
 from dalembert.study.events import Emit, teller
-from dalembert.study.intervals import IntervalKey, Number
+from dalembert.study.intervals import IntervalKey
+from dalembert.study.numbers import Number
 from dalembert.study.study import Study
 from dalembert.study.table import StudyTable
 from dalembert.study.tasks.task import Outcome, ResultTask
@@ -30,29 +30,17 @@ class IdentifyBandsTable(StudyTable):
     truth: dict[str, IntervalKey] = Field({}, description="intervals that are known, to be drawn beside those found")
 
 
-@cache
-def identify_bands_table() -> type[IdentifyBandsTable]:
-    """The task's table with all the methods that there are."""
-    names = ", ".join(f"'{name}'" for name in band_methods())
-    method = (settings_of(band_methods(), part) | None, Field(None, description=f"{names}, or a table of settings"))
-    fields: dict[str, Any] = {"method": method}
-    return create_model("IdentifyBands", __base__=IdentifyBandsTable, **fields)
-
-
 class IdentifyBands(ResultTask):
     """The task ``[identify_bands]``."""
 
     name = "identify_bands"
     kind = "dalembert.inverse:BandFit"
     rank = 5
-    needs = (
-        needs_parameters,
-        needs_bands,
-        needs_solver,
-    )
+    schema = IdentifyBandsTable
+    needs = (needs_parameters, needs_bands, needs_solver)
 
-    def table(self) -> type[StudyTable]:
-        return identify_bands_table()
+    def keys(self) -> dict[str, Any]:
+        return {"method": chosen(band_methods(), "or a table of settings", part)}
 
     def wrong(self, file: Any) -> list[str]:
         table = file.identify_bands
@@ -70,15 +58,11 @@ class IdentifyBands(ResultTask):
         numbers = f" and the numbers {', '.join(fixed)}" if fixed else ""
         return (
             f"identifies intervals of {', '.join(wide)}{numbers} from the bands of {', '.join(bands.channels)} at "
-            f"{len(bands.coordinate.values)} samples by {_cost(_method(study), len(names))}"
+            f"{len(bands.coordinate.values)} samples by {_cost(_method(study), len(names))[0]}"
         )
 
     def effort(self, study: Study) -> Effort:
-        from dalembert.inverse import Nested
-
-        bands, method, count = study.bands(), _method(study), None
-        if isinstance(method, Nested):
-            count = method.swarm.particles * method.swarm.iterations * method.scheme.runs(len(study.parameters.names))
+        bands, (_, count) = study.bands(), _cost(_method(study), len(study.parameters))
         model = study.forward(bands.channels, bands.coordinate.values)
         return evaluated(model, study.parameters.start, count, count, TOGETHER)
 
@@ -114,12 +98,14 @@ def _method(study: Study) -> Any:
     return band_methods()[DEFAULT]() if given is None else given.settings()
 
 
-def _cost(method: Any, parameters: int) -> str:
-    """A method's name, and about how many simulations it takes."""
+def _cost(method: Any, parameters: int) -> tuple[str, int | None]:
+    """A method's name, and about how many simulations it takes; None where its surrogate decides."""
     from dalembert.inverse import Nested
 
+    name = type(method).__name__
     if not isinstance(method, Nested):
-        return f"{type(method).__name__}: as many simulations as its surrogate needs"
+        return f"{name}: as many simulations as its surrogate needs", None
     swarm, each = method.swarm, method.scheme.runs(parameters)
+    count = swarm.particles * swarm.iterations * each
     sizes = f"{swarm.particles} particles x {swarm.iterations} iterations x {each} runs"
-    return f"{type(method).__name__}: {sizes} = {swarm.particles * swarm.iterations * each} simulations"
+    return f"{name}: {sizes} = {count} simulations", count

@@ -1,30 +1,24 @@
 """Identify all parameters that are consistent with measurements of bounded error."""
 
-from functools import cache
-from typing import Annotated, Any
+from typing import Any
 
-from pydantic import Discriminator, Field, Tag, create_model
+from pydantic import Field
 
 from dalembert.study.catalogue import schemes
-from dalembert.study.components import settings_of
+from dalembert.study.components import chosen
 from dalembert.study.duration import TOGETHER, Effort, evaluated
 from dalembert.study.events import Emit, teller
-from dalembert.study.intervals import Number
+from dalembert.study.numbers import Number, NumberOfEach
 from dalembert.study.study import Study
 from dalembert.study.table import StudyTable
 from dalembert.study.tasks.task import Outcome, ResultTask
 from dalembert.study.tasks.wrong import needs_data, needs_parameters, needs_solver, unmatched, unnamed
 
-Errors = Annotated[
-    Annotated[dict[str, Number], Tag("channels")] | Annotated[Number, Tag("number")],
-    Discriminator(lambda value: "channels" if isinstance(value, dict) else "number"),
-]
-
 
 class IdentifySetTable(StudyTable):
     """Pave the set of all parameters that explain the data within their errors."""
 
-    error: Errors = Field(description="largest error of the data: a number, or one for each channel")
+    error: NumberOfEach = Field(description="largest error of the data: a number, or one for each channel")
     scheme: Any = None
     resolution: float | None = Field(
         None, gt=0, lt=1, description="sides of the smallest boxes, as a part of the box around the set"
@@ -34,29 +28,17 @@ class IdentifySetTable(StudyTable):
     truth: dict[str, Number] = Field({}, description="parameters that are known, to be marked in the figures")
 
 
-@cache
-def identify_set_table() -> type[IdentifySetTable]:
-    """The task's table with all the schemes that there are."""
-    names = ", ".join(f"'{name}'" for name in schemes())
-    scheme = (settings_of(schemes()) | None, Field(None, description=f"{names}, or a table of settings"))
-    fields: dict[str, Any] = {"scheme": scheme}
-    return create_model("IdentifySet", __base__=IdentifySetTable, **fields)
-
-
 class IdentifySet(ResultTask):
     """The task ``[identify_set]``."""
 
     name = "identify_set"
     kind = "dalembert.inverse:ParameterSet"
     rank = 6
-    needs = (
-        needs_parameters,
-        needs_data,
-        needs_solver,
-    )
+    schema = IdentifySetTable
+    needs = (needs_parameters, needs_data, needs_solver)
 
-    def table(self) -> type[StudyTable]:
-        return identify_set_table()
+    def keys(self) -> dict[str, Any]:
+        return {"scheme": chosen(schemes(), "or a table of settings")}
 
     def wrong(self, file: Any) -> list[str]:
         table = file.identify_set
@@ -83,7 +65,8 @@ class IdentifySet(ResultTask):
 
         data, table = study.data(), study.table
 
-        given = {key: getattr(table, key) for key in ("resolution", "most_boxes") if getattr(table, key) is not None}
+        picked = table.picked("resolution", "most_boxes")
+        given = {key: value for key, value in picked.items() if value is not None}
         if table.scheme is not None:
             given["scheme"] = table.scheme.settings()
         model = study.forward(data.channels, data.coordinate.values)

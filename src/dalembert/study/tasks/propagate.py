@@ -1,18 +1,17 @@
 """Propagate: bounds of the response while parameters are anywhere in their intervals."""
 
-from functools import cache
 from pathlib import Path
 from typing import Any
 
-from pydantic import Field, create_model
+from pydantic import Field
 
 from dalembert.intervals import Box
 from dalembert.study.catalogue import part, propagation_methods
-from dalembert.study.components import settings_of
+from dalembert.study.components import chosen, settings_of
 from dalembert.study.duration import TOGETHER, Effort, evaluated
 from dalembert.study.events import Emit, teller
 from dalembert.study.intervals import IntervalKey
-from dalembert.study.numbers import samples
+from dalembert.study.numbers import Frequencies, Times
 from dalembert.study.study import Study
 from dalembert.study.table import StudyTable
 from dalembert.study.tasks.task import Outcome, ResultTask
@@ -24,8 +23,8 @@ DEFAULT, REFERENCE = "chebyshev", "optimise"
 class PropagateTable(StudyTable):
     """Bound the response over intervals of the parameters."""
 
-    times: samples("s") | None = Field(None, description="output times of a mechanism: a list, or a range")  # pyright: ignore[reportInvalidTypeForm]
-    frequencies: samples("Hz") | None = Field(None, description="of a structure's response: a list, or a range")  # pyright: ignore[reportInvalidTypeForm]
+    times: Times | None = Field(None, description="output times of a mechanism: a list, or a range")
+    frequencies: Frequencies | None = Field(None, description="of a structure's response: a list, or a range")
     channels: list[str] | None = Field(None, min_length=1, description="outputs of a mechanism or a structure")
     intervals: dict[str, IntervalKey] = Field(
         {}, description="interval of each parameter; that between its bounds if not given"
@@ -36,32 +35,22 @@ class PropagateTable(StudyTable):
     seed: int = Field(0, ge=0, description="of all random numbers")
 
 
-@cache
-def propagate_table() -> type[PropagateTable]:
-    """The task's table with all the methods that there are."""
-    method = settings_of(propagation_methods(), part)
-    names = ", ".join(f"'{name}'" for name in propagation_methods())
-    fields: dict[str, Any] = {
-        "method": (method | None, Field(None, description=f"{names}, or a table with kind and settings")),
-        "compare": (list[method], Field([], description="more methods, to be compared on the same box")),
-        "reference": (method | None, Field(None, description="method that the compared ones are measured by")),
-    }
-    return create_model("Propagate", __base__=PropagateTable, **fields)
-
-
 class Propagate(ResultTask):
     """The task ``[propagate]``."""
 
     name = "propagate"
     rank = 4
-    needs = (
-        needs_parameters,
-        needs_samples,
-        needs_solver,
-    )
+    schema = PropagateTable
+    needs = (needs_parameters, needs_samples, needs_solver)
 
-    def table(self) -> type[StudyTable]:
-        return propagate_table()
+    def keys(self) -> dict[str, Any]:
+        method = settings_of(propagation_methods(), part)
+        reference = Field(None, description="method that the compared ones are measured by")
+        return {
+            "method": chosen(propagation_methods(), "or a table with kind and settings", part),
+            "compare": (list[method], Field([], description="more methods, to be compared on the same box")),
+            "reference": (method | None, reference),
+        }
 
     def wrong(self, file: Any) -> list[str]:
         table = file.propagate

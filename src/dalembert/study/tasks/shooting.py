@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from pydantic import BeforeValidator, Field
 
-from dalembert.study.intervals import Number
+from dalembert.study.numbers import Number
 from dalembert.study.table import StudyTable, checked
 
 if TYPE_CHECKING:

@@ -2,16 +2,16 @@
 
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
 from pydantic import Field
 
 from dalembert.study.duration import Effort, shortest_of
 from dalembert.study.events import Emit
-from dalembert.study.numbers import fixed, samples
+from dalembert.study.numbers import Seconds, Times
 from dalembert.study.study import Study
-from dalembert.study.table import Read, StudyTable, placed, problem
+from dalembert.study.table import StudyTable, placed, problem
 from dalembert.study.tasks.task import Outcome, ResultTask, silent
 from dalembert.study.tasks.wrong import needs_mechanism
 
@@ -19,10 +19,8 @@ from dalembert.study.tasks.wrong import needs_mechanism
 class SimulateTable(StudyTable):
     """Simulate the mechanism until ``end``."""
 
-    end: Annotated[float, Read(fixed("s"))] | None = Field(None, description="last time; that of times if not given")
-    times: Annotated[tuple[float, ...], Read(samples("s"))] | None = Field(
-        None, description="output times; every step if not given"
-    )
+    end: Seconds | None = Field(None, description="last time; that of times if not given")
+    times: Times | None = Field(None, description="output times; every step if not given")
     channels: list[str] = Field([], description="what the result keeps: 'AB.end.x'; every channel if not given")
     points: list[str] = Field([], description="points whose paths the report draws: 'AB.end'")
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Annotated, Any, Self
 
 import numpy as np
-from pydantic import Discriminator, Field, Tag
+from pydantic import Field
 
 from dalembert.errors import InputError, StorageError, require_known, told
 from dalembert.files import replacing
@@ -14,9 +14,9 @@ from dalembert.forward import ForwardModel, prefetched
 from dalembert.parameters import Parameters
 from dalembert.study.duration import TOGETHER, Effort, evaluated
 from dalembert.study.events import Emit
-from dalembert.study.numbers import MOST, fixed, samples
+from dalembert.study.numbers import MOST, Number, samples
 from dalembert.study.study import Study
-from dalembert.study.table import Read, StudyTable, problem
+from dalembert.study.table import Read, StudyTable, problem, told_apart
 from dalembert.study.tasks.task import ResultTask
 from dalembert.study.tasks.wrong import needs_solver, unnamed
 
@@ -30,15 +30,15 @@ class BoundsTable(StudyTable):
 
 
 Along = Annotated[
-    Annotated[BoundsTable, Tag("count")] | Annotated[samples(None), Tag("values")],
-    Discriminator(lambda value: "count" if isinstance(value, dict) and set(value) <= {"count"} else "values"),
+    BoundsTable | tuple[float, ...],
+    Read(told_apart(lambda value: isinstance(value, dict) and set(value) <= {"count"}, BoundsTable, samples(None))),
 ]
 
 
 class SweepTable(StudyTable):
     """Move one parameter at a time, the others at their first guesses, and look at one instant."""
 
-    at: Annotated[float, Read(fixed(None))] = Field(description="the instant: a time in s, or a frequency in Hz")
+    at: Number = Field(description="the instant: a time in s, or a frequency in Hz")
     channels: list[str] = Field(min_length=1)
     sensitivities: bool = Field(True, description="whether to compute the derivatives too")
     over: dict[str, Along] = Field(
@@ -134,23 +134,22 @@ class SweepTask(ResultTask):
         model = _model(study)
         _sample(model, study.table.at)
         _columns(model, study.table.channels)
-        values = {name: len(values_along(study.parameters, name, study.table.over[name])) for name in study.table.over}
-        count = sum(values.values())
+        counts = {name: len(values) for name, values in _values(study).items()}
         each = f", each with {len(study.parameters)} sensitivities" if study.table.sensitivities else ""
-        along = ", ".join(f"{name} ({number})" for name, number in values.items())
-        return f"sweeps {along} at {_instant(model, study.table.at)}: {count} simulations{each}"
+        along = ", ".join(f"{name} ({count})" for name, count in counts.items())
+        return f"sweeps {along} at {_instant(model, study.table.at)}: {sum(counts.values())} simulations{each}"
 
     def effort(self, study: Study) -> Effort:
-        count = sum(len(values_along(study.parameters, name, study.table.over[name])) for name in study.table.over)
+        count = sum(map(len, _values(study).values()))
         count *= 1 + len(study.parameters) if study.table.sensitivities else 1
         return evaluated(_model(study), study.parameters.start, count, count, TOGETHER)
 
     def result(self, study: Study, emit: Emit) -> Sweep:
-        model = _model(study)
-        total = sum(len(values_along(study.parameters, name, study.table.over[name])) for name in study.table.over)
+        model, along = _model(study), _values(study)
+        total = sum(map(len, along.values()))
         curves, done = [], 0
-        for name in study.table.over:
-            curve = _empty(study, model, name)
+        for name, values in along.items():
+            curve = _empty(study, model, name, values)
             for row, failure in _fill(study, model, curve):
                 done += 1
                 details = {"parameter": name, "value": float(curve.values[row]), "done": done, "total": total}
@@ -193,9 +192,13 @@ def values_along(parameters: Parameters, name: str, along: BoundsTable | tuple[f
     return np.linspace(parameter.lower, parameter.upper, along.count)
 
 
-def _empty(study: Study, model: ForwardModel, name: str) -> Curve:
+def _values(study: Study) -> dict[str, np.ndarray]:
+    """Values of each parameter, shape (samples,)."""
+    return {name: values_along(study.parameters, name, along) for name, along in study.table.over.items()}
+
+
+def _empty(study: Study, model: ForwardModel, name: str, values: np.ndarray) -> Curve:
     """A curve with NaN where responses will stand."""
-    values = values_along(study.parameters, name, study.table.over[name])
     channels = [model.channels[column] for column in _columns(model, study.table.channels)]
     shape = (len(values), len(channels))
     unit = next(item.unit for item in study.parameters if item.name == name)
@@ -234,19 +237,14 @@ def _dataset(curve: Curve) -> Any:
     """A curve as xarray's Dataset, with units as attributes."""
     import xarray as xr
 
+    given = [("{}", curve.responses, "{}", "response")]
+    if curve.sensitivities is not None:
+        given.append(("d({})", curve.sensitivities, f"{{}}/({curve.unit or '1'})", "sensitivity"))
     variables = {
-        name: (curve.parameter, curve.responses[:, column], {"units": unit, "role": "response"})
+        label.format(name): (curve.parameter, values[:, column], {"units": form.format(unit), "role": role})
+        for label, values, form, role in given
         for column, (name, unit) in enumerate(zip(curve.channels, curve.units, strict=True))
     }
-    if curve.sensitivities is not None:
-        variables |= {
-            f"d({name})": (
-                curve.parameter,
-                curve.sensitivities[:, column],
-                {"units": f"{unit}/({curve.unit or '1'})", "role": "sensitivity"},
-            )
-            for column, (name, unit) in enumerate(zip(curve.channels, curve.units, strict=True))
-        }
     return xr.Dataset(variables, {curve.parameter: (curve.parameter, curve.values, {"units": curve.unit})})
 
 

@@ -12,7 +12,7 @@ from dalembert.findings import Finding
 from dalembert.study.duration import Effort
 from dalembert.study.events import Emit
 from dalembert.study.study import Study
-from dalembert.study.table import StudyTable
+from dalembert.study.table import StudyTable, completed
 
 
 def silent(kind: str, **details: Any) -> None:
@@ -111,7 +111,12 @@ class Task(ABC):
 
     def table(self) -> type[StudyTable]:
         """Schema of the task's table."""
-        return self.schema
+        keys = self.keys()
+        return completed(self.schema, **keys) if keys else self.schema
+
+    def keys(self) -> dict[str, Any]:
+        """Keys of the table that depend on the kinds that there are, as :func:`completed` takes them."""
+        return {}
 
     def wrong(self, file: Any) -> list[str]:
         """Sentences about what the task misses elsewhere in the file."""

@@ -1,15 +1,15 @@
 """Track resonance: the peak of a response over a parameter, without whole curves."""
 
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
 from pydantic import Field
 
 from dalembert.study.duration import Effort, whole
 from dalembert.study.events import Emit
-from dalembert.study.numbers import fixed
+from dalembert.study.numbers import FrequencyEnds
 from dalembert.study.study import Study
-from dalembert.study.table import Read, StudyTable, placed
+from dalembert.study.table import StudyTable, placed
 from dalembert.study.tasks.sweep import Along, values_along
 from dalembert.study.tasks.task import Outcome, ResultTask
 from dalembert.study.tasks.wrong import needs_structure, unnamed
@@ -20,9 +20,7 @@ class TrackResonanceTable(StudyTable):
 
     parameter: str = Field(description="such as a preload or the level of a force; the others keep their first guesses")
     values: Along = Field(description="in their order: a list, a range, or { count = 9 } between the bounds")
-    between: Annotated[list[Annotated[float, Read(fixed("Hz"))]], Field(min_length=2, max_length=2)] = Field(
-        description="frequencies around the peak at the first value"
-    )
+    between: FrequencyEnds = Field(description="frequencies around the peak at the first value")
     dof: str = Field(description="whose peak is followed: 'm2', or 'm2.x'")
     amplitude: str = Field("peak", description="'peak', 'rms', or 'harmonic 1' and so on")
 

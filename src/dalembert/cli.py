@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NoReturn, TextIO
 
 import typer
+from typer.core import TyperGroup
 
 from dalembert import __version__
 
@@ -20,8 +21,18 @@ if TYPE_CHECKING:
     from dalembert.study.folder import RunFolder
     from dalembert.study.tasks.task import Outcome
 
+
+class _Commands(TyperGroup):
+    """Commands whose errors become sentences and exit codes."""
+
+    def invoke(self, ctx: Any) -> Any:
+        with _exit_codes():
+            return super().invoke(ctx)
+
+
 app = typer.Typer(
     name="dalembert",
+    cls=_Commands,
     help="Simulate mechanical systems, identify their parameters from measured motion, and bound what is uncertain.",
     no_args_is_help=True,
     pretty_exceptions_enable=False,
@@ -70,15 +81,14 @@ def new(
     ] = None,
 ) -> None:
     """Begin a study from a template."""
-    with _exit_codes():
-        from dalembert.study.template import begin, templates
+    from dalembert.study.template import begin, templates
 
-        if template is None:
-            for one in templates().values():
-                typer.echo(f"{one.name:10}{one.title}: {one.description}")
-            typer.echo("Begin with one of them by: dalembert new TEMPLATE FOLDER")
-        else:
-            typer.echo(f"run it by: dalembert run {begin(template, folder or Path(template))}")
+    if template is None:
+        for one in templates().values():
+            typer.echo(f"{one.name:10}{one.title}: {one.description}")
+        typer.echo("Begin with one of them by: dalembert new TEMPLATE FOLDER")
+    else:
+        typer.echo(f"run it by: dalembert run {begin(template, folder or Path(template))}")
 
 
 @app.command()
@@ -93,35 +103,31 @@ def run(
     cluster: Cluster = None,
 ) -> None:
     """Do what a study says, in a run folder of its own."""
-    with _exit_codes():
-        from dalembert.study import load, run_study
-        from dalembert.study.progress import Watch
-        from dalembert.study.runner import unknowns
+    from dalembert.study import load, run_study
+    from dalembert.study.progress import Watch
+    from dalembert.study.runner import unknowns
 
-        _stop_on_terminate()
-        _say_once(cluster)
-        read = load(study)
-        if seed is not None:
-            read = read.with_seed(seed)
-        with Watch(_console(sys.stderr, soft_wrap=True), unknowns(read)) as watch:
-            folder, outcome = run_study(read, out, force=force, listener=watch, executor=cluster)
-        _ended(folder, outcome)
+    _begin(cluster)
+    read = load(study)
+    if seed is not None:
+        read = read.with_seed(seed)
+    with Watch(_console(sys.stderr, soft_wrap=True), unknowns(read)) as watch:
+        folder, outcome = run_study(read, out, force=force, listener=watch, executor=cluster)
+    _ended(folder, outcome)
 
 
 @app.command()
 def resume(run: Run, cluster: Cluster = None) -> None:
     """Go on with a run that was killed or stopped: it ends with the same bits as one that was not."""
-    with _exit_codes():
-        from dalembert.study import resume_run
-        from dalembert.study.progress import Watch
-        from dalembert.study.runner import unknowns
+    from dalembert.study import resume_run
+    from dalembert.study.progress import Watch
+    from dalembert.study.runner import unknowns
 
-        _stop_on_terminate()
-        _say_once(cluster)
-        folder = _folder(run)
-        with Watch(_console(sys.stderr, soft_wrap=True), unknowns(folder.kept())) as watch:
-            outcome = resume_run(folder, listener=watch, executor=cluster)
-        _ended(folder, outcome)
+    _begin(cluster)
+    folder = _folder(run)
+    with Watch(_console(sys.stderr, soft_wrap=True), unknowns(folder.kept())) as watch:
+        outcome = resume_run(folder, listener=watch, executor=cluster)
+    _ended(folder, outcome)
 
 
 @app.command()
@@ -130,31 +136,30 @@ def check(
     limit: Annotated[float, typer.Option(min=0, metavar="SECONDS", help="Time for simulations.")] = 30.0,
 ) -> None:
     """Check a study, list its mechanism's channels, and say about how many simulations it would run and how long."""
-    with _exit_codes():
-        from dalembert.errors import ModelError
-        from dalembert.study import load, plan
-        from dalembert.study.channels import channel_lines
-        from dalembert.study.duration import spoken, within
-        from dalembert.study.runner import looked
-        from dalembert.study.sources import source_lines
-        from dalembert.study.table import placed
+    from dalembert.errors import ModelError
+    from dalembert.study import load, plan
+    from dalembert.study.channels import channel_lines
+    from dalembert.study.duration import spoken, within
+    from dalembert.study.runner import looked
+    from dalembert.study.sources import source_lines
+    from dalembert.study.table import placed
 
-        read = load(study)
-        with placed(study.name), placed(study.name, ModelError):
-            typer.echo(f"{study}: in order; it {plan(read)}")
-            for line in (*source_lines(read), *channel_lines(read)):
-                typer.echo(line)
-            try:
-                for sentence in within(limit, lambda: looked(read, limit)):
-                    typer.echo(sentence)
-            except TimeoutError:
-                typer.echo(f"The check ends at its time limit, {spoken(limit)}, during a simulation. Raise --limit.")
-                _leave(DONE)
-            except KeyboardInterrupt:
-                typer.echo("stopped", err=True)
-                _leave(STOPPED)
-            except BrokenPipeError:
-                _leave(DONE)
+    read = load(study)
+    with placed(study.name), placed(study.name, ModelError):
+        typer.echo(f"{study}: in order; it {plan(read)}")
+        for line in (*source_lines(read), *channel_lines(read)):
+            typer.echo(line)
+        try:
+            for sentence in within(limit, lambda: looked(read, limit)):
+                typer.echo(sentence)
+        except TimeoutError:
+            typer.echo(f"The check ends at its time limit, {spoken(limit)}, during a simulation. Raise --limit.")
+            _leave(DONE)
+        except KeyboardInterrupt:
+            typer.echo("stopped", err=True)
+            _leave(STOPPED)
+        except BrokenPipeError:
+            _leave(DONE)
 
 
 @app.command("list")
@@ -162,23 +167,21 @@ def list_runs(
     runs: Annotated[Path, typer.Option(help="Folder that holds the runs.")] = Path("runs"),
 ) -> None:
     """List the runs with their states and best values."""
-    with _exit_codes():
-        from dalembert.study.listing import rows, table
+    from dalembert.study.listing import rows, table
 
-        found = rows(runs)
-        if not found:
-            typer.echo(f"no runs in {runs}")
-        else:
-            _console(sys.stdout, width=None if sys.stdout.isatty() else 200).print(table(found))
+    found = rows(runs)
+    if not found:
+        typer.echo(f"no runs in {runs}")
+    else:
+        _console(sys.stdout, width=None if sys.stdout.isatty() else 200).print(table(found))
 
 
 @app.command()
 def report(run: Run) -> None:
     """Make the report of a run anew, from its result."""
-    with _exit_codes():
-        from dalembert.study import report_run
+    from dalembert.study import report_run
 
-        typer.echo(f"report: {report_run(_folder(run))}")
+    typer.echo(f"report: {report_run(_folder(run))}")
 
 
 @app.command()
@@ -192,20 +195,19 @@ def studio(
     browser: Annotated[bool, typer.Option(help="Open the page in a browser.")] = True,
 ) -> None:
     """Studies and runs in a browser: edit, start, watch, compare."""
-    with _exit_codes():
-        from dalembert.errors import InputError
+    from dalembert.errors import InputError
 
-        try:
-            import nicegui  # noqa: F401
-        except ImportError:
-            raise InputError(
-                "the studio needs NiceGUI, which is not installed; run: pip install 'dalembert[studio]'"
-            ) from None
-        from dalembert.studio import serve
+    try:
+        import nicegui  # noqa: F401
+    except ImportError:
+        raise InputError(
+            "the studio needs NiceGUI, which is not installed; run: pip install 'dalembert[studio]'"
+        ) from None
+    from dalembert.studio import serve
 
-        if not folder.is_dir():
-            raise InputError(f"there is no folder {folder}; make it, or name another")
-        serve(folder, host, port, token, browser)
+    if not folder.is_dir():
+        raise InputError(f"there is no folder {folder}; make it, or name another")
+    serve(folder, host, port, token, browser)
 
 
 @app.command("compile")
@@ -223,12 +225,11 @@ def compile_() -> None:
 @app.command()
 def schema() -> None:
     """Print the JSON schema of study files, for editors."""
-    with _exit_codes():
-        import json
+    import json
 
-        from dalembert.study import json_schema
+    from dalembert.study import json_schema
 
-        typer.echo(json.dumps(json_schema(), indent=2, ensure_ascii=False))
+    typer.echo(json.dumps(json_schema(), indent=2, ensure_ascii=False))
 
 
 def _console(stream: TextIO, **options: Any) -> "Console":
@@ -309,22 +310,17 @@ def _complain(message: str, code: int) -> None:
     raise typer.Exit(code)
 
 
-def _stop_on_terminate() -> None:
-    """Treat a termination signal like Ctrl-C, so that the run's state says what happened."""
+def _begin(cluster: str | None) -> None:
+    """Treat a termination signal like Ctrl-C, so that the run's state says what happened; silence Dask's tracebacks."""
+    import logging
     import signal
 
     def stop(number: int, frame: object) -> None:
         raise KeyboardInterrupt
 
     signal.signal(signal.SIGTERM, stop)
-
-
-def _say_once(cluster: str | None) -> None:
-    """A cluster that is lost is told by the error that ends the run; Dask logs the same, with tracebacks."""
-    import logging
-
     if cluster is not None:
-        logging.disable(logging.ERROR)
+        logging.disable(logging.ERROR)  # the error that ends the run says that a cluster is lost
 
 
 if __name__ == "__main__":

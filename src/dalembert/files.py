@@ -3,8 +3,9 @@
 import errno
 import os
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from itertools import chain, count
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -61,6 +62,12 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
             raise unwritable(path, error.strerror) from None
         raise
     _sync(path.parent)
+
+
+def free_path(path: Path, taken: Callable[[Path], bool] = Path.exists) -> Path:
+    """Return the path itself, or ``NAME-2`` and so on: the first that is not taken."""
+    paths = chain([path], (path.with_name(f"{path.name}-{number}") for number in count(2)))
+    return next(one for one in paths if not taken(one))
 
 
 def set_aside(path: Path, *suffixes: str) -> Path:

@@ -6,7 +6,7 @@ from nicegui import ui
 
 from dalembert.errors import InputError
 from dalembert.studio.figures import convergence, plot
-from dalembert.studio.frame import badge, frame
+from dalembert.studio.frame import badge, frame, report_of
 from dalembert.studio.live import Live
 from dalembert.studio.workspace import Workspace
 from dalembert.study.folder import RunFolder
@@ -32,9 +32,7 @@ def compare_page(workspace: Workspace, names: list[str]) -> None:
             for folder in (folder for folder in folders if folder.report.is_file()):
                 with ui.column().classes("grow basis-80 min-w-0"):
                     ui.label(folder.path.name).classes("font-bold break-all")
-                    page = ui.element("iframe").props(f'src="/files/{quote(folder.path.name)}/report.html"')
-                    page.props(f'sandbox="allow-scripts allow-downloads" title="Report of {quote(folder.path.name)}"')
-                    page.classes("w-full border rounded").style("height: 75vh")
+                    report_of(folder, "75vh")
 
 
 def _read(folder: RunFolder) -> Live:

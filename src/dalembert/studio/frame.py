@@ -2,11 +2,14 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from urllib.parse import quote
 
 from nicegui import ui
 
 from dalembert import __version__
+from dalembert.errors import DalembertError
 from dalembert.report.look import LIGHT
+from dalembert.study.folder import RunFolder
 
 STATES = {"finished": "positive", "running": "primary", "interrupted": "warning", "killed": "warning"}
 """Colour of a state's badge; that of an error for the others."""
@@ -45,9 +48,21 @@ def badge(state: str) -> ui.badge:
     return ui.badge(state, color=STATES.get(state, "negative")).props("role=status")
 
 
-def complain(error: Exception) -> None:
-    """Show an error as a message that stays until it is read."""
-    ui.notify(str(error), type="negative", multi_line=True, close_button="Close", timeout=0)
+@contextmanager
+def complaints() -> Iterator[None]:
+    """A block whose errors are shown as a message that stays until it is read."""
+    try:
+        yield
+    except (DalembertError, OSError) as error:
+        ui.notify(str(error), type="negative", multi_line=True, close_button="Close", timeout=0)
+
+
+def report_of(folder: RunFolder, height: str) -> None:
+    """The report of a run as a page within a page, which can reach nothing of the studio."""
+    name = quote(folder.path.name)
+    page = ui.element("iframe").props(f'src="/files/{name}/report.html" title="Report of {name}"')
+    page.props('sandbox="allow-scripts allow-downloads allow-popups"')
+    page.classes("w-full border rounded").style(f"height: {height}")
 
 
 def button(text: str, on_click: Callable[[], object], *, icon: str, colour: str = "primary") -> ui.button:

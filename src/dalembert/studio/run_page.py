@@ -2,7 +2,6 @@
 
 import asyncio
 import json
-from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from urllib.parse import quote
@@ -10,10 +9,10 @@ from urllib.parse import quote
 import plotly.graph_objects as go
 from nicegui import ui
 
-from dalembert.errors import DalembertError, InputError
+from dalembert.errors import InputError
 from dalembert.studio.figures import bare, convergence, followed, on_any_page, plot
 from dalembert.studio.fit_so_far import fit_so_far
-from dalembert.studio.frame import STATES, badge, button, complain, frame
+from dalembert.studio.frame import STATES, badge, button, complaints, frame, report_of
 from dalembert.studio.jobs import Jobs, stop
 from dalembert.studio.live import Live
 from dalembert.studio.workspace import Workspace
@@ -61,8 +60,8 @@ class _Page:
             self.told = ui.label("").props("role=status aria-live=polite").classes("break-words")
         self.bar = ui.linear_progress(0, show_value=False).props('aria-label="Progress" indeterminate')
         with ui.row().classes("gap-2"):
-            self.stop = button("Stop", self._asked(lambda: stop(self.folder)), icon="stop", colour="negative")
-            self.resume = button("Resume", self._asked(lambda: self.jobs.resume(self.folder.path)), icon="play_arrow")
+            self.stop = button("Stop", complaints()(lambda: stop(self.folder)), icon="stop", colour="negative")
+            self.resume = button("Resume", complaints()(lambda: self.jobs.resume(self.folder.path)), icon="play_arrow")
         self.message = ui.label("").classes("whitespace-pre-wrap break-words")
         self.live_part = ui.column().classes("w-full gap-4")
         with self.live_part:
@@ -120,9 +119,7 @@ class _Page:
         self.live_part.set_visibility(state != FINISHED)
         if self.folder.report.is_file():
             with self.report:
-                page = ui.element("iframe").props(f'src="/files/{name}/report.html" title="The report"')
-                page.props('sandbox="allow-scripts allow-downloads allow-popups"').classes("w-full border rounded")
-                page.style("height: 85vh")
+                report_of(self.folder, "85vh")
 
     def _show_events(self) -> None:
         text, done, total = self.live.progress
@@ -151,15 +148,6 @@ class _Page:
             return
         if figure is not None:
             _draw(self.fit, "Best fit so far, and the data", on_any_page(go.Figure(figure)))
-
-    def _asked(self, what: Callable[[], None]) -> Callable[[], None]:
-        def asked() -> None:
-            try:
-                what()
-            except (DalembertError, OSError) as error:
-                complain(error)
-
-        return asked
 
 
 def _draw(place: ui.column, name: str, figure: go.Figure) -> None:

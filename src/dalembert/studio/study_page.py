@@ -2,6 +2,7 @@
 
 import re
 import tempfile
+from collections.abc import Awaitable, Callable
 from functools import partial
 from pathlib import Path
 from urllib.parse import quote
@@ -11,7 +12,7 @@ from nicegui import events, run, ui
 from dalembert.errors import DalembertError, InputError
 from dalembert.report.charts.identification.measured import measured
 from dalembert.studio.figures import on_any_page, plot
-from dalembert.studio.frame import button, complain, frame
+from dalembert.studio.frame import button, complaints, frame
 from dalembert.studio.jobs import Jobs
 from dalembert.studio.lines import line_of
 from dalembert.studio.workspace import MOST_BYTES, Workspace, as_text
@@ -32,14 +33,11 @@ def new_page(workspace: Workspace) -> None:
         name.classes("w-full max-w-md").props("outlined")
 
         def create(text: str, beside: dict[str, str], otherwise: str) -> None:
-            try:
+            with complaints():
                 study = workspace.create(name.value or workspace.free(otherwise), text)
                 for file, content in beside.items():
                     workspace.put(study, file, content.encode())
-            except DalembertError as error:
-                complain(error)
-                return
-            ui.navigate.to(f"/study/{quote(study)}")
+                ui.navigate.to(f"/study/{quote(study)}")
 
         ui.label("Start from a template").classes("text-xl font-bold").props("role=heading aria-level=2")
         with ui.element("div").classes("grid grid-cols-1 sm:grid-cols-2 gap-3 w-full"):
@@ -50,15 +48,10 @@ def new_page(workspace: Workspace) -> None:
         ui.label("Open a study file").classes("text-xl font-bold").props("role=heading aria-level=2")
 
         async def uploaded(event: events.UploadEventArguments) -> None:
-            try:
+            with complaints():
                 create(as_text(await event.file.read(), event.file.name), {}, Path(event.file.name).stem)
-            except DalembertError as error:
-                complain(error)
 
-        upload = ui.upload(
-            label="Choose a study file (.toml)", auto_upload=True, on_upload=uploaded, max_file_size=MOST_BYTES
-        )
-        upload.props('accept=".toml" flat bordered').classes("w-full max-w-md")
+        _upload("Choose a study file (.toml)", ".toml", uploaded)
 
 
 def study_page(workspace: Workspace, jobs: Jobs, name: str) -> None:
@@ -71,8 +64,8 @@ def study_page(workspace: Workspace, jobs: Jobs, name: str) -> None:
         return
     with frame(name):
         with ui.row().classes("gap-2 items-center"):
-            start = button("Run", lambda: _start(workspace, jobs, path, editor.value), icon="play_arrow")
-            button("Save", lambda: _save(workspace, path, editor.value), icon="save")
+            start = button("Run", complaints()(lambda: _start(workspace, jobs, path, editor.value)), icon="play_arrow")
+            button("Save", complaints()(lambda: _save(workspace, path, editor.value)), icon="save")
             verdict = ui.label("").props("role=status aria-live=polite")
         does = ui.label("").classes("break-words")
         wrong = ui.column().classes("gap-1 w-full")
@@ -109,16 +102,18 @@ def study_page(workspace: Workspace, jobs: Jobs, name: str) -> None:
         editor.on_value_change(changed)
 
         async def uploaded(event: events.UploadEventArguments) -> None:
-            try:
+            with complaints():
                 placed = workspace.put(name, event.file.name, await event.file.read())
-            except DalembertError as error:
-                complain(error)
-                return
-            ui.notify(f"{placed.name} lies beside the study now: name it in [data].", type="positive")
-            await look()
+                ui.notify(f"{placed.name} lies beside the study now: name it in [data].", type="positive")
+                await look()
 
-        upload = ui.upload(label="Add measured data", auto_upload=True, on_upload=uploaded, max_file_size=MOST_BYTES)
-        upload.props(f'accept="{DATA}" flat bordered').classes("w-full max-w-md")
+        _upload("Add measured data", DATA, uploaded)
+
+
+def _upload(label: str, kinds: str, uploaded: Callable[[events.UploadEventArguments], Awaitable[None]]) -> None:
+    """A field that takes files of some kinds."""
+    upload = ui.upload(label=label, auto_upload=True, on_upload=uploaded, max_file_size=MOST_BYTES)
+    upload.props(f'accept="{kinds}" flat bordered').classes("w-full max-w-md")
 
 
 def _read(path: Path, text: str) -> tuple[Study | None, str, list[tuple[int, str]]]:
@@ -170,25 +165,15 @@ async def _draw(study: Study) -> None:
     plot(on_any_page(measured(data))).classes("w-full h-80").props('role=img aria-label="Measured data"')
 
 
-def _save(workspace: Workspace, path: Path, text: str) -> bool:
-    try:
-        workspace.write(path, text)
-    except DalembertError as error:
-        complain(error)
-        return False
+def _save(workspace: Workspace, path: Path, text: str) -> None:
+    workspace.write(path, text)
     ui.notify("Saved.", type="positive")
-    return True
 
 
 def _start(workspace: Workspace, jobs: Jobs, path: Path, text: str) -> None:
     """Save, run in a process of its own, and go to the run's page."""
-    if not _save(workspace, path, text):
-        return
-    try:
-        folder = workspace.new_run(load(path).name if path.stem != "study" else path.parent.name)
-    except DalembertError as error:
-        complain(error)
-        return
+    _save(workspace, path, text)
+    folder = workspace.new_run(load(path).name if path.stem != "study" else path.parent.name)
     folder.parent.mkdir(exist_ok=True)
     jobs.start(path, folder)
     ui.navigate.to(f"/run/{quote(folder.name)}")

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from dalembert.errors import InputError, no_text, require_known
-from dalembert.files import replacing
+from dalembert.files import free_path, replacing, write_text
 from dalembert.study.folder import RunFolder, find_runs
 from dalembert.study.loader import LARGEST
 from dalembert.study.tasks import TASKS
@@ -50,11 +50,7 @@ class Workspace:
 
     def new_run(self, name: str) -> Path:
         """Folder for another run of a study: ``runs/NAME``, or that with the next free number."""
-        path, number = self.runs_folder / checked(name), 2
-        while path.exists():
-            path = self.runs_folder / f"{name}-{number}"
-            number += 1
-        return path
+        return free_path(self.runs_folder / checked(name))
 
     def studies(self) -> list[str]:
         """All study files as ``"folder/file"``, without ``.toml``, by name."""
@@ -63,10 +59,7 @@ class Workspace:
 
     def free(self, name: str) -> str:
         """The name itself, or with the next number with which no study is there."""
-        chosen, number = name, 2
-        while (self.root / "studies" / chosen).exists():
-            chosen, number = f"{name}-{number}", number + 1
-        return chosen
+        return free_path(self.root / "studies" / name).name
 
     def study(self, name: str) -> Path:
         """The file of a study.
@@ -98,8 +91,7 @@ class Workspace:
         """Write a study's text."""
         if len(content.encode()) > LARGEST:
             raise InputError(f"{path.name} has more than {LARGEST} bytes; expected a study file")
-        with replacing(path) as temporary:
-            temporary.write_text(content, encoding="utf-8", newline="\n")
+        write_text(path, content)
 
     def put(self, study: str, name: str, content: bytes) -> Path:
         """A file beside a study, such as its measured data.

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from dalembert.errors import InputError, unwritable
-from dalembert.files import replacing, write_text
+from dalembert.files import free_path, replacing, write_text
 from dalembert.forward.checkpoint import holds_results
 from dalembert.study.events import read_events
 from dalembert.study.loader import load
@@ -239,10 +239,7 @@ def new_folder(name: str, out: Path | None = None, *, force: bool = False) -> Ru
     """
     path = out or Path("runs") / name
     if out is None and not force:
-        number = 2
-        while path.exists() and not RunFolder(path).is_refused:
-            path = Path("runs") / f"{name}-{number}"
-            number += 1
+        path = free_path(path, lambda path: path.exists() and not RunFolder(path).is_refused)
     folder = RunFolder(path)
     if path.exists():
         _empty(folder, force)

@@ -11,6 +11,7 @@ from dalembert.study.functions import FunctionReference
 from dalembert.study.inputs import InputReference, MeasuredInput, input_named
 from dalembert.study.model_table import ModelTable
 from dalembert.study.places import Place
+from dalembert.study.table import placed
 
 if TYPE_CHECKING:
     from dalembert.multibody import System
@@ -49,10 +50,10 @@ class SystemBuilder:
             options["gravity"] = tuple(resolved(one, values, "[model], gravity") for one in gravity)
         system = System(**options)
         signals = signals_of(self.inputs, values)
-        placed: dict[str, Any] = {}
+        bodies: dict[str, Any] = {}
         for table, component in self.model.components:
             where = f"[[model.{table}]] {component.name!r}"
-            placed[component.name] = system.add(built(component, values, where, placed, system, signals))
+            bodies[component.name] = system.add(built(component, values, where, bodies, system, signals))
         return system
 
 
@@ -124,15 +125,13 @@ def signals_of(inputs: Mapping[str, MeasuredInput], values: Values) -> dict[str,
     """The signals of inputs, by name, once the parameters are known."""
     found = {}
     for name, one in inputs.items():
-        try:
+        with placed(f"[inputs.{name}]"):
             found[name] = one.signal(values)
-        except InputError as error:
-            raise InputError(f"[inputs.{name}]: {error}") from None
     return found
 
 
 def built(
-    table: KindTable, values: Values, where: str, placed: Values = EMPTY, system: Any = None, signals: Values = EMPTY
+    table: KindTable, values: Values, where: str, bodies: Values = EMPTY, system: Any = None, signals: Values = EMPTY
 ) -> Any:
     """What a table describes, once the parameters are known; places are those of a mechanism's bodies.
 
@@ -145,30 +144,30 @@ def built(
     arguments = {
         key: signals[given.input]
         if isinstance(given, InputReference)
-        else _resolved(given, values, placed, system, f"{where}, {key}")
+        else _resolved(given, values, bodies, system, f"{where}, {key}")
         for key, given in table.given().items()
     }
     return table.target_type(**arguments)
 
 
-def _resolved(given: Any, values: Values, placed: Values, system: Any, where: str) -> Any:
+def _resolved(given: Any, values: Values, bodies: Values, system: Any, where: str) -> Any:
     """What a key's value stands for once the parameters are known."""
     match given:
         case Expression():
             return resolved(given, values, where)
         case Place():
-            return _place(given, values, placed, system, where)
+            return _place(given, values, bodies, system, where)
         case KindTable():
             try:
-                return built(given, values, where, placed, system)
+                return built(given, values, where, bodies, system)
             except InputError as error:
                 raise InputError(str(error) if str(error).startswith("[") else f"{where}: {error}") from None
         case FunctionReference():
             return given.load()
         case list():
-            return tuple(_resolved(entry, values, placed, system, where) for entry in given)
+            return tuple(_resolved(entry, values, bodies, system, where) for entry in given)
         case dict():
-            return {key: _resolved(entry, values, placed, system, where) for key, entry in given.items()}
+            return {key: _resolved(entry, values, bodies, system, where) for key, entry in given.items()}
     return given
 
 
@@ -180,13 +179,11 @@ def resolved(given: float | Expression, values: Values, where: str) -> complex:
         raise InputError(f"{where}: {error}") from None
 
 
-def _place(given: Place, values: Values, placed: Values, system: Any, where: str) -> Any:
+def _place(given: Place, values: Values, bodies: Values, system: Any, where: str) -> Any:
     """Point of a body or of the ground."""
     if given.position is not None:
         return system.ground.point(*(resolved(one, values, where) for one in given.position))
     if not given.body:
         return system.ground
-    try:
-        return placed[given.body].point(given.point)
-    except InputError as error:
-        raise InputError(f"{where}: {error}") from None
+    with placed(where):
+        return bodies[given.body].point(given.point)

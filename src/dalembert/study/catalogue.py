@@ -41,18 +41,11 @@ def kind_names() -> Iterator[str]:
 
 
 def _of_others(base: str) -> Iterator[type]:
-    """Dataclasses of other packages that derive from a base."""
+    """Public dataclasses of other packages that derive from a base."""
     load_plugins()
     home = sys.modules.get(f"dalembert.multibody.{HOMES[base]}")
-    if home is not None:  # else nothing derives from it
-        yield from _derived(getattr(home, base))
-
-
-def _derived(base: type) -> Iterator[type]:
-    """Public dataclasses of other packages that derive from a class."""
-    for kind in derived_dataclasses(base):
-        if kind.__module__.partition(".")[0] != __name__.partition(".")[0]:
-            yield kind
+    kinds = derived_dataclasses(getattr(home, base)) if home is not None else ()  # without it nothing derives from it
+    return (kind for kind in kinds if kind.__module__.partition(".")[0] != __name__.partition(".")[0])
 
 
 @cache
@@ -71,15 +64,6 @@ def structure_parts() -> dict[str, tuple[type, ...]]:
     }
 
 
-@cache
-def balance() -> type:
-    """Settings of harmonic balance."""
-    from dalembert.vibration import HarmonicBalance
-
-    return HarmonicBalance
-
-
-@cache
 def laws() -> dict[str, type]:
     """Laws of friction contacts, by the names that a study file gives them."""
     from dalembert.vibration.laws.contacts import Law
@@ -87,7 +71,6 @@ def laws() -> dict[str, type]:
     return {kind.__name__: kind for kind in get_args(Law)}
 
 
-@cache
 def dampings() -> dict[str, type]:
     """Kinds of damping of a structure, by the names that a study file gives them."""
     from dalembert import structure
@@ -102,7 +85,6 @@ def propagation_methods() -> dict[str, type]:
     return uncertainty.methods_by_name()
 
 
-@cache
 def schemes() -> dict[str, type]:
     """Schemes of surrogates, by the names that a study file gives them."""
     from dalembert import surrogate
@@ -117,7 +99,6 @@ def swarms() -> dict[str, type]:
     return named("dalembert.optimize", optimize.Swarm)
 
 
-@cache
 def band_methods() -> dict[str, type]:
     """Methods that identify intervals from bands, by the names that a study file gives them."""
     from dalembert import inverse
@@ -126,25 +107,10 @@ def band_methods() -> dict[str, type]:
 
 
 @cache
-def step_minimisers() -> dict[str, type]:
-    """Minimisers of a collocation step, by the names that a study file gives them."""
-    from dalembert import multibody
-
-    return {"gauss-newton": multibody.GaussNewton, **methods()}
-
-
-@cache
-def stabilisations() -> dict[str, type]:
-    """How index-1 methods keep to the constraints, by the names that a study file gives them."""
-    from dalembert import multibody
-
-    kinds = (multibody.Augmented, multibody.Baumgarte, multibody.Projection, multibody.Partitioning)
-    return {kind.__name__.lower(): kind for kind in kinds}
-
-
-@cache
 def part(name: str) -> Any:
     """Type of the key for settings that are chosen among several kinds themselves, by the name of their type."""
+    from dalembert import multibody
+
     match name:
         case "Scheme":
             return settings_of(schemes())
@@ -153,9 +119,10 @@ def part(name: str) -> Any:
         case "ParticleSwarm":
             return settings_of(swarms())
         case "GaussNewton":
-            return settings_of(step_minimisers())
+            return settings_of({"gauss-newton": multibody.GaussNewton, **methods()})
         case "Stabilisation":
-            return settings_of(stabilisations())
+            kinds = (multibody.Augmented, multibody.Baumgarte, multibody.Projection, multibody.Partitioning)
+            return settings_of({kind.__name__.lower(): kind for kind in kinds})
     return None
 
 

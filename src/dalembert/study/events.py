@@ -155,10 +155,8 @@ def _repair(path: Path) -> Path | None:
 
 def _plain(value: Any) -> Any:
     """Value as JSON can hold it; what is not finite becomes null."""
-    if isinstance(value, np.ndarray):
-        return [_plain(entry) for entry in value.tolist()]
-    if isinstance(value, np.generic):
-        value = value.item()
+    if isinstance(value, np.ndarray | np.generic):
+        value = value.tolist()
     if isinstance(value, float):
         return value if math.isfinite(value) else None
     if isinstance(value, dict):

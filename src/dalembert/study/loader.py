@@ -97,8 +97,6 @@ def _read(path: Path) -> tuple[bytes, dict[str, Any]]:
         raise InputError(f"{path} cannot be read: {error.strerror}") from None
     except UnicodeDecodeError as error:
         raise InputError(no_text(path, error)) from None
-    except tomllib.TOMLDecodeError as error:
-        raise InputError(f"{path}: no valid TOML: {error}") from None
     except (RecursionError, ValueError) as error:
         raise InputError(f"{path}: no valid TOML: {error}") from None
 

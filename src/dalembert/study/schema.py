@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 from pydantic import create_model
 
-from dalembert.study.catalogue import Words, balance, kind_names
+from dalembert.study.catalogue import Words, kind_names
 from dalembert.study.components import buildable_table
 from dalembert.study.model_table import model_table
 from dalembert.study.solvers import solver
@@ -34,7 +34,9 @@ def study_file(words: Words = None) -> type[StudyFile]:
     if words is None or "solver" in words:
         fields["solver"] = (solver(words) | None, None)
     if words is None or "harmonic_balance" in words:
-        fields["harmonic_balance"] = (buildable_table(balance()) | None, None)
+        from dalembert.vibration import HarmonicBalance
+
+        fields["harmonic_balance"] = (buildable_table(HarmonicBalance) | None, None)
     return create_model("Study", __base__=_KnownFile, __doc__=StudyFile.__doc__, **fields)
 
 

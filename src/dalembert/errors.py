@@ -2,6 +2,7 @@
 
 import sysconfig
 import traceback
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 from pathlib import Path
@@ -95,6 +96,15 @@ def _closest(given: str, names: list[str]) -> list[str]:
     kinds = sorted({name.rpartition(".")[2] for name in names if "." in name})
     kind = get_close_matches(given.rpartition(".")[2], kinds, n=1, cutoff=0.6) if "." in given else []
     return sorted(close, key=lambda name: name.rpartition(".")[2] not in kind)[:2]
+
+
+def repeated(names: Iterable[str]) -> dict[str, int]:
+    """Names that are given more than once, in alphabetical order, with their counts.
+
+    >>> repeated(["b", "a", "b", "c", "a", "b"])
+    {'a': 2, 'b': 3}
+    """
+    return {name: count for name, count in sorted(Counter(names).items()) if count > 1}
 
 
 def no_text(path: object, error: UnicodeDecodeError) -> str:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from dalembert.arguments import Checked, takes_checked
-from dalembert.errors import InputError, require_known, shown
+from dalembert.errors import InputError, repeated, require_known, shown
 
 
 @dataclass(frozen=True)
@@ -119,9 +119,8 @@ class Box:
                 f"a box of {len(self.names)} names has bounds of shapes {self.lower.shape} and {self.upper.shape}; "
                 f"expected {shape} twice"
             )
-        repeated = sorted({name for name in self.names if self.names.count(name) > 1})
-        if repeated:
-            raise InputError(f"names of a box must differ; repeated: {', '.join(repeated)}")
+        if several := repeated(self.names):
+            raise InputError(f"names of a box must differ; repeated: {', '.join(several)}")
         for name, lower, upper in zip(self.names, self.lower, self.upper, strict=True):
             if not (np.isfinite(lower) and np.isfinite(upper) and lower <= upper):
                 raise InputError(f"interval of {name!r}: ({lower}, {upper}) was given; expected {_EXPECTED}")

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from dalembert.arguments import is_real
-from dalembert.errors import InputError, shown, unknown
+from dalembert.errors import InputError, repeated, shown, unknown
 
 
 @dataclass(frozen=True)
@@ -132,12 +132,10 @@ class Parameters:
         for item in (*self.items, *self.fixed):
             if not isinstance(item, Parameter):
                 raise InputError(f"parameters: {shown(item)} was given; expected a Parameter, or a mapping to bounds")
-        names = [item.name for item in (*self.items, *self.fixed)]
         object.__setattr__(self, "fixed", (*self.fixed, *(item for item in self.items if item.is_fixed)))
         object.__setattr__(self, "items", tuple(item for item in self.items if not item.is_fixed))
-        repeated = {name for name in names if names.count(name) > 1}
-        if repeated:
-            raise InputError(f"parameter names must differ; repeated: {', '.join(sorted(repeated))}")
+        if several := repeated(item.name for item in self.declared):
+            raise InputError(f"parameter names must differ; repeated: {', '.join(several)}")
 
     @classmethod
     def of(

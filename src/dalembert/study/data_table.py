@@ -19,7 +19,7 @@ from pydantic import (
 from dalembert.arguments import is_whole
 from dalembert.data.known_formats import known_formats
 from dalembert.data.record import FIRST, beginning
-from dalembert.errors import unknown
+from dalembert.errors import repeated, unknown
 from dalembert.forward.sensors import START
 from dalembert.parameters import Parameter
 from dalembert.study.context import Context
@@ -216,9 +216,8 @@ class DataTable(ChannelFile):
         if self.split is not None and self.trial is None and not self.SEVERAL:
             wrong.append("split is given without trial; give the trial that is read, or use [[experiments]] for all")
         names = [name for file in (self, *self.more) for name in file.columns]
-        repeated = sorted({name for name in names if names.count(name) > 1})
-        if repeated:
-            wrong.append(f"more: {', '.join(repeated)} has a column in several files; expected one for each channel")
+        if several := repeated(names):
+            wrong.append(f"more: {', '.join(several)} has a column in several files; expected one for each channel")
         for name, derivative in self.derivatives.items():
             if name in names:
                 wrong.append(f"derivatives: the channel {name!r} has a column already; expected another name")

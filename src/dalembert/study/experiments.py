@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 from pydantic import Field, ValidationError
 
-from dalembert.errors import DataError, unknown
+from dalembert.errors import DataError, repeated, unknown
 from dalembert.forward import Sensor
 from dalembert.forward.sensors import QUANTITIES, START
 from dalembert.study.data_table import DataTable
@@ -95,10 +95,8 @@ def expanded(tables: list[ExperimentTable]) -> list[ExperimentTable]:
 def wrong_experiments(file: Any) -> list[str]:
     """Sentences about experiments and sensors that do not fit to the rest of the file."""
     wrong = []
-    names = [table.name for table in file.experiments]
-    repeated = sorted({name for name in names if names.count(name) > 1})
-    if repeated:
-        wrong.append(f"[[experiments]]: {', '.join(repeated)} is given more than once; expected different names")
+    if several := repeated(table.name for table in file.experiments):
+        wrong.append(f"[[experiments]]: {', '.join(several)} is given more than once; expected different names")
     if file.experiments and file.data is not None:
         wrong.append("[data] and [[experiments]] are both given; expected one of them")
     wrong += [

@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from dalembert.errors import unknown
+from dalembert.errors import repeated, unknown
 from dalembert.study.catalogue import Words, kinds_of
 from dalembert.study.components import one_of, table_of
 from dalembert.study.functions import FunctionName
@@ -100,19 +100,16 @@ class ModelTable(StudyTable):
             )
         if ("body" in ways or self.is_structure) and self.arguments:
             raise problem("arguments are for a function, and there is none")
-        return [*_repeated(self.components), *_dangling(self.components), *wrong_structure(self)]
+        return [*_wrong_names(self.components), *wrong_structure(self)]
 
 
-def _repeated(components: list[tuple[str, Any]]) -> list[str]:
-    names = [component.name for _, component in components]
-    repeated = sorted({name for name in names if names.count(name) > 1})
-    return [f"{names.count(name)} components are called {name!r}; expected different names" for name in repeated]
-
-
-def _dangling(components: list[tuple[str, Any]]) -> list[str]:
-    """Sentences for places at bodies that are not there, or not yet."""
+def _wrong_names(components: list[tuple[str, Any]]) -> list[str]:
+    """Sentences for names that repeat, and for places at bodies that are not there, or not yet."""
     bodies = [component.name for table, component in components if table == "body"]
-    wrong = []
+    wrong = [
+        f"{count} components are called {name!r}; expected different names"
+        for name, count in repeated(component.name for _, component in components).items()
+    ]
     for table, component in components:
         known = bodies[: bodies.index(component.name)] if table == "body" else bodies
         for key, value in component.given().items():

@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 from pydantic import Field
 
-from dalembert.errors import unknown
+from dalembert.errors import repeated, unknown
 from dalembert.structure.read_structure import ROLES
 from dalembert.study.catalogue import dampings, laws, structure_parts
 from dalembert.study.components import chosen, one_of, settings_of, table_of
@@ -93,10 +93,9 @@ def wrong_structure(model: Any) -> list[str]:
     named = [part.name for name in ("spring", "contact") for part in getattr(model, name) if hasattr(part, "name")]
     nodes = [mass.name for mass in model.mass]
     wrong = [
-        f"{names.count(name)} {what} are called {name!r}; expected different names"
+        f"{count} {what} are called {name!r}; expected different names"
         for what, names in (("masses", nodes), ("springs and contacts", named))
-        for name in sorted(set(names))
-        if names.count(name) > 1
+        for name, count in repeated(names).items()
     ]
     if model.mass and model.structure is not None and model.structure.source:
         wrong.append("[[model.mass]] and the matrices of [model.structure] are both given; expected one of them")

@@ -15,7 +15,7 @@ from dalembert.parameters import Parameters
 from dalembert.study.builder import FunctionBuilder, SystemBuilder
 from dalembert.study.data_table import DataTable
 from dalembert.study.experiments import ExperimentTable, measured_channels
-from dalembert.study.inputs import InputTable, MeasuredInput
+from dalembert.study.inputs import MeasuredInput
 from dalembert.study.parameters import ParameterTable
 from dalembert.study.structure_builder import StructureBuilder
 from dalembert.study.study_file import StudyFile
@@ -157,11 +157,7 @@ class Study:
         shared = self.file.inputs
         inputs = {**shared, **{name: own.over(shared[name]) for name, own in table.inputs.items()}}
         varied = self.varied(table.constants, table.arguments, table.parameters(self.file.parameters))
-        return varied.driven(inputs, table)
-
-    def driven(self, inputs: "Mapping[str, InputTable]", beside: DataTable) -> "Study":
-        """The same study with other inputs, which are in the file of other data where they name none."""
-        return replace(self, file=self.file.model_copy(update={"inputs": dict(inputs)}), beside=beside)
+        return replace(varied._with(inputs=inputs), beside=table)
 
     @property
     def solver(self) -> Any:
@@ -270,9 +266,12 @@ class Study:
     ) -> "Study":
         """The same study with other constants, other arguments of the model's function, and other parameters."""
         model = self.file.model.model_copy(update={"arguments": {**self.file.model.arguments, **arguments}})
-        parameters = self.file.parameters if parameters is None else dict(parameters)
-        update = {"constants": {**self.file.constants, **constants}, "model": model, "parameters": parameters}
-        return replace(self, file=self.file.model_copy(update=update))
+        parameters = self.file.parameters if parameters is None else parameters
+        return self._with(constants={**self.file.constants, **constants}, model=model, parameters=parameters)
+
+    def _with(self, **tables: Any) -> "Study":
+        """The same study with other tables."""
+        return replace(self, file=self.file.model_copy(update=tables))
 
     def data(self) -> "Measurements":
         """The measured data."""
@@ -290,5 +289,4 @@ class Study:
         """The same study with another seed."""
         if "seed" not in type(self.table).model_fields:
             raise InputError(f"a seed was given, but [{self.task}] draws no random numbers; leave it out")
-        table = self.table.model_copy(update={"seed": seed})
-        return replace(self, file=self.file.model_copy(update={self.task: table}))
+        return self._with(**{self.task: self.table.model_copy(update={"seed": seed})})

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from pydantic import Field
 
+from dalembert.errors import repeated
 from dalembert.study.duration import Effort, shortest_of
 from dalembert.study.events import Emit
 from dalembert.study.numbers import MOST, Seconds, pair
@@ -67,11 +68,10 @@ class CompareIntegrators(ResultTask):
         return {"series": (list[series], Field(min_length=1)), "reference": (pair(solver()), described)}
 
     def wrong(self, file: Any) -> list[str]:
-        labels = [series.label for series in file.work_precision.series]
+        several = repeated(series.label for series in file.work_precision.series)
         wrong = [
-            f"[[work_precision.series]]: {label!r} names {labels.count(label)} series; give each a name"
-            for label in sorted(set(labels))
-            if labels.count(label) > 1
+            f"[[work_precision.series]]: {label!r} names {count} series; give each a name"
+            for label, count in several.items()
         ]
         if file.model.forward is not None:
             wrong.append("[work_precision] needs a mechanism; a forward model has no steps")

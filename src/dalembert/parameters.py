@@ -48,40 +48,39 @@ class Parameter:
     def __post_init__(self) -> None:
         if not isinstance(self.name, str):
             raise InputError(f"parameter: name is {shown(self.name)}; expected a text")
+        for mistake in self._mistakes():
+            raise InputError(f"parameter {self.name!r}: {mistake}")
+
+    def _mistakes(self) -> Iterator[str]:
         for what in ("lower", "upper", "scale", "start", "deviation"):
             value = getattr(self, what)
             if not is_real(value) and (value is not None or what in ("lower", "upper")):
-                raise InputError(f"parameter {self.name!r}: {what} is {shown(value)}; expected a number")
+                yield f"{what} is {shown(value)}; expected a number"
         if not isinstance(self.unit, str):
-            raise InputError(f"parameter {self.name!r}: unit is {shown(self.unit)}; expected a text such as 'Pa'")
+            yield f"unit is {shown(self.unit)}; expected a text such as 'Pa'"
         if not isinstance(self.log, bool | np.bool_ | None):
-            raise InputError(f"parameter {self.name!r}: log is {shown(self.log)}; expected True, False or None")
+            yield f"log is {shown(self.log)}; expected True, False or None"
+        bounds = f"({self.lower}, {self.upper})"
         if not (np.isfinite(self.lower) and np.isfinite(self.upper) and self.lower <= self.upper):
-            raise InputError(
-                f"parameter {self.name!r}: bounds are ({self.lower}, {self.upper}); "
-                "expected two finite numbers, the lower one first"
-            )
+            yield f"bounds are {bounds}; expected two finite numbers, the lower one first"
         if self.scale is not None and not 0 < self.scale < np.inf:
-            raise InputError(f"parameter {self.name!r}: scale is {self.scale}; expected a positive number")
+            yield f"scale is {self.scale}; expected a positive number"
         if self.start is not None and not self.lower <= self.start <= self.upper:
-            raise InputError(
-                f"parameter {self.name!r}: start {self.start} lies outside its bounds "
-                f"({self.lower}, {self.upper}); widen the bounds or move the start"
-            )
+            yield f"start {self.start} lies outside its bounds {bounds}; widen the bounds or move the start"
         if self.deviation is not None and not (np.isfinite(self.deviation) and self.deviation > 0):
-            raise InputError(
-                f"parameter {self.name!r}: deviation is {self.deviation}; expected a positive number, the standard "
-                "deviation of what is known of it before any data"
+            yield (
+                f"deviation is {self.deviation}; expected a positive number, the standard deviation of what is known "
+                "of it before any data"
             )
         if self.is_fixed and self.deviation is not None:
-            raise InputError(
-                f"parameter {self.name!r}: both bounds are {self.lower}, so it is fixed and has no deviation; give "
-                "bounds that differ, or leave the deviation out"
+            yield (
+                f"both bounds are {self.lower}, so it is fixed and has no deviation; give bounds that differ, or leave "
+                "the deviation out"
             )
         if self.log and not self.lower > 0:
-            raise InputError(
-                f"parameter {self.name!r}: its logarithm is to be searched, but its lower bound is {self.lower}; "
-                "expected a positive one; raise the bound or leave log out"
+            yield (
+                f"its logarithm is to be searched, but its lower bound is {self.lower}; expected a positive one; raise "
+                "the bound or leave log out"
             )
 
     @property

@@ -3,15 +3,18 @@
 import sys
 from collections.abc import Iterator
 from functools import cache, lru_cache
-from typing import Any, get_args
+from typing import Annotated, Any, get_args
+
+from pydantic import AfterValidator
 
 from dalembert.component_index import HOMES, KINDS
 from dalembert.kinds import derived_dataclasses, distinct, load_modules, load_plugins, named
-from dalembert.study.components import settings_of
+from dalembert.study.components import buildable, one_of, settings_of, table_of
 from dalembert.study.structure_parts import LinearSpring, LumpedMass
 
 ROLES = {"body": "Body", "joint": "Joint", "load": "Load", "signal": "Signal", "solver": "Integrator"}
 """Base class of the kinds that a table names."""
+DEFAULT_SOLVER = "GeneralizedAlpha"  # where a table names no kind
 
 
 Words = frozenset[str] | None
@@ -46,6 +49,14 @@ def _of_others(base: str) -> Iterator[type]:
     home = sys.modules.get(f"dalembert.multibody.{HOMES[base]}")
     kinds = derived_dataclasses(getattr(home, base)) if home is not None else ()  # without it nothing derives from it
     return (kind for kind in kinds if kind.__module__.partition(".")[0] != __name__.partition(".")[0])
+
+
+@lru_cache(maxsize=16)
+def solver(words: Words = None) -> Any:
+    """Type of a key that takes any integrator, or one that words name, checked by building it."""
+    kinds = kinds_of("solver", None if words is None else words | {DEFAULT_SOLVER})
+    tables = [table_of(kind, default=kind.__name__ == DEFAULT_SOLVER, varying=False, part=part) for kind in kinds]
+    return Annotated[one_of(tables, DEFAULT_SOLVER), AfterValidator(buildable)]
 
 
 @cache

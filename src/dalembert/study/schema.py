@@ -6,10 +6,9 @@ from typing import Any, ClassVar
 
 from pydantic import create_model
 
-from dalembert.study.catalogue import Words, kind_names
+from dalembert.study.catalogue import Words, kind_names, solver
 from dalembert.study.components import buildable_table
 from dalembert.study.model_table import model_table
-from dalembert.study.solvers import solver
 from dalembert.study.study_file import StudyFile
 from dalembert.study.table import StudyTable
 from dalembert.study.tasks import TASKS

@@ -7,10 +7,10 @@ import numpy as np
 from pydantic import Field
 
 from dalembert.errors import repeated
+from dalembert.study.catalogue import solver
 from dalembert.study.duration import Effort, shortest_of
 from dalembert.study.events import Emit
 from dalembert.study.numbers import MOST, Seconds, pair
-from dalembert.study.solvers import solver
 from dalembert.study.study import Study
 from dalembert.study.table import StudyTable, checked, completed, placed, problem
 from dalembert.study.tasks.task import Outcome, ResultTask

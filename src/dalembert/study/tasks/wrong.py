@@ -16,19 +16,17 @@ def needs_solver(file: Any, task: str) -> list[str]:
 
 def needs_mechanism(file: Any, task: str) -> list[str]:
     """Sentence about a model that does not move in time."""
-    if file.vibrates:
-        return [f"[{task}] needs a mechanism, and there is a structure; its task is [frequency_response]"]
-    return []
+    sentence = f"[{task}] needs a mechanism, and there is a structure; its task is [frequency_response]"
+    return [sentence] if file.vibrates else []
 
 
 def needs_structure(file: Any, task: str) -> list[str]:
     """Sentence about a model that is no structure over frequency."""
-    if file.vibrates:
-        return []
-    return [
+    sentence = (
         f"[{task}] needs a structure: [[model.mass]] tables, matrices in [model.structure], or a function that returns "
         "a VibrationSystem"
-    ]
+    )
+    return [] if file.vibrates else [sentence]
 
 
 def needs_data(file: Any, task: str) -> list[str]:
@@ -54,11 +52,8 @@ def needs_samples(file: Any, task: str) -> list[str]:
         if forward and given:
             wrong.append(f"[{task}], {key}: a forward model has its own; leave the key out")
     if getattr(table, other) is not None:
-        wrong.append(
-            f"[{task}], {other}: a forward model has its own; leave the key out"
-            if forward
-            else f"[{task}], {other}: the response of {model} lies along {own}; leave the key out"
-        )
+        why = "a forward model has its own" if forward else f"the response of {model} lies along {own}"
+        wrong.append(f"[{task}], {other}: {why}; leave the key out")
     return wrong
 
 

@@ -187,6 +187,24 @@ def placed(lower: np.ndarray, upper: np.ndarray, eta: np.ndarray) -> np.ndarray:
     return np.where(eta < 0, lower + (1 + eta) * radius, upper - (1 - eta) * radius)
 
 
+def corners(lower: ArrayLike, upper: ArrayLike, *, flat: bool = False) -> tuple[np.ndarray, np.ndarray]:
+    """Return both corners of a box as arrays of shape (d,); a ``flat`` box may have directions without width.
+
+    Raises
+    ------
+    InputError
+        For what is not two finite vectors of one length, the lower bounds first.
+    """
+    low, high = np.array(lower, dtype=float, ndmin=1), np.array(upper, dtype=float, ndmin=1)
+    before, sign = (np.less_equal, "<=") if flat else (np.less, "<")
+    if low.ndim != 1 or low.shape != high.shape or not np.all(np.isfinite(low) & np.isfinite(high) & before(low, high)):
+        raise InputError(
+            f"bounds are {low.tolist()} and {high.tolist()}; expected two vectors of one length, finite, lower {sign} "
+            "upper"
+        )
+    return low, high
+
+
 def _pair(name: str, entry: Interval | tuple[float, float] | float) -> tuple[float, float]:
     if isinstance(entry, Interval):
         return entry.lower, entry.upper

@@ -8,6 +8,7 @@ from dalembert.optimize.minimum import Minimum, Objective, OnIteration, Progress
 from dalembert.optimize.particle_swarm import ParticleSwarm
 from dalembert.optimize.response_sensitivity import ResponseSensitivity
 from dalembert.optimize.squares import Squares
+from dalembert.optimize.sum_of_squares import SquaresMinimiser
 from dalembert.optimize.swarm import Swarm, SwarmState
 from dalembert.optimize.tikhonov import Regularised
 
@@ -25,6 +26,7 @@ __all__ = [
     "RegularisedStep",
     "ResponseSensitivity",
     "Squares",
+    "SquaresMinimiser",
     "Swarm",
     "SwarmState",
 ]

@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from dalembert.arguments import Checked, limited
-from dalembert.optimize.minimum import Minimum, Objective, OnIteration, Progress, box, fitness_of
+from dalembert.intervals import corners
+from dalembert.optimize.minimum import Minimum, Objective, OnIteration, Progress, fitness_of
 
 
 @dataclass(frozen=True)
@@ -84,7 +85,7 @@ class Firefly(Checked):
         on_iteration : callable, optional
             Called with a :class:`Progress` after each generation.
         """
-        low, high = box(lower, upper)
+        low, high = corners(lower, upper)
         width = high - low
         places = low + width * np.random.default_rng(seed).random((self.fireflies, len(low)))
         if start is not None:

@@ -75,7 +75,6 @@ class ImprovedParticleSwarm(Swarm):
     quality_size: int = 500
 
     def __post_init__(self) -> None:
-        super().__post_init__()
         require_known("span", self.span, SPANS, "ImprovedParticleSwarm")
         if self.groups is not None and (sum(self.groups) != self.particles or min(self.groups) < 0):
             raise InputError(
@@ -94,20 +93,15 @@ class ImprovedParticleSwarm(Swarm):
         return self.velocity_limit * reach
 
     def move(self, state: SwarmState, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
-        first, last = self.inertia
-        x, best = state.positions, state.best
-        velocities = (
-            (first + (last - first) * state.iteration / self.iterations) * state.velocities
-            + pulled(rng, self.c1, state.own, x)
-            + pulled(rng, self.c2, best, x)
-        )
+        x = state.positions
+        velocities = self.steered(state, rng, self.inertia, self.c1, self.c2)
         if len(state.quality):
             velocities += pulled(rng, self.c3, subset_means(rng, state.quality, 0.9, len(x)), x)
 
         group = np.repeat([1, 2, 3], self.sizes)
         special = rng.random(self.particles) < 0.5
         jump = (special & (group == 2))[:, None]
-        velocities = np.where(jump, (x - best) * rng.random(x.shape) * self.alpha, velocities)
+        velocities = np.where(jump, (x - state.best) * rng.random(x.shape) * self.alpha, velocities)
 
         limit = self.velocity_bound(state.lower, state.upper)
         velocities = np.clip(velocities, -limit, limit)

@@ -1,15 +1,14 @@
 """SciPy's trust-region least squares, with bounds and an exact jacobian."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy.optimize import least_squares
 
-from dalembert.arguments import Checked, limited
-from dalembert.optimize.minimum import Minimum, OnIteration, Progress, box, reachable
+from dalembert.arguments import limited
+from dalembert.optimize.minimum import Minimum, Progress, reachable
 from dalembert.optimize.stopping import WINDOW, Stopped, Stopping
+from dalembert.optimize.sum_of_squares import SquaresMinimiser, SumOfSquares
 
 LEAST_GAIN = 1e-14
 """Fraction of the sum of squares. A step that gains less ends a descent, whatever is foreseen."""
@@ -33,7 +32,7 @@ TRIALS = 100
 
 
 @dataclass(frozen=True)
-class LeastSquares(Checked):
+class LeastSquares(SquaresMinimiser):
     """Bounded nonlinear least squares by SciPy's trust-region reflective method.
 
     Parameters
@@ -71,37 +70,11 @@ class LeastSquares(Checked):
     tolerance: float = reachable(1e-10)
     gain: float = reachable(1e-13)
 
-    def minimise(
-        self,
-        residual: Callable[[np.ndarray], np.ndarray],
-        jacobian: Callable[[np.ndarray], np.ndarray],
-        lower: ArrayLike,
-        upper: ArrayLike,
-        start: ArrayLike,
-        *,
-        scale: ArrayLike = 1.0,
-        on_iteration: OnIteration | None = None,
-    ) -> Minimum:
-        """Least sum of squares near ``start``.
-
-        Parameters
-        ----------
-        residual : callable
-            (parameters,) to (residuals,); NaN or infinite where the sample failed, which shortens the step.
-        jacobian : callable
-            (parameters,) to (residuals, parameters); asked only where the residual was just computed.
-        lower, upper, start, scale : array, shape (parameters,)
-        on_iteration : callable, optional
-            Called with a :class:`Progress` at the start and after each accepted step.
-        """
-        low, high = box(lower, upper)
-        origin = np.clip(np.asarray(start, dtype=float), low, high)
-        window = max(WINDOW, (10 if self.gain < COARSE else 4) * len(origin))
+    def descend(self, problem: SumOfSquares, start: np.ndarray) -> Minimum:
+        window = max(WINDOW, (10 if self.gain < COARSE else 4) * len(start))
         stopping = Stopping(self.gain, window)
-        path = _Path(
-            residual, jacobian, low, high, origin, np.broadcast_to(scale, origin.shape), on_iteration, stopping
-        )
-        trials = TRIALS * (1 + len(origin)) if self.trials is None else self.trials
+        path = _Path(problem, start, stopping)
+        trials = TRIALS * (1 + len(start)) if self.trials is None else self.trials
         try:
             if not np.all(np.isfinite(path.residual(path.one))):
                 return path.minimum(False, "the first point could not be simulated")
@@ -109,7 +82,7 @@ class LeastSquares(Checked):
                 path.residual,
                 path.one,
                 path.jacobian,  # pyright: ignore[reportArgumentType]
-                bounds=(1 + (low - origin) / path.unit, 1 + (high - origin) / path.unit),
+                bounds=(1 + (problem.low - start) / problem.unit, 1 + (problem.high - start) / problem.unit),
                 method="trf",
                 x_scale="jac",
                 # A larger one would end a descent along a curved valley, where steps are short.
@@ -129,34 +102,28 @@ class LeastSquares(Checked):
         return path.minimum(result.status > 0, message, still, still and stopping.foreseen > max(SMOOTH, self.gain))
 
 
+@dataclass(eq=False)
 class _Path:
     """Residual and jacobian as SciPy calls them, in u = 1 + (x − origin)/unit; counts, and keeps the best point."""
 
-    def __init__(
-        self,
-        residual: Callable[[np.ndarray], np.ndarray],
-        jacobian: Callable[[np.ndarray], np.ndarray],
-        low: np.ndarray,
-        high: np.ndarray,
-        origin: np.ndarray,
-        unit: np.ndarray,
-        on_iteration: OnIteration | None,
-        stopping: Stopping,
-    ) -> None:
-        self._residual, self._jacobian, self.on_iteration = residual, jacobian, on_iteration
-        self.stopping = stopping
-        self.low, self.high, self.origin, self.unit = low, high, origin, unit
-        self.one = np.ones_like(origin)
-        self.best, self.x, self.evaluations, self.iterations = np.inf, origin, 0, 0
-        self.last = (np.full_like(origin, np.nan), origin)
+    problem: SumOfSquares
+    origin: np.ndarray
+    stopping: Stopping
+    best: float = np.inf
+    evaluations: int = 0
+    iterations: int = 0
+
+    def __post_init__(self) -> None:
+        self.x, self.one = self.origin, np.ones_like(self.origin)
+        self.last = (np.full_like(self.origin, np.nan), self.origin)
 
     def place(self, u: np.ndarray) -> np.ndarray:
-        return np.clip(self.origin + (u - 1) * self.unit, self.low, self.high)
+        return np.clip(self.origin + (u - 1) * self.problem.unit, self.problem.low, self.problem.high)
 
     def residual(self, u: np.ndarray) -> np.ndarray:
         if np.array_equal(self.last[0], u):  # SciPy asks again for the first point
             return self.last[1]
-        value = self._residual(self.place(u))
+        value = self.problem.residual(self.place(u))
         self.evaluations += 1
         if not np.all(np.abs(value) < LARGEST):
             value = np.full_like(value, np.nan)
@@ -172,18 +139,17 @@ class _Path:
 
     def jacobian(self, u: np.ndarray) -> np.ndarray:
         self.tell()
-        x = self.place(u)
-        slopes = self._jacobian(x) * self.unit
+        x, problem = self.place(u), self.problem
+        slopes = problem.jacobian(x) * problem.unit
         if not slopes.any():
             raise Stopped("converged: the residual does not change with the parameters", stationary=True)
         size = np.linalg.norm(slopes, axis=0)
         slopes[:, size < ROUNDING * size.max()] = 0.0  # in such units a parameter would move far for nothing
-        self.stopping.at(self.last[1], slopes, (self.low - x) / self.unit, (self.high - x) / self.unit)
+        self.stopping.at(self.last[1], slopes, (problem.low - x) / problem.unit, (problem.high - x) / problem.unit)
         return slopes
 
     def tell(self) -> None:
-        if self.on_iteration is not None:
-            self.on_iteration(Progress(self.iterations, self.evaluations, self.best, self.x))
+        self.problem.on_iteration(Progress(self.iterations, self.evaluations, self.best, self.x))
         self.iterations += 1
 
     def minimum(self, success: bool, message: str, stationary: bool = False, rough: bool = False) -> Minimum:

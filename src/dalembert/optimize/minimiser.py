@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike
 
 from dalembert.arguments import Checked
 from dalembert.errors import InputError, require_known, unknown
-from dalembert.optimize.minimum import Minimum, Objective, OnIteration, Progress, box, fitness_of
+from dalembert.intervals import corners
+from dalembert.optimize.minimum import Minimum, Objective, OnIteration, Progress, fitness_of
 
 BOUNDED = ("Nelder-Mead", "Powell", "L-BFGS-B", "TNC", "COBYLA", "COBYQA", "SLSQP", "trust-constr")
 UNBOUNDED = ("CG", "BFGS", "Newton-CG")
@@ -20,6 +21,8 @@ GRADIENT = ("CG", "BFGS", "Newton-CG", "L-BFGS-B", "TNC", "SLSQP", "trust-constr
 GLOBAL = ("differential_evolution", "dual_annealing", "basinhopping", "shgo", "direct")
 BATCHED = "differential_evolution"
 NAMES = (*BOUNDED, *UNBOUNDED, *GLOBAL)
+OWN = {"func", "bounds", "rng", "x0", "args", "callback"}
+"""Arguments of global minimisers that are no options."""
 
 FAILED = 10.0
 """How much worse than the worst a failed sample is told to be: SciPy interpolates, which no infinity survives."""
@@ -62,14 +65,7 @@ class Minimiser(Checked):
             raise InputError(unknown("minimiser", self.name, NAMES))
         object.__setattr__(self, "name", spelled[self.name.lower()])
         if self.name in GLOBAL:
-            taken = set(signature(getattr(so, self.name)).parameters) - {
-                "func",
-                "bounds",
-                "rng",
-                "x0",
-                "args",
-                "callback",
-            }
+            taken = set(signature(getattr(so, self.name)).parameters) - OWN
             for option in self.options:
                 require_known("option", option, taken, f"Minimiser({self.name!r})")
 
@@ -105,7 +101,7 @@ class Minimiser(Checked):
         on_iteration : callable, optional
             Called with a :class:`Progress` at each improvement.
         """
-        low, high = box(lower, upper)
+        low, high = corners(lower, upper)
         x0 = (low + high) / 2 if start is None else np.clip(np.asarray(start, dtype=float), low, high)
         watched = _Watched(objective, low, high, on_iteration)
         result = self._global(watched, x0, seed) if self.name in GLOBAL else self._local(watched, x0, gradient)

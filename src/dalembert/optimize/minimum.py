@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from dalembert.arguments import limited
 from dalembert.errors import InputError
@@ -116,13 +115,3 @@ def fitness_of(objective: Objective, points: np.ndarray) -> np.ndarray:
             f"the objective returned an array of shape {values.shape}; expected ({len(points)},), one number a point"
         )
     return np.where(np.isfinite(values), values, np.inf)
-
-
-def box(lower: ArrayLike, upper: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
-    """The two corners of a search box as arrays of shape (parameters,), checked."""
-    low, high = np.array(lower, dtype=float, ndmin=1), np.array(upper, dtype=float, ndmin=1)
-    if low.ndim != 1 or low.shape != high.shape or not np.all(np.isfinite(low) & np.isfinite(high) & (low < high)):
-        raise InputError(
-            f"bounds are {low.tolist()} and {high.tolist()}; expected two vectors of one length, finite, lower < upper"
-        )
-    return low, high

@@ -6,7 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from dalembert.arguments import limited
-from dalembert.optimize.swarm import Swarm, SwarmState, pulled
+from dalembert.optimize.swarm import Swarm, SwarmState
 
 
 @dataclass(frozen=True)
@@ -43,20 +43,12 @@ class ParticleSwarm(Swarm):
     c2: float = 2.0
     velocity_limit: float | None = limited(0.2, above=0)
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-
     def velocity_bound(self, lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
         return (upper - lower) * (1.0 if self.velocity_limit is None else self.velocity_limit)
 
     def move(self, state: SwarmState, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
-        first, last = self.inertia if isinstance(self.inertia, tuple) else (self.inertia, self.inertia)
-        inertia = first + (last - first) * state.iteration / self.iterations
-        velocities = (
-            inertia * state.velocities
-            + pulled(rng, self.c1, state.own, state.positions)
-            + pulled(rng, self.c2, state.best, state.positions)
-        )
+        inertia = self.inertia if isinstance(self.inertia, tuple) else (self.inertia, self.inertia)
+        velocities = self.steered(state, rng, inertia, self.c1, self.c2)
         if self.velocity_limit is not None:
             limit = self.velocity_bound(state.lower, state.upper)
             velocities = np.clip(velocities, -limit, limit)

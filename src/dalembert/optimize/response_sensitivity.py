@@ -1,22 +1,22 @@
 """Enhanced response sensitivity: Tikhonov's weight from the L-curve, raised until the linear model can be trusted."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from dalembert.arguments import Checked, limited
+from dalembert.arguments import limited
 from dalembert.errors import InputError, require_known
 from dalembert.optimize.linear_model import LinearModel
-from dalembert.optimize.minimum import Minimum, OnIteration, Progress, RegularisedStep, box, reachable
+from dalembert.optimize.minimum import Minimum, Progress, RegularisedStep, reachable
+from dalembert.optimize.stopping import Stopped
+from dalembert.optimize.sum_of_squares import SquaresMinimiser, SumOfSquares
 from dalembert.optimize.tikhonov import Regularised
 
 REGULARISATIONS = ("l-curve", "gcv", "discrepancy")
 
 
 @dataclass(frozen=True)
-class ResponseSensitivity(Checked):
+class ResponseSensitivity(SquaresMinimiser):
     """Bounded nonlinear least squares by regularised steps, d = (SᵀS + μ²)⁻¹ Sᵀ (−r), within a trust region.
 
     In each iteration μ is chosen anew, from the corner of the L-curve, say, and raised until the sum of squares falls
@@ -83,33 +83,8 @@ class ResponseSensitivity(Checked):
                 "give noise=1.0 where the data have deviations"
             )
 
-    def minimise(
-        self,
-        residual: Callable[[np.ndarray], np.ndarray],
-        jacobian: Callable[[np.ndarray], np.ndarray],
-        lower: ArrayLike,
-        upper: ArrayLike,
-        start: ArrayLike,
-        *,
-        scale: ArrayLike = 1.0,
-        on_iteration: OnIteration | None = None,
-    ) -> Minimum:
-        """Least sum of squares near ``start``.
-
-        Parameters
-        ----------
-        residual : callable
-            (parameters,) to (residuals,); NaN or infinite where the sample failed, which shortens the step.
-        jacobian : callable
-            (parameters,) to (residuals, parameters); asked only where the residual was just computed.
-        lower, upper, start, scale : array, shape (parameters,)
-        on_iteration : callable, optional
-            Called with a :class:`Progress` at the start and after each step, with its :class:`RegularisedStep`.
-        """
-        low, high = box(lower, upper)
-        x = np.clip(np.asarray(start, dtype=float), low, high)
-        unit = np.broadcast_to(np.asarray(scale, dtype=float), x.shape)
-        return _Descent(self, residual, jacobian, low, high, unit, on_iteration, x, residual(x)).minimum()
+    def descend(self, problem: SumOfSquares, start: np.ndarray) -> Minimum:
+        return _Descent(self, problem, start, problem.residual(start)).minimum()
 
     def weight(self, problem: Regularised) -> float:
         """μ for a linear problem; infinite where nothing but noise is left."""
@@ -119,21 +94,12 @@ class ResponseSensitivity(Checked):
         return problem.gcv() if self.regularisation == "gcv" else problem.corner()
 
 
-class _Ended(Exception):
-    """The descent is over; the arguments are success, message and whether the end is stationary."""
-
-
 @dataclass
 class _Descent:
     """A descent under way: its point x, the residual r there, and how far the linear model is trusted."""
 
     method: ResponseSensitivity
-    residual: Callable[[np.ndarray], np.ndarray]
-    jacobian: Callable[[np.ndarray], np.ndarray]
-    low: np.ndarray
-    high: np.ndarray
-    unit: np.ndarray
-    on_iteration: OnIteration | None
+    problem: SumOfSquares
     x: np.ndarray
     r: np.ndarray
     trials: int = 1
@@ -151,27 +117,26 @@ class _Descent:
             while True:
                 self.tell(last)
                 last = self.advance(self.linear())
-        except _Ended as end:
-            success, message, stationary = end.args
+        except Stopped as end:
             fitness = float(self.r @ self.r)
-            return Minimum(self.x, fitness, success, message, self.iterations, self.trials, stationary)
+            return Minimum(self.x, fitness, end.success, str(end), self.iterations, self.trials, end.stationary)
 
     def tell(self, last: RegularisedStep | None) -> None:
-        if self.on_iteration is not None:
-            self.on_iteration(Progress(self.iterations, self.trials, float(self.r @ self.r), self.x, last))
+        self.problem.on_iteration(Progress(self.iterations, self.trials, float(self.r @ self.r), self.x, last))
 
     def linear(self) -> LinearModel:
         """The linear model about x, in units of the scale."""
         if not self.r.any():
-            raise _Ended(True, "converged: the fit is perfect", True)
+            raise Stopped("converged: the fit is perfect", stationary=True)
         if self.iterations == self.method.iterations:
             raise self.spent(f"{self.iterations} steps", "iterations")
-        slopes = self.jacobian(self.x) * self.unit
+        low, high, unit = self.problem.low, self.problem.high, self.problem.unit
+        slopes = self.problem.jacobian(self.x) * unit
         if not slopes.any():
-            raise _Ended(True, "converged: the residual does not change with the parameters", True)
-        model = LinearModel(self.r, slopes, (self.low - self.x) / self.unit, (self.high - self.x) / self.unit)
+            raise Stopped("converged: the residual does not change with the parameters", stationary=True)
+        model = LinearModel(self.r, slopes, (low - self.x) / unit, (high - self.x) / unit)
         if not slopes[:, model.free].any():
-            raise _Ended(True, "converged: bounds hold all parameters that the residual changes with", True)
+            raise Stopped("converged: bounds hold all parameters that the residual changes with", stationary=True)
         return model
 
     def advance(self, model: LinearModel) -> RegularisedStep:
@@ -179,10 +144,10 @@ class _Descent:
         problem, shortest = model.regularised, self.method.tolerance * np.sqrt(len(self.x))
         chosen = self.method.weight(problem)
         if np.isinf(chosen):
-            raise _Ended(True, "converged: what is left is within the noise", False)
+            raise Stopped("converged: what is left is within the noise")
         wish = model.step(chosen)
         if np.linalg.norm(wish) < shortest:
-            raise _Ended(True, "converged: the parameters move no more", True)
+            raise Stopped("converged: the parameters move no more", stationary=True)
         last = model.foreseen(wish) < self.method.gain * float(self.r @ self.r)
 
         mu, before = max(chosen, problem.weight_of(self.radius)), self.trials
@@ -190,13 +155,13 @@ class _Descent:
             step = model.step(mu)
             length = float(np.linalg.norm(step))
             if length < shortest:
-                raise _Ended(True, "converged: the parameters move no more", True)
+                raise Stopped("converged: the parameters move no more", stationary=True)
             point, there = self.trial(step)
             agreement = float((self.r - there) @ (self.r + there)) / max(model.foreseen(step), np.finfo(float).tiny)
             if agreement >= self.method.agreement:
                 break
             if last:  # what there is to gain is lost in rounding
-                raise _Ended(True, "converged: the sum of squares falls no more", False)
+                raise Stopped("converged: the sum of squares falls no more")
             mu = max(self.method.growth * mu, problem.weight_of(length / 2))
 
         tried = self.trials - before
@@ -209,7 +174,7 @@ class _Descent:
         self.x, self.r, self.iterations = point, there, self.iterations + 1
         if last:
             self.tell(account)
-            raise _Ended(True, "converged: the sum of squares falls no more", False)
+            raise Stopped("converged: the sum of squares falls no more")
         return account
 
     def trial(self, step: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -217,9 +182,9 @@ class _Descent:
         if self.trials == self.method.trials:
             raise self.spent(f"{self.trials} trial points", "trials")
         self.trials += 1
-        point = np.clip(self.x + self.unit * step, self.low, self.high)
-        return point, self.residual(point)
+        point = np.clip(self.x + self.problem.unit * step, self.problem.low, self.problem.high)
+        return point, self.problem.residual(point)
 
-    def spent(self, what: str, setting: str) -> _Ended:
+    def spent(self, what: str, setting: str) -> Stopped:
         advice = f"allow more with ResponseSensitivity({setting}=...)"
-        return _Ended(False, f"stopped after {what}, not converged; {advice}", False)
+        return Stopped(f"stopped after {what}, not converged; {advice}", success=False)

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from dalembert.arguments import Checked, limited
-from dalembert.optimize.minimum import Minimum, Objective, OnIteration, Progress, box, fitness_of
+from dalembert.intervals import corners
+from dalembert.optimize.minimum import Minimum, Objective, OnIteration, Progress, fitness_of
 
 
 @dataclass(frozen=True)
@@ -51,10 +52,6 @@ class SwarmState:
     def best_fitness(self) -> float:
         return float(np.min(self.own_fitness))
 
-    @property
-    def progress(self) -> Progress:
-        return Progress(self.iteration, self.evaluations, self.best_fitness, self.best)
-
 
 @dataclass(frozen=True)
 class Swarm(Checked, ABC):
@@ -86,7 +83,7 @@ class Swarm(Checked, ABC):
         start : array, shape (parameters,), optional
             Where the first particle begins.
         """
-        low, high = box(lower, upper)
+        low, high = corners(lower, upper)
         rng = np.random.default_rng((seed, 0))
         positions = low + (high - low) * rng.random((self.particles, len(low)))
         if start is not None:
@@ -134,7 +131,7 @@ class Swarm(Checked, ABC):
         state = self.start(objective, lower, upper, seed, start)
         while True:
             if on_iteration is not None:
-                on_iteration(state.progress)
+                on_iteration(Progress(state.iteration, state.evaluations, state.best_fitness, state.best))
             if state.iteration >= self.iterations:
                 return self.end(state)
             state = self.advance(state, objective)
@@ -144,6 +141,15 @@ class Swarm(Checked, ABC):
         found = bool(np.isfinite(state.best_fitness))
         message = f"all {state.iteration} iterations done" if found else "every sample of the swarm failed"
         return Minimum(state.best, state.best_fitness, found, message, state.iteration, state.evaluations)
+
+    def steered(
+        self, state: SwarmState, rng: np.random.Generator, inertia: tuple[float, float], c1: float, c2: float
+    ) -> np.ndarray:
+        """Velocities ωv + c1 r1 (own best − x) + c2 r2 (best of all − x), ω falling linearly to its second value."""
+        first, last = inertia
+        kept = (first + (last - first) * state.iteration / self.iterations) * state.velocities
+        x = state.positions
+        return kept + pulled(rng, c1, state.own, x) + pulled(rng, c2, state.best, x)
 
     @abstractmethod
     def velocity_bound(self, lower: np.ndarray, upper: np.ndarray) -> np.ndarray:

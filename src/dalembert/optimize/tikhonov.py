@@ -82,12 +82,7 @@ class Regularised:
 
     def weight_of(self, length: float) -> float:
         """Smallest weight, from :attr:`least` up, whose step is no longer than a positive length."""
-        low, high = self.least, float(self.singular[0])
-        if self.step_norms(low) <= length:
-            return low
-        while self.step_norms(high) > length:
-            high *= 10
-        return _crossing(lambda mu: float(self.step_norms(mu)) - length, low, high)
+        return self._crossing(lambda mu: float(self.step_norms(mu)) - length)
 
     @property
     def least(self) -> float:
@@ -161,12 +156,17 @@ class Regularised:
         """
         if np.hypot(np.linalg.norm(self.parts), self.outside) <= noise:
             return np.inf
+        return self._crossing(lambda mu: noise - float(self.residual_norms(mu)))
+
+    def _crossing(self, excess: Callable[[float], float]) -> float:
+        """Weight at which an excess, which falls as the weight grows, is zero; :attr:`least` if there is none there."""
         low, high = self.least, float(self.singular[0])
-        if self.residual_norms(low) >= noise:
+        if excess(low) <= 0:
             return low
-        while self.residual_norms(high) <= noise:
+        while excess(high) > 0:
             high *= 10
-        return _crossing(lambda mu: float(self.residual_norms(mu)) - noise, low, high)
+        place: Any = brentq(lambda at: excess(np.exp(at)), np.log(low), np.log(high))
+        return float(np.exp(place))
 
     def _refined(self, score: Callable[[float], float], place: int) -> float:
         """Weight of the least score between the neighbours of one of :attr:`weights`."""
@@ -183,9 +183,3 @@ class Regularised:
         """f (..., k), the share that each part of the step keeps."""
         squares, weight = self.singular**2, np.asarray(mu, dtype=float)[..., None] ** 2
         return np.where(np.isfinite(weight), squares / np.maximum(squares + weight, np.finfo(float).tiny), 0.0)
-
-
-def _crossing(function: Callable[[float], float], low: float, high: float) -> float:
-    """Weight between two where a function is zero."""
-    place: Any = brentq(lambda at: function(np.exp(at)), np.log(low), np.log(high))
-    return float(np.exp(place))

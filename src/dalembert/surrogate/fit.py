@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from dalembert.errors import InputError, SolveError
+from dalembert.intervals import corners
 from dalembert.surrogate.held_out import held_out_runs
 from dalembert.surrogate.polynomial import ChebyshevPolynomial
 from dalembert.surrogate.runs import Function, Runs, failed
@@ -64,8 +65,7 @@ def fit(
     >>> wave.runs, bool(wave.error[0] < 1e-5), bool(abs(wave([[0.5, 0.2]]) - np.sin(0.54)) < wave.error)
     (91, True, True)
     """
-    low, high = _box(lower, upper)
-    runs = Runs(function, low, high, on_runs)
+    runs = Runs(function, *corners(lower, upper, flat=True), on_runs)
     test = held_out_runs(runs, held_out, seed)
     fitted = scheme.fitted(runs, seed, test, lambda: _scale(runs, groups)) if runs.directions else _constant(runs)
     ok = ~failed(runs.values)
@@ -81,16 +81,6 @@ def fit(
         len(test.eta),
         fitted.ended,
     )
-
-
-def _box(lower: ArrayLike, upper: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
-    low, high = np.array(lower, dtype=float, ndmin=1), np.array(upper, dtype=float, ndmin=1)
-    if low.ndim != 1 or low.shape != high.shape or not np.all(np.isfinite(low) & np.isfinite(high) & (low <= high)):
-        raise InputError(
-            f"a box from {low.tolist()} to {high.tolist()} was given; "
-            "expected two vectors of one length, finite, the lower one first"
-        )
-    return low, high
 
 
 def _scale(runs: Runs, groups: ArrayLike | None) -> np.ndarray:

@@ -55,7 +55,7 @@ def test_a_failed_run_is_left_out_where_it_can_be() -> None:
     assert found.runs == 30
     assert len(found.points) == 30 - found.failures
     np.testing.assert_allclose(found([[0.3, 2.2]]), cubic(np.array([[0.3, 2.2]])), atol=1e-12)
-    with pytest.raises(SolveError, match=r"^\d of the 16 runs of a surrogate failed, the first at the point "):
+    with pytest.raises(SolveError, match=r"^\d of 16 runs of a tensor surrogate failed, the first at the point "):
         fit(failing, LOWER, UPPER, Tensor(3))
 
 
@@ -76,8 +76,7 @@ def refused(message: str, function=cubic, lower=LOWER, scheme=None, **options) -
 
 def test_what_cannot_be_meant_is_refused() -> None:
     refused(
-        "a box from [1.0, 0.0] to [0.5, 2.5] was given; "
-        "expected two vectors of one length, finite, the lower one first",
+        "bounds are [1.0, 0.0] and [0.5, 2.5]; expected two vectors of one length, finite, lower <= upper",
         lower=[1.0, 0.0],
     )
     refused("held_out is -1; expected zero or more runs", held_out=-1)

@@ -90,7 +90,7 @@ class Adaptive(Checked):
             highest = max(map(max, batch))
             if highest > self.most_order:
                 return self._fitted(growth, f"raise Adaptive(most_order=...), now {self.most_order}")
-            growth.add(batch, runs(growth.points(batch)), runs)
+            growth.add(batch, runs.complete(growth.points(batch), "an adaptive"))
             full = runs.count >= most
             tail, wanted = growth.tail(), self.tolerance * scale()
             excess = held_out.difference_of(growth) - SHARE * wanted
@@ -120,10 +120,9 @@ class Adaptive(Checked):
         return self.most_runs, f"allow more runs by Adaptive(most_runs=...), now {self.most_runs}"
 
     def _fitted(self, growth: Growth, ended: str) -> Fitted:
-        exponents, coefficients = growth.polynomial()
-        if not self.cautious:
-            return Fitted(exponents, coefficients, growth.tail(), ended)
-        tail = np.maximum(growth.tail(), slow_tails(by_direction(exponents, coefficients)))
+        (exponents, coefficients), tail = growth.polynomial(), growth.tail()
+        if self.cautious:
+            tail = np.maximum(tail, slow_tails(by_direction(exponents, coefficients)))
         return Fitted(exponents, coefficients, tail, ended)
 
     def shells(self, exponents: np.ndarray, coefficients: np.ndarray) -> list[np.ndarray]:

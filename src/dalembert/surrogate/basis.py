@@ -1,9 +1,9 @@
 """Chebyshev polynomials of one variable, and products of them."""
 
 from itertools import product
+from math import comb
 
 import numpy as np
-from scipy.special import comb
 
 
 def chebyshev(eta: np.ndarray, degrees: np.ndarray, derivative: int = 0) -> list[np.ndarray]:
@@ -82,7 +82,7 @@ def terms_of(directions: int, order: int) -> int:
     >>> terms_of(2, 2)
     6
     """
-    return int(comb(order + directions, directions, exact=True))
+    return comb(order + directions, directions)
 
 
 def full_tensor(orders: tuple[int, ...]) -> np.ndarray:

@@ -114,22 +114,16 @@ def _corners(cells: np.ndarray) -> np.ndarray:
 
 def _halved(cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Both halves of each cell, along the direction in which its coefficients vary most between neighbours."""
-    directions = cells.ndim - 1
-    steps = np.stack(
-        [
-            np.abs(np.diff(cells, axis=k + 1)).max(axis=tuple(range(1, cells.ndim)), initial=0)
-            * (cells.shape[k + 1] - 1)
-            for k in range(directions)
-        ]
-    )
-    along = np.argmax(steps, axis=0)
+    axes = tuple(range(1, cells.ndim))
+    steps = [np.abs(np.diff(cells, axis=k)).max(axis=axes, initial=0) * (cells.shape[k] - 1) for k in axes]
+    along = 1 + np.argmax(steps, axis=0)
     lower, upper = np.empty_like(cells), np.empty_like(cells)
-    for k in range(directions):
+    for k in axes:
         chosen = along == k
-        last = np.moveaxis(cells[chosen], k + 1, -1)
+        last = np.moveaxis(cells[chosen], k, -1)
         for half, (start, end) in ((lower, (0.0, 0.5)), (upper, (0.5, 1.0))):
-            matrix = _restriction(cells.shape[k + 1] - 1, np.array([start]), np.array([end]))[0]
-            half[chosen] = np.moveaxis(last @ matrix.T, -1, k + 1)
+            matrix = _restriction(cells.shape[k] - 1, np.array([start]), np.array([end]))[0]
+            half[chosen] = np.moveaxis(last @ matrix.T, -1, k)
     return lower, upper
 
 

@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass
 from typing import Literal
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -10,13 +9,10 @@ from numpy.typing import ArrayLike
 from dalembert.errors import InputError, require_known
 from dalembert.surrogate import scan
 from dalembert.surrogate.polynomial import ChebyshevPolynomial
-from dalembert.surrogate.rows import Rows, rows_of
 
 METHODS = ("optimise", "scan", "bernstein")
 CHUNK = 2_000_000
 """Values of a scan kept at once: a part of a batch is scanned and refined before the next one."""
-_ROWS: WeakKeyDictionary[ChebyshevPolynomial, Rows] = WeakKeyDictionary()
-"""Of polynomials that were bounded: small ones are, again and again, and their rows take as long as the rest."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,8 +28,8 @@ class PolynomialBounds:
 
     lower: np.ndarray
     upper: np.ndarray
-    at_lower: np.ndarray | None
-    at_upper: np.ndarray | None
+    at_lower: np.ndarray | None = None
+    at_upper: np.ndarray | None = None
 
 
 def bounds(
@@ -88,8 +84,7 @@ def bounds(
     if method == "bernstein":
         from dalembert.surrogate.bernstein import enclosures
 
-        sides = enclosures(polynomial, low, high, gap)
-        found = PolynomialBounds(*sides, None, None)
+        found = PolynomialBounds(*enclosures(polynomial, low, high, gap))
     else:
         found = _searched(polynomial, low, high, method, points, starts)
     if np.ndim(lower) == 2:
@@ -121,8 +116,6 @@ def _searched(
     polynomial: ChebyshevPolynomial, low: np.ndarray, high: np.ndarray, method: str, points: int | None, starts: int
 ) -> PolynomialBounds:
     outputs = polynomial.coefficients.shape[1]
-    if method != "scan":
-        _prepare()
     points = 21 if points is None and method == "scan" else points
     spread = scan.spread(polynomial, points)
     least, most = polynomial.eta(low), polynomial.eta(high)
@@ -138,14 +131,6 @@ def _searched(
     inside = np.clip(polynomial.points(at), low[:, None], high[:, None])
     place = np.where(at == least[:, None], low[:, None], np.where(at == most[:, None], high[:, None], inside))
     return PolynomialBounds(found[0], found[1], place[0], place[1])
-
-
-def _prepare() -> None:
-    """Compile or load the kernel of the search. Imported here because other methods need no compiler."""
-    from dalembert.kernels.preparation import prepare
-    from dalembert.surrogate.extremes import extremes
-
-    prepare([extremes])
 
 
 def _pick(values: np.ndarray, spread: scan.Scan, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -165,13 +150,11 @@ def _refine(
     starts: int,
 ) -> tuple[np.ndarray, np.ndarray]:
     """As :func:`_pick`, refined."""
-    from dalembert.surrogate.extremes import Terms, extremes, room  # compiled: not before it is needed
+    from dalembert.kernels.preparation import prepare
+    from dalembert.surrogate.extremes import extremes, room  # compiled: not before it is needed
 
-    if polynomial not in _ROWS:
-        _ROWS[polynomial] = rows_of(polynomial)
-    rows = _ROWS[polynomial]
-    terms = Terms(polynomial.degrees, rows.inner, rows.exponents, rows.active, rows.counts, rows.lengths)
+    prepare([extremes])
     found, at = np.empty((2, *values.shape[:2])), np.empty((2, *values.shape[:2], low.shape[1]))
     given = (np.ascontiguousarray(entry) for entry in (values, spread.grid, spread.sides, low, high))
-    extremes(*given, terms, rows.coefficients, found, at, room(terms, rows.coefficients, starts))
+    extremes(*given, polynomial.rows, found, at, room(polynomial.rows, starts))
     return found, at

@@ -5,22 +5,12 @@ from typing import NamedTuple
 import numpy as np
 
 from dalembert.kernels.kernel import inner, kernel
-from dalembert.kernels.words import Integers, Integers2, Reals, Reals2, Reals3, Reals4
+from dalembert.kernels.words import Integers, Reals, Reals2, Reals3, Reals4
+from dalembert.surrogate.polynomial import Rows
 
 ITERATIONS, DAMPINGS = 60, 40
 CONVERGED = 1e-15
 """A step that promises less than this part of the sum of |coefficients| is not taken."""
-
-
-class Terms(NamedTuple):
-    """Degrees (d,) of a polynomial and its terms, as in :class:`dalembert.surrogate.rows.Rows`."""
-
-    degrees: Integers
-    inner: int
-    exponents: Integers2
-    active: Integers2
-    counts: Integers
-    lengths: Integers
 
 
 class Room(NamedTuple):
@@ -55,20 +45,16 @@ class Room(NamedTuple):
     places: Integers
 
 
-def room(terms: Terms, coefficients: np.ndarray, starts: int) -> Room:
+def room(rows: Rows, starts: int) -> Room:
     """Room for so many starts."""
-    size = len(terms.degrees)
+    size = len(rows.degrees)
     return Room(
-        eta=np.empty(size),
-        gradient=np.empty(size),
-        step=np.empty(size),
-        trial=np.empty(size),
-        trial_gradient=np.empty(size),
+        *np.empty((5, size)),  # from ``eta`` to ``trial_gradient``
         free=np.empty(size, dtype=np.int64),
         hessian=np.empty((size, size)),
         factor=np.empty((size, size)),
-        tables=np.zeros((3, size, max(2, int(terms.degrees.max()) + 1))),
-        signed=np.empty(coefficients.shape[1:]),
+        tables=np.zeros((3, size, max(2, int(rows.degrees.max()) + 1))),
+        signed=np.empty(rows.coefficients.shape[1:]),
         best=np.empty(starts),
         places=np.empty(starts, dtype=np.int64),
     )
@@ -99,9 +85,9 @@ def _along(coefficients, row, length, tables, derivative, inner):
 
 
 @inner
-def _value_and_gradient(terms, tables, coefficients, gradient):
+def _value_and_gradient(rows, tables, coefficients, gradient):
     """Value, and the gradient with respect to η in place; a row multiplies only the directions that it depends on."""
-    inner, exponents, active, counts, lengths = terms.inner, terms.exponents, terms.active, terms.counts, terms.lengths
+    inner, exponents, active, counts, lengths = rows.inner, rows.exponents, rows.active, rows.counts, rows.lengths
     gradient[:] = 0.0
     value = 0.0
     for r in range(len(coefficients)):
@@ -123,9 +109,9 @@ def _value_and_gradient(terms, tables, coefficients, gradient):
 
 
 @inner
-def _hessian(terms, tables, coefficients, hessian):
+def _hessian(rows, tables, coefficients, hessian):
     """Second derivatives with respect to η, in place."""
-    inner, exponents, active, counts, lengths = terms.inner, terms.exponents, terms.active, terms.counts, terms.lengths
+    inner, exponents, active, counts, lengths = rows.inner, rows.exponents, rows.active, rows.counts, rows.lengths
     hessian[:] = 0.0
     for r in range(len(coefficients)):
         along = _along(coefficients, r, lengths[r], tables, 0, inner)
@@ -143,11 +129,8 @@ def _hessian(terms, tables, coefficients, hessian):
                 hessian[active[r, i], active[r, j]] += product
             curvature *= tables[0, active[r, i], exponents[r, i]]
         hessian[inner, inner] += curvature
-    for i in range(len(hessian)):
-        for j in range(i):
-            if i == inner or j == inner:
-                other = j if i == inner else i
-                hessian[i, j] = hessian[other, inner]
+    for j in range(inner):
+        hessian[inner, j] = hessian[j, inner]
 
 
 @inner
@@ -186,12 +169,12 @@ def _step(hessian, gradient, free, damping, factor, step):
 
 
 @inner
-def _minimum(terms, low, high, small, room):
+def _minimum(rows, low, high, small, room):
     """Local minimum in a box by Newton's method projected onto it; η in place, the value returned."""
     eta, gradient, step, trial, trial_gradient = room.eta, room.gradient, room.step, room.trial, room.trial_gradient
     size, coefficients, hessian, free, tables = len(eta), room.signed, room.hessian, room.free, room.tables
-    _ladders(eta, terms.degrees, tables)
-    value = _value_and_gradient(terms, tables, coefficients, gradient)
+    _ladders(eta, rows.degrees, tables)
+    value = _value_and_gradient(rows, tables, coefficients, gradient)
     for _ in range(ITERATIONS):
         reach = 0.0
         for k in range(size):
@@ -200,7 +183,7 @@ def _minimum(terms, low, high, small, room):
             reach += abs(gradient[k]) * inward
         if reach <= small:
             break
-        _hessian(terms, tables, coefficients, hessian)
+        _hessian(rows, tables, coefficients, hessian)
         size_of_hessian = 0.0
         for k in range(size):
             size_of_hessian = max(size_of_hessian, abs(hessian[k, k]))
@@ -214,8 +197,8 @@ def _minimum(terms, low, high, small, room):
                     promised -= gradient[k] * (trial[k] - eta[k])
                     clipped |= trial[k] != eta[k] + step[k]
                 if promised > small:
-                    _ladders(trial, terms.degrees, tables)
-                    lower = _value_and_gradient(terms, tables, coefficients, trial_gradient)
+                    _ladders(trial, rows.degrees, tables)
+                    lower = _value_and_gradient(rows, tables, coefficients, trial_gradient)
                 if lower < value - 1e-4 * promised or (promised <= small and not clipped):
                     break
             damping = max(4 * damping, 0.1 * size_of_hessian, reach)
@@ -268,8 +251,8 @@ def _signed(coefficients, sign, signed):
 
 @kernel
 def extremes(
-    values: Reals3, grid: Reals2, sides: Integers, low: Reals2, high: Reals2, terms: Terms, coefficients: Reals3,
-    bounds: Reals3, at: Reals4, room: Room,
+    values: Reals3, grid: Reals2, sides: Integers, low: Reals2, high: Reals2, rows: Rows, bounds: Reals3,
+    at: Reals4, room: Room,
 ) -> None:  # fmt: skip
     """Refine the extremes of a scan; all in coordinates η of the polynomial.
 
@@ -282,9 +265,8 @@ def extremes(
     sides : array of int, shape (d,) or (0,)
         Points of the scan in each direction, the last one fastest; none if they form no grid.
     low, high : array, shape (boxes, d)
-    terms : Terms
-    coefficients : array, shape (outputs, rows, longest)
-        As in :class:`dalembert.surrogate.rows.Rows`.
+    rows : Rows
+        Of the polynomial.
     bounds : array, shape (2, boxes, outputs)
         Filled with the smallest and the largest values.
     at : array, shape (2, boxes, outputs, d)
@@ -294,16 +276,16 @@ def extremes(
     """
     eta, size = room.eta, low.shape[1]
     for b in range(len(low)):
-        for o in range(len(coefficients)):
+        for o in range(len(rows.coefficients)):
             for side in range(2):
                 sign = 1.0 - 2.0 * side
-                small = CONVERGED * _signed(coefficients[o], sign, room.signed)
+                small = CONVERGED * _signed(rows.coefficients[o], sign, room.signed)
                 lowest = np.inf
                 for start in range(_lowest_valleys(values[b, o], sides, sign, room.best, room.places)):
                     for k in range(size):
                         part = grid[room.places[start], k]
                         eta[k] = high[b, k] if part == 1 else low[b, k] + part * (high[b, k] - low[b, k])
-                    value = _minimum(terms, low[b], high[b], small, room)
+                    value = _minimum(rows, low[b], high[b], small, room)
                     if value < lowest:
                         lowest = value
                         for k in range(size):

@@ -2,9 +2,7 @@
 
 import numpy as np
 
-from dalembert.errors import SolveError
 from dalembert.surrogate.leja import hierarchical, leja
-from dalembert.surrogate.runs import Runs, failed
 
 Term = tuple[int, ...]
 
@@ -76,21 +74,8 @@ class Growth:
         places = np.array(batch)
         return leja(int(places.max()) + 1)[places]
 
-    def add(self, batch: list[Term], values: np.ndarray, runs: Runs) -> None:
-        """Terms with the outputs (terms, outputs) of their runs.
-
-        Raises
-        ------
-        SolveError
-            For a run that failed.
-        """
-        if failed(values).any():
-            place = int(np.argmax(failed(values)))
-            raise SolveError(
-                f"{failed(values).sum()} of {len(values)} runs of an adaptive surrogate failed, the first at the point "
-                f"{runs.place(self.points(batch[place : place + 1]))[0].tolist()}; it needs all of them; "
-                "keep the box away from where the model fails, or use TotalDegree, which can do without some"
-            )
+    def add(self, batch: list[Term], values: np.ndarray) -> None:
+        """Terms with the outputs (terms, outputs) of their runs."""
         sizes: list[tuple[float, float]] = []
         # A term is foretold by terms below it alone, so the order within a batch is that of degrees.
         for term, value in sorted(zip(batch, values, strict=True), key=lambda pair: sum(pair[0])):
@@ -108,11 +93,9 @@ class Growth:
         """Store a term; the arrays double when they are full."""
         known = len(self.terms)
         if known == len(self._exponents):
-            room = max(64, 2 * known)
-            exponents, surpluses = np.zeros((room, self.directions), dtype=int), np.zeros((room, len(surplus)))
-            if known:
-                exponents[:known], surpluses[:known] = self._exponents, self._surpluses
-            self._exponents, self._surpluses = exponents, surpluses
+            more = ((0, max(64, known)), (0, 0))
+            self._exponents = np.pad(self._exponents, more)
+            self._surpluses = np.pad(self._surpluses.reshape(known, len(surplus)), more)
         self._exponents[known], self._surpluses[known] = term, surplus
         self._surplus[term] = surplus
         self.terms.append(term)

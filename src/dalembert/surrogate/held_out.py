@@ -64,7 +64,7 @@ def held_out_runs(runs: Runs, number: int | None, seed: int) -> HeldOut:
         For a negative number.
     """
     if number is None:
-        number = held_out_number(runs.directions)
+        number = max(FEWEST, EACH * runs.directions)
     if number < 0:
         raise InputError(f"held_out is {number}; expected zero or more runs")
     if not (number and runs.directions):
@@ -73,12 +73,3 @@ def held_out_runs(runs: Runs, number: int | None, seed: int) -> HeldOut:
     values = runs(eta)
     kept = ~failed(values)
     return HeldOut(eta[kept], values[kept])
-
-
-def held_out_number(directions: int) -> int:
-    """Return the number of held-out runs if none is given.
-
-    >>> held_out_number(2), held_out_number(8)
-    (10, 16)
-    """
-    return max(FEWEST, EACH * directions)

@@ -2,13 +2,41 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from dalembert.errors import InputError
 from dalembert.intervals import placed
+from dalembert.kernels.words import Integers, Integers2, Reals3
 from dalembert.surrogate.basis import chebyshev, products
+
+
+class Rows(NamedTuple):
+    """Terms that differ only in their degree in one direction, the inner one, side by side.
+
+    Parameters
+    ----------
+    degrees : array of int, shape (d,)
+        Of the polynomial.
+    inner : int
+        The direction of highest degree.
+    exponents, active : array of int, shape (rows, d)
+        Degrees above zero in the other directions, and these directions; the first ``counts`` (rows,) entries count.
+    lengths : array of int, shape (rows,)
+        Number of terms of each row, of degrees 0, 1, 2 … in the inner direction.
+    coefficients : array, shape (outputs, rows, longest)
+        Zero where a term is absent.
+    """
+
+    degrees: Integers
+    inner: int
+    exponents: Integers2
+    active: Integers2
+    counts: Integers
+    lengths: Integers
+    coefficients: Reals3
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,19 +78,12 @@ class ChebyshevPolynomial:
     def __post_init__(self) -> None:
         for name, kind in (("lower", float), ("upper", float), ("exponents", int), ("coefficients", float)):
             object.__setattr__(self, name, np.asarray(getattr(self, name), dtype=kind))
-        directions = self.lower.shape
-        terms = self.exponents.shape[0]
-        if (
-            len(directions) != 1
-            or self.upper.shape != directions
-            or self.exponents.shape != (terms, *directions)
-            or self.coefficients.ndim != 2
-            or len(self.coefficients) != terms
-        ):
+        shapes = self.lower.shape, self.upper.shape, self.exponents.shape, self.coefficients.shape
+        d, terms = self.lower.size, len(self.exponents)
+        if shapes != ((d,), (d,), (terms, d), (terms, *self.coefficients.shape[-1:])):
             raise InputError(
-                f"a polynomial has bounds of shapes {self.lower.shape} and {self.upper.shape}, exponents of shape "
-                f"{self.exponents.shape} and coefficients of shape {self.coefficients.shape}; "
-                "expected (d,), (d,), (terms, d) and (terms, outputs)"
+                "a polynomial has bounds of shapes {} and {}, exponents of shape {} and coefficients of shape {}; "
+                "expected (d,), (d,), (terms, d) and (terms, outputs)".format(*shapes)
             )
         if np.any(self.exponents[:, self.lower == self.upper]):
             raise InputError("a polynomial has a degree above zero in a direction without width; expected zero there")
@@ -78,16 +99,35 @@ class ChebyshevPolynomial:
         width = self.upper - self.lower
         return np.divide(2.0, width, out=np.zeros_like(width), where=width > 0)
 
+    @cached_property
+    def rows(self) -> Rows:
+        """The terms in the order in which they are fast to sum.
+
+        >>> plane = ChebyshevPolynomial([0, 0], [1, 1], [[0, 0], [0, 2], [1, 0]], [[1.0], [2.0], [3.0]])
+        >>> plane.rows.coefficients[0].tolist(), plane.rows.lengths.tolist()
+        ([[1.0, 0.0, 2.0], [3.0, 0.0, 0.0]], [3, 1])
+        """
+        inner = int(np.argmax(self.degrees))
+        degree = self.exponents[:, inner]
+        outer = self.exponents.copy()
+        outer[:, inner] = 0
+        exponents, row = np.unique(outer, axis=0, return_inverse=True)
+        row = row.reshape(-1)
+        lengths = np.zeros(len(exponents), dtype=int)
+        np.maximum.at(lengths, row, degree + 1)
+        coefficients = np.zeros((self.coefficients.shape[1], len(exponents), lengths.max(initial=1)))
+        np.add.at(coefficients.transpose(1, 2, 0), (row, degree), self.coefficients)
+        absent = exponents == 0
+        order = np.argsort(absent, axis=1, kind="stable")
+        exponents, counts = np.take_along_axis(exponents, order, axis=1), np.sum(~absent, axis=1)
+        return Rows(self.degrees, inner, exponents, order, counts, lengths, coefficients)
+
     def eta(self, points: ArrayLike) -> np.ndarray:
         """Coordinates η of points (..., d), in [−1, 1] inside the box and exact at its ends."""
         points = np.asarray(points, dtype=float)
-        fixed = self.slope == 0
         middle = (self.lower + self.upper) / 2
-        return np.where(
-            fixed | (points == middle),
-            0.0,
-            np.where(points > middle, 1 - (self.upper - points) * self.slope, (points - self.lower) * self.slope - 1),
-        )
+        eta = np.where(points > middle, 1 - (self.upper - points) * self.slope, (points - self.lower) * self.slope - 1)
+        return np.where((self.slope == 0) | (points == middle), 0.0, eta)
 
     def points(self, eta: np.ndarray) -> np.ndarray:
         """Points x of coordinates η in [−1, 1], shape (..., d)."""

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from dalembert.errors import InputError
+from dalembert.errors import InputError, SolveError
 from dalembert.intervals import placed
 
 Function = Callable[[np.ndarray], np.ndarray]
@@ -30,7 +30,8 @@ class Runs:
         self.free = np.flatnonzero(upper > lower)
         self._points: list[np.ndarray] = []
         self._values: list[np.ndarray] = []
-        self._range: np.ndarray | None = None
+        #: Least and largest outputs of the runs that succeeded, shape (2, outputs); None before the first of them.
+        self.range: np.ndarray | None = None
 
     @property
     def directions(self) -> int:
@@ -52,11 +53,6 @@ class Runs:
         """Outputs of all runs so far, shape (runs, outputs)."""
         return np.concatenate(self._values)
 
-    @property
-    def range(self) -> np.ndarray | None:
-        """Least and largest outputs of the runs that succeeded, shape (2, outputs); None before the first of them."""
-        return self._range
-
     def place(self, eta: np.ndarray) -> np.ndarray:
         """Points (n, d) of coordinates (n, f)."""
         points = np.tile(self.lower, (len(eta), 1))
@@ -77,15 +73,30 @@ class Runs:
         self._values.append(values)
         kept = values[~failed(values)]
         if len(kept):
-            now = np.array([kept.min(axis=0), kept.max(axis=0)])
-            self._range = now if self._range is None else _joined(self._range, now)
+            least, largest = kept.min(axis=0), kept.max(axis=0)
+            low, high = (least, largest) if self.range is None else self.range
+            self.range = np.array([np.minimum(low, least), np.maximum(high, largest)])
         if self._on_runs is not None:
             self._on_runs(self.count)
         return values
 
+    def complete(self, eta: np.ndarray, kind: str) -> np.ndarray:
+        """Outputs (n, outputs) at coordinates (n, f) for a surrogate of a kind that needs all of them.
 
-def _joined(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    return np.array([np.minimum(a[0], b[0]), np.maximum(a[1], b[1])])
+        Raises
+        ------
+        SolveError
+            For a run that failed.
+        """
+        values = self(eta)
+        lost = failed(values)
+        if lost.any():
+            raise SolveError(
+                f"{lost.sum()} of {len(values)} runs of {kind} surrogate failed, the first at the point "
+                f"{self.place(eta[lost])[0].tolist()}; it needs all of them; keep the box away from where the model "
+                "fails, or use TotalDegree, which can do without some"
+            )
+        return values
 
 
 def failed(values: np.ndarray) -> np.ndarray:

@@ -45,15 +45,15 @@ def spread(polynomial: ChebyshevPolynomial, points: int | None) -> Scan:
         sobol = scipy.stats.qmc.Sobol(2 * len(degrees), scramble=False).random_base2(12)
         place, end = sobol[:, : len(degrees)], sobol[:, len(degrees) :]
         return Scan(np.where(end < 0.25, 0.0, np.where(end < 0.5, 1.0, place)), np.empty(0, dtype=int))
-    lines = [
-        np.array([1.0])
-        if n == 1
-        else np.linspace(0, 1, n)
-        if points is not None
-        else np.sin(np.pi * np.arange(n) / (2 * (n - 1))) ** 2
-        for n in sides
-    ]
+    lines = [_line(n, points is not None) for n in sides]
     return Scan(np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, len(lines)), sides)
+
+
+def _line(points: int, even: bool) -> np.ndarray:
+    """Points of one direction; a single one is the upper end."""
+    if points == 1:
+        return np.array([1.0])
+    return np.linspace(0, 1, points) if even else np.sin(np.pi * np.arange(points) / (2 * (points - 1))) ** 2
 
 
 def values(polynomial: ChebyshevPolynomial, scan: Scan, low: np.ndarray, high: np.ndarray) -> np.ndarray:

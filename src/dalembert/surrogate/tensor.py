@@ -10,7 +10,7 @@ from dalembert.errors import InputError, SolveError
 from dalembert.surrogate.basis import chebyshev, full_tensor, roots
 from dalembert.surrogate.decay import by_direction, slow_tails, tail
 from dalembert.surrogate.held_out import HeldOut
-from dalembert.surrogate.runs import Runs, failed
+from dalembert.surrogate.runs import Runs
 from dalembert.surrogate.scheme import Fitted
 
 MOST_RUNS = 1_000_000
@@ -48,16 +48,12 @@ class Tensor(Checked):
     order: int | tuple[int, ...] = 8
 
     def __post_init__(self) -> None:
-        if min(self._given, default=0) < 1:
+        if min(np.atleast_1d(self.order), default=0) < 1:
             raise InputError(f"Tensor: order is {self.order}; expected at least 1 in each direction")
-
-    @property
-    def _given(self) -> tuple[int, ...]:
-        return (self.order,) if isinstance(self.order, int) else tuple(self.order)
 
     def orders(self, directions: int) -> tuple[int, ...]:
         """The order of each direction."""
-        given = self._given if not isinstance(self.order, int) else self._given * directions
+        given = (self.order,) * directions if isinstance(self.order, int) else tuple(self.order)
         if len(given) != directions:
             raise InputError(
                 f"Tensor: {len(given)} orders {given} were given for {directions} directions with a width; "
@@ -79,14 +75,7 @@ class Tensor(Checked):
             )
         exponents = full_tensor(orders)
         eta = np.array([roots(order + 1)[exponents[:, k]] for k, order in enumerate(orders)]).T.reshape(exponents.shape)
-        values = runs(eta)
-        if failed(values).any():
-            raise SolveError(
-                f"{failed(values).sum()} of the {len(eta)} runs of a surrogate failed, the first at the point "
-                f"{runs.place(eta[failed(values)])[0].tolist()}; a tensor surrogate needs all of them; "
-                "keep the box away from where the model fails, or use TotalDegree, which can do without some"
-            )
-        coefficients = _transformed(values, orders)
+        coefficients = _transformed(runs.complete(eta, "a tensor"), orders)
         directions = self.shells(exponents, coefficients)
         left_out = np.sum([tail(shells) for shells in directions], axis=0)
         return Fitted(exponents, coefficients, np.maximum(left_out, slow_tails(directions)))

@@ -27,12 +27,10 @@ def unseen(surrogate: Surrogate, names: Sequence[str]) -> Finding:
     """
     polynomial = surrogate.polynomial
     free = np.flatnonzero(polynomial.upper > polynomial.lower)
-    own = [names[int(k)] for k in free]
     if not len(free):
         return Finding("unseen-features", "note", {"gap": 0.0}, "The box has no width.")
     found = gaps(polynomial.eta(surrogate.points)[:, free], variation_lengths(surrogate)[free])
-    message = f"{_sentence(found, own, surrogate.runs)}"
-    values = gap_values(found, own, surrogate.runs)
+    message, values = _told(found, [names[int(k)] for k in free], surrogate.runs)
     if not surrogate.tested:
         message += " No held-out run tested the surrogate."
         return Finding("unseen-features", "warning", values, message, "Set held_out to at least 10.")
@@ -44,8 +42,7 @@ def unseen(surrogate: Surrogate, names: Sequence[str]) -> Finding:
 
 def unseen_between(eta: np.ndarray, names: Sequence[str]) -> tuple[str, dict[str, float | int]]:
     """Return the sentence and the values for runs at coordinates η (runs, f) of named directions."""
-    found = gaps(eta)
-    return _sentence(found, names, len(eta)), gap_values(found, names, len(eta))
+    return _told(gaps(eta), names, len(eta))
 
 
 def variation_lengths(surrogate: Surrogate) -> np.ndarray:
@@ -65,21 +62,20 @@ def variation_lengths(surrogate: Surrogate) -> np.ndarray:
     return 1 / np.maximum(degrees.max(axis=1), 1.0)
 
 
-def gap_values(found: Gaps, names: Sequence[str], runs: int) -> dict[str, float | int]:
-    """Return gaps as values of a finding, as parts of the intervals."""
-    each = {f"gap of {name}": part for name, part in zip(names, found.each, strict=True)}
-    return {"gap": found.all_together, **each, "gap in lengths of variation": found.relative, "runs": runs}
-
-
-def _sentence(found: Gaps, names: Sequence[str], runs: int) -> str:
+def _told(found: Gaps, names: Sequence[str], runs: int) -> tuple[str, dict[str, float | int]]:
+    """Return a sentence on gaps and values of a finding, as parts of the intervals."""
+    each = dict(zip(names, found.each, strict=True))
+    values = {f"gap of {name}": part for name, part in each.items()}
+    values = {"gap": found.all_together, **values, "gap in lengths of variation": found.relative, "runs": runs}
     if len(names) == 1:
         interval = f"{_part(found.each[0])} of the interval of {names[0]!r}"
-        return f"{runs} runs cannot exclude a {FEATURE} narrower than {interval}."
-    each = ", ".join(f"{_part(part)} of {name!r}" for name, part in zip(names, found.each, strict=True))
-    return (
+        return f"{runs} runs cannot exclude a {FEATURE} narrower than {interval}.", values
+    parts = ", ".join(f"{_part(part)} of {name!r}" for name, part in each.items())
+    sentence = (
         f"{runs} runs cannot exclude a {FEATURE} narrower than {_part(found.all_together)} of every interval, or in a "
-        f"single parameter narrower than {each}."
+        f"single parameter narrower than {parts}."
     )
+    return sentence, values
 
 
 def _part(share: float) -> str:

@@ -1,15 +1,14 @@
 """Bounds of a Chebyshev surrogate."""
 
 from dataclasses import dataclass
-from typing import ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
 from dalembert.arguments import Checked, limited
 from dalembert.errors import require_known
 from dalembert.findings import Finding
-from dalembert.surrogate import Adaptive, Surrogate, bounds, fit
-from dalembert.surrogate.bounds import METHODS
+from dalembert.surrogate import Adaptive, PolynomialBounds, Surrogate, bounds, fit
 from dalembert.surrogate.scheme import Scheme
 from dalembert.surrogate.unseen import unseen
 from dalembert.uncertainty.method import MethodBounds
@@ -20,6 +19,13 @@ SCANNED, MOST_EACH = 10_000, 257
 
 STARTS = 5
 """Valleys of the scan that are followed to their bottom."""
+
+RELIABILITY = {
+    "optimise": "right within its estimated error",
+    "scan": "right within its estimated error but for peaks between the points of the scan",
+    "bernstein": "an enclosure of the surrogate, widened by its estimated error",
+}
+"""How far bounds of each kind hold."""
 
 
 @dataclass(frozen=True)
@@ -63,7 +69,7 @@ class Chebyshev(Checked):
     held_out: int | None = limited(None, least=0)
 
     def __post_init__(self) -> None:
-        require_known("way to bound a polynomial", self.bounds, METHODS, "Chebyshev, bounds")
+        require_known("way to bound a polynomial", self.bounds, RELIABILITY, "Chebyshev, bounds")
 
     def most(self, runs: Runs) -> int | None:
         return None
@@ -81,41 +87,24 @@ class Chebyshev(Checked):
             groups=np.tile(np.arange(channels), samples),
         )
         surrogate.demand(self.tolerance * surrogate.scale, runs.place, box.names, "optimise")
-        method, fine = self._search(surrogate)
-        searched = bounds(surrogate.polynomial, box.lower, box.upper, method, **fine)
-        lower, upper, error = searched.lower, searched.upper, surrogate.error
-        at = (searched.at_lower, searched.at_upper)
-        findings = [unseen(surrogate, box.names)]
+        method, points = ("scan", None) if self.bounds == "scan" else ("optimise", _scanned(surrogate))
+        found = bounds(surrogate.polynomial, box.lower, box.upper, method, points=points, starts=STARTS)
+        kind, error, findings = "estimate", surrogate.error, [unseen(surrogate, box.names)]
         if self.bounds == "bernstein":
             enclosed = bounds(surrogate.polynomial, box.lower, box.upper, "bernstein")
-            excess = np.maximum(lower - enclosed.lower, enclosed.upper - upper)
-            lower, upper, at = enclosed.lower - error, enclosed.upper + error, (None, None)
-            error = 2 * error + np.maximum(excess, 0.0)
+            excess = np.maximum(found.lower - enclosed.lower, enclosed.upper - found.upper)
+            found = PolynomialBounds(enclosed.lower - error, enclosed.upper + error)
+            kind, error = "enclosure of the surrogate", 2 * error + np.maximum(excess, 0.0)
             findings += _overestimation(excess, surrogate.scale, self.tolerance)
-        at_lower, at_upper = (None if part is None else part.reshape(*shape, len(box)) for part in at)
-        return MethodBounds(
-            "enclosure of the surrogate" if self.bounds == "bernstein" else "estimate",
-            lower.reshape(shape),
-            upper.reshape(shape),
-            at_lower,
-            at_upper,
-            error.reshape(shape),
-            Finding(
-                "surrogate-bounds",
-                "note",
-                {"order": surrogate.order, "bounds": self.bounds},
-                f"The bounds are those of a polynomial of order {surrogate.order} in place of the model, "
-                f"{_reliability(self.bounds)}.",
-            ),
-            not runs.failures,
-            tuple(findings),
+        sides: list[Any] = [
+            None if side is None else side.reshape(*shape, *side.shape[1:]) for side in vars(found).values()
+        ]
+        message = (
+            f"The bounds are those of a polynomial of order {surrogate.order} in place of the model, "
+            f"{RELIABILITY[self.bounds]}."
         )
-
-    def _search(self, surrogate: Surrogate) -> tuple[Literal["optimise", "scan"], dict[str, int]]:
-        """Return how the extremes of the polynomial are searched, for enclosures too."""
-        if self.bounds == "scan":
-            return "scan", {}
-        return "optimise", {"points": _scanned(surrogate), "starts": STARTS}
+        outcome = Finding("surrogate-bounds", "note", {"order": surrogate.order, "bounds": self.bounds}, message)
+        return MethodBounds(kind, *sides, outcome=outcome, findings=tuple(findings), error=error.reshape(shape))
 
 
 def _overestimation(excess: np.ndarray, scale: np.ndarray, tolerance: float) -> list[Finding]:
@@ -124,15 +113,9 @@ def _overestimation(excess: np.ndarray, scale: np.ndarray, tolerance: float) -> 
     if np.all(parts <= tolerance):
         return []
     worst = float(parts.max())
-    return [
-        Finding(
-            "wide-enclosure",
-            "warning",
-            {"overestimation": worst},
-            f"The Bernstein form overestimates the surrogate by up to {worst:.2g} of the response's variation.",
-            'Use bounds="optimise" or a smaller box.',
-        )
-    ]
+    message = f"The Bernstein form overestimates the surrogate by up to {worst:.2g} of the response's variation."
+    advice = 'Use bounds="optimise" or a smaller box.'
+    return [Finding("wide-enclosure", "warning", {"overestimation": worst}, message, advice)]
 
 
 def _scanned(surrogate: Surrogate) -> int:
@@ -140,11 +123,3 @@ def _scanned(surrogate: Surrogate) -> int:
     degrees = surrogate.polynomial.degrees
     fine = int(SCANNED ** (1 / max(1, np.count_nonzero(degrees))))
     return max(int(degrees.max(initial=0)) + 2, min(fine, MOST_EACH))
-
-
-def _reliability(way: str) -> str:
-    return {
-        "optimise": "right within its estimated error",
-        "scan": "right within its estimated error but for peaks between the points of the scan",
-        "bernstein": "an enclosure of the surrogate, widened by its estimated error",
-    }[way]

@@ -111,7 +111,7 @@ class ExtremeSearch:
         np.maximum.at(gains.reshape(-1), wanted.outputs, wanted.gains)
         if len(wanted.gains) == 0:
             return gains, wanted.points
-        order = np.argsort(-wanted.gains / self._least[wanted.outputs], kind="stable")
+        order = np.argsort(-wanted.gains / self._least[wanted.outputs], kind="stable")[:MOST]
         return gains, self._covering(known, tried.nearest(wanted.points)[0][order], wanted[order])
 
     @property
@@ -146,7 +146,6 @@ class ExtremeSearch:
 
     def _covering(self, known: Expansions, near: np.ndarray, wanted: Wanted) -> np.ndarray:
         """Few of the wanted points that serve all outputs; ``near`` (n,) are the runs that know about each point."""
-        near, wanted = near[:MOST], wanted[np.arange(min(MOST, len(near)))]
         outputs, column = np.unique(wanted.outputs, return_inverse=True)
         curvatures = known.curvatures(outputs)
         doubts = known.doubts(outputs, curvatures)[near][:, column]

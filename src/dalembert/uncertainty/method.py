@@ -8,15 +8,14 @@ import numpy as np
 from dalembert.findings import Finding
 from dalembert.uncertainty.runs import Runs
 
-KINDS = ("inner bound", "estimate", "enclosure of the surrogate")
-
 
 @dataclass(frozen=True, eq=False)
 class MethodBounds:
     """Bounds (samples, channels), where they are taken (samples, channels, parameters), and their estimated error.
 
-    ``kind`` is one of ``KINDS``; ``outcome`` is how reliable the bounds are, and which method is better.
-    An error is None where it is unknown; a finding then has the reason.
+    ``kind`` is "inner bound", "estimate" or "enclosure of the surrogate". ``outcome`` is how reliable the bounds are,
+    and which method is better. An error is None where it is unknown; a finding then has the reason. ``success`` is
+    whether the method came to its end.
     """
 
     kind: str
@@ -24,10 +23,10 @@ class MethodBounds:
     upper: np.ndarray
     at_lower: np.ndarray | None
     at_upper: np.ndarray | None
-    error: np.ndarray | None
     outcome: Finding
+    findings: tuple[Finding, ...]
+    error: np.ndarray | None = None
     success: bool = True
-    findings: tuple[Finding, ...] = ()
 
 
 class Method(Protocol):
@@ -74,6 +73,10 @@ class Extremes:
             np.where(below[..., None], points[low], self.at_lower),
             np.where(above[..., None], points[high], self.at_upper),
         )
+
+    def inner_bounds(self, outcome: Finding, finding: Finding, *, success: bool = True) -> MethodBounds:
+        """Return the bounds of a method that runs the model where they are taken."""
+        return MethodBounds("inner bound", **vars(self), outcome=outcome, findings=(finding,), success=success)
 
     def beyond(self, other: "Extremes") -> np.ndarray:
         """By how much these bounds are wider than others on their wider side, (samples, channels)."""

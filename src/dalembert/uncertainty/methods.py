@@ -1,7 +1,5 @@
 """The methods by name."""
 
-from dataclasses import fields
-
 from dalembert.errors import InputError, require_known
 from dalembert.kinds import named
 from dalembert.uncertainty.chebyshev import Chebyshev
@@ -50,10 +48,6 @@ def label(method: Method) -> str:
     >>> label(Scan()), label(Scan(points_each=5))
     ('scan', 'scan (points_each=5)')
     """
-    usual = type(method)()
-    changed = [
-        f"{field.name}={getattr(method, field.name)!r}"
-        for field in fields(method)  # pyright: ignore[reportArgumentType]
-        if getattr(method, field.name) != getattr(usual, field.name)
-    ]
+    usual = vars(type(method)())
+    changed = [f"{name}={value!r}" for name, value in vars(method).items() if value != usual[name]]
     return f"{method.name} ({', '.join(changed)})" if changed else method.name

@@ -1,6 +1,7 @@
 """Direct optimisation of the model itself: every bound is taken by a run, and all outputs share all runs."""
 
 from dataclasses import dataclass
+from itertools import product
 from typing import ClassVar
 
 import numpy as np
@@ -57,26 +58,15 @@ class Optimise(Checked):
         while len(points) and (affordable := (self.most_runs - runs.count) // (1 + len(runs.box))) > 0:
             search.run(points[:affordable])
             gains, points = search.proposals()
-        found, done = search.extremes, not len(points)
-        return MethodBounds(
-            "inner bound",
-            found.lower,
-            found.upper,
-            found.at_lower,
-            found.at_upper,
-            None,
-            self._outcome(done),
-            done and not runs.failures,
-            (self._unknown(runs, search, gains),),
-        )
+        done, unknown = not len(points), self._unknown(runs, search, gains)
+        return search.extremes.inner_bounds(self._outcome(done), unknown, success=done)
 
     def _outcome(self, done: bool) -> Finding:
         """Return whether the search came to its end."""
         taken = "Every bound is the response of a run of the model"
         if done:
-            return Finding(
-                "search-finished", "note", {}, f"{taken}. Further runs are not expected to widen the bounds."
-            )
+            message = f"{taken}. Further runs are not expected to widen the bounds."
+            return Finding("search-finished", "note", {}, message)
         message = f"{taken}, but the search stopped at most_runs = {self.most_runs} before it was finished."
         return Finding("search-stopped", "error", {"most_runs": self.most_runs}, message, "Increase most_runs.")
 
@@ -92,14 +82,12 @@ class Optimise(Checked):
     def _design(self, runs: Runs, seed: int) -> np.ndarray:
         """First points η, shape (points, free intervals)."""
         f = len(runs.free)
-        if f == 0:
-            return np.zeros((1, 0))
-        corners = np.stack(np.meshgrid(*[[-1.0, 1.0]] * f, indexing="ij"), -1).reshape(-1, f) if f <= 4 else None
+        parts = [np.zeros((1, f))]
+        if 0 < f <= 4:
+            parts.append(np.array(list(product([-1.0, 1.0], repeat=f))))
+        if f > 1:
+            parts += [np.eye(f), -np.eye(f)]
         number = 8 * f if self.start is None else self.start
-        inside = (
-            2 * scipy.stats.qmc.LatinHypercube(f, optimization="random-cd", rng=seed).random(number) - 1
-            if number
-            else None
-        )
-        faces = np.concatenate([np.eye(f), -np.eye(f)]) if f > 1 else None
-        return np.concatenate([part for part in (np.zeros((1, f)), corners, faces, inside) if part is not None])
+        if f and number:
+            parts.append(2 * scipy.stats.qmc.LatinHypercube(f, optimization="random-cd", rng=seed).random(number) - 1)
+        return np.concatenate(parts)

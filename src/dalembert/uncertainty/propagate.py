@@ -1,6 +1,6 @@
 """Bounds of a response over a box of parameters."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 
 from dalembert.arguments import check_whole, takes_checked
 from dalembert.errors import InputError
@@ -9,7 +9,7 @@ from dalembert.forward import Executor, ForwardModel, clock, findings_at, on_clu
 from dalembert.forward.provenance import provenance
 from dalembert.intervals import Box, Interval
 from dalembert.uncertainty.events import Began, Ended, OnEvent
-from dalembert.uncertainty.method import Method, MethodBounds
+from dalembert.uncertainty.method import Method
 from dalembert.uncertainty.methods import label, method_of
 from dalembert.uncertainty.propagation import Propagation
 from dalembert.uncertainty.runs import Runs
@@ -77,27 +77,23 @@ def propagate(
     runs.tell(Began(runs.method, runs.most))
     began = clock(model)
     found = chosen.bound(runs, seed)
+    seconds = clock(model) - began
+    known = vars(found) | {
+        "success": found.success and not runs.failures,
+        "outcome": (*_failures(runs), found.outcome),
+        "findings": (*found.findings, *findings_at(model, box.middle)),
+    }
     result = Propagation(
+        **known,
         coordinate=model.coordinate,
         channels=tuple(channel.name for channel in model.channels),
-        lower=found.lower,
-        upper=found.upper,
         units=tuple(channel.unit for channel in model.channels),
         box=box,
         method=runs.method,
-        kind=found.kind,
         runs=runs.count,
-        error=found.error,
-        at_lower=found.at_lower,
-        at_upper=found.at_upper,
         failures=tuple(runs.failures),
-        success=found.success,
-        outcome=tuple(_outcome(found, runs)),
-        seconds=clock(model) - began,
-        provenance=provenance(
-            model, chosen, seed=seed, intervals={name: [i.lower, i.upper] for name, i in box.items()}
-        ),
-        findings=(*found.findings, *findings_at(model, (box.lower + box.upper) / 2)),
+        seconds=seconds,
+        provenance=provenance(model, chosen, seed=seed, intervals={n: [i.lower, i.upper] for n, i in box.items()}),
         fixed=model.parameters.fixed,
     )
     runs.tell(Ended(runs.method, result.success, result.status, result.runs, result.seconds))
@@ -127,14 +123,12 @@ def box_of(model: ForwardModel, intervals: Intervals) -> Box:
     return Box(names, given.lower[places], given.upper[places])
 
 
-def _outcome(found: MethodBounds, runs: Runs) -> Iterator[Finding]:
-    if runs.failures:
-        count = f"{len(runs.failures)} run{'s' * (len(runs.failures) > 1)}"
-        yield Finding(
-            "failed-runs",
-            "error",
-            {"failures": len(runs.failures), "first": runs.failures[0]},
-            f"{count} failed, the first: {runs.failures[0]}. The bounds are valid only where the model can be run.",
-            "Make the box smaller, or check the model there.",
-        )
-    yield found.outcome
+def _failures(runs: Runs) -> list[Finding]:
+    """Return the finding of the runs that failed, if there are any."""
+    if not runs.failures:
+        return []
+    number, first = len(runs.failures), runs.failures[0]
+    count = f"{number} run{'s' * (number > 1)}"
+    message = f"{count} failed, the first: {first}. The bounds are valid only where the model can be run."
+    advice = "Make the box smaller, or check the model there."
+    return [Finding("failed-runs", "error", {"failures": number, "first": first}, message, advice)]

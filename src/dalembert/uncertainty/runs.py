@@ -1,6 +1,5 @@
 """The runs of a model that a method asks for: counted, told of, and none of them able to end the others."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -9,9 +8,6 @@ from dalembert.errors import InputError, SolveError, StorageError, told
 from dalembert.forward import ForwardModel
 from dalembert.intervals import Box
 from dalembert.uncertainty.events import Event, OnEvent, Ran
-
-BATCH = 128
-"""Runs between two events; enough to keep many cores busy."""
 
 
 @dataclass
@@ -47,14 +43,6 @@ class Runs:
     def shape(self) -> tuple[int, int]:
         """(samples, channels)."""
         return len(self.model.coordinate.values), len(self.model.channels)
-
-    def batches(self, points: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-        """Points (n, parameters) and values (n, samples, channels), batch by batch; without the runs that failed."""
-        for first in range(0, len(points), BATCH):
-            batch = points[first : first + BATCH]
-            values = self.values(batch)
-            kept = ~np.isnan(values[:, 0, 0])
-            yield batch[kept], values[kept]
 
     def values(self, points: np.ndarray) -> np.ndarray:
         """Values (n, samples, channels) at points (n, parameters); NaN throughout a run that failed."""

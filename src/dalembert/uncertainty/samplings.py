@@ -16,6 +16,11 @@ from dalembert.uncertainty.method import Extremes, MethodBounds
 from dalembert.uncertainty.runs import Runs
 from dalembert.uncertainty.unknown_error import share_of, unknown_error
 
+BATCH = 128
+"""Runs between two events; enough to keep many cores busy."""
+_NARROW = "They are too narrow, because few points lie near the corners of the box."
+_FEWER = "Use 'optimise' or 'chebyshev', which need fewer runs."
+
 
 class Sampling(Checked, ABC):
     """Extremes over chosen points. Their error is unknown; what the later part of them still widened is a finding."""
@@ -41,17 +46,9 @@ class Sampling(Checked, ABC):
         extremes = _extremes(runs, rest, halfway)
         if not extremes:
             raise runs.none_succeeded()
-        return MethodBounds(
-            "inner bound",
-            extremes.lower,
-            extremes.upper,
-            extremes.at_lower,
-            extremes.at_upper,
-            None,
-            Finding("sampled-bounds", "note", {"points": len(first) + len(rest)}, self.message, self.advice),
-            not runs.failures,
-            (self._unknown(runs, np.concatenate([first, rest]), extremes, halfway),),
-        )
+        points = np.concatenate([first, rest])
+        outcome = Finding("sampled-bounds", "note", {"points": len(points)}, self.message, self.advice)
+        return extremes.inner_bounds(outcome, self._unknown(runs, points, extremes, halfway))
 
     def _unknown(self, runs: Runs, points: np.ndarray, extremes: Extremes, halfway: Extremes) -> Finding:
         if not halfway:
@@ -62,13 +59,43 @@ class Sampling(Checked, ABC):
 
 
 def _extremes(runs: Runs, points: np.ndarray, extremes: Extremes) -> Extremes:
-    for batch, values in runs.batches(points):
-        extremes = extremes.with_runs(batch, values)
+    """Return the extremes with runs at more points (n, parameters)."""
+    for first in range(0, len(points), BATCH):
+        batch = points[first : first + BATCH]
+        values = runs.values(batch)
+        kept = ~np.isnan(values[:, 0, 0])
+        extremes = extremes.with_runs(batch[kept], values[kept])
     return extremes
 
 
+class Grid(Sampling):
+    """Runs on a grid of ``points_each`` evenly spaced points a parameter, the corners of the box among them."""
+
+    instead: ClassVar[str]
+    points_each: int
+    most_runs: int
+
+    def size(self, box: Box) -> int:
+        wide = int(np.sum(box.lower < box.upper))
+        number = self.points_each**wide
+        if number > self.most_runs:
+            raise InputError(
+                f"method {self.name!r}: {self.points_each} points for each of {wide} intervals are {number} runs, more "
+                f"than most_runs = {self.most_runs}; raise it, or use {self.instead}"
+            )
+        return number
+
+    def points(self, box: Box, seed: int) -> tuple[np.ndarray, np.ndarray]:
+        self.size(box)
+        steps = [range(self.points_each) if wide else (0,) for wide in box.lower < box.upper]
+        places = np.array(list(product(*steps)), dtype=float).reshape(-1, len(box))
+        grid = box.points(2 * places / (self.points_each - 1) - 1)
+        coarse = np.all(places % 2 == 0, axis=1) & (self.points_each % 2 == 1)
+        return grid[coarse], grid[~coarse]
+
+
 @dataclass(frozen=True)
-class Vertex(Sampling):
+class Vertex(Grid):
     """Runs at the 2^d corners of the box, exact where the response is monotone in each parameter.
 
     Parameters
@@ -83,19 +110,13 @@ class Vertex(Sampling):
         "each parameter, and too narrow elsewhere."
     )
     advice: ClassVar[str] = "Use 'optimise' for extremes inside the box."
+    instead: ClassVar[str] = "Taylor() or Optimise()"
+    points_each: ClassVar[int] = 2
     most_runs: int = 65536
-
-    def size(self, box: Box) -> int:
-        return _grid_size(self.name, 2, box, self.most_runs, "Taylor() or Optimise()")
-
-    def points(self, box: Box, seed: int) -> tuple[np.ndarray, np.ndarray]:
-        self.size(box)
-        corners = box.corners()
-        return corners[:0], corners
 
 
 @dataclass(frozen=True)
-class Scan(Sampling):
+class Scan(Grid):
     """Runs on a grid of evenly spaced points, the corners of the box among them.
 
     Parameters
@@ -113,19 +134,9 @@ class Scan(Sampling):
         "them."
     )
     advice: ClassVar[str] = "Use 'optimise' to find peaks."
+    instead: ClassVar[str] = "fewer points a parameter, or Optimise()"
     points_each: int = limited(21, least=2)
     most_runs: int = 1_000_000
-
-    def size(self, box: Box) -> int:
-        return _grid_size(self.name, self.points_each, box, self.most_runs, "fewer points a parameter, or Optimise()")
-
-    def points(self, box: Box, seed: int) -> tuple[np.ndarray, np.ndarray]:
-        self.size(box)
-        steps = [range(self.points_each) if wide else (0,) for wide in box.lower < box.upper]
-        places = np.array(list(product(*steps)), dtype=float).reshape(-1, len(box))
-        grid = box.points(2 * places / (self.points_each - 1) - 1)
-        coarse = np.all(places % 2 == 0, axis=1) & (self.points_each % 2 == 1)
-        return grid[coarse], grid[~coarse]
 
 
 @dataclass(frozen=True)
@@ -157,11 +168,8 @@ class MonteCarlo(Drawn):
     """
 
     name: ClassVar[str] = "monte-carlo"
-    message: ClassVar[str] = (
-        "The bounds are the extremes over random points. They are too narrow, because few points lie near the "
-        "corners of the box."
-    )
-    advice: ClassVar[str] = "Use 'optimise' or 'chebyshev', which need fewer runs."
+    message: ClassVar[str] = f"The bounds are the extremes over random points. {_NARROW}"
+    advice: ClassVar[str] = _FEWER
     runs: int = limited(1000, least=2)
 
     def shares(self, dimensions: int, seed: int) -> np.ndarray:
@@ -179,22 +187,9 @@ class LatinHypercube(Drawn):
     """
 
     name: ClassVar[str] = "latin-hypercube"
-    message: ClassVar[str] = (
-        "The bounds are the extremes over a Latin hypercube. They are too narrow, because few points lie near the "
-        "corners of the box."
-    )
-    advice: ClassVar[str] = "Use 'optimise' or 'chebyshev', which need fewer runs."
+    message: ClassVar[str] = f"The bounds are the extremes over a Latin hypercube. {_NARROW}"
+    advice: ClassVar[str] = _FEWER
     runs: int = limited(200, least=2)
 
     def shares(self, dimensions: int, seed: int) -> np.ndarray:
         return latin_hypercube(dimensions, self.runs, np.random.default_rng(seed))
-
-
-def _grid_size(name: str, each: int, box: Box, most: int, instead: str) -> int:
-    wide = int(np.sum(box.lower < box.upper))
-    if each**wide > most:
-        raise InputError(
-            f"method {name!r}: {each} points for each of {wide} intervals are {each**wide} runs, more than "
-            f"most_runs = {most}; raise it, or use {instead}"
-        )
-    return each**wide

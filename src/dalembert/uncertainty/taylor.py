@@ -40,38 +40,24 @@ class Taylor(Checked):
         response, slopes = at[0], at[1] * box.radius
         reach = np.sum(np.abs(slopes), axis=2)
         up = np.sign(slopes)
-        return MethodBounds(
-            "estimate",
-            response - reach,
-            response + reach,
-            box.points(-up),
-            box.points(up),
-            None,
-            Finding(
-                "linear-bounds",
-                "note",
-                {},
-                "The response is linearised over the box, which is accurate for small boxes only.",
-                "Use method 'optimise' or 'chebyshev' for a curved response.",
-            ),
-            not runs.failures,
-            self._findings(runs, seed, response, slopes),
-        )
+        message = "The response is linearised over the box, which is accurate for small boxes only."
+        advice = "Use method 'optimise' or 'chebyshev' for a curved response."
+        outcome = Finding("linear-bounds", "note", {}, message, advice)
+        finding = self._unknown(reach, self._apart(runs, seed, response, slopes))
+        sides = response - reach, response + reach
+        return MethodBounds("estimate", *sides, box.points(-up), box.points(up), outcome, (finding,))
 
-    def _findings(self, runs: Runs, seed: int, response: np.ndarray, slopes: np.ndarray) -> tuple[Finding, ...]:
-        apart = self._apart(runs, seed, response, slopes)
+    def _unknown(self, reach: np.ndarray, apart: np.ndarray | None) -> Finding:
         message = "The error of the bounds is unknown: one linearised run does not show the curvature of the response."
         if apart is None:
-            return (Finding("unknown-error", "note", {}, message),)
-        reach = np.sum(np.abs(slopes), axis=2)
+            return Finding("unknown-error", "note", {}, message)
         share = share_of(apart, -reach, reach)
         message += (
             f" At {self.held_out} corners the response differs from the linear one by up to {share:.2g} of the width."
         )
         curved = share > CURVED
         advice = "Use method 'optimise' or 'chebyshev'." if curved else ""
-        values = {"difference": share}
-        return (Finding("unknown-error", "warning" if curved else "note", values, message, advice),)
+        return Finding("unknown-error", "warning" if curved else "note", {"difference": share}, message, advice)
 
     def _apart(self, runs: Runs, seed: int, response: np.ndarray, slopes: np.ndarray) -> np.ndarray | None:
         if not (self.held_out and len(runs.free)):

@@ -7,9 +7,9 @@ from dalembert.kernels.kernel import Compiled
 from dalembert.kernels.preparation import prepare
 from dalembert.vibration.balance.fourier import Fourier
 from dalembert.vibration.laws.contact_sums import EventSums, Shape, sums_for
+from dalembert.vibration.laws.friction_law import sliding
 from dalembert.vibration.laws.friction_tangent import forces_and_slopes
 from dalembert.vibration.laws.law_march import marches
-from dalembert.vibration.laws.linearised_law import linearise
 from dalembert.vibration.laws.marched_sums import MarchedSums
 from dalembert.vibration.laws.sampled_sums import law_derivatives, sampled_forces
 from dalembert.vibration.system.lowering import ELASTIC, Lowered
@@ -23,13 +23,12 @@ _TURN = Lock()
 def prepare_balance(lowered: Lowered, events: bool, *, residuals: bool, stability: bool, derivatives: bool) -> None:
     """Prepare the kernels of harmonic balance, for the same arguments as ``equations`` takes."""
     kernels = _kernels(lowered, events, residuals, derivatives)
-    if stability and any(block.remembers for block in lowered.laws):
-        kernels += [kernel for kernel in (law_derivatives,) if kernel not in kernels]
     if stability and lowered.blocks:  # the map of stability goes from sample to sample
-        kernels += [kernel for kernel in (forces_and_slopes,) if kernel not in kernels]
-        kernels += [linearise] if any(block.kind == ELASTIC for block in lowered.blocks) else []
+        kernels.append(forces_and_slopes)
+        if any(block.kind == ELASTIC for block in lowered.blocks):
+            kernels += [marches, law_derivatives, *sliding.all_kernels()]
     if kernels:
-        _prepare(kernels)
+        _prepare(list(dict.fromkeys(kernels)))
 
 
 def _kernels(lowered: Lowered, events: bool, residuals: bool, derivatives: bool) -> list[Compiled]:

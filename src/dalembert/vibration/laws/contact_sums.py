@@ -163,7 +163,7 @@ class EventSums:
         return *self._signals(float), *map(np.empty, shapes)
 
     def _signals(self, dtype: type) -> tuple[np.ndarray, ...]:
-        return tuple(np.empty(own, dtype) for own in ((3, self.series.samples, 3), (8, self.series.count), (4, 5, 3)))
+        return tuple(np.empty(own, dtype) for own in ((self.series.samples, 3, 3), (8, self.series.count), (3, 5, 3)))
 
     def _results(self, displacements: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Room for the forces at samples, the states and the corrections."""

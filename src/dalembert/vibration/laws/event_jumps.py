@@ -8,7 +8,8 @@ import numpy as np
 
 from dalembert.kernels.kernel import inner
 from dalembert.vibration.laws.friction_law import FRICTION
-from dalembert.vibration.laws.slip_in_plane import JUMPS, MOVE, PLACE, PRESSED, add_signal
+from dalembert.vibration.laws.signal_zeros import PRESSED
+from dalembert.vibration.laws.slip_in_plane import JUMPS, MOVE, PLACE, add_signal
 
 
 @inner
@@ -65,9 +66,7 @@ def add_slip(sign, phi, terms, numbers, normal, wanted, table, values, x, seeds,
         if number == 10:
             for k in range(6):
                 factor = sign * slopes[k].imag * 1e30
-                for m in range(unknowns):
-                    grads[JUMPS + k, m] += factor * grads[PLACE, m]
-                for m in range(unknowns, unknowns + 2):
+                for m in range(unknowns + 2):
                     grads[JUMPS + k, m] += factor * grads[PLACE, m]
             continue
         row, order = (number // 3, 1 + number % 3) if number < 6 else (PRESSED, number - 6)

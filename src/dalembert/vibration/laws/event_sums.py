@@ -29,13 +29,11 @@ from dalembert.kernels.blas import product
 from dalembert.kernels.kernel import inner, kernel
 from dalembert.kernels.words import Address, Bytes2, Integers, Reals2, Reals3, Reals4
 from dalembert.vibration.dense import dot
-from dalembert.vibration.laws.friction_law import FRICTION, GAP, LOAD, NORMAL, SEPARATED, SLIPPING, STUCK, TANGENTIAL
-from dalembert.vibration.laws.signal_zeros import LEAST, Signals, crossing, evaluate, value, waves
+from dalembert.vibration.laws.friction_law import FRICTION, LOAD, NORMAL, SEPARATED, SLIPPING, STUCK, TANGENTIAL
+from dalembert.vibration.laws.signal_zeros import LIMIT, PRESSED, TRIAL, at, crossing, keep, signals_of, value
 
 MOST = 12
 """Events in an interval of samples; a force that changes more often is not resolved by its samples."""
-#: Rows of signals: trial force k u, limit mu N, load N.
-TRIAL, LIMIT, PRESSED = range(3)
 
 
 @inner
@@ -51,6 +49,30 @@ def slope_of(weights, order, contact, table, gradient):
 
 
 @inner
+def bernoulli(theta, h):
+    """The terms of Euler's and Maclaurin's sum at a part of an interval: B_1, and those of the first three jumps."""
+    cube = theta * theta * theta
+    b2 = (theta * theta - theta + 1.0 / 6.0) * 0.5 * h * h
+    b3 = -(cube - 1.5 * theta * theta + 0.5 * theta) * h * h * h / 6.0
+    b4 = (cube * theta - 2.0 * cube + theta * theta - 1.0 / 30.0) * h * h * h * h / 24.0
+    return theta - 0.5, b2, b3, b4
+
+
+@inner
+def weights_of(state, sign):
+    """The tangential force as a combination of signals; a separated contact has no sign."""
+    return (1.0, 0.0, 0.0) if state == STUCK else (0.0, sign, 0.0)
+
+
+@inner
+def place_at_limit(sign, contact, table, place):
+    """Set the gradient of the place of a slider whose force is at its limit."""
+    slope_of((1.0, -sign, 0.0), 0, contact, table, place)
+    for j in range(len(place)):
+        place[j] /= contact.numbers[TANGENTIAL]
+
+
+@inner
 def add_correction(weights, contact, h, theta, table, values, result, slopes, move, gradient):
     """Add the correction for an event at which the force jumps by a combination of signals.
 
@@ -58,17 +80,7 @@ def add_correction(weights, contact, h, theta, table, values, result, slopes, mo
     (unknowns,) is the derivative of the event's angle.
     """
     count = table.shape[1]
-    b1 = theta - 0.5
-    b2 = (theta * theta - theta + 1.0 / 6.0) * 0.5 * h * h
-    b3 = -(theta * theta * theta - 1.5 * theta * theta + 0.5 * theta) * h * h * h / 6.0
-    b4 = (
-        (theta * theta * theta * theta - 2.0 * theta * theta * theta + theta * theta - 1.0 / 30.0)
-        * h
-        * h
-        * h
-        * h
-        / 24.0
-    )
+    b1, b2, b3, b4 = bernoulli(theta, h)
     f1, f2, f3 = value(weights, values, 1), value(weights, values, 2), value(weights, values, 3)
     own, first, second = b2 * f1 + b3 * f2 + b4 * f3, 2.0 * b3 * f1 + 3.0 * b4 * f2, 3.0 * b4 * f1
     for j in range(count):
@@ -140,26 +152,23 @@ class Sums(NamedTuple):
 
 
 class Room(NamedTuple):
-    """Room: a table of waves (5, coefficients), signals' values (5, 3) at an event and at both ends of an interval."""
+    """Room: a table of waves (5, coefficients), signals' values (5, 3) at an event and where a piece begins."""
 
     table: np.ndarray
     values: np.ndarray
     here: np.ndarray
-    there: np.ndarray
 
 
 @inner
 def march(contact, signals, synthesis, grid, sums, room):
-    """One contact over its periodic motion, from event to event; ``grid`` (3, samples, 3): signals at samples."""
+    """One contact over its periodic motion, from event to event; ``grid`` (samples, 3, 3): signals at samples."""
     numbers, tangents, normal, memory = contact
     forces, states, result, sampled, slopes, place, move, gradient = sums
-    table, values, here, there = room
+    table, values, here = room
     steps, stiffness, wanted = forces.shape[1], numbers[TANGENTIAL], len(place) > 0
     h, count, remembers = 2.0 * np.pi / steps, synthesis.shape[1], memory and tangents == 1
     nothing = 0.0 * numbers[LOAD]
-    for order in range(3):
-        for row in range(3):
-            here[order, row] = grid[order, 0, row]
+    keep(here, grid[0])
     z, sign, state = nothing, 0.0, STUCK
     if wanted:
         place[:] = 0.0
@@ -173,23 +182,17 @@ def march(contact, signals, synthesis, grid, sums, room):
             if wanted:
                 for j in range(count):
                     table[0, j] = synthesis[0, j]
-                slope_of((1.0, -sign, 0.0), 0, contact, table, place)
-                for j in range(len(place)):
-                    place[j] /= stiffness
+                place_at_limit(sign, contact, table, place)
     for period in range(2):
         last, moved = period == 1 or not remembers, state != STUCK
-        for column in range(len(result)):
-            for j in range(count):
-                result[column, j] = nothing
+        result[:] = 0.0
         if wanted:
             slopes[:] = 0.0
             sampled[:] = 0.0
         for t in range(steps):
             begin, end, after = t * h, (t + 1) * h, (t + 1) % steps
-            for order in range(3):
-                for row in range(3):
-                    here[order, row] = grid[order, t, row]
-                    there[order, row] = grid[order, after, row]
+            keep(here, grid[t])
+            there = grid[after]
             states[t] = state
             if tangents == 1:
                 forces[0, t] = nothing
@@ -219,9 +222,9 @@ def march(contact, signals, synthesis, grid, sums, room):
                     for direction in range(2):
                         turn = 1.0 - 2.0 * direction
                         own, offset = (turn, -1.0, 0.0), -turn * stiffness * z
-                        at = crossing(own, offset, 0, begin, end, here, there, signals, table, values)
-                        if at >= 0.0 and (event < 0.0 or at < event):
-                            event, weights, shift, side = at, own, offset, turn
+                        found = crossing(own, offset, 0, begin, end, here, there, signals, table, values)
+                        if found >= 0.0 and (event < 0.0 or found < event):
+                            event, weights, shift, side = found, own, offset, turn
                 if state == SLIPPING:
                     order = 1 if memory else 0
                     weights = (-sign, 1.0, 0.0)
@@ -229,29 +232,26 @@ def march(contact, signals, synthesis, grid, sums, room):
                 opens = False
                 if normal:
                     own = (0.0, 0.0, 1.0 if state == SEPARATED else -1.0)
-                    at = crossing(own, nothing, 0, begin, end, here, there, signals, table, values)
-                    if at >= 0.0 and (event < 0.0 or at < event):
-                        event, weights, shift, order, opens = at, own, nothing, 0, True
+                    found = crossing(own, nothing, 0, begin, end, here, there, signals, table, values)
+                    if found >= 0.0 and (event < 0.0 or found < event):
+                        event, weights, shift, order, opens = found, own, nothing, 0, True
                 if event < 0.0:
                     break
                 moved = True
-                waves(event, signals.orders, signals.mean, table, 5)
-                evaluate(signals, table, values)
+                at(event, signals, table, values)
                 error, slope = value(weights, values, order) + shift, value(weights, values, order + 1)
                 angle = event + nothing
                 if abs(error) < 1e-6 * h * abs(slope):  # Newton's last step carries directions of differentiation
                     angle = event - error / slope
-                    waves(angle, signals.orders, signals.mean, table, 5)
-                    evaluate(signals, table, values)
+                    at(angle, signals, table, values)
                 if wanted:
                     slope_of(weights, order, contact, table, move)
                     for j in range(len(move)):
                         own_shift = stiffness * side * place[j] if state == STUCK and not opens else 0.0
                         move[j] = -(move[j] - own_shift) / slope if slope != 0.0 else 0.0
                 # what comes next, and by what combination of signals the tangential force jumps
-                before = (1.0, 0.0, 0.0) if state == STUCK else (0.0, sign, 0.0)
+                before = weights_of(state, sign)
                 if state == SEPARATED:
-                    before = (0.0, 0.0, 0.0)
                     sign = entered(values, memory) if tangents == 1 else 0.0
                     state = STUCK if sign == 0.0 else SLIPPING
                     if tangents == 1 and memory and state == STUCK:
@@ -269,14 +269,10 @@ def march(contact, signals, synthesis, grid, sums, room):
                     if memory:
                         z = (values[0, TRIAL] - sign * values[0, LIMIT]) / stiffness
                         if wanted:
-                            slope_of((1.0, -sign, 0.0), 0, contact, table, place)
-                            for j in range(len(place)):
-                                place[j] /= stiffness
+                            place_at_limit(sign, contact, table, place)
                 if last:
                     theta = (angle - t * h) / h
-                    follows = (1.0, 0.0, 0.0) if state == STUCK else (0.0, sign, 0.0)
-                    if state == SEPARATED:
-                        follows = (0.0, 0.0, 0.0)
+                    follows = weights_of(state, sign)
                     if tangents == 1:
                         jump = (follows[0] - before[0], follows[1] - before[1], 0.0)
                         add_correction(jump, contact, h, theta, table, values, result[0], slopes[0], move, gradient)
@@ -284,49 +280,25 @@ def march(contact, signals, synthesis, grid, sums, room):
                         jump = (0.0, 0.0, -1.0 if state == SEPARATED else 1.0)
                         load, by_load = result[tangents], slopes[tangents]
                         add_correction(jump, contact, h, theta, table, values, load, by_load, move, gradient)
-                for row in range(3):
-                    for level in range(3):
-                        here[level, row] = values[level, row]
+                keep(here, values)
                 begin = event
         if not (remembers and moved):
             break
 
 
 @inner
-def prepare(d, contact, orders, mean, rows, constants, waving, grid):
-    """Return the signals of a contact with displacements (columns, coefficients); set their values at samples."""
-    (numbers, tangents, normal, _), count, least = contact, d.shape[1], 0.0
-    for row in range(3):
-        constants[row] = 0.0 * numbers[LOAD]
-        for j in range(count):
-            rows[row, j] = 0.0 * numbers[LOAD]
-    for j in range(tangents * count):
-        rows[TRIAL, j] = numbers[TANGENTIAL] * d[0, j]
-    constants[PRESSED] = numbers[LOAD]
-    if normal:
-        constants[PRESSED] -= numbers[NORMAL] * numbers[GAP]
-        for j in range(count):
-            rows[PRESSED, j] = numbers[NORMAL] * d[tangents, j]
-    if tangents == 1:
-        constants[LIMIT] = numbers[FRICTION] * constants[PRESSED]
-        for j in range(count):
-            rows[LIMIT, j] = numbers[FRICTION] * rows[PRESSED, j]
-    for order in range(3):
-        for t in range(grid.shape[1]):
+def sample(signals, contact, waving, grid):
+    """Set the values of the signals and of their first two derivatives at samples, (samples, 3, 3)."""
+    for t in range(len(grid)):
+        for order in range(3):
             for row in range(3):
-                grid[order, t, row] = 0.0 if order else constants[row]
-            if tangents == 1:
-                grid[order, t, TRIAL] += dot(rows[TRIAL], waving[order, t])
-            if normal:
-                load = dot(rows[PRESSED], waving[order, t])
-                grid[order, t, PRESSED] += load
-                grid[order, t, LIMIT] += numbers[FRICTION] * load if tangents == 1 else 0.0
-    for row in range(3):
-        size = abs(constants[row])
-        for j in range(count):
-            size += abs(rows[row, j])
-        least = max(least, LEAST * size)
-    return Signals(orders, mean, rows, constants, least)
+                grid[t, order, row] = 0.0 if order else signals.constants[row]
+            if contact.tangents == 1:
+                grid[t, order, TRIAL] += dot(signals.rows[TRIAL], waving[order, t])
+            if contact.normal:
+                load = dot(signals.rows[PRESSED], waving[order, t])
+                grid[t, order, PRESSED] += load
+                grid[t, order, LIMIT] += contact.numbers[FRICTION] * load if contact.tangents == 1 else 0.0
 
 
 def _sums(
@@ -335,10 +307,11 @@ def _sums(
     states: Bytes2, result: Numbers3,
 ) -> None:  # fmt: skip
     constants, none = small[0, 0], slopes[0, 0]
-    places = Room(room[3:8], small[1], small[2], small[3])
+    places = Room(room[3:8], small[1], small[2])
     for c in range(len(displacements)):
         contact = Contact(numbers[c], tangents, normal, memory)
-        signals = prepare(displacements[c], contact, orders, mean, room[:3], constants, waving, grid)
+        signals = signals_of(displacements[c], numbers[c], tangents, normal, orders, mean, room[:3], constants)
+        sample(signals, contact, waving, grid)
         sums = Sums(forces[c], states[c], result[c], slopes, slopes, none, none, none)
         march(contact, signals, waving[0], grid, sums, places)
 
@@ -353,10 +326,11 @@ def sums_and_slopes(
     slopes: Reals3, given: Reals2, forces: Reals3, states: Bytes2, result: Reals3, jacobians: Reals4,
 ) -> None:  # fmt: skip
     constants, count = small[0, 0], analysis.shape[0]
-    places = Room(room[3:8], small[1], small[2], small[3])
+    places = Room(room[3:8], small[1], small[2])
     for c in range(len(displacements)):
         contact = Contact(numbers[c], tangents, normal, memory)
-        signals = prepare(displacements[c], contact, orders, mean, room[:3], constants, waving, grid)
+        signals = signals_of(displacements[c], numbers[c], tangents, normal, orders, mean, room[:3], constants)
+        sample(signals, contact, waving, grid)
         sums = Sums(forces[c], states[c], result[c], sampled, slopes, given[0], given[1], given[2])
         march(contact, signals, waving[0], grid, sums, places)
         for column in range(len(slopes)):

@@ -11,43 +11,21 @@ from dalembert.kernels.arithmetic import Numbers2, Numbers3, kernels
 from dalembert.kernels.blas import product
 from dalembert.kernels.kernel import inner, kernel
 from dalembert.kernels.words import Address, Bytes2, Complexes, Integers, Reals2, Reals3, Reals4
-from dalembert.vibration.laws.friction_law import FRICTION, GAP, LOAD, NORMAL, SEPARATED, SLIPPING, STUCK, TANGENTIAL
+from dalembert.vibration.laws.friction_law import FRICTION, SEPARATED, SLIPPING, STUCK, TANGENTIAL
 from dalembert.vibration.laws.friction_period import NEUTRAL, SWEEPS
 from dalembert.vibration.laws.friction_period import SETTLED as PERIODIC
 from dalembert.vibration.laws.march_in_plane import Room, Sums, march
-from dalembert.vibration.laws.signal_zeros import LEAST, Signals
-from dalembert.vibration.laws.slip_in_plane import MOVE, OPENED, PLACE, PRESSED, at, direction
-
-
-@inner
-def prepare(d, numbers, normal, orders, mean, rows, constants):
-    """Return the signals of a contact with displacements (columns, coefficients)."""
-    count, size = d.shape[1], 0.0
-    constants[0], constants[1], constants[PRESSED] = 0.0, 0.0, numbers[LOAD]
-    for q in range(count):
-        rows[0, q], rows[1, q] = numbers[TANGENTIAL] * d[0, q], numbers[TANGENTIAL] * d[1, q]
-        rows[PRESSED, q] = 0.0
-    if normal:
-        constants[PRESSED] -= numbers[NORMAL] * numbers[GAP]
-        for q in range(count):
-            rows[PRESSED, q] = numbers[NORMAL] * d[2, q]
-    for row in range(3):
-        total = abs(constants[row])
-        for q in range(count):
-            total += abs(rows[row, q])
-        size = max(size, total)
-    return Signals(orders, mean, rows, constants, LEAST * size)
+from dalembert.vibration.laws.signal_zeros import LEAST, PRESSED, at, signals_of
+from dalembert.vibration.laws.slip_in_plane import MOVE, OPENED, PLACE, direction
 
 
 @inner
 def rest(numbers, normal, wanted, signals, table, values, y, grads):
     """State of a slider that was at zero before the period begins; sets y and its gradient."""
-    unknowns, count = grads.shape[1] - 3, table.shape[1]
+    count = table.shape[1]
     at(0.0, signals, table, values)
     y[0], y[1] = 0.0 * y[0], 0.0 * y[1]
-    for row in range(2):
-        for m in range(unknowns + 2):
-            grads[PLACE + row, m] = 0.0
+    grads[PLACE : PLACE + 2] = 0.0
     if normal and values[0, PRESSED].real <= 0.0:
         return SEPARATED
     size = np.hypot(values[0, 0].real, values[0, 1].real)
@@ -65,9 +43,7 @@ def rest(numbers, normal, wanted, signals, table, values, y, grads):
 @inner
 def begin_with(unknowns, state, grads):
     """Set the gradient of a slider's two numbers at the start of a period."""
-    for row in range(2):
-        for m in range(unknowns + 2):
-            grads[PLACE + row, m] = 0.0
+    grads[PLACE : PLACE + 2] = 0.0
     if state != SEPARATED:
         grads[PLACE, unknowns] = 1.0
     if state == STUCK:
@@ -124,7 +100,7 @@ def _sums(
 ) -> None:  # fmt: skip
     room, y, before = Room(tables, small, radau, vectors[0], vectors[1], seeds), vectors[2], vectors[3]
     for c in range(len(displacements)):
-        signals = prepare(displacements[c], numbers[c], normal, orders, mean, rows, small[0, 0])
+        signals = signals_of(displacements[c], numbers[c], 2, normal, orders, mean, rows, small[0, 0])
         sums = Sums(forces[c], states[c], result[c], tables, tables)
         y[0], y[1] = 0.0, 0.0
         for direct in (True, False):
@@ -146,7 +122,7 @@ def sums_and_slopes(
     room, y, before = Room(tables, small, radau, vectors[0], vectors[1], seeds), vectors[2], vectors[3]
     count, unknowns = analysis.shape[0], jacobians.shape[3]
     for c in range(len(displacements)):
-        signals = prepare(displacements[c], numbers[c], normal, orders, mean, rows, small[0, 0])
+        signals = signals_of(displacements[c], numbers[c], 2, normal, orders, mean, rows, small[0, 0])
         sums = Sums(forces[c], states[c], result[c], sampled, slopes)
         y[0], y[1] = 0.0, 0.0
         state, forgets = settle(True, numbers[c], normal, False, waving, signals, y, before, sums, room, few)

@@ -18,6 +18,7 @@ Comparisons are of real parts: in complex arithmetic an imaginary part is a dire
 import numpy as np
 
 from dalembert.kernels.kernel import inner
+from dalembert.vibration.laws.law import law
 
 SEPARATED, STUCK, SLIPPING = 0, 1, 2
 STATES = ("separated", "stuck", "slipping")
@@ -55,3 +56,9 @@ def update(d, z, force, numbers, tangents, normal, memory):
         if memory:
             z[i] = d[i] - force[i] / stiffness
     return SLIPPING, size
+
+
+@law
+def sliding(u, v, z, numbers, force):
+    """The elastic contact as a general law; its state is the slider's place."""
+    update(u, z, force, numbers, len(z), len(u) > len(z), True)

@@ -67,6 +67,14 @@ def identity(kept, tangents):
 
 
 @inner
+def project(x, y, e, f, ratio):
+    """Set derivatives of a force's two parts to those where it keeps its size, by its direction (e, f)."""
+    for j in range(len(x)):
+        along = e * x[j] + f * y[j]
+        x[j], y[j] = ratio * (x[j] - e * along), ratio * (y[j] - f * along)
+
+
+@inner
 def _period(d, z, force, forces, states, kept, numbers, tangents, normal, memory):
     """One period from a slider's place: writes forces and states, moves it; how many samples do not stick.
 
@@ -82,18 +90,11 @@ def _period(d, z, force, forces, states, kept, numbers, tangents, normal, memory
         if state == STUCK:
             continue
         moving += 1
-        if state == SEPARATED or tangents == 1:
-            kept[:] = 0.0
-            continue
-        limit = np.hypot(force[0].real, force[1].real)
+        limit = 0.0 if state == SEPARATED or tangents == 1 else np.hypot(force[0].real, force[1].real)
         if limit == 0.0:
             kept[:] = 0.0
             continue
-        e, f, ratio = force[0].real / limit, force[1].real / limit, limit / size.real
-        for j in range(tangents):
-            along = e * kept[0, j] + f * kept[1, j]
-            kept[0, j] = ratio * (kept[0, j] - e * along)
-            kept[1, j] = ratio * (kept[1, j] - f * along)
+        project(kept[0], kept[1], force[0].real / limit, force[1].real / limit, limit / size.real)
     return moving
 
 

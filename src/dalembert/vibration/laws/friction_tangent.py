@@ -9,7 +9,16 @@ from dalembert.kernels.kernel import inner, kernel
 from dalembert.kernels.views import address_of, local, reals2, reals3, stack
 from dalembert.kernels.words import Address, Bytes2, Reals, Reals2, Reals3, Reals4
 from dalembert.vibration.laws.friction_law import FRICTION, NORMAL, SEPARATED, SLIPPING, STUCK, TANGENTIAL, update
-from dalembert.vibration.laws.friction_period import SWEEPS, balanced, identity, largest, line, restarted, settled
+from dalembert.vibration.laws.friction_period import (
+    SWEEPS,
+    balanced,
+    identity,
+    largest,
+    line,
+    project,
+    restarted,
+    settled,
+)
 
 Tangent = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray, np.ndarray]]
 _square, _pair = local(float, 2, 2), local(float, 2)
@@ -50,8 +59,7 @@ def _slopes(d, z, force, states, moved, kept, slopes, past, numbers, tangents, n
         states[t] = state
         if normal:
             rise = numbers[NORMAL] if state != SEPARATED else 0.0
-            for j in range(own):
-                slopes[tangents, t, j] = 0.0
+            slopes[tangents, t, :own] = 0.0
             for j in range(count):
                 slopes[tangents, t, own + j] = rise * synthesis[t, j]
         held = stiffness if state == STUCK or (state == SLIPPING and tangents == 2) else 0.0
@@ -68,14 +76,8 @@ def _slopes(d, z, force, states, moved, kept, slopes, past, numbers, tangents, n
             if tangents == 2:
                 e, f = direction[0], direction[1]
                 ratio = (force[0] * e + force[1] * f) / size
-                for j in range(unknowns):
-                    along = e * slopes[0, t, j] + f * slopes[1, t, j]
-                    slopes[0, t, j] = ratio * (slopes[0, t, j] - e * along)
-                    slopes[1, t, j] = ratio * (slopes[1, t, j] - f * along)
-                for j in range(tangents):
-                    along = e * past[0, t, j] + f * past[1, t, j]
-                    past[0, t, j] = ratio * (past[0, t, j] - e * along)
-                    past[1, t, j] = ratio * (past[1, t, j] - f * along)
+                project(slopes[0, t], slopes[1, t], e, f, ratio)
+                project(past[0, t], past[1, t], e, f, ratio)
             if normal:
                 for i in range(tangents):
                     for j in range(own, unknowns):

@@ -21,16 +21,14 @@ from dalembert.vibration.dense import dot
 from dalembert.vibration.laws.event_jumps import add_slip, add_trial, correct, smooth_terms
 from dalembert.vibration.laws.event_sums import MOST
 from dalembert.vibration.laws.friction_law import FRICTION, LOAD, NORMAL, SEPARATED, SLIPPING, STUCK, TANGENTIAL
-from dalembert.vibration.laws.signal_zeros import crossing
+from dalembert.vibration.laws.signal_zeros import PRESSED, at, crossing, keep
 from dalembert.vibration.laws.slip_in_plane import (
     JUMPS,
     MOVE,
     NODES,
     OPENED,
     PLACE,
-    PRESSED,
     add_signal,
-    at,
     carry,
     direction,
     first_slip,
@@ -88,20 +86,17 @@ def march(numbers, normal, wanted, waving, signals, state, y, sums, room, grads)
     unknowns, h, table, values = grads.shape[1] - 3, 2.0 * np.pi / forces.shape[1], tables[3], small[1]
     here, there, stages, tau = small[2], small[3], small[4:], grads[MOVE]
     phi, zx, zy, nothing = y[0], y[0], y[1], 0.0 * y[0]
-    for column in range(len(result)):
-        for q in range(count):
-            result[column, q] = nothing
+    result[:] = 0.0
     if wanted:
         slopes[:] = 0.0
         sampled[:] = 0.0
     at(0.0, signals, table, there)
     for t in range(steps):
         end, begin, opened, after = (t + 1) * h, t * h, t * h + nothing, (t + 1) % steps
-        for m in range(unknowns + 2):
-            grads[OPENED, m] = 0.0
+        grads[OPENED] = 0.0
+        keep(here, there)
         for order in range(3):
             for row in range(3):
-                here[order, row] = there[order, row]
                 there[order, row] = dot(signals.rows[row], waving[order, after])
         for row in range(3):
             there[0, row] += signals.constants[row]
@@ -135,9 +130,7 @@ def march(numbers, normal, wanted, waving, signals, state, y, sums, room, grads)
             stop, changes = end, False
             if normal:
                 weights = (0.0, 0.0, 1.0 if state == SEPARATED else -1.0)
-                found = crossing(
-                    weights, nothing, 0, begin, end, here, there, signals, table, values
-                )  # fmt: skip
+                found = crossing(weights, nothing, 0, begin, end, here, there, signals, table, values)
                 if found >= 0.0:
                     stop, changes = found, True
             exact = stop + nothing
@@ -159,39 +152,26 @@ def march(numbers, normal, wanted, waving, signals, state, y, sums, room, grads)
                 grads[PLACE, unknowns + 2] = 0.0
                 while (exact - opened).real > 0.0:
                     goal, whole = exact, True
-                    change, found_step = step(
-                        opened, goal, phi, friction, signals, tables, stages, radau
-                    )  # fmt: skip
-                    while not found_step or abs(change.real) > TURN:
+                    change, known = step(opened, goal, phi, friction, signals, tables, stages, radau)
+                    while not known or abs(change.real) > TURN:
                         if (goal - opened).real < PARTS * h:
                             break
                         goal, whole = nothing + 0.5 * (goal.real + opened.real), False
-                        change, found_step = step(
-                            opened, goal, phi, friction, signals, tables, stages, radau
-                        )  # fmt: skip
+                        change, known = step(opened, goal, phi, friction, signals, tables, stages, radau)
                     late = slides(stages[2], phi + change, friction).real < 0.0
                     for j in range(2):
                         if not late and slides(stages[j], radau[1, j], friction).real < 0.0:
                             early = nothing + opened.real + NODES[j] * (goal - opened).real
-                            change, found_step = step(
-                                opened, early, phi, friction, signals, tables, stages, radau
-                            )  # fmt: skip
+                            change, known = step(opened, early, phi, friction, signals, tables, stages, radau)
                             late = slides(stages[2], phi + change, friction).real < 0.0
                             if late:
                                 goal = early
                             else:
-                                change, found_step = step(
-                                    opened, goal, phi, friction, signals, tables, stages,
-                                    radau,
-                                )  # fmt: skip
+                                change, known = step(opened, goal, phi, friction, signals, tables, stages, radau)
                     if late:
-                        length = stop_slip(
-                            opened, goal, phi, friction, signals, tables, stages, radau
-                        )  # fmt: skip
-                        goal, stopped = opened + length, True
-                        change, found_step = step(
-                            opened, goal, phi, friction, signals, tables, stages, radau
-                        )  # fmt: skip
+                        goal = opened + stop_slip(opened, goal, phi, friction, signals, tables, stages, radau)
+                        stopped = True
+                        change, known = step(opened, goal, phi, friction, signals, tables, stages, radau)
                     carry(opened, goal, numbers, normal, wanted, tables, stages, radau, grads)
                     phi, opened = phi + change, goal
                     if whole or stopped:
@@ -204,8 +184,7 @@ def march(numbers, normal, wanted, waving, signals, state, y, sums, room, grads)
             c, s = np.cos(phi), np.sin(phi)
             limit, rise = friction * values[0, PRESSED], friction * values[1, PRESSED]
             # the derivative of the event's angle
-            for m in range(unknowns + 2):
-                tau[m] = 0.0
+            tau[:] = 0.0
             if changes:
                 if wanted:
                     add_signal(tau, PRESSED, 0, -1.0 / values[1, PRESSED], numbers, table)
@@ -235,10 +214,7 @@ def march(numbers, normal, wanted, waving, signals, state, y, sums, room, grads)
                     grads[PLACE, m] += grads[PLACE, unknowns + 2] * tau[m]
             # the jumps
             jumps[:] = 0.0
-            if wanted:
-                for k in range(9):
-                    for m in range(unknowns + 2):
-                        grads[JUMPS + k, m] = 0.0
+            grads[JUMPS:] = 0.0
             size = np.hypot(values[1, 0].real, values[1, 1].real)
             terms = smooth_terms(values, friction, size) if changes else (3 if limit.real * LAYER > h * size else 0)
             if before == STUCK:
@@ -286,11 +262,9 @@ def march(numbers, normal, wanted, waving, signals, state, y, sums, room, grads)
                 for row in range(2):
                     add_trial(1.0, row, row, numbers, wanted, table, values, jumps, grads)
             if state == SEPARATED:
-                for m in range(unknowns + 2):
-                    grads[PLACE, m] = 0.0
+                grads[PLACE] = 0.0
             if state != STUCK:
-                for m in range(unknowns + 2):
-                    grads[PLACE + 1, m] = 0.0
+                grads[PLACE + 1] = 0.0
             theta = (exact - t * h) / h
             for row in range(2):
                 correct(row, 2, h, theta, wanted, table, jumps, grads, result[row], slopes[row])
@@ -298,9 +272,7 @@ def march(numbers, normal, wanted, waving, signals, state, y, sums, room, grads)
                 sign = -1.0 if state == SEPARATED else 1.0
                 add_trial(sign, PRESSED, 6, numbers, wanted, table, values, jumps, grads)
                 correct(6, 1, h, theta, wanted, table, jumps, grads, result[2], slopes[2])
-            for level in range(3):
-                for row in range(3):
-                    here[level, row] = values[level, row]
+            keep(here, values)
             for m in range(unknowns + 2):
                 grads[OPENED, m] = tau[m]
             begin, opened = stop, exact

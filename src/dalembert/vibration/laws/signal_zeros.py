@@ -6,7 +6,10 @@ import numpy as np
 
 from dalembert.kernels.kernel import inner
 from dalembert.vibration.dense import dot
+from dalembert.vibration.laws.friction_law import FRICTION, GAP, LOAD, NORMAL, TANGENTIAL
 
+#: Rows of signals: trial force k u, limit mu N, load N; in two directions of slip both trial forces, and the load.
+TRIAL, LIMIT, PRESSED = range(3)
 REFINEMENTS = 60
 """Of a zero, at most: bisections that end at rounding."""
 LEAST = 1e-14
@@ -65,6 +68,54 @@ def evaluate(signals, table, values):
 
 
 @inner
+def at(angle, signals, table, values):
+    """Set a table of waves at an angle, and the signals' values there."""
+    waves(angle, signals.orders, signals.mean, table, 5)
+    evaluate(signals, table, values)
+
+
+@inner
+def keep(target, values):
+    """Copy the values (3, 3) of three signals and of their first two derivatives."""
+    for order in range(3):
+        for row in range(3):
+            target[order, row] = values[order, row]
+
+
+@inner
+def signals_of(d, numbers, tangents, normal, orders, mean, rows, constants):
+    """Return the signals of a contact with displacements (columns, coefficients)."""
+    size = 0.0
+    rows[:] = 0.0
+    constants[:] = 0.0
+    constants[PRESSED] = numbers[LOAD]
+    for j in range(d.shape[1]):
+        for row in range(tangents):
+            rows[row, j] = numbers[TANGENTIAL] * d[row, j]
+        if normal:
+            rows[PRESSED, j] = numbers[NORMAL] * d[tangents, j]
+        if tangents == 1:
+            rows[LIMIT, j] = numbers[FRICTION] * rows[PRESSED, j]
+    if normal:
+        constants[PRESSED] -= numbers[NORMAL] * numbers[GAP]
+    if tangents == 1:
+        constants[LIMIT] = numbers[FRICTION] * constants[PRESSED]
+    for row in range(3):
+        total = abs(constants[row])
+        for j in range(d.shape[1]):
+            total += abs(rows[row, j])
+        size = max(size, total)
+    return Signals(orders, mean, rows, constants, LEAST * size)
+
+
+@inner
+def between(low, high, place, size, slope):
+    """Newton's next place between two bounds, else their middle."""
+    found = place - size / slope if slope != 0.0 else low
+    return found if low < found < high else 0.5 * (low + high)
+
+
+@inner
 def zero(weights, shift, order, low, high, rising, signals, table):
     """The zero of a combination of signals between two angles; ``rising`` says whether it grows through zero."""
     place = 0.5 * (low + high)
@@ -80,9 +131,7 @@ def zero(weights, shift, order, low, high, rising, signals, table):
             high = place
         else:
             low = place
-        trial = place - size.real / slope.real if slope.real != 0.0 else low
-        if not low < trial < high:
-            trial = 0.5 * (low + high)
+        trial = between(low, high, place, size.real, slope.real)
         close = abs(trial - place) <= SETTLED
         place = trial
         if close:  # Newton's next step would be the square of this one
@@ -103,8 +152,7 @@ def crossing(weights, shift, order, begin, end, here, there, signals, table, val
         if not (rise > 0.0 and fall < 0.0):
             return -1.0
         high = zero(weights, 0.0 * shift, order + 1, begin, end, False, signals, table)
-        waves(high, signals.orders, signals.mean, table, 5)
-        evaluate(signals, table, values)
+        at(high, signals, table, values)
         if (value(weights, values, order) + shift).real <= signals.least:
             return -1.0
     return zero(weights, shift, order, begin, high, True, signals, table)

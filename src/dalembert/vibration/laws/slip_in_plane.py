@@ -16,7 +16,7 @@ import numpy as np
 
 from dalembert.kernels.kernel import inner
 from dalembert.vibration.laws.friction_law import FRICTION, NORMAL, TANGENTIAL
-from dalembert.vibration.laws.signal_zeros import LEAST, REFINEMENTS, SETTLED, evaluate, waves
+from dalembert.vibration.laws.signal_zeros import LEAST, PRESSED, REFINEMENTS, SETTLED, at, between
 
 ROOT = 6.0**0.5
 NODES = ((4.0 - ROOT) / 10.0, (4.0 + ROOT) / 10.0, 1.0)
@@ -31,8 +31,7 @@ ITERATIONS = 12
 FAR = 100.0
 """Change of a stage in an iteration from which the method does not return; the imaginary parts would overflow."""
 
-#: Rows of signals: both trial forces k u, and the load N. Rows of gradients.
-PRESSED = 2
+#: Rows of gradients.
 PLACE, OPENED, MOVE, STAGES, JUMPS, ROWS = 0, 2, 3, 4, 7, 16
 
 
@@ -45,16 +44,21 @@ def direction(x, y):
 
 
 @inner
-def at(angle, signals, table, values):
-    """Set a table of waves at an angle, and the signals' values there."""
-    waves(angle, signals.orders, signals.mean, table, 5)
-    evaluate(signals, table, values)
-
-
-@inner
 def slides(values, phi, friction):
     """Velocity of a slipping slider along the force, times k_t: a'·e - L'."""
     return values[1, 0] * np.cos(phi) + values[1, 1] * np.sin(phi) - friction * values[1, PRESSED]
+
+
+@inner
+def at_end(x, y, z):
+    """Sum of what the stages have with the weights of the last one, which is the end of the step."""
+    return WEIGHTS[2][0] * x + WEIGHTS[2][1] * y + WEIGHTS[2][2] * z
+
+
+@inner
+def solved(radau, j):
+    """An entry of the product of the inverse (rows 2 to 4) and the row 6."""
+    return radau[2 + j, 0] * radau[6, 0] + radau[2 + j, 1] * radau[6, 1] + radau[2 + j, 2] * radau[6, 2]
 
 
 @inner
@@ -85,7 +89,7 @@ def step(begin, end, phi, friction, signals, tables, stages, radau):
         if not invert(radau):
             return 0.0 * phi, False
         for j in range(3):
-            change = radau[2 + j, 0] * radau[6, 0] + radau[2 + j, 1] * radau[6, 1] + radau[2 + j, 2] * radau[6, 2]
+            change = solved(radau, j)
             if not abs(change.real) <= FAR:
                 return 0.0 * phi, False
             radau[0, j] += change
@@ -93,9 +97,6 @@ def step(begin, end, phi, friction, signals, tables, stages, radau):
         if found:
             break
         done = moved <= SETTLED
-    total = 0.0 * phi
-    for i in range(3):
-        total += WEIGHTS[2][i] * radau[0, i]
     for j in range(3):
         angle = radau[1, j]
         c, s = np.cos(angle), np.sin(angle)
@@ -103,8 +104,8 @@ def step(begin, end, phi, friction, signals, tables, stages, radau):
         push = size * bent - radau[0, j] * friction * stages[j, 1, PRESSED]
         radau[6, j] = across + NODES[j] * push
     for j in range(3):
-        radau[5, j] = radau[2 + j, 0] * radau[6, 0] + radau[2 + j, 1] * radau[6, 1] + radau[2 + j, 2] * radau[6, 2]
-    return total, found
+        radau[5, j] = solved(radau, j)
+    return at_end(radau[0, 0], radau[0, 1], radau[0, 2]), found
 
 
 @inner
@@ -128,7 +129,13 @@ def invert(radau):
 @inner
 def speed(radau):
     """Derivative of φ at the end of a step by this end."""
-    return WEIGHTS[2][0] * radau[5, 0] + WEIGHTS[2][1] * radau[5, 1] + WEIGHTS[2][2] * radau[5, 2]
+    return at_end(radau[5, 0], radau[5, 1], radau[5, 2])
+
+
+@inner
+def column_at_end(radau, i):
+    """The same of a column of the inverse (rows 2 to 4)."""
+    return at_end(radau[2, i], radau[3, i], radau[4, i])
 
 
 @inner
@@ -151,18 +158,10 @@ def carry(begin, end, numbers, normal, wanted, tables, stages, radau, grads):
             if normal:
                 for q in range(count):
                     grads[STAGES + j, 2 * count + q] -= kappa * own * tables[j, 0, q]
-    weights = (0.0 * radau[0, 0], 0.0 * radau[0, 0], 0.0 * radau[0, 0])
-    for j in range(3):
-        weights = (
-            weights[0] + WEIGHTS[2][j] * radau[2 + j, 0],
-            weights[1] + WEIGHTS[2][j] * radau[2 + j, 1],
-            weights[2] + WEIGHTS[2][j] * radau[2 + j, 2],
-        )
+    first, second, third = column_at_end(radau, 0), column_at_end(radau, 1), column_at_end(radau, 2)
     for m in range(unknowns + 2):
-        grads[PLACE, m] += (
-            weights[0] * grads[STAGES, m] + weights[1] * grads[STAGES + 1, m] + weights[2] * grads[STAGES + 2, m]
-        )
-        grads[OPENED, m] = 0.0
+        grads[PLACE, m] += first * grads[STAGES, m] + second * grads[STAGES + 1, m] + third * grads[STAGES + 2, m]
+    grads[OPENED] = 0.0
     grads[PLACE, unknowns + 2] = speed(radau)
 
 
@@ -173,9 +172,7 @@ def stop_slip(begin, end, phi, friction, signals, tables, stages, radau):
     place = 0.5 * high
     length, close = place + 0.0 * phi, False
     for _ in range(REFINEMENTS):
-        change, found = step(
-            begin, begin + length, phi, friction, signals, tables, stages, radau
-        )  # fmt: skip
+        change, found = step(begin, begin + length, phi, friction, signals, tables, stages, radau)
         angle = phi + change
         size = slides(stages[2], angle, friction)
         c, s = np.cos(angle), np.sin(angle)
@@ -187,9 +184,7 @@ def stop_slip(begin, end, phi, friction, signals, tables, stages, radau):
             low = place
         else:
             high = place
-        trial = place - size.real / rate.real if found and rate.real != 0.0 else low
-        if not low < trial < high:
-            trial = 0.5 * (low + high)
+        trial = between(low, high, place, size.real, rate.real if found else 0.0)
         close = abs(trial - place) <= SETTLED * (end - begin).real
         place = trial
         length = place + 0.0 * phi
@@ -251,9 +246,7 @@ def first_slip(begin, end, zx, zy, friction, signals, table, values):
             high = place
         else:
             low = place
-        trial = place - size.real / rate.real if rate.real != 0.0 else low
-        if not low < trial < high:
-            trial = 0.5 * (low + high)
+        trial = between(low, high, place, size.real, rate.real)
         close = abs(trial - place) <= SETTLED * (end - begin)
         place = trial
         if close:

@@ -20,7 +20,6 @@ from scipy.linalg import cholesky
 from dalembert.errors import InputError
 from dalembert.vibration.balance.uncondensed import Uncondensed
 from dalembert.vibration.laws.friction_law import FRICTION, SEPARATED, STUCK, TANGENTIAL
-from dalembert.vibration.laws.linearised_law import linearised
 from dalembert.vibration.laws.marched_sums import MarchedSums
 from dalembert.vibration.system.lowering import ELASTIC
 
@@ -218,15 +217,15 @@ class _Memory(NamedTuple):
 def _laws(system: Uncondensed, unknowns: np.ndarray, omega: float) -> Laws:
     """Of all elements but rigid contacts."""
     combination, series = system.lowered.coordinates.combination, system.series
-    motion = (combination @ unknowns) @ series.synthesis.T
+    motion = combination @ unknowns
     q, samples = unknowns.shape[0], series.samples
     reaction, damping, parts = np.zeros((samples, q, q)), np.zeros((samples, q, q)), []
     for rows, element in system.lowered.functions:
-        slopes = np.moveaxis(element.law(motion[rows])[1], 2, 0)
+        slopes = np.moveaxis(element.law(motion[rows] @ series.synthesis.T)[1], 2, 0)
         reaction += combination[rows].T @ slopes @ combination[rows]
     stiffness, ended = reaction.copy(), damping.copy()
     for block in system.lowered.laws:
-        slopes = MarchedSums(block, series, events=False).derivatives((combination @ unknowns)[block.rows], omega)
+        slopes = MarchedSums(block, series, events=False).derivatives(motion[block.rows], omega)
         for own, rows in zip(slopes, block.rows, strict=True):
             seen, columns = combination[rows], len(rows)
             by_place, by_speed = (seen.T @ own[:, :columns, first : first + columns] @ seen for first in (0, columns))
@@ -237,18 +236,16 @@ def _laws(system: Uncondensed, unknowns: np.ndarray, omega: float) -> Laws:
             else:
                 stiffness += by_place
                 ended += by_speed
-    for block in system.lowered.blocks:
+    for block in (one for one in system.lowered.blocks if one.kind == ELASTIC):
         columns, tangents = block.rows.shape[1], block.tangents
-        for rows, numbers in zip(block.rows, block.numbers, strict=True):
-            if block.kind != ELASTIC:
-                continue
-            own = linearised(np.ascontiguousarray(motion[rows]), numbers, tangents, block.normal)
+        slopes = MarchedSums(block.ruled, series, events=False).derivatives(motion[block.rows], omega)
+        for own, rows, numbers in zip(slopes, block.rows, block.numbers, strict=True):
             seen = combination[rows]
             reaction += seen.T @ own[:, :columns, :columns] @ seen
             spring = own[:, :columns, :columns].copy()  # its force, whatever the slider did: k (u - z)
             spring[:, :tangents] = np.eye(tangents, columns) * numbers[TANGENTIAL]
             stiffness += seen.T @ spring @ seen
-            if not np.allclose(own[:, columns:, columns:], np.eye(tangents)):  # else where it rests is given
+            if not np.allclose(own[:, columns:, 2 * columns :], np.eye(tangents)):  # else where it rests is given
                 parts.append(_slid(seen, own, numbers[TANGENTIAL]))
     ends = np.cumsum([0, *(part.keeping.shape[1] for part in parts)])
     memory, release = np.zeros((2, samples, q, ends[-1]))
@@ -266,7 +263,7 @@ def _slid(seen: np.ndarray, own: np.ndarray, spring: float) -> _Memory:
     columns = len(seen)
     following = own[:, columns:, :columns] @ seen
     return _Memory(
-        seen.T @ own[:, :columns, columns:], following, own[:, columns:, columns:],
+        seen.T @ own[:, :columns, 2 * columns :], following, own[:, columns:, 2 * columns :],
         np.broadcast_to(-spring * seen[: following.shape[1]].T, (len(own), seen.shape[1], following.shape[1])),
         np.zeros_like(following),
     )  # fmt: skip

@@ -14,8 +14,10 @@ from dalembert.vibration.balance.coordinates import Coordinates, coordinates
 from dalembert.vibration.balance.fourier import Fourier
 from dalembert.vibration.laws.contacts import ElasticSlider, FrictionContact, Rigid
 from dalembert.vibration.laws.element import LawElement
+from dalembert.vibration.laws.friction_law import sliding
 from dalembert.vibration.laws.law_block import LawBlock
 from dalembert.vibration.laws.user_element import UserElement
+from dalembert.vibration.laws.user_law import UserLaw
 from dalembert.vibration.system.system import HarmonicForce, StaticForce, VibrationSystem
 
 ELASTIC = "elastic"
@@ -49,6 +51,11 @@ class FrictionBlock:
     def memory(self) -> bool:
         """Whether the slider remembers."""
         return self.kind != "velocity"
+
+    @property
+    def ruled(self) -> LawBlock:
+        """Elastic contacts as elements that follow a general law."""
+        return LawBlock(UserLaw("slider", "", function=sliding, internal=self.tangents), (), self.rows, self.numbers)
 
     @cached_property
     def distinct(self) -> bool:

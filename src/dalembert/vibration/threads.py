@@ -1,8 +1,8 @@
 """One thread for linear algebra: the systems of a curve are small and many, and its samples run beside each other."""
 
-from contextlib import AbstractContextManager
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import cache
-from typing import Any
 
 from threadpoolctl import ThreadpoolController
 
@@ -13,10 +13,12 @@ def _controller() -> ThreadpoolController:
     return ThreadpoolController()
 
 
-def one_thread() -> AbstractContextManager[Any]:
-    """A block in which linear algebra takes one thread.
+@contextmanager
+def one_thread() -> Iterator[None]:
+    """A block, or as a decorator a function, in which linear algebra takes one thread.
 
     Threads that wait for each other cost up to thirty times the time on a busy machine, and the order of their sums is
     not the same everywhere.
     """
-    return _controller().limit(limits=1, user_api="blas")
+    with _controller().limit(limits=1, user_api="blas"):
+        yield

@@ -138,12 +138,7 @@ class Balance:
         return result
 
     def residual(
-        self,
-        linear: np.ndarray,
-        unknowns: np.ndarray,
-        omega: float,
-        tangent: Tangent | None = None,
-        rate: float = 1.0,
+        self, linear: np.ndarray, unknowns: np.ndarray, omega: float, tangent: Tangent | None = None, rate: float = 1.0
     ) -> Evaluation:
         """Residual from its linear part; the elements' part of the tangent is added to ``tangent``.
 
@@ -233,10 +228,7 @@ class Balance:
             result[cell, : block.tangents, 0] += penalty * unknowns[places, 0]
             if isinstance(tangent, DenseTangent):
                 tangent.jacobian[places, 0, places, 0] += penalty
-        if block.distinct:
-            acting[block.rows] += result
-        else:
-            np.add.at(acting, block.rows, result)
+        np.add.at(acting, block.rows, result)
         return states
 
     def _predicted(self, block: FrictionBlock, unknowns: np.ndarray, total: np.ndarray) -> np.ndarray:

@@ -63,14 +63,14 @@ def _cause(problem: Equations, solution: Solution) -> Finding | None:
         moved = np.abs(balance.displacements((motions @ along)[:, None])[:, 0])
         rows = np.flatnonzero(moved > MOVING * moved.max())[:NAMED]
         motion = listed([repr(balance.lowered.row_names[row]) for row in rows])
-        return Finding(
-            "unbalanced-mean",
-            "error",
-            {"motion": motion, "force": force},
-            f"no contact balances a mean force of {force:.3g} N along {motion}, where the structure has no stiffness.",
-            "The static forces exceed the limit of friction, or no static force presses the contact. Change them or "
-            "the preload, or hold the structure by a spring.",
+        message = (
+            f"no contact balances a mean force of {force:.3g} N along {motion}, where the structure has no stiffness."
         )
+        advice = (
+            "The static forces exceed the limit of friction, or no static force presses the contact. Change them or "
+            "the preload, or hold the structure by a spring."
+        )
+        return Finding("unbalanced-mean", "error", {"motion": motion, "force": force}, message, advice)
     if element := _not_finite(problem, solution):
         message = f"the function of {element!r} returns forces that are not finite."
         advice = "Let it return finite forces at all displacements."
@@ -143,30 +143,27 @@ def truncation_findings(problem: Equations, solution: Solution) -> Iterator[Find
     if error <= LARGE:
         return
     frequency, harmonics = float(solution.omega) / (2 * np.pi), problem.method.harmonics
-    heavy = any(_heavy(problem, solution.omega))
+    heavy, values = any(_heavy(problem, solution.omega)), {"frequency": frequency, "harmonics": harmonics}
+    severity = "error" if heavy else "warning"
     if np.isnan(error):
-        yield Finding(
-            "unchecked-harmonics",
-            "error" if heavy else "warning",
-            {"frequency": frequency, "harmonics": harmonics},
+        message = (
             f"Whether {harmonics} harmonics resolve the motion at {frequency:.6g} Hz is not known: with "
-            f"{2 * harmonics + 1} harmonics it was not found.",
-            "Try another number of harmonics, or compare the curve with integration in time.",
+            f"{2 * harmonics + 1} harmonics it was not found."
         )
+        advice = "Try another number of harmonics, or compare the curve with integration in time."
+        yield Finding("unchecked-harmonics", severity, values, message, advice)
         return
-    yield Finding(
-        "few-harmonics",
-        "error" if heavy else "warning",
-        {"frequency": frequency, "harmonics": harmonics, "error": error},
+    message = (
         f"{harmonics} harmonics do not resolve the motion at {frequency:.6g} Hz: its error is about "
-        f"{100 * error:.2g} %, by the change with {2 * harmonics + 1} harmonics.",
-        "Keep more harmonics. "
-        + (
-            "The force of a rigid contact with mass jumps, so that the error falls slowly; an elastic law falls faster."
-            if heavy
-            else "Compare the curve with integration in time."
-        ),
+        f"{100 * error:.2g} %, by the change with {2 * harmonics + 1} harmonics."
     )
+    advice = "Keep more harmonics. Compare the curve with integration in time."
+    if heavy:
+        advice = (
+            "Keep more harmonics. The force of a rigid contact with mass jumps, so that the error falls slowly; an "
+            "elastic law falls faster."
+        )
+    yield Finding("few-harmonics", severity, values | {"error": error}, message, advice)
 
 
 def _error(problem: Equations, solution: Solution) -> float:

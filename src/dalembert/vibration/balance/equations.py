@@ -132,7 +132,7 @@ class Equations:
         moved = balance.series.coefficients(free)
         yield moved
         if self.method.halvings:
-            yield by_force(balance, self.method, point)
+            yield Loading(balance, replace(self.method, resolution=RESOLUTION), point).last()
         if any(block.normal and block.kind != ELASTIC for block in self.lowered.blocks):
             yield balance.touching(moved)
 
@@ -261,11 +261,6 @@ class Loading:
             if found.solution.converged:
                 unknowns = found.solution.unknowns
         return unknowns
-
-
-def by_force(balance: Balance, method: HarmonicBalance, point: Point) -> np.ndarray:
-    """Return unknowns at a frequency by continuation from rest over the force."""
-    return Loading(balance, replace(method, resolution=RESOLUTION), point).last()
 
 
 def _require_symmetry(lowered: Lowered) -> None:

@@ -70,11 +70,6 @@ class Fourier:
         """Indices of the cosine coefficients, and of the mean, (orders,)."""
         return np.array([*range(self.mean), *range(self.mean, self.count, 2)], dtype=int)
 
-    @cached_property
-    def sines(self) -> np.ndarray:
-        """Indices of the sine coefficients, (orders without 0,)."""
-        return np.arange(self.mean + 1, self.count, 2)
-
     def phasors(self, coefficients: np.ndarray) -> np.ndarray:
         """Complex amplitudes X_c - i X_s, (orders, rows), of real coefficients (rows, coefficients)."""
         mean, result = self.mean, np.empty((len(self.orders), len(coefficients)), dtype=complex)

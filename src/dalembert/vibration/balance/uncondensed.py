@@ -58,11 +58,9 @@ class Uncondensed:
     events: bool = True
 
     def __post_init__(self) -> None:
-        blocks = tuple(
-            block if block.memory else replace(block, kind=REMEMBERING, numbers=block.numbers)
-            for block in self.lowered.blocks
-        )
-        object.__setattr__(self, "lowered", replace(self.lowered, blocks=blocks))
+        if not all(block.memory for block in self.lowered.blocks):
+            blocks = (block if block.memory else replace(block, kind=REMEMBERING) for block in self.lowered.blocks)
+            object.__setattr__(self, "lowered", replace(self.lowered, blocks=tuple(blocks)))
 
     @cached_property
     def balance(self) -> Balance:

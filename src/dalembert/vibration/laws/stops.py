@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 
@@ -31,7 +32,19 @@ def two_sided(u, v, z, numbers, force):
 
 
 @dataclass(frozen=True)
-class Gap(LawElement):
+class _Stop(LawElement):
+    stiffness: Number = field(kw_only=True, metadata={"unit": "N/m", "range": POSITIVE})
+
+    switches = True
+    sides: ClassVar[tuple[float, ...]]
+
+    def sums(self, block: LawBlock, series: Fourier, events: bool) -> Sums:
+        """Sums that are corrected where a side begins and ends to touch."""
+        return StopSums(block.numbers, np.array(self.sides), series) if events else super().sums(block, series, events)
+
+
+@dataclass(frozen=True)
+class Gap(_Stop):
     """A stop on one side: force k (u - gap) where u exceeds the gap, else none.
 
     Parameters
@@ -47,19 +60,14 @@ class Gap(LawElement):
         m.
     """
 
-    stiffness: Number = field(kw_only=True, metadata={"unit": "N/m", "range": POSITIVE})
     gap: Number = field(default=0.0, kw_only=True, metadata={"unit": "m"})
 
     law = one_sided
-    switches = True
-
-    def sums(self, block: LawBlock, series: Fourier, events: bool) -> Sums:
-        """Sums that are corrected where the stop begins and ends to touch."""
-        return StopSums(block.numbers, np.array([1.0]), series) if events else super().sums(block, series, events)
+    sides = (1.0,)
 
 
 @dataclass(frozen=True)
-class BilinearStop(LawElement):
+class BilinearStop(_Stop):
     """A stop on both sides: force k (u ∓ gap) where u exceeds the gap upwards or downwards, else none.
 
     Parameters
@@ -75,16 +83,10 @@ class BilinearStop(LawElement):
         Half the free way, m.
     """
 
-    stiffness: Number = field(kw_only=True, metadata={"unit": "N/m", "range": POSITIVE})
     gap: Number = field(default=0.0, kw_only=True, metadata={"unit": "m", "range": NOT_NEGATIVE})
 
     law = two_sided
-    switches = True
-
-    def sums(self, block: LawBlock, series: Fourier, events: bool) -> Sums:
-        """Sums that are corrected where a side begins and ends to touch."""
-        both = np.array([1.0, -1.0])
-        return StopSums(block.numbers, both, series) if events else super().sums(block, series, events)
+    sides = (1.0, -1.0)
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 r"""Nonlinear modes: periodic motions without force, over their amplitude."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, fields, replace
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
@@ -116,6 +116,7 @@ class Backbone(ConvergedResult):
 
 
 @takes_checked("amplitudes")
+@one_thread()
 def backbone(
     system: VibrationSystem,
     amplitudes: np.ndarray | Sequence[float] | tuple[float, float],
@@ -179,20 +180,17 @@ def backbone(
     """
     method = method or HarmonicBalance()
     sizes = positive_numbers(amplitudes, "backbone", "amplitudes", "m")
-    with one_thread():
-        driven = equations(system, method, checkpoint, residuals=False)
-        static = tuple(force for force in driven.lowered.forces if isinstance(force, StaticForce))
-        free = replace(driven, lowered=replace(driven.lowered, forces=static), _balances={})
-        linear = ModeEquations(free, -1).linear(mode)
-        names = free.lowered.structure.dofs
-        row = int(np.abs(linear.shape).argmax()) if dof is None else names.index(dof)
-        own, start = ModeEquations(free, row), _scaled(linear, row, names.names[row])
-        first = _first(own, start, float(sizes[0]))
-        if isinstance(amplitudes, tuple):
-            found = list(_along(own, first, float(sizes[0]), float(sizes[1])))
-        else:
-            found = list(_at_sizes(own, first, sizes, start.rest))
-        return _kept(own, mode, found)
+    driven = equations(system, method, checkpoint, residuals=False)
+    static = tuple(force for force in driven.lowered.forces if isinstance(force, StaticForce))
+    free = replace(driven, lowered=replace(driven.lowered, forces=static), _balances={})
+    linear = ModeEquations(free, -1).linear(mode)
+    names = free.lowered.structure.dofs
+    row = int(np.abs(linear.shape).argmax()) if dof is None else names.index(dof)
+    own, start = ModeEquations(free, row), _scaled(linear, row, names.names[row])
+    first = _first(own, start, float(sizes[0]))
+    if isinstance(amplitudes, tuple):
+        return _kept(own, mode, list(_along(own, first, float(sizes[0]), float(sizes[1]))))
+    return _kept(own, mode, list(_at_sizes(own, first, sizes, start.rest)))
 
 
 def _scaled(linear: Linear, row: int, name: str) -> Linear:
@@ -316,10 +314,9 @@ def _around_a_corner(
 
 def _kept(own: ModeEquations, mode: int, found: list[FreeMotion]) -> Backbone:
     names = own.problem.lowered.structure.dofs.names
-    converged = np.array([motion.converged for motion in found])
     energies, works = np.array([_energy_and_work(own, motion) for motion in found]).T
-    omegas, growths, sizes = (
-        np.array([getattr(motion, name) for motion in found]) for name in ("omega", "growth", "size")
+    omegas, growths, sizes, iterations, residuals, converged, samples = (
+        np.array([getattr(motion, one.name) for motion in found]) for one in fields(FreeMotion)[1:]
     )
     shapes = np.stack([own.basis @ motion.harmonics for motion in found])
     # ζ = ξ/(2 ω); the force F = 2 ζ ω²/A Σ h² X_hᵀ M X_h does the work that the negative damping does.
@@ -333,10 +330,10 @@ def _kept(own: ModeEquations, mode: int, found: list[FreeMotion]) -> Backbone:
         amplitudes=sizes,
         **{name: np.where(converged, values, np.nan) for name, values in numbers.items()},
         shapes=np.where(converged[:, None, None], shapes, np.nan),
-        iterations=np.array([motion.iterations for motion in found]),
-        residuals=np.array([motion.error for motion in found]),
+        iterations=iterations,
+        residuals=residuals,
         converged=converged,
-        samples=np.array([motion.samples for motion in found]),
+        samples=samples,
         provenance={**versions(), "method": asdict(own.problem.method)},
     )
 

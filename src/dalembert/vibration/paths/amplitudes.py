@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from dalembert.errors import InputError, unknown
+from dalembert.errors import InputError, require_known, unknown
 from dalembert.vibration.balance.fourier import synthesis
 
 PHASES = 4096
@@ -83,8 +83,7 @@ def coordinate_row(coordinates: Sequence[str], name: str) -> int:
     InputError
         For an unknown one.
     """
-    if name not in coordinates:
-        raise InputError(unknown("coordinate", name, coordinates))
+    require_known("coordinate", name, coordinates)
     return coordinates.index(name)
 
 

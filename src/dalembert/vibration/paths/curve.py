@@ -13,7 +13,7 @@ from dalembert.findings import Finding
 from dalembert.units import unit_of
 from dalembert.vibration.balance.fourier import synthesis
 from dalembert.vibration.paths.amplitudes import Amplitude, coordinate_row, observed_column
-from dalembert.vibration.storage import Over, VibrationResult
+from dalembert.vibration.storage import ConvergedResult, Over
 
 
 class Peak(NamedTuple):
@@ -29,7 +29,7 @@ Points = Annotated[np.ndarray, Over(("point",))]
 
 
 @dataclass(frozen=True, eq=False)
-class FrequencyCurve(VibrationResult):
+class FrequencyCurve(ConvergedResult):
     """Periodic responses of a system over frequency, as :func:`frequency_response` returns them.
 
     Parameters
@@ -93,9 +93,6 @@ class FrequencyCurve(VibrationResult):
     markers: tuple[tuple[str, int], ...]
     provenance: Mapping[str, Any]
     findings: tuple[Finding, ...] = ()
-
-    def __len__(self) -> int:
-        return len(self.frequencies)
 
     def harmonics(self, dof: str) -> np.ndarray:
         """Coefficients of an observed degree of freedom or of a node with only one, (points, coefficients).
@@ -176,7 +173,7 @@ class FrequencyCurve(VibrationResult):
     @property
     def success(self) -> bool:
         """Whether every point is converged, and no finding is an error."""
-        return bool(self.converged.all()) and all(finding.severity != "error" for finding in self.findings)
+        return super().success and all(finding.severity != "error" for finding in self.findings)
 
     @property
     def status(self) -> str:

@@ -106,9 +106,7 @@ def deformation(system: VibrationSystem, curve: FrequencyCurve, point: int | Non
     chosen = _largest(curve) if point is None else point
     if chosen not in found:
         raise InputError(f"deformation: the point {chosen} was not found; expected one of the {len(found)} that were")
-    with one_thread():
-        response = _response(system, curve, chosen)
-    motion = node_motion(system.structure, response)
+    motion = node_motion(system.structure, _response(system, curve, chosen))
     kept, faces = drawn_nodes(motion, nodes.faces)
     resting = {element.name: element.first for element in system.elements if isinstance(element, FrictionContact)}
     placed = [name for name in curve.contacts if resting[name] in nodes.names]
@@ -137,6 +135,7 @@ def _largest(curve: FrequencyCurve) -> int:
     return int(np.nanargmax(sizes)) if np.isfinite(sizes).any() else -1
 
 
+@one_thread()
 def _response(system: VibrationSystem, curve: FrequencyCurve, point: int) -> np.ndarray:
     """Coefficients of all degrees of freedom, (size, coefficients), from the unknowns that the curve keeps."""
     problem = Equations(lower(system).real, HarmonicBalance(**curve.provenance["method"]))

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from dalembert.arguments import names_of, samples_of
-from dalembert.errors import InputError, ModelError, SolveError, told, unknown
+from dalembert.errors import InputError, ModelError, SolveError, require_known, told
 from dalembert.forward import Channel, Coordinate, Refinement, Responses, ensemble, error_factor
 from dalembert.forward.builders import built, check_function, cores, inexact, restructured
 from dalembert.forward.complex_steps import Compared
@@ -86,8 +86,7 @@ class FrequencyResponse:
         workers: int | None = None,
         derivative: str = COMPLEX_STEP,
     ) -> None:
-        if derivative not in DERIVATIVES:
-            raise InputError(unknown("derivative", derivative, DERIVATIVES, "FrequencyResponse"))
+        require_known("derivative", derivative, DERIVATIVES, "FrequencyResponse")
         frequencies = samples_of(frequencies, "FrequencyResponse", "frequencies")
         frequencies = positive_numbers(frequencies, "FrequencyResponse", "frequencies", "Hz")
         channels = names_of(channels, "FrequencyResponse", "channels")
@@ -160,8 +159,7 @@ class FrequencyResponse:
         vector = self.parameters.real_vector(vector)
         if self.derivative != COMPLEX_STEP:
             return central_differences(self, vector)
-        with one_thread():
-            return self._linearise(vector)
+        return self._linearise(vector)
 
     def check_derivatives(self, vector: np.ndarray) -> None:
         """Compare the complex step with differences of the system's numbers at a vector (parameters,).
@@ -207,6 +205,7 @@ class FrequencyResponse:
         """The whole result at a parameter vector (parameters,)."""
         return frequency_response(self.system(vector), self.frequencies, self.method, check=False)
 
+    @one_thread()
     def _linearise(self, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         problem = equations(self.system(vector), self.method, derivatives=True)
         places = self._places(problem.lowered)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from dalembert.arguments import takes_checked
-from dalembert.errors import InputError, unknown
+from dalembert.errors import InputError, require_known
 from dalembert.forward import Checkpoint
 from dalembert.vibration.balance.conclusions import (
     free_findings,
@@ -60,6 +60,7 @@ OnPoint = Callable[[FollowedPoint], object]
 
 
 @takes_checked("frequencies", "continuation", "observe")
+@one_thread()
 def frequency_response(
     system: VibrationSystem,
     frequencies: np.ndarray | tuple[float, float],
@@ -133,61 +134,44 @@ def frequency_response(
     ends = isinstance(frequencies, tuple)
     require_force(system.forces, "frequency_response")
     omegas = 2 * np.pi * positive_numbers(frequencies, "frequency_response", "frequencies", "Hz")
-    if continuation not in (NATURAL, ARC_LENGTH):
-        raise InputError(unknown("continuation", continuation, (NATURAL, ARC_LENGTH), "frequency_response"))
+    require_known("continuation", continuation, (NATURAL, ARC_LENGTH), "frequency_response")
     if continuation == ARC_LENGTH and not ends:
         raise InputError(
             "frequency_response: a path by arc length finds its own frequencies; give a tuple of two, (begin, end)"
         )
-    settings = {"continuation": continuation, "frequencies": list(map(float, frequencies)) if ends else "given"}
     if stability:
         require_viscous(system.structure, "stability and Floquet multipliers")
-    with one_thread():
-        problem = equations(system, method, checkpoint, stability=stability)
-        return _followed(problem, omegas, settings, observe, start, stability, check, on_point)
-
-
-def _followed(
-    problem: Equations,
-    omegas: np.ndarray,
-    settings: dict,
-    observe: Sequence[str] | None,
-    start: tuple[FrequencyCurve, int] | None,
-    stability: bool,
-    check: bool,
-    on_point: OnPoint | None,
-) -> FrequencyCurve:
-    """Return the curve through given frequencies, or between two."""
+    problem = equations(system, method, checkpoint, stability=stability)
     known = None if start is None else restarted(problem, *start, "frequency_response")
-    given = settings["frequencies"] == "given"
-    if given:
-        found = at_frequencies(problem, omegas, known)
-    else:
-        follow = across if settings["continuation"] == ARC_LENGTH else natural
+    if ends:
+        follow = across if continuation == ARC_LENGTH else natural
         found = follow(problem, float(omegas[0]), float(omegas[1]), known)
+    else:
+        found = at_frequencies(problem, omegas, known)
     rows = observed(problem.lowered, observe)
     lowered, records, lost, done = problem.lowered, [], [], 0.0
     top: Solution | None = None
     dofs = tuple(lowered.structure.dofs.names[row] for row in rows)
-    for one in judged(problem, found, located=not given) if stability else found:
+    for one in judged(problem, found, located=ends) if stability else found:
         records.append(_kept(problem, one, rows))
         lost.append(unconverged(problem, one.solution))
         top = largest(top, one.solution) if check else None
         if on_point is not None:
             omega = one.solution.omega
-            come = len(records) / len(omegas) if given else (omega - omegas[0]) / (omegas[1] - omegas[0])
+            come = (omega - omegas[0]) / (omegas[1] - omegas[0]) if ends else len(records) / len(omegas)
             done = float(max(done, min(come, 1.0)))
             on_point(FollowedPoint(records[-1]["frequencies"], records[-1]["response"], dofs, done))
     markers = [one.pop("marker") for one in records]
+    settings = {"continuation": continuation, "frequencies": list(map(float, frequencies)) if ends else "given"}
     kept = {name: np.array([one[name] for one in records]) for name in records[0]}
     return FrequencyCurve(
         dofs=dofs,
         coordinates=lowered.row_names,
         contacts=lowered.contacts,
-        orders=problem.method.orders,
+        orders=method.orders,
         **{**kept, "stable": kept["stable"].astype(np.int8)},
         markers=tuple((marker, number) for number, marker in enumerate(markers) if marker),
-        provenance={**versions(), "method": asdict(problem.method), **settings},
+        provenance={**versions(), "method": asdict(method), **settings},
         findings=(
             *unconverged_findings(len(records), filter(None, lost)),
             *free_findings(problem),

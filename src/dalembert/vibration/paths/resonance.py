@@ -73,8 +73,8 @@ class ResonanceTrack(ConvergedResult):
     values: Annotated[np.ndarray, Over(("value",), lambda own: own.unit)]
     frequencies: Annotated[np.ndarray, Over(("value",), "Hz")]
     amplitudes: Annotated[np.ndarray, Over(("value",), lambda own: unit_of(own.dof))]
-    solves: Annotated[np.ndarray, Over(("value",))]
-    converged: Annotated[np.ndarray, Over(("value",))]
+    solves: Values
+    converged: Values
     provenance: Mapping[str, Any]
 
     def best(self) -> float:
@@ -108,6 +108,7 @@ class ResonanceTrack(ConvergedResult):
 
 
 @takes_checked("values")
+@one_thread()
 def track_resonance(
     builder: Callable[..., VibrationSystem],
     parameter: str,
@@ -177,18 +178,17 @@ def track_resonance(
     def problem(value: float) -> Equations:
         return equations(builder(**{parameter: value}), method, checkpoint)
 
-    with one_thread():
-        first, size = problem(float(numbers[0])), Amplitude(kind, method.orders)
-        names = first.lowered.structure.dofs
-        name = names.names[row := names.index(dof)]
-        curve = start
-        if not isinstance(curve, FrequencyCurve):
-            system = builder(**{parameter: float(numbers[0])})
-            curve = frequency_response(
-                system, curve, method, continuation=ARC_LENGTH, observe=[name], check=False, checkpoint=checkpoint
-            )
-        begin = restarted(first, curve, _top(curve, name, size), "track_resonance")
-        peaks = list(_followed(problem, _Climber(row, size), numbers, _Peak(float(numbers[0]), first, begin)))
+    first, size = problem(float(numbers[0])), Amplitude(kind, method.orders)
+    names = first.lowered.structure.dofs
+    name = names.names[row := names.index(dof)]
+    curve = start
+    if not isinstance(curve, FrequencyCurve):
+        system = builder(**{parameter: float(numbers[0])})
+        curve = frequency_response(
+            system, curve, method, continuation=ARC_LENGTH, observe=[name], check=False, checkpoint=checkpoint
+        )
+    begin = restarted(first, curve, _top(curve, name, size), "track_resonance")
+    peaks = list(_followed(problem, _Climber(row, size), numbers, _Peak(float(numbers[0]), first, begin)))
     solves = np.array([count for _, count in peaks])
     solves[0] += 1 if isinstance(start, FrequencyCurve) else 1 + len(curve)
     found = [(one.solution.omega / (2 * np.pi), one.amplitude) if one else (np.nan, np.nan) for one, _ in peaks]

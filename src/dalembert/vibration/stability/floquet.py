@@ -3,7 +3,7 @@
 import numpy as np
 
 from dalembert.arguments import takes_checked
-from dalembert.errors import InputError, unknown
+from dalembert.errors import require_known
 from dalembert.vibration.balance.equations import equations
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.paths.curve import FrequencyCurve
@@ -14,6 +14,7 @@ from dalembert.vibration.threads import one_thread
 
 
 @takes_checked("way")
+@one_thread()
 def floquet_multipliers(system: VibrationSystem, curve: FrequencyCurve, point: int, way: str = AUTOMATIC) -> np.ndarray:
     """Return the Floquet multipliers: the factors by which small perturbations of a periodic motion grow in a period.
 
@@ -52,10 +53,8 @@ def floquet_multipliers(system: VibrationSystem, curve: FrequencyCurve, point: i
     >>> float(np.prod(factors).real.round(6)), float(np.exp(-0.1 / 0.15).round(6))  # exp(-c T/m), Liouville's formula
     (0.513417, 0.513417)
     """
-    if way not in (AUTOMATIC, HILL, TIME_MAP):
-        raise InputError(unknown("way", way, (AUTOMATIC, HILL, TIME_MAP), "floquet_multipliers"))
-    with one_thread():
-        problem = equations(system, HarmonicBalance(**curve.provenance["method"]), stability=way != HILL)
-        begin = restarted(problem, curve, point, "floquet_multipliers")
-        factors = np.exp(2 * np.pi * exponents(problem, begin, way).values)
+    require_known("way", way, (AUTOMATIC, HILL, TIME_MAP), "floquet_multipliers")
+    problem = equations(system, HarmonicBalance(**curve.provenance["method"]), stability=way != HILL)
+    begin = restarted(problem, curve, point, "floquet_multipliers")
+    factors = np.exp(2 * np.pi * exponents(problem, begin, way).values)
     return factors[np.argsort(-np.abs(factors), kind="stable")]

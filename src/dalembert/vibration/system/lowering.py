@@ -57,11 +57,6 @@ class FrictionBlock:
         """Elastic contacts as elements that follow a general law."""
         return LawBlock(UserLaw("slider", "", function=sliding, internal=self.tangents), (), self.rows, self.numbers)
 
-    @cached_property
-    def distinct(self) -> bool:
-        """Whether no two cells see the same row."""
-        return len(np.unique(self.rows)) == self.rows.size
-
 
 @dataclass(frozen=True)
 class Lowered:

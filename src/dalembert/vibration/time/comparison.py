@@ -86,6 +86,7 @@ class TimeComparison(VibrationResult):
 
 
 @takes_checked("points", "frequencies", "way", "kind")
+@one_thread()
 def compare_in_time(
     system: VibrationSystem,
     curve: FrequencyCurve,
@@ -155,8 +156,7 @@ def compare_in_time(
         start = b"".join(own[point].tobytes() for own in (curve.unknowns, curve.frequencies, curve.samples))
         return checkpoint.once(hashlib.sha256(b"in time" + asked.encode() + start).digest(), lambda: run(point))
 
-    with one_thread():
-        sizes, how = zip(*ensemble(once, chosen.tolist()), strict=True)
+    sizes, how = zip(*ensemble(once, chosen.tolist()), strict=True)
     periods, residuals, converged = np.array(how).T
     return TimeComparison(
         dofs=curve.dofs,

@@ -3,13 +3,13 @@
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
-from typing import Any, NamedTuple, cast
+from typing import Any, cast
 
 import numpy as np
 from scipy.sparse.linalg import LinearOperator, gmres
 
 from dalembert.arguments import takes_checked
-from dalembert.errors import InputError, SolveError, unknown
+from dalembert.errors import InputError, SolveError, require_known
 from dalembert.vibration.balance.equations import equations
 from dalembert.vibration.balance.fourier import Fourier, synthesis
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
@@ -33,6 +33,7 @@ WARMING = 5
 
 
 @takes_checked("way", "observe")
+@one_thread()
 def steady_state(
     system: VibrationSystem,
     frequency: float,
@@ -90,16 +91,14 @@ def steady_state(
     if not (np.isfinite(frequency) and frequency > 0):
         raise InputError(f"steady_state: the frequency is {frequency}; expected a positive number in Hz")
     require_force(system.forces, "steady_state")
-    if way not in (LONG_RUN, SHOOTING):
-        raise InputError(unknown("way", way, (LONG_RUN, SHOOTING), "steady_state"))
+    require_known("way", way, (LONG_RUN, SHOOTING), "steady_state")
     lowered = lower(system).real
     problem = InTime(lowered, 2 * np.pi * frequency, method.steps_per_period, method.stand_in)
     rows = observed(lowered, observe)
     prepare_time(lowered, None if start is None else HarmonicBalance(**start[0].provenance["method"]).events)
-    with one_thread():
-        run = _Run(problem, method, [])
-        state = run.rest() if start is None else run.on_curve(system, *start)
-        ended = run.long(state, method.periods, method.tolerance) if way == LONG_RUN else run.shot(state)
+    run = _Run(problem, method, [])
+    state = run.rest() if start is None else run.on_curve(system, *start)
+    ended = run.long(state, method.periods, method.tolerance) if way == LONG_RUN else run.shot(state)
     shapes = problem.spectral.shapes[rows]
     record = Record(*(np.roll(own, 1, axis=0) for own in ended.record))
     summed = np.zeros((method.steps_per_period, len(lowered.row_names)))
@@ -131,15 +130,8 @@ DIRECTIONS = 60
 """Most directions of a Newton step."""
 
 
-class Shot(NamedTuple):
-    """A state, and the periods that were gone through to find it."""
-
-    state: np.ndarray
-    periods: int
-
-
-def shoot(period: Period, state: np.ndarray, tolerance: float, most: int) -> Shot:
-    """A state (unknowns,) that a period returns to, from a guess; a state with the least change if there is none.
+def shoot(period: Period, state: np.ndarray, tolerance: float, most: int) -> tuple[np.ndarray, int]:
+    """A state (unknowns,) that a period returns to, and the periods to it; one with the least change if there is none.
 
     Parameters
     ----------
@@ -167,7 +159,7 @@ def shoot(period: Period, state: np.ndarray, tolerance: float, most: int) -> Sho
                 break
         else:
             state, (after, change), run = after, period(after), run + 1
-    return Shot(state, run)
+    return state, run
 
 
 def _slope(period: Period, state: np.ndarray, after: np.ndarray) -> Any:
@@ -265,9 +257,10 @@ class _Run:
             ended = self.long(self._state(flat, scale), 1, self.method.tolerance)
             return self._flat(ended.state, scale), ended.change
 
-        found = shoot(period, self._flat(warm.state, scale), self.method.tolerance, self.method.periods - warm.periods)
-        last = self.long(self._state(found.state, scale), 1, self.method.tolerance)
-        return replace(last, periods=warm.periods + found.periods + 1)
+        left = self.method.periods - warm.periods
+        found, periods = shoot(period, self._flat(warm.state, scale), self.method.tolerance, left)
+        last = self.long(self._state(found, scale), 1, self.method.tolerance)
+        return replace(last, periods=warm.periods + periods + 1)
 
     def _scale(self, warm: _Ended) -> np.ndarray:
         """Of displacements, velocities and two kinds of accelerations, and of sliders, as :meth:`_flat` has them."""

@@ -288,10 +288,8 @@ class Condensation:
         except LinAlgError:  # an interior without mass somewhere
             return blocks
         modal = [shapes.T @ matrix @ shapes for matrix in damped]
-        for matrix in modal:
-            off = np.abs(matrix - np.diag(np.diag(matrix))).max()
-            if off > COUPLED * max(np.abs(np.diag(matrix)).max(), np.finfo(float).tiny):
-                return blocks
+        if any(map(coupled, modal)):
+            return blocks
         self.back = self.back @ shapes
         return [squares, np.ones_like(squares), *map(np.diag, modal)]
 
@@ -329,6 +327,13 @@ class Condensation:
         both = _dynamic(entries, s), self._slope(entries, s)
         first, second = ([flat[:, own].reshape(len(s), *shape) for own, shape in places] for flat in both)
         return first, second
+
+
+def coupled(damping: np.ndarray) -> bool:
+    """Whether damping (modes, modes) couples modes."""
+    own = np.diag(damping)
+    off = np.abs(damping - np.diag(own)).max(initial=0.0)
+    return bool(off > COUPLED * max(np.abs(own).max(initial=0.0), np.finfo(float).tiny))
 
 
 def norm(array: np.ndarray) -> float:

@@ -66,14 +66,11 @@ def sensitivities(problem: Equations, solution: Solution, perturbed: Sequence[Lo
 
 def _unbalanced(own: Lowered, frequencies: np.ndarray, motion: np.ndarray) -> np.ndarray:
     """Z' x, (orders, n), from the imaginary parts of the matrices."""
-    structure = own.structure
-    stiffness, mass = (_step(matrix) @ motion.T for matrix in (structure.stiffness, structure.mass))
-    total = stiffness - mass * frequencies**2
-    if structure.damping is not None:
-        total = total + 1j * (_step(structure.damping) @ motion.T) * frequencies
-    if structure.loss is not None:
-        total = total + 1j * (_step(structure.loss) @ motion.T) * np.sign(frequencies)
-    return np.asarray(total.T)
+    structure, s = own.structure, frequencies
+    matrices = structure.stiffness, structure.mass, structure.damping, structure.loss
+    factors = np.ones_like(s), -(s**2), 1j * s, 1j * np.sign(s)
+    pairs = zip(matrices, factors, strict=True)
+    return np.asarray(sum((_step(own) @ motion.T) * factor for own, factor in pairs if own is not None)).T
 
 
 def _step(array: Any) -> Any:

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar, NamedTuple, Protocol
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -12,8 +12,8 @@ from dalembert.vibration.balance.fourier import Fourier
 from dalembert.vibration.laws import event_sums_in_plane as in_plane
 from dalembert.vibration.laws.event_sums import sums_and_slopes, sums_complex, sums_real
 from dalembert.vibration.laws.friction_law import FRICTION, LOAD, TANGENTIAL
-from dalembert.vibration.laws.friction_period import forces, forces_complex, forces_real
-from dalembert.vibration.laws.friction_tangent import Tangent, forces_and_slopes, tangent_of
+from dalembert.vibration.laws.friction_period import forces_complex, forces_real
+from dalembert.vibration.laws.friction_tangent import forces_and_slopes
 from dalembert.vibration.laws.slip_in_plane import ROWS
 
 
@@ -29,19 +29,7 @@ class Shape(NamedTuple):
         return self.tangents + self.normal
 
 
-class ContactSums(Protocol):
-    """Forces of the contacts of a block from their displacements (contacts, columns, coefficients)."""
-
-    def forces(self, displacements: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Coefficients of forces, as those of displacements, and states (contacts, samples); complex numbers too."""
-        ...
-
-    def with_slopes(self, displacements: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """The same, and Jacobians (contacts, columns · coefficients, columns · coefficients)."""
-        ...
-
-
-def contact_sums(numbers: np.ndarray, shape: Shape, series: Fourier, events: bool) -> ContactSums:
+def contact_sums(numbers: np.ndarray, shape: Shape, series: Fourier, events: bool) -> "ContactSums":
     """Return the sums for contacts: corrected ones if asked for, and if their events can be found.
 
     Parameters
@@ -60,26 +48,21 @@ def sums_for(numbers: np.ndarray, shape: Shape, events: bool) -> "type[PlainSums
 
     These are for Jacobians, for forces alone, and for derivatives with respect to parameters.
     """
-    if not (events and has_events(numbers, shape)):
-        return PlainSums
-    return PlaneEventSums if shape.tangents == 2 else EventSums
-
-
-def has_events(numbers: np.ndarray, shape: Shape) -> bool:
-    """Return True if the sums for contacts can be corrected at events.
-
-    In two directions of slip, sliders must have a place and a limit: the force's direction comes from their motion.
-    """
-    if shape.tangents < 2:
-        return True
+    if not events or shape.tangents < 2:
+        return EventSums if events else PlainSums
+    # In two directions the force's direction comes from the motion of sliders, which must have a place and a limit.
     real = np.real(numbers)
-    limited = (real[:, FRICTION] > 0) & (shape.normal | (real[:, LOAD] > 0))
-    return shape.memory and bool(np.all(limited & (real[:, TANGENTIAL] > 0)))
+    limited = (real[:, FRICTION] > 0) & (shape.normal | (real[:, LOAD] > 0)) & (real[:, TANGENTIAL] > 0)
+    return PlaneEventSums if shape.memory and np.all(limited) else PlainSums
 
 
 @dataclass(frozen=True)
-class PlainSums:
-    """Sums of samples. A sample that changes its state makes a kink.
+class _Sums:
+    """Forces of the contacts of a block from their displacements (contacts, columns, coefficients).
+
+    ``forces`` returns coefficients of forces, as those of displacements, and states (contacts, samples); complex
+    numbers too. ``with_slopes`` returns the same, and Jacobians (contacts, columns · coefficients,
+    columns · coefficients).
 
     Parameters
     ----------
@@ -88,55 +71,74 @@ class PlainSums:
     series : Fourier
     """
 
-    kernels: ClassVar = (forces_and_slopes, forces_real, forces_complex)
+    kernels: ClassVar[tuple[Any, Any, Any]]
 
     numbers: np.ndarray
     shape: Shape
     series: Fourier
 
+    def _forces_in(self, displacements: np.ndarray) -> tuple[Any, np.ndarray, np.ndarray]:
+        """The kernel of forces alone, displacements and numbers; complex where one of them is."""
+        if displacements.dtype == self.numbers.dtype == float:
+            return self.kernels[1], np.ascontiguousarray(displacements), self.numbers
+        return self.kernels[2], np.ascontiguousarray(displacements, complex), self.numbers.astype(complex, copy=False)
+
+
+@dataclass(frozen=True)
+class PlainSums(_Sums):
+    """Sums of samples. A sample that changes its state makes a kink."""
+
+    kernels = (forces_and_slopes, forces_real, forces_complex)
+
     def forces(self, displacements: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Coefficients of forces, and states; see :class:`ContactSums`."""
-        force, states = forces(self._sampled(displacements), self.numbers, *self.shape)
+        force, states = self.at_samples(_times(displacements, self.series.synthesis))
         return _times(force, self.series.analysis), states
 
     def with_slopes(self, displacements: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Coefficients of forces, states and Jacobians; see :class:`ContactSums`."""
-        force, states, jacobians = self._tangent(self._sampled(displacements))
+        force, states, jacobians = self.tangent(_times(displacements, self.series.synthesis))
         return _times(force, self.series.analysis), states, jacobians
 
-    def _sampled(self, displacements: np.ndarray) -> np.ndarray:
-        return _times(displacements, self.series.synthesis)
+    def at_samples(self, displacements: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Forces like displacements (contacts, columns, samples), and states (contacts, samples).
+
+        Normal forces are N - N0. Forces are complex where displacements or numbers are.
+        """
+        kernel, displacements, numbers = self._forces_in(displacements)
+        result, states = np.empty_like(displacements), np.empty(displacements.shape[::2], dtype=np.uint8)
+        kernel(displacements, numbers, *self.shape, result, states)
+        return result, states
+
+    def tangent(self, displacements: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Forces and states as :meth:`at_samples`, and Jacobians of the coefficients as :meth:`with_slopes`."""
+        (contacts, columns, samples), count, tangents = displacements.shape, self.series.count, self.shape.tangents
+        unknowns = columns * count
+        result, states = np.empty_like(displacements), np.empty((contacts, samples), dtype=np.uint8)
+        jacobians = np.zeros((contacts, columns, count, unknowns))
+        room = np.empty(samples * (columns * unknowns + tangents**2) + tangents * (count + unknowns))
+        self._call(displacements, result, states, jacobians, room)
+        return result, states, jacobians.reshape(contacts, unknowns, unknowns)
 
     @cached_property
-    def _tangent(self) -> Tangent:
-        return tangent_of(self.numbers, *self.shape, self.series.synthesis, self.series.analysis)
+    def _call(self) -> Callable[..., None]:
+        return self.kernels[0].given(self.numbers, *self.shape, self.series.synthesis, self.series.analysis, gemm())
 
 
 @dataclass(frozen=True)
-class EventSums:
+class EventSums(_Sums):
     """Sums of samples, corrected at the events of :mod:`dalembert.vibration.laws.event_sums`.
 
-    Parameters
-    ----------
-    numbers : array, shape (contacts, 5)
-    shape : Shape
-        With one direction of slip, or none.
-    series : Fourier
+    The contacts have one direction of slip, or none.
     """
 
-    kernels: ClassVar = (sums_and_slopes, sums_real, sums_complex)
-
-    numbers: np.ndarray
-    shape: Shape
-    series: Fourier
+    kernels = (sums_and_slopes, sums_real, sums_complex)
 
     def forces(self, displacements: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Coefficients of forces, and states; see :class:`ContactSums`."""
-        real = displacements.dtype == self.numbers.dtype == float
-        dtype, kernel = (float, self.kernels[1]) if real else (complex, self.kernels[2])
-        place = np.ascontiguousarray(displacements, dtype)
+        kernel, place, numbers = self._forces_in(displacements)
         results = self._results(place)
-        kernel(place, self.numbers.astype(dtype, copy=False), *self._given, *self._room(dtype), *results)
+        kernel(place, numbers, *self._given, *self._room(place.dtype.type), *results)
         return self._coefficients(results), results[1]
 
     def with_slopes(self, displacements: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -197,7 +199,7 @@ class EventSums:
 class PlaneEventSums(EventSums):
     """Sums of contacts with two directions of slip, see :mod:`dalembert.vibration.laws.event_sums_in_plane`."""
 
-    kernels: ClassVar = (in_plane.sums_and_slopes, in_plane.sums_real, in_plane.sums_complex)
+    kernels = (in_plane.sums_and_slopes, in_plane.sums_real, in_plane.sums_complex)
 
     @property
     def _given(self) -> tuple[Any, ...]:
@@ -216,6 +218,9 @@ class PlaneEventSums(EventSums):
     def _signals(self, dtype: type) -> tuple[np.ndarray, ...]:
         count = self.series.count
         return tuple(np.empty(own, dtype) for own in ((3, count), (4, 5, count), (7, 5, 3), (7, 3)))
+
+
+ContactSums = PlainSums | EventSums
 
 
 def _times(rows: np.ndarray, matrix: np.ndarray) -> np.ndarray:

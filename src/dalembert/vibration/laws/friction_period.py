@@ -178,27 +178,3 @@ def _forces(
 
 
 forces_real, forces_complex = kernels(_forces)
-
-
-def forces(
-    displacements: np.ndarray, numbers: np.ndarray, tangents: int, normal: bool, memory: bool
-) -> tuple[np.ndarray, np.ndarray]:
-    """Forces over a period; complex where displacements or numbers are.
-
-    Parameters
-    ----------
-    displacements : array, shape (contacts, tangents + normal, samples)
-    numbers : array, shape (contacts, 5)
-        Tangential stiffness, normal stiffness, gap, coefficient of friction, initial normal load.
-
-    Returns
-    -------
-    forces : array like ``displacements``; the normal one is N - N0
-    states : array of uint8, shape (contacts, samples)
-    """
-    law = forces_real
-    if not displacements.dtype == numbers.dtype == float:
-        law, displacements, numbers = forces_complex, displacements.astype(complex), numbers.astype(complex)
-    result, states = np.empty_like(displacements), np.empty(displacements.shape[::2], dtype=np.uint8)
-    law(displacements, numbers, tangents, normal, memory, result, states)
-    return result, states

@@ -1,10 +1,6 @@
 """Compiled: the exact tangent of friction over the samples of a period."""
 
-from collections.abc import Callable
-
-import numpy as np
-
-from dalembert.kernels.blas import gemm, product
+from dalembert.kernels.blas import product
 from dalembert.kernels.kernel import inner, kernel
 from dalembert.kernels.views import address_of, local, reals2, reals3, stack
 from dalembert.kernels.words import Address, Bytes2, Reals, Reals2, Reals3, Reals4
@@ -20,7 +16,6 @@ from dalembert.vibration.laws.friction_period import (
     settled,
 )
 
-Tangent = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray, np.ndarray]]
 _square, _pair = local(float, 2, 2), local(float, 2)
 
 
@@ -171,36 +166,3 @@ def forces_and_slopes(
             for i in range(tangents):
                 product(gemm, analysis, past[i], 0.0, harmonics)
                 product(gemm, harmonics, moved, 1.0, jacobians[c, i])
-
-
-def tangent_of(
-    numbers: np.ndarray, tangents: int, normal: bool, memory: bool, synthesis: np.ndarray, analysis: np.ndarray
-) -> Tangent:
-    """The forces of contacts over a period, and the derivative of their harmonics by those of displacements.
-
-    Parameters
-    ----------
-    numbers, tangents, normal, memory
-        As in :func:`dalembert.vibration.laws.friction_period.forces`; real.
-    synthesis : array, shape (samples, coefficients)
-    analysis : array, shape (coefficients, samples)
-
-    Returns
-    -------
-    function
-        Of displacements as in :func:`dalembert.vibration.laws.friction_period.forces`. It returns forces and states as
-        there, and Jacobians, shape (contacts, columns * coefficients, columns * coefficients).
-    """
-    call = forces_and_slopes.given(numbers, tangents, normal, memory, synthesis, analysis, gemm())
-    count, columns = synthesis.shape[1], tangents + normal
-
-    def tangent(displacements: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        contacts, _, samples = displacements.shape
-        unknowns = columns * count
-        result, states = np.empty_like(displacements), np.empty((contacts, samples), dtype=np.uint8)
-        jacobians = np.zeros((contacts, columns, count, unknowns))
-        room = np.empty(samples * (columns * unknowns + tangents**2) + tangents * (count + unknowns))
-        call(displacements, result, states, jacobians, room)
-        return result, states, jacobians.reshape(contacts, unknowns, unknowns)
-
-    return tangent

@@ -107,7 +107,9 @@ def _parts(lowered: Lowered) -> Iterator[Part]:
         if matrix is not None:
             yield _entries(matrix), lambda entry, name=name, matrix=matrix: _entry(structure, name, matrix, entry)
     for force in lowered.forces:
-        yield _fields(force, f"the force on {force.dof!r}")
+        names = [name for name in _FIELDS if hasattr(force, name)]
+        values = np.array([getattr(force, name) for name in names])
+        yield values, lambda entry, names=names, dof=force.dof: f"{names[entry]!r} of the force on {dof!r}"
     for block in lowered.blocks:
         names = [lowered.contacts[place] for place in block.contacts]
         yield (
@@ -120,12 +122,6 @@ def _parts(lowered: Lowered) -> Iterator[Part]:
 
 def _number(block: LawBlock, element: int, number: int) -> str:
     return f"{list(block.element.numbers)[number]!r} of {block.names[element]!r}"
-
-
-def _fields(component: Any, owner: str) -> Part:
-    """Numbers of a force."""
-    names = [name for name in _FIELDS if hasattr(component, name)]
-    return np.array([getattr(component, name) for name in names]), lambda entry: f"{names[entry]!r} of {owner}"
 
 
 def _entries(matrix: Any) -> np.ndarray:

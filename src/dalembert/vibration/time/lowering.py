@@ -15,7 +15,7 @@ from scipy.linalg import LinAlgError, eigh
 
 from dalembert.errors import ModelError
 from dalembert.structure.eigenmodes import dense
-from dalembert.vibration.balance.condensation import COUPLED, DENSE
+from dalembert.vibration.balance.condensation import DENSE, coupled
 from dalembert.vibration.balance.fourier import Fourier
 from dalembert.vibration.laws.friction_law import NORMAL, TANGENTIAL
 from dalembert.vibration.system.lowering import ELASTIC, Lowered
@@ -83,12 +83,8 @@ def spectral(structure: Any, omega: float) -> Spectral:
             "be integrated in time; give them some mass or a spring"
         ) from None
     modal = shapes.T @ damping @ shapes
-    own = np.diag(modal).copy()
-    apart = np.abs(modal - np.diag(own)).max(initial=0.0) <= COUPLED * max(
-        np.abs(own).max(initial=0.0), np.finfo(float).tiny
-    )
     inertia, hold = (np.einsum("ij,ij->j", shapes, matrix @ shapes) for matrix in (mass, stiffness))
-    return Spectral(shapes, inertia, hold, own, np.zeros((0, 0)) if apart else modal)
+    return Spectral(shapes, inertia, hold, np.diag(modal).copy(), modal if coupled(modal) else np.zeros((0, 0)))
 
 
 @dataclass(frozen=True)

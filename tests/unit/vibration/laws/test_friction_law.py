@@ -4,12 +4,15 @@ import numpy as np
 import pytest
 
 from dalembert.vibration.balance.fourier import Fourier
+from dalembert.vibration.laws.contact_sums import PlainSums, Shape
 from dalembert.vibration.laws.friction_law import SEPARATED, SLIPPING, STUCK
-from dalembert.vibration.laws.friction_period import forces
-from dalembert.vibration.laws.friction_tangent import tangent_of
 
 SERIES = Fourier(tuple(range(6)), 64)
 NUMBERS = np.array([[2.0, 3.0, 0.1, 0.5, 0.4]])
+
+
+def forces(samples: np.ndarray, numbers: np.ndarray, *form: int) -> tuple[np.ndarray, np.ndarray]:
+    return PlainSums(numbers, Shape(*form), SERIES).at_samples(samples)
 
 
 def motion(columns: int, size: float, seed: int = 0) -> np.ndarray:
@@ -37,7 +40,7 @@ def test_the_tangent_is_that_of_the_complex_step_in_every_state(
     coefficients = motion(columns, size)
     form = (tangents, normal, memory)
     samples = coefficients @ SERIES.synthesis.T
-    force, found, jacobian = tangent_of(NUMBERS, *form, SERIES.synthesis, SERIES.analysis)(samples)
+    force, found, jacobian = PlainSums(NUMBERS, Shape(*form), SERIES).tangent(samples)
     assert states <= set(found.ravel().tolist())
     np.testing.assert_array_equal(force, forces(samples, NUMBERS, *form)[0])
     for column in range(columns * SERIES.count):
@@ -53,8 +56,8 @@ def test_a_slider_in_one_dimension_is_one_in_two_that_moves_along_a_line(size: f
     for seed in range(20):
         samples = motion(1, size, seed) @ SERIES.synthesis.T
         plane = np.concatenate([samples, np.zeros_like(samples)], axis=1)
-        force, states, jacobian = tangent_of(NUMBERS, 1, False, True, SERIES.synthesis, SERIES.analysis)(samples)
-        other, expected, exact = tangent_of(NUMBERS, 2, False, True, SERIES.synthesis, SERIES.analysis)(plane)
+        force, states, jacobian = PlainSums(NUMBERS, Shape(1, False, True), SERIES).tangent(samples)
+        other, expected, exact = PlainSums(NUMBERS, Shape(2, False, True), SERIES).tangent(plane)
         np.testing.assert_array_equal(states, expected)
         np.testing.assert_allclose(force, other[:, :1], atol=1e-13)
         own = slice(SERIES.count)
@@ -66,7 +69,7 @@ def test_a_slider_that_slips_only_while_the_motion_begins_keeps_its_place_and_it
     coefficients = np.zeros((1, 1, SERIES.count))
     coefficients[0, 0, :2] = 0.5, 0.05
     samples, numbers = coefficients @ SERIES.synthesis.T, NUMBERS.copy()
-    _, states, jacobian = tangent_of(numbers, 1, False, True, SERIES.synthesis, SERIES.analysis)(samples)
+    _, states, jacobian = PlainSums(numbers, Shape(1, False, True), SERIES).tangent(samples)
     assert set(states.ravel().tolist()) == {STUCK}
     moved = samples + 1e-30j
     exact = forces(moved, numbers.astype(complex), 1, False, True)[0].imag / 1e-30

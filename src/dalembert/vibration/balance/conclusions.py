@@ -144,14 +144,13 @@ def truncation_findings(problem: Equations, solution: Solution) -> Iterator[Find
         return
     frequency, harmonics = float(solution.omega) / (2 * np.pi), problem.method.harmonics
     heavy, values = any(_heavy(problem, solution.omega)), {"frequency": frequency, "harmonics": harmonics}
-    severity = "error" if heavy else "warning"
     if np.isnan(error):
         message = (
             f"Whether {harmonics} harmonics resolve the motion at {frequency:.6g} Hz is not known: with "
             f"{2 * harmonics + 1} harmonics it was not found."
         )
         advice = "Try another number of harmonics, or compare the curve with integration in time."
-        yield Finding("unchecked-harmonics", severity, values, message, advice)
+        yield Finding("unchecked-harmonics", "error" if heavy else "warning", values, message, advice)
         return
     message = (
         f"{harmonics} harmonics do not resolve the motion at {frequency:.6g} Hz: its error is about "
@@ -163,7 +162,7 @@ def truncation_findings(problem: Equations, solution: Solution) -> Iterator[Find
             "Keep more harmonics. The force of a rigid contact with mass jumps, so that the error falls slowly; an "
             "elastic law falls faster."
         )
-    yield Finding("few-harmonics", severity, values | {"error": error}, message, advice)
+    yield Finding("few-harmonics", "error" if heavy else "warning", values | {"error": error}, message, advice)
 
 
 def _error(problem: Equations, solution: Solution) -> float:

@@ -1,11 +1,15 @@
 """The look that all figures and the report's page share: colours, fonts, and the same figure in the dark."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
+from typing import Any
 
 import plotly.graph_objects as go
 from plotly.io import from_json
 
+Axis = str | Mapping[str, Any]
+"""Title of an axis, or its settings."""
 FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif"
 
 
@@ -62,9 +66,32 @@ def dark(figure: go.Figure) -> go.Figure:
     return go.Figure(from_json(text))
 
 
-def themed(figure: go.Figure, title: str = "", height: int = 420) -> go.Figure:
-    """The figure in our look, with its title."""
-    return figure.update_layout(template=template(), title_text=title, height=height)
+def themed(
+    figure: go.Figure, title: str = "", height: int = 420, *, x: Axis = "", y: Axis | Sequence[Axis] = "", **layout: Any
+) -> go.Figure:
+    """The figure in our look, with its title and those of its axes.
+
+    Parameters
+    ----------
+    figure : plotly.graph_objects.Figure
+    title : str
+    height : int
+        In pixels.
+    x, y : str or mapping, or for ``y`` a sequence of them
+        Title of an axis, or its settings. Of rows below each other, ``y`` has one entry for each row, and ``x`` belongs
+        to the lowest.
+    **layout
+        Further settings of the layout.
+    """
+    rows = [y] if isinstance(y, str | Mapping) else y
+    for row, axis in enumerate(rows, start=1):
+        figure.update_yaxes(_settings(axis), row=row if len(rows) > 1 else None)
+    figure.update_xaxes(_settings(x), row=len(rows) if len(rows) > 1 else None)
+    return figure.update_layout(template=template(), title_text=title, height=height, **layout)
+
+
+def _settings(axis: Axis) -> dict[str, Any]:
+    return {"title": axis or None} if isinstance(axis, str) else dict(axis)
 
 
 def faint(colour: str, opacity: float = 0.22) -> str:

@@ -1,10 +1,12 @@
 """What a channel measures, and in which unit, read from the last word of its name."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from typing import TypeVar
 
 from dalembert.units import unit_of
 
+Label = TypeVar("Label")
 SIZE = re.compile(r"(?P<dof>.+) (?P<kind>peak|rms|harmonic \d+)")
 """Channels of responses over frequency."""
 QUANTITIES = {
@@ -83,6 +85,16 @@ def _known(channel: str, unit: str) -> tuple[str, str]:
 def labelled(name: str, unit: str) -> str:
     """Name with its unit in brackets, where it has one."""
     return f"{name} ({unit})" if unit else name
+
+
+def common(labels: Iterable[Label], otherwise: Label) -> Label:
+    """The label that all have, such as that of an axis that they share; another one where they differ.
+
+    >>> common(["angle (rad)", "angle (rad)"], "response"), common(["angle (rad)", "torque (N m)"], "response")
+    ('angle (rad)', 'response')
+    """
+    known = set(labels)
+    return known.pop() if len(known) == 1 else otherwise
 
 
 def by_quantity(channels: Sequence[str], most: int = 4) -> list[list[str]]:

@@ -31,6 +31,12 @@ def thin(values: np.ndarray, most: int = 4000) -> np.ndarray:
     return np.unique([0, len(values) - 1, *np.ravel(extremes)])
 
 
+def thinned(along: np.ndarray, values: np.ndarray, most: int = 4000) -> tuple[np.ndarray, np.ndarray]:
+    """A coordinate and a series over it, both (samples,), at the samples that :func:`thin` keeps."""
+    kept = thin(values, most)
+    return np.asarray(along)[kept], np.asarray(values)[kept]
+
+
 def largest_of_stretches(times: np.ndarray, values: np.ndarray, most: int = 200) -> tuple[np.ndarray, np.ndarray]:
     """Ends of at most ``most`` stretches of a series, and the largest value of each; NaN where all are NaN.
 

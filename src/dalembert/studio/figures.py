@@ -7,7 +7,7 @@ import numpy as np
 import plotly.graph_objects as go
 from nicegui import ui
 
-from dalembert.report.charts.logarithm import logarithmic, positive
+from dalembert.report.charts.drawing import logarithmic, positive
 from dalembert.report.look import LIGHT, plain, themed
 
 NEUTRAL = "#76818f"

@@ -8,7 +8,7 @@ from dalembert.errors import InputError
 from dalembert.inverse import StartEnd, Step
 from dalembert.parameters import Parameter, Parameters
 from dalembert.report import charts
-from dalembert.report.charts.identification.singular_values import combination
+from dalembert.report.charts.identification.identifiability import combination
 from dalembert.report.look import LIGHT
 from stand_ins import fit
 from support import says

@@ -8,7 +8,7 @@ from dalembert.errors import InputError
 from dalembert.forward import Coordinate
 from dalembert.inverse import identify
 from dalembert.report import charts, figures, report
-from dalembert.report.charts.frequency.contact_states import COLOURS, STATES
+from dalembert.report.charts.frequency.contacts import COLOURS, STATES
 from dalembert.report.focus import Look, movers
 from dalembert.report.prefixes import prefixed
 from dalembert.structure import ReductionErrors, eigenmodes, mode_shapes

@@ -1,7 +1,7 @@
 import plotly.graph_objects as go
 import pytest
 
-from dalembert.report.charts.logarithm import logarithmic
+from dalembert.report.charts.drawing import logarithmic
 from dalembert.report.look import DARK, LIGHT, dark, exchanged, plain, themed
 
 

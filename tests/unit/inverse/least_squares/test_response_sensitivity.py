@@ -11,7 +11,7 @@ from dalembert.inverse.problem.problem import pose
 from dalembert.inverse.starts.spread import SPREADS, spread_points
 from dalembert.optimize import ParticleSwarm, ResponseSensitivity
 from dalembert.report import figures, report
-from dalembert.report.charts.identification.l_curve import accounts
+from dalembert.report.charts.identification.regularisation import accounts
 from dalembert.study import load, run_study
 from dalembert.study.events import read_events
 from pages import read_page

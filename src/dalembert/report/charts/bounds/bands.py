@@ -5,14 +5,16 @@ from typing import Any
 
 import numpy as np
 import plotly.graph_objects as go
-from plotly.subplots import make_subplots
 
-from dalembert.data import Bands
+from dalembert.data import Bands, Measurements
 from dalembert.errors import InputError, unknown
 from dalembert.inverse import Prediction
-from dalembert.report.look import LIGHT, faint, plain, themed
-from dalembert.report.quantities import labelled, quantity
-from dalembert.report.thin import thin
+from dalembert.report.charts.drawing import colour_of, draw, stacked
+from dalembert.report.look import faint, plain, themed
+from dalembert.report.quantities import common, labelled, quantity
+from dalembert.report.thin import thin, thinned
+
+Channels = Bands | Measurements | Prediction
 
 
 def bands(given: Bands | Prediction, channels: Sequence[str] | None = None, *, title: str = "Bounds") -> go.Figure:
@@ -46,18 +48,18 @@ def bands(given: Bands | Prediction, channels: Sequence[str] | None = None, *, t
     >>> [trace.name for trace in bands(given).data]
     ['x', 'x, upper', 'x, lower', 'x, width']
     """
-    figure = make_subplots(rows=2, shared_xaxes=True, row_heights=[0.72, 0.28], vertical_spacing=0.05)
+    figure = stacked(0.72, 0.28, spacing=0.05)
     chosen = selected(given, channels, "bands")
     for place, name in enumerate(chosen):
-        column, colour = given.channels.index(name), LIGHT.series[place % len(LIGHT.series)]
+        column, colour = given.channels.index(name), colour_of(place)
         draw_band(figure, given, column, colour)
-        width, look = given.upper[:, column] - given.lower[:, column], {"color": colour, "width": 1.5}
-        draw_line(figure, given.coordinate.values, width, f"{plain(name)}, width", plain(name), look, row=2)
+        width = given.upper[:, column] - given.lower[:, column]
+        draw_line(figure, given.coordinate.values, width, f"{plain(name)}, width", plain(name), colour, row=2)
     return dressed(figure, given, chosen, title, below="width").update_yaxes(rangemode="tozero", row=2)
 
 
-def selected(given: Bands | Prediction, channels: Sequence[str] | None, where: str) -> tuple[str, ...]:
-    """Names of the channels to draw; InputError for one that the bands do not have."""
+def selected(given: Channels, channels: Sequence[str] | None, where: str) -> tuple[str, ...]:
+    """Names of the channels to draw, all if not given; InputError for one that there is not."""
     chosen = given.channels if channels is None else tuple(channels)
     for name in chosen:
         if name not in given.channels:
@@ -71,7 +73,7 @@ def draw_band(figure: go.Figure, given: Bands | Prediction, column: int, colour:
     bounds = {"upper": given.upper[:, column], "lower": given.lower[:, column]}
     fill_band(figure, at, bounds["lower"], bounds["upper"], f"{name}{legend}", name, colour, faint(colour))
     for side, values in bounds.items():
-        draw_line(figure, at, values, f"{name}, {side}", name, {"color": colour, "width": 1.5}, row=1)
+        draw_line(figure, at, values, f"{name}, {side}", name, colour, row=1)
 
 
 def fill_band(
@@ -86,19 +88,8 @@ def fill_band(
 ) -> None:
     """A band in the first row, filled with the colour of its inside."""
     x, y = outline(at, lower, upper)
-    figure.add_scatter(
-        x=x,
-        y=y,
-        name=name,
-        legendgroup=group,
-        mode="lines",
-        line={"width": 0, "color": colour},
-        fill="toself",
-        fillcolor=inside,
-        hoverinfo="skip",
-        row=1,
-        col=1,
-    )
+    style = {"fill": "toself", "fillcolor": inside, "hoverinfo": "skip"}
+    draw(figure, x, y, name, colour, 0, row=1, legendgroup=group, **style)
 
 
 def draw_line(
@@ -107,24 +98,12 @@ def draw_line(
     values: np.ndarray,
     name: str,
     group: str,
-    look: dict[str, Any],
-    *,
-    row: int,
-    legend: bool = False,
+    colour: str,
+    width: float = 1.5,
+    **style: Any,
 ) -> None:
-    """A line over the samples in one of the rows, thinned."""
-    kept = thin(values)
-    figure.add_scatter(
-        x=at[kept],
-        y=values[kept],
-        name=name,
-        legendgroup=group,
-        showlegend=legend,
-        mode="lines",
-        line=look,
-        row=row,
-        col=1,
-    )
+    """A thinned line over the samples, without an entry in the legend unless the style says so."""
+    draw(figure, *thinned(at, values), name, colour, width, legendgroup=group, **{"showlegend": False, **style})
 
 
 def outline(at: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -140,16 +119,10 @@ def outline(at: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> tuple[np.nd
     return x, np.concatenate([lower[there], upper[back], lower[:1]])
 
 
-def dressed(
-    figure: go.Figure, given: Bands | Prediction, chosen: Sequence[str], title: str, *, below: str
-) -> go.Figure:
+def dressed(figure: go.Figure, given: Channels, chosen: Sequence[str], title: str, *, below: str) -> go.Figure:
     """The figure with its look and the labels of its two rows."""
-    themed(figure, title, height=480)
     units = dict(zip(given.channels, getattr(given, "units", ()), strict=False))
-    labels = {quantity(name, plain(units.get(name, ""))) for name in chosen}
-    label = labels.pop() if len(labels) == 1 else "response"
-    figure.update_yaxes(title_text=label, row=1)
-    figure.update_yaxes(title_text=label.replace(label.partition(" (")[0], below), row=2)
-    along = given.coordinate
-    figure.update_xaxes(title_text=labelled(along.name, along.unit), row=2)
-    return figure.update_layout(hovermode="x unified")
+    label = common((quantity(name, plain(units.get(name, ""))) for name in chosen), "response")
+    y = (label, label.replace(label.partition(" (")[0], below))
+    x = labelled(given.coordinate.name, given.coordinate.unit)
+    return themed(figure, title, 480, x=x, y=y, hovermode="x unified")

@@ -3,11 +3,11 @@
 import numpy as np
 import plotly.graph_objects as go
 
+from dalembert.report.charts.drawing import colour_of, draw, logarithmic, positive
 from dalembert.report.charts.identification.responses import FEW
-from dalembert.report.charts.logarithm import logarithmic, positive
 from dalembert.report.look import LIGHT, plain, themed
 from dalembert.report.quantities import labelled
-from dalembert.report.thin import thin
+from dalembert.report.thin import thinned
 from dalembert.uncertainty import Comparison, Propagation
 
 KINDS = {
@@ -45,9 +45,8 @@ def methods(comparison: Comparison, *, title: str = "Error against runs") -> go.
             marker={"size": 11, "color": colour, "symbol": symbol},
             showlegend=bool(own),
         )
-    themed(figure, title, height=400)
-    figure.update_xaxes(title="runs of the model", **logarithmic(figure, "x"))
-    return figure.update_yaxes(title="largest error", **logarithmic(figure))
+    x = {"title": "runs of the model", **logarithmic(figure, "x")}
+    return themed(figure, title, 400, x=x, y={"title": "largest error", **logarithmic(figure)})
 
 
 def differences(comparison: Comparison, *, title: str = "Distance from the reference") -> go.Figure:
@@ -68,18 +67,11 @@ def differences(comparison: Comparison, *, title: str = "Distance from the refer
     along = known.coordinate
     for place, one in enumerate(one for one in comparison.results if one is not known):
         apart = positive(np.maximum(np.abs(one.lower - known.lower), np.abs(one.upper - known.upper)).max(axis=1))
-        kept = thin(apart)
-        figure.add_scatter(
-            x=along.values[kept],
-            y=apart[kept],
-            name=plain(one.method),
-            mode="lines+markers" if len(kept) <= FEW else "lines",
-            marker={"size": 4},
-            line={"width": 1.5, "color": LIGHT.series[place % len(LIGHT.series)]},
-        )
-    themed(figure, title, height=400)
-    figure.update_xaxes(title=labelled(along.name, along.unit))
-    return figure.update_yaxes(title="distance", **logarithmic(figure)).update_layout(showlegend=True)
+        x, y = thinned(along.values, apart)
+        mode = "lines+markers" if len(x) <= FEW else "lines"
+        draw(figure, x, y, plain(one.method), colour_of(place), 1.5, mode=mode, marker_size=4)
+    y = {"title": "distance", **logarithmic(figure)}
+    return themed(figure, title, 400, x=labelled(along.name, along.unit), y=y, showlegend=True)
 
 
 def reference(comparison: Comparison) -> Propagation:

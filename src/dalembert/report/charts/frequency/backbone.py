@@ -2,9 +2,8 @@
 
 import numpy as np
 import plotly.graph_objects as go
-from plotly.subplots import make_subplots
 
-from dalembert.report.charts.logarithm import logarithmic
+from dalembert.report.charts.drawing import HOVER, draw, logarithmic, stacked
 from dalembert.report.look import LIGHT, plain, themed
 from dalembert.report.prefixes import prefixed
 from dalembert.report.quantities import labelled
@@ -29,28 +28,19 @@ def backbone(mode: Backbone, *, title: str | None = None) -> go.Figure:
     """
     amplitudes = np.asarray(mode.amplitudes)
     factor, unit = prefixed(float(amplitudes.max()), unit_of(mode.dof))
-    figure = make_subplots(rows=2, shared_xaxes=True, vertical_spacing=0.06)
+    figure = stacked(1, 1)
+    mode_of_lines = "lines+markers" if len(amplitudes) <= 60 else "lines"
     for row, name, values, colour in (
         (1, "frequency", np.asarray(mode.frequencies), LIGHT.series[0]),
         (2, "damping ratio", 100 * np.asarray(mode.damping), LIGHT.series[1]),
     ):
-        figure.add_scatter(
-            x=factor * amplitudes,
-            y=np.where(mode.converged, values, np.nan),
-            name=name,
-            mode="lines+markers" if len(amplitudes) <= 60 else "lines",
-            line={"color": colour, "width": 2},
-            marker={"size": 5},
-            row=row,
-            col=1,
-        )
-    themed(figure, title or f"Mode {mode.mode} over its amplitude", height=480)
-    figure.update_yaxes(title_text="frequency (Hz)", row=1)
-    figure.update_yaxes(title_text="damping ratio (%)", rangemode="tozero", row=2)
+        y = np.where(mode.converged, values, np.nan)
+        draw(figure, factor * amplitudes, y, name, colour, row=row, mode=mode_of_lines, marker_size=5)
     if amplitudes.max() > DECADES * amplitudes.min():
         figure.update_xaxes(**logarithmic(figure, "x"))
-    figure.update_xaxes(title_text=labelled(f"amplitude of {plain(mode.dof)}, first harmonic", unit), row=2)
-    return figure.update_layout(showlegend=False)
+    x = labelled(f"amplitude of {plain(mode.dof)}, first harmonic", unit)
+    y = ("frequency (Hz)", {"title": "damping ratio (%)", "rangemode": "tozero"})
+    return themed(figure, title or f"Mode {mode.mode} over its amplitude", 480, x=x, y=y, showlegend=False)
 
 
 def backbone_line(mode: Backbone, dof: str, kind: str, factor: float) -> go.Scatter:
@@ -61,5 +51,5 @@ def backbone_line(mode: Backbone, dof: str, kind: str, factor: float) -> go.Scat
         name=f"{plain(dof)}, mode {mode.mode} without force",
         mode="lines",
         line={"color": LIGHT.ink, "width": 1.5, "dash": "dot"},
-        hovertemplate="%{x:.6g} Hz, %{y:.5g}",
+        hovertemplate=HOVER,
     )

@@ -22,19 +22,12 @@ def surface(places: np.ndarray, faces: np.ndarray, sizes: np.ndarray, bar: str) 
         marker = {"size": 4, "color": sizes.astype(np.float32), "colorbar": side, **scale}
         return go.Scatter3d(x=x, y=y, z=z, mode="markers", marker=marker, showlegend=False)
     i, j, k = triangles(faces).T
-    return go.Mesh3d(
-        x=x,
-        y=y,
-        z=z,
-        i=i,
-        j=j,
-        k=k,
-        intensity=sizes.astype(np.float32),
-        colorbar=side,
-        lighting={"ambient": 0.75, "diffuse": 0.5, "specular": 0.05},
-        hovertemplate="x %{x:.4g}, y %{y:.4g}, z %{z:.4g}: %{intensity:.4g}<extra></extra>",
-        **scale,
-    )
+    look = {
+        "lighting": {"ambient": 0.75, "diffuse": 0.5, "specular": 0.05},
+        "hovertemplate": "x %{x:.4g}, y %{y:.4g}, z %{z:.4g}: %{intensity:.4g}<extra></extra>",
+        "colorbar": side,
+    }
+    return go.Mesh3d(x=x, y=y, z=z, i=i, j=j, k=k, intensity=sizes.astype(np.float32), **scale, **look)
 
 
 def outline(places: np.ndarray, faces: np.ndarray) -> go.Scatter3d:
@@ -80,31 +73,20 @@ def edges(places: np.ndarray, faces: np.ndarray) -> np.ndarray:
     return ends[drawn]
 
 
-def space(figure: go.Figure, positions: np.ndarray) -> go.Figure:
-    """Equal axes that hold positions (..., 3), m."""
-    low, high = (turn(positions.reshape(-1, 3), axis=0) for turn in (np.min, np.max))
+def space(figure: go.Figure, positions: np.ndarray) -> None:
+    """Give a figure equal axes that hold positions (points, 3), m."""
+    low, high = positions.min(axis=0), positions.max(axis=0)
     longest = float(np.max(high - low)) or 1.0
     low, high = low - 0.02 * longest, high + 0.02 * longest
-    axis: dict[str, Any] = {
-        "gridcolor": LIGHT.grid,
-        "color": LIGHT.muted,
-        "showbackground": False,
-        "zeroline": False,
-        "nticks": 4,
+    axis = {"gridcolor": LIGHT.grid, "color": LIGHT.muted, "showbackground": False, "zeroline": False, "nticks": 4}
+    scene: dict[str, Any] = {
+        f"{name}axis": {**axis, "title": f"{name} (m)", "range": [float(low[at]), float(high[at])]}
+        for at, name in enumerate("xyz")
     }
-    figure.update_layout(
-        scene={
-            **{
-                f"{name}axis": {**axis, "title": f"{name} (m)", "range": [float(low[at]), float(high[at])]}
-                for at, name in enumerate("xyz")
-            },
-            "aspectmode": "manual",
-            "aspectratio": {name: float((high - low)[at]) / longest for at, name in enumerate("xyz")},
-            "camera": {"eye": {"x": 0.8, "y": -1.25, "z": 0.85}, "center": {"x": 0, "y": 0, "z": -0.08}},
-        },
-        margin={"l": 0, "r": 0, "b": 0},
-    )
-    return figure
+    scene["aspectmode"] = "manual"
+    scene["aspectratio"] = {name: float((high - low)[at]) / longest for at, name in enumerate("xyz")}
+    scene["camera"] = {"eye": {"x": 0.8, "y": -1.25, "z": 0.85}, "center": {"x": 0, "y": 0, "z": -0.08}}
+    figure.update_layout(scene=scene, margin={"l": 0, "r": 0, "b": 0})
 
 
 def magnification(places: np.ndarray, sizes: np.ndarray) -> float:

@@ -5,12 +5,12 @@ from typing import Any
 import numpy as np
 import plotly.graph_objects as go
 
+from dalembert.report.charts.drawing import HOVER, draw, logarithmic, positive
 from dalembert.report.charts.frequency.resonance_peaks import value_text
-from dalembert.report.charts.logarithm import logarithmic, positive
 from dalembert.report.look import LIGHT, plain, themed
 from dalembert.report.prefixes import prefixed
 from dalembert.report.quantities import labelled, size_label
-from dalembert.report.thin import thin
+from dalembert.report.thin import thinned
 from dalembert.units import unit_of
 from dalembert.vibration import CurveFamily
 
@@ -50,30 +50,17 @@ def curve_family(family: CurveFamily, dof: str, *, kind: str = "peak", title: st
         curve, value = family.curves[place], float(family.values[place])
         assert curve is not None
         size = np.where(curve.converged, factor * curve.amplitude(dof, kind), np.nan)
-        kept = thin(size)
-        figure.add_scatter(
-            x=curve.frequencies[kept],
-            y=size[kept],
-            name=value_text(family, value) + (", smallest peak" if value == best else ""),
-            mode="lines",
-            line={"color": coloured.get(place, LIGHT.muted), "width": 3 if value == best else 1.5},
-            opacity=1 if place in coloured else 0.5,
-            showlegend=place in coloured,
-            hovertemplate="%{x:.6g} Hz, %{y:.5g}",
-        )
-    for name, size in (("smallest of all", envelope.smallest), ("largest of all", envelope.largest)):
-        figure.add_scatter(
-            x=envelope.frequencies,
-            y=factor * size,
-            name=name,
-            mode="lines",
-            line={"color": LIGHT.ink, "width": 1.2, "dash": "dot" if name.startswith("smallest") else "dash"},
-        )
-    themed(figure, title or f"{plain(dof)} over {plain(family.parameter)}", height=480)
-    figure.update_xaxes(title="frequency (Hz)")
+        name = value_text(family, value) + (", smallest peak" if value == best else "")
+        colour, width = coloured.get(place, LIGHT.muted), 3 if value == best else 1.5
+        style = {"opacity": 1 if place in coloured else 0.5, "showlegend": place in coloured, "hovertemplate": HOVER}
+        draw(figure, *thinned(curve.frequencies, size), name, colour, width, **style)
+    for word, size, dash in (("smallest", envelope.smallest, "dot"), ("largest", envelope.largest, "dash")):
+        draw(figure, envelope.frequencies, factor * size, f"{word} of all", LIGHT.ink, 1.2, line_dash=dash)
     wide = np.nanmax(envelope.largest) > WIDE * np.nanmin(positive(envelope.smallest))
     axis: dict[str, Any] = logarithmic(figure) if wide else {"rangemode": "tozero"}
-    return figure.update_yaxes(title=labelled(size_label(kind), unit), **axis).update_layout(showlegend=True)
+    y = {"title": labelled(size_label(kind), unit), **axis}
+    title = title or f"{plain(dof)} over {plain(family.parameter)}"
+    return themed(figure, title, 480, x="frequency (Hz)", y=y, showlegend=True)
 
 
 def _coloured(family: CurveFamily, found: list[int], best: float) -> dict[int, str]:

@@ -51,10 +51,10 @@ def deformation(shape: Deformation, *, title: str | None = None) -> go.Figure:
         )
         for number, frame in enumerate(positions)
     ]
-    themed(figure, title or f"Deformed shape at {shown(shape.frequency)} Hz", height=520)
     labels = [f"{360 * number / count:.0f}" for number in order]
     film = Film(labels, SECONDS, "phase", "°", slowness(shape.frequency), endless=True)
-    return space(figure, np.concatenate([positions.reshape(-1, 3), shape.places])).update_layout(**film.controls())
+    space(figure, np.concatenate([positions.reshape(-1, 3), shape.places]))
+    return themed(figure, title or f"Deformed shape at {shown(shape.frequency)} Hz", 520, **film.controls())
 
 
 def magnified(shape: Deformation) -> float:

@@ -5,14 +5,15 @@ from typing import Any
 
 import numpy as np
 import plotly.graph_objects as go
+from scipy.ndimage import binary_dilation
 
+from dalembert.report.charts.drawing import HOVER, colour_of, draw, logarithmic, positive
 from dalembert.report.charts.frequency.backbone import backbone_line
-from dalembert.report.charts.logarithm import logarithmic, positive
 from dalembert.report.focus import marked, movers, unstable
 from dalembert.report.look import LIGHT, plain, themed
 from dalembert.report.prefixes import prefixed
 from dalembert.report.quantities import labelled, size_label
-from dalembert.report.thin import thin
+from dalembert.report.thin import thinned
 from dalembert.units import unit_of
 from dalembert.vibration import Backbone, FrequencyCurve
 
@@ -58,22 +59,18 @@ def frequency_curve(
     factor, unit = scale(sizes)
     figure = go.Figure()
     for place, (dof, size) in enumerate(sizes.items()):
-        _path(figure, curve, dof, factor * size, LIGHT.series[place % len(LIGHT.series)])
+        _path(figure, curve, dof, factor * size, colour_of(place))
     for event, points in marked(curve).items():
-        figure.add_scatter(
-            x=np.tile(curve.frequencies[points], len(sizes)),
-            y=np.concatenate([factor * size[points] for size in sizes.values()]),
-            name=event,
-            mode="markers",
-            marker={"symbol": SYMBOLS.get(event, "x"), "size": 9, "color": LIGHT.ink},
-        )
+        x = np.tile(curve.frequencies[points], len(sizes))
+        y = np.concatenate([factor * size[points] for size in sizes.values()])
+        marker = {"symbol": SYMBOLS.get(event, "x"), "size": 9, "color": LIGHT.ink}
+        figure.add_scatter(x=x, y=y, name=event, mode="markers", marker=marker)
     _lost(figure, curve, {dof: factor * size for dof, size in sizes.items()})
     if mode is not None:
         most = max(sizes, key=lambda dof: float(np.nanmax(sizes[dof], initial=0.0)))
         figure.add_trace(backbone_line(mode, most, kind, factor))
-    themed(figure, title, height=440)
-    figure.update_xaxes(title="frequency (Hz)")
-    return figure.update_yaxes(title=labelled(size_label(kind), unit), **_axis(figure)).update_layout(showlegend=True)
+    y = {"title": labelled(size_label(kind), unit), **_axis(figure)}
+    return themed(figure, title, 440, x="frequency (Hz)", y=y, showlegend=True)
 
 
 def scale(sizes: Mapping[str, np.ndarray]) -> tuple[float, str]:
@@ -86,26 +83,14 @@ def scale(sizes: Mapping[str, np.ndarray]) -> tuple[float, str]:
 def _path(figure: go.Figure, curve: FrequencyCurve, dof: str, size: np.ndarray, colour: str) -> None:
     """One degree of freedom: solid, and dashed where it is unstable; the two meet."""
     bad = unstable(curve)
-    touched = (
-        bad | np.roll(bad, 1) * (np.arange(len(bad)) > 0) | np.roll(bad, -1) * (np.arange(len(bad)) < len(bad) - 1)
-    )
+    touched = binary_dilation(bad)  # and the neighbours
     found = np.where(curve.converged, size, np.nan)
     few = "lines+markers" if len(size) <= FEW else "lines"
-    for suffix, here, style in (("", ~bad, {}), (", unstable", touched, {"dash": "dash"})):
-        if not here.any():
-            continue
-        y = np.where(here, found, np.nan)
-        kept = thin(y)
-        figure.add_scatter(
-            x=curve.frequencies[kept],
-            y=y[kept],
-            name=f"{plain(dof)}{suffix}",
-            legendgroup=plain(dof),
-            mode=few,
-            line={"color": colour, "width": 2, **style},
-            marker={"size": 4},
-            hovertemplate="%{x:.6g} Hz, %{y:.5g}",
-        )
+    style = {"legendgroup": plain(dof), "mode": few, "marker_size": 4, "hovertemplate": HOVER}
+    for suffix, here, dash in (("", ~bad, None), (", unstable", touched, "dash")):
+        if here.any():
+            x, y = thinned(curve.frequencies, np.where(here, found, np.nan))
+            draw(figure, x, y, f"{plain(dof)}{suffix}", colour, line_dash=dash, **style)
 
 
 def _lost(figure: go.Figure, curve: FrequencyCurve, sizes: Mapping[str, np.ndarray]) -> None:
@@ -113,14 +98,10 @@ def _lost(figure: go.Figure, curve: FrequencyCurve, sizes: Mapping[str, np.ndarr
     found, points = np.flatnonzero(curve.converged), np.flatnonzero(~curve.converged)
     if not len(points) or not len(found):
         return
-    figure.add_scatter(
-        x=np.tile(curve.frequencies[points], len(sizes)),
-        y=np.concatenate([np.interp(points, found, size[found]) for size in sizes.values()]),
-        name="not found",
-        mode="markers",
-        marker={"symbol": "x-thin", "size": 8, "line": {"width": 2, "color": LIGHT.series[1]}},
-        hovertemplate="%{x:.6g} Hz",
-    )
+    x = np.tile(curve.frequencies[points], len(sizes))
+    y = np.concatenate([np.interp(points, found, size[found]) for size in sizes.values()])
+    marker = {"symbol": "x-thin", "size": 8, "line": {"width": 2, "color": LIGHT.series[1]}}
+    figure.add_scatter(x=x, y=y, name="not found", mode="markers", marker=marker, hovertemplate="%{x:.6g} Hz")
 
 
 def _axis(figure: go.Figure) -> dict:

@@ -3,7 +3,7 @@
 import numpy as np
 import plotly.graph_objects as go
 
-from dalembert.report.charts.logarithm import logarithmic, positive
+from dalembert.report.charts.drawing import colour_of, draw, logarithmic, positive
 from dalembert.report.look import LIGHT, plain, themed
 from dalembert.report.prefixes import prefixed
 from dalembert.report.quantities import labelled
@@ -41,21 +41,12 @@ def harmonic_content(curve: FrequencyCurve, dof: str, *, title: str | None = Non
     for place, (order, size) in enumerate(sizes.items()):
         if not np.nanmax(size, initial=0.0) > NOTHING * most:
             continue
-        again = place // len(LIGHT.series)
-        figure.add_scatter(
-            x=curve.frequencies,
-            y=factor * np.where(size > NOTHING * most, positive(size), np.nan),
-            name="mean" if order == 0 else f"harmonic {order}",
-            mode="lines",
-            line={
-                "color": LIGHT.series[place % len(LIGHT.series)],
-                "width": 2 if order == 1 else 1.5,
-                "dash": ("solid", "dash", "dot")[min(again, 2)],
-            },
-        )
-    themed(figure, title or f"Harmonics of {plain(dof)}", height=400)
-    figure.update_xaxes(title="frequency (Hz)")
-    return figure.update_yaxes(title=labelled("amplitude", unit), **logarithmic(figure)).update_layout(showlegend=True)
+        y = factor * np.where(size > NOTHING * most, positive(size), np.nan)
+        name, width = "mean" if order == 0 else f"harmonic {order}", 2 if order == 1 else 1.5
+        dash = ("solid", "dash", "dot")[min(place // len(LIGHT.series), 2)]
+        draw(figure, curve.frequencies, y, name, colour_of(place), width, line_dash=dash)
+    y = {"title": labelled("amplitude", unit), **logarithmic(figure)}
+    return themed(figure, title or f"Harmonics of {plain(dof)}", 400, x="frequency (Hz)", y=y, showlegend=True)
 
 
 def by_order(curve: FrequencyCurve, dof: str) -> dict[int, np.ndarray]:

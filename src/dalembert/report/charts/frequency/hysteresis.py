@@ -5,8 +5,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import plotly.graph_objects as go
 
+from dalembert.report.charts.drawing import colour_of, draw
 from dalembert.report.focus import foremost, of_contacts
-from dalembert.report.look import LIGHT, plain, themed
+from dalembert.report.look import plain, themed
 from dalembert.report.prefixes import prefixed
 from dalembert.report.quantities import labelled
 from dalembert.vibration import FrequencyCurve
@@ -54,11 +55,9 @@ def draw_loops(loops: Mapping[str, tuple[np.ndarray, np.ndarray]], title: str) -
     )
     figure = go.Figure()
     for place, (name, (u, f)) in enumerate(loops.items()):
-        line = {"color": LIGHT.series[place % len(LIGHT.series)], "width": 2}
-        figure.add_scatter(x=along * u, y=up * f, name=plain(name), mode="lines", line=line)
-    themed(figure, title, height=400)
-    figure.update_xaxes(title=labelled("relative displacement", length))
-    return figure.update_yaxes(title=labelled("force", force)).update_layout(showlegend=True)
+        draw(figure, along * u, up * f, plain(name), colour_of(place))
+    x = labelled("relative displacement", length)
+    return themed(figure, title, 400, x=x, y=labelled("force", force), showlegend=True)
 
 
 def rubbing(curve: FrequencyCurve, point: int) -> tuple[str, ...]:

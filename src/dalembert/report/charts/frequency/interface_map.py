@@ -4,7 +4,7 @@ import numpy as np
 import plotly.graph_objects as go
 
 from dalembert.report.charts.frequency.body import edges
-from dalembert.report.charts.frequency.contact_states import COLOURS, STATES, shares
+from dalembert.report.charts.frequency.contacts import COLOURS, STATES, shares
 from dalembert.report.charts.frequency.deformation import SECONDS, slowness
 from dalembert.report.charts.motion.film import Film
 from dalembert.report.look import LIGHT, plain, themed
@@ -50,39 +50,26 @@ def interface_map(shape: Deformation, *, title: str | None = None) -> go.Figure:
         for k, name in enumerate(shape.contacts)
     ]
     figure = go.Figure([_structure(shape, wide), *_legend()])
-    figure.add_scatter(
-        x=x,
-        y=y,
-        mode="markers",
-        marker={
-            "size": sizes,
-            "color": colours[shape.states[:, 0]],
-            "line": {"width": 3 if len(sizes) <= MANY else 1.5, "color": rings[longest]},
-            "opacity": 1,
-        },
-        text=text,
-        hovertemplate="%{text}<extra></extra>",
-        showlegend=False,
-    )
+    ring = {"width": 3 if len(sizes) <= MANY else 1.5, "color": rings[longest]}
+    marker = {"size": sizes, "color": colours[shape.states[:, 0]], "line": ring, "opacity": 1}
+    hover = {"text": text, "hovertemplate": "%{text}<extra></extra>"}
+    figure.add_scatter(x=x, y=y, mode="markers", marker=marker, showlegend=False, **hover)
     last = len(STATES) + 1
-    figure.frames = [
-        go.Frame(
-            name=str(number),
-            traces=[last],
-            data=[{"type": "scatter", "marker": {"color": colours[shape.states[:, phase]]}}],
-        )
-        for number, phase in enumerate(phases)
-    ]
-    themed(figure, title or "Contact states over the interface", height=480)
+    filled = [{"type": "scatter", "marker": {"color": colours[shape.states[:, phase]]}} for phase in phases]
+    figure.frames = [go.Frame(name=str(number), traces=[last], data=[one]) for number, one in enumerate(filled)]
     points = np.concatenate([shape.places[:, wide], shape.contact_places[:, wide]])
     low, high = points.min(axis=0), points.max(axis=0)
     margin = 0.06 * float((high - low).max())
-    across, up = ("xyz"[axis] for axis in wide)
-    figure.update_xaxes(title=f"{across} (m)", range=[low[0] - margin, high[0] + margin], constrain="domain")
-    figure.update_yaxes(title=f"{up} (m)", range=[low[1] - margin, high[1] + margin], scaleanchor="x", scaleratio=1)
+    across, up = (
+        {"title": f"{'xyz'[axis]} (m)", "range": [low[place] - margin, high[place] + margin]}
+        for place, axis in enumerate(wide)
+    )
+    across["constrain"] = "domain"
+    up |= {"scaleanchor": "x", "scaleratio": 1}
     labels = [f"{360 * number / FRAMES:.0f}" for number in range(FRAMES)]
     film = Film(labels, SECONDS, "phase", "°", slowness(shape.frequency), endless=True)
-    return figure.update_layout(showlegend=True, **film.controls())
+    title = title or "Contact states over the interface"
+    return themed(figure, title, 480, x=across, y=up, showlegend=True, **film.controls())
 
 
 def _structure(shape: Deformation, wide: np.ndarray) -> go.Scatter:

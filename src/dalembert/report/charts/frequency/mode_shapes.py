@@ -37,9 +37,9 @@ def mode_shapes(modes: ModeShapes, *, title: str = "Mode shapes") -> go.Figure:
         for number, (frame, size) in enumerate(zip(positions, sizes, strict=True))
     ]
     labels = [f"{number}: {shown(float(value))} Hz" for number, value in enumerate(modes.frequencies[: len(shapes)], 1)]
-    themed(figure, title, height=520)
     film = Film(labels, SECONDS_A_MODE * len(labels), "mode", "")
-    return space(figure, np.concatenate([positions.reshape(-1, 3), modes.places])).update_layout(**film.controls())
+    space(figure, np.concatenate([positions.reshape(-1, 3), modes.places]))
+    return themed(figure, title, 520, **film.controls())
 
 
 def _frame(body: go.Mesh3d | go.Scatter3d, positions: np.ndarray, sizes: np.ndarray) -> dict:

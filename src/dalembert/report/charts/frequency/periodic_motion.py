@@ -3,9 +3,11 @@
 import numpy as np
 import plotly.graph_objects as go
 
+from dalembert.report.charts.drawing import colour_of, draw
+from dalembert.report.charts.frequency.contacts import PHASE
 from dalembert.report.charts.frequency.hysteresis import draw_loops
 from dalembert.report.focus import foremost
-from dalembert.report.look import LIGHT, plain, themed
+from dalembert.report.look import plain, themed
 from dalembert.report.prefixes import prefixed
 from dalembert.report.quantities import labelled
 from dalembert.units import unit_of
@@ -31,12 +33,8 @@ def periodic_motion(motion: PeriodicMotion, *, title: str = "A period in time") 
     factor, unit = prefixed(float(np.abs(motion.displacements[:, columns]).max()), unit)
     figure, phases = go.Figure(), 360 * motion.frequency * motion.times
     for place, (dof, column) in enumerate(zip(chosen, columns, strict=True)):
-        line = {"color": LIGHT.series[place % len(LIGHT.series)], "width": 2}
-        y = factor * motion.displacements[:, column]
-        figure.add_scatter(x=phases, y=y, name=plain(dof), mode="lines", line=line)
-    themed(figure, title, height=400)
-    figure.update_xaxes(title="phase of the period (°)", dtick=90, range=[0, 360])
-    return figure.update_yaxes(title=labelled("displacement", unit)).update_layout(showlegend=True)
+        draw(figure, phases, factor * motion.displacements[:, column], plain(dof), colour_of(place))
+    return themed(figure, title, 400, x=PHASE, y=labelled("displacement", unit), showlegend=True)
 
 
 def loops_in_time(motion: PeriodicMotion, *, title: str = "Hysteresis loops in time") -> go.Figure:

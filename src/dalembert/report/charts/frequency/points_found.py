@@ -2,9 +2,8 @@
 
 import numpy as np
 import plotly.graph_objects as go
-from plotly.subplots import make_subplots
 
-from dalembert.report.charts.logarithm import positive
+from dalembert.report.charts.drawing import positive, stacked
 from dalembert.report.look import LIGHT, themed
 from dalembert.vibration import FrequencyCurve
 
@@ -21,22 +20,13 @@ def points_found(curve: FrequencyCurve, *, title: str = "How the points were fou
     -------
     plotly.graph_objects.Figure
     """
-    figure = make_subplots(rows=2, shared_xaxes=True, vertical_spacing=0.06)
+    figure = stacked(1, 1)
     for row, name, values, colour in (
         (1, "Newton iterations", curve.iterations, LIGHT.ink),
         (2, "left unbalanced", positive(np.asarray(curve.residuals, dtype=float)), LIGHT.series[0]),
         (2, "change with twice the samples", positive(np.asarray(curve.sampling_errors, dtype=float)), LIGHT.series[1]),
     ):
-        figure.add_scatter(
-            x=curve.frequencies,
-            y=values,
-            name=name,
-            mode="markers",
-            marker={"color": colour, "size": 4},
-            row=row,
-            col=1,
-        )
-    themed(figure, title, height=480)
-    figure.update_yaxes(title_text="iterations", rangemode="tozero", row=1)
-    figure.update_yaxes(title_text="part of the forces", type="log", row=2)
-    return figure.update_xaxes(title_text="frequency (Hz)", row=2).update_layout(showlegend=True)
+        marker = {"color": colour, "size": 4}
+        figure.add_scatter(x=curve.frequencies, y=values, name=name, mode="markers", marker=marker, row=row, col=1)
+    y = ({"title": "iterations", "rangemode": "tozero"}, {"title": "part of the forces", "type": "log"})
+    return themed(figure, title, 480, x="frequency (Hz)", y=y, showlegend=True)

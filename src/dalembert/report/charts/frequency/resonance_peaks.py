@@ -2,8 +2,8 @@
 
 import numpy as np
 import plotly.graph_objects as go
-from plotly.subplots import make_subplots
 
+from dalembert.report.charts.drawing import draw, stacked
 from dalembert.report.digits import shown
 from dalembert.report.look import LIGHT, plain, themed
 from dalembert.report.prefixes import prefixed
@@ -73,29 +73,17 @@ def _drawn(
     title: str | None,
 ) -> go.Figure:
     factor, unit = prefixed(float(np.nanmax(heights, initial=0.0)), unit_of(dof))
-    figure = make_subplots(rows=2, shared_xaxes=True, row_heights=[0.62, 0.38], vertical_spacing=0.06)
-    for row, name, y, colour in (
-        (1, "peak", factor * heights, LIGHT.series[0]),
-        (2, "its frequency", frequencies, LIGHT.series[2]),
-    ):
-        line, marker = {"color": colour, "width": 2}, {"size": 6}
-        figure.add_scatter(x=values, y=y, name=name, mode="lines+markers", line=line, marker=marker, row=row, col=1)
+    figure, style = stacked(0.62, 0.38), {"mode": "lines+markers", "marker_size": 6}
+    draw(figure, values, factor * heights, "peak", LIGHT.series[0], row=1, **style)
+    draw(figure, values, frequencies, "its frequency", LIGHT.series[2], row=2, **style)
     if np.isfinite(heights).any():
         lowest = int(np.nanargmin(heights))
-        figure.add_scatter(
-            x=values[[lowest]],
-            y=factor * heights[[lowest]],
-            name=f"smallest, at {value_text(over, values[lowest])}",
-            mode="markers",
-            marker={"color": LIGHT.series[1], "size": 13, "symbol": "circle-open", "line": {"width": 3}},
-            row=1,
-            col=1,
-        )
+        x, y, name = values[[lowest]], factor * heights[[lowest]], f"smallest, at {value_text(over, values[lowest])}"
+        marker = {"color": LIGHT.series[1], "size": 13, "symbol": "circle-open", "line": {"width": 3}}
+        figure.add_scatter(x=x, y=y, name=name, mode="markers", marker=marker, row=1, col=1)
     by = "" if kind == "peak" else f", by its {size_label(kind)}"
-    themed(figure, title or f"Peak of {plain(dof)} over {plain(over.parameter)}{by}", height=460)
-    figure.update_yaxes(title_text=labelled("peak", unit), rangemode="tozero", row=1)
-    figure.update_yaxes(title_text="frequency (Hz)", row=2)
     if values.min() > 0 and values.max() > DECADES * values.min():
         figure.update_xaxes(type="log", dtick=1)
-    figure.update_xaxes(title_text=labelled(plain(over.parameter), plain(over.unit)), row=2)
-    return figure.update_layout(showlegend=True)
+    y = ({"title": labelled("peak", unit), "rangemode": "tozero"}, "frequency (Hz)")
+    title = title or f"Peak of {plain(dof)} over {plain(over.parameter)}{by}"
+    return themed(figure, title, 460, x=labelled(plain(over.parameter), plain(over.unit)), y=y, showlegend=True)

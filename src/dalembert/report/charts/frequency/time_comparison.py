@@ -1,12 +1,14 @@
 """Points of a response over frequency beside integration in time."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import plotly.graph_objects as go
 
+from dalembert.report.charts.drawing import HOVER, colour_of, draw
 from dalembert.report.focus import foremost
-from dalembert.report.look import LIGHT, plain, themed
+from dalembert.report.look import plain, themed
 from dalembert.report.prefixes import prefixed
 from dalembert.report.quantities import labelled, size_label
 from dalembert.units import unit_of
@@ -43,29 +45,20 @@ def time_comparison(
     factor, unit = prefixed(most, units.pop()) if len(units) == 1 else (1.0, "")
     figure = go.Figure()
     for place, (dof, column) in enumerate(zip(chosen, columns, strict=True)):
-        colour = LIGHT.series[place % len(LIGHT.series)]
-        name, shared = plain(dof), {"legendgroup": plain(dof), "hovertemplate": "%{x:.6g} Hz, %{y:.5g}"}
+        name, colour = plain(dof), colour_of(place)
+        shared: dict[str, Any] = {"legendgroup": name, "hovertemplate": HOVER}
         if curve is not None:
             size = factor * np.where(curve.converged, curve.amplitude(dof, comparison.kind), np.nan)
-            line = {"color": colour, "width": 2}
-            figure.add_scatter(x=curve.frequencies, y=size, name=name, mode="lines", line=line, **shared)
+            draw(figure, curve.frequencies, size, name, colour, **shared)
         for word, values, symbol in (
             ("harmonic balance", comparison.balance, "circle-open"),
             ("in time", comparison.time, "x-thin"),
         ):
             marker = {"symbol": symbol, "size": 9, "color": colour, "line": {"width": 2, "color": colour}}
-            figure.add_scatter(
-                x=comparison.frequencies,
-                y=factor * values[:, column],
-                name=f"{name}, {word}",
-                mode="markers",
-                marker=marker,
-                **shared,
-            )
-    themed(figure, title, height=440)
-    figure.update_xaxes(title="frequency (Hz)")
-    figure.update_yaxes(title=labelled(size_label(comparison.kind), unit), rangemode="tozero")
-    return figure.update_layout(showlegend=True)
+            style = {"name": f"{name}, {word}", "mode": "markers", "marker": marker, **shared}
+            figure.add_scatter(x=comparison.frequencies, y=factor * values[:, column], **style)
+    y = {"title": labelled(size_label(comparison.kind), unit), "rangemode": "tozero"}
+    return themed(figure, title, 440, x="frequency (Hz)", y=y, showlegend=True)
 
 
 def compared_dofs(comparison: TimeComparison, most: int = 4) -> tuple[str, ...]:

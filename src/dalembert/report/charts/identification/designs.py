@@ -4,7 +4,8 @@ import numpy as np
 import plotly.graph_objects as go
 
 from dalembert.inverse import Designs
-from dalembert.report.charts.logarithm import logarithmic, positive
+from dalembert.report.charts.drawing import draw, logarithmic, positive
+from dalembert.report.charts.identification.identifiability import labelled_points
 from dalembert.report.digits import shown
 from dalembert.report.look import LIGHT, plain, themed
 from dalembert.report.quantities import labelled
@@ -28,20 +29,12 @@ def ranking(result: Designs, *, title: str = "Ranking") -> go.Figure:
     plotly.graph_objects.Figure
     """
     told = np.flatnonzero(np.isfinite(result.scores))[:MOST]
-    figure = go.Figure(
-        go.Scatter(
-            x=positive(result.scores[told]),
-            y=[f"{k + 1} · {named(result, k)}" for k in told],
-            text=[shown(float(score), digits=3) for score in result.scores[told]],
-            mode="markers+text",
-            textposition="middle right",
-            cliponaxis=False,
-            marker={"color": LIGHT.series[0], "size": 10},
-        )
-    )
-    themed(figure, title, height=150 + 26 * max(2, len(told)))
-    figure.update_xaxes(title=f"score ({result.criterion}), in parts of the scales", **logarithmic(figure, "x"))
-    return figure.update_yaxes(autorange="reversed").update_layout(showlegend=False, margin_r=72)
+    rows = [f"{k + 1} · {named(result, k)}" for k in told]
+    texts = [shown(float(score), digits=3) for score in result.scores[told]]
+    figure = labelled_points(positive(result.scores[told]), rows, texts, "middle right", 10)
+    x = {"title": f"score ({result.criterion}), in parts of the scales", **logarithmic(figure, "x")}
+    layout = {"showlegend": False, "margin_r": 72}
+    return themed(figure, title, 150 + 26 * max(2, len(told)), x=x, y={"autorange": "reversed"}, **layout)
 
 
 def horizons(result: Designs, *, title: str = "What a longer measurement brings") -> go.Figure:
@@ -57,19 +50,13 @@ def horizons(result: Designs, *, title: str = "What a longer measurement brings"
     plotly.graph_objects.Figure
     """
     figure = go.Figure()
-    for place, chosen in enumerate(list(dict.fromkeys(result.sensors))[: len(LIGHT.series)]):
+    for chosen, colour in zip(dict.fromkeys(result.sensors), LIGHT.series, strict=False):
         own = [k for k, sensors in enumerate(result.sensors) if sensors == chosen]
         own.sort(key=lambda k: result.horizons[k])
-        figure.add_scatter(
-            x=result.horizons[own],
-            y=positive(result.scores[own]),
-            name=plain(", ".join(chosen)),
-            mode="lines+markers",
-            line={"color": LIGHT.series[place], "width": 2},
-        )
-    themed(figure, title, height=400)
-    figure.update_xaxes(title=labelled(result.along, result.unit))
-    return figure.update_yaxes(title="score", **logarithmic(figure)).update_layout(showlegend=True)
+        x, y = result.horizons[own], positive(result.scores[own])
+        draw(figure, x, y, plain(", ".join(chosen)), colour, mode="lines+markers")
+    y = {"title": "score", **logarithmic(figure)}
+    return themed(figure, title, 400, x=labelled(result.along, result.unit), y=y, showlegend=True)
 
 
 def named(result: Designs, k: int) -> str:

@@ -6,6 +6,8 @@ import numpy as np
 import plotly.graph_objects as go
 
 from dalembert.inverse import BandFit
+from dalembert.report.charts.drawing import draw
+from dalembert.report.charts.identification.parameters import BETWEEN, side_of, tracks
 from dalembert.report.digits import interval, shown
 from dalembert.report.look import LIGHT, plain, themed
 
@@ -34,30 +36,21 @@ def intervals(
     """
     box, low, high = fit.parameters, *(np.asarray(end, dtype=float) for end in (fit.box.lower, fit.box.upper))
     names = [plain(name) for name in box.names]
-    figure = go.Figure()
-    for name in names:
-        line = {"color": LIGHT.grid, "width": 8}
-        figure.add_scatter(x=[0, 1], y=[name, name], mode="lines", line=line, hoverinfo="skip", showlegend=False)
+    figure = tracks(names)
     ends = np.stack([_placed(fit, low), _placed(fit, high)], axis=1)
     for place, (name, item) in enumerate(zip(names, box, strict=True)):
         text = f"{interval(low[place], high[place])} {plain(item.unit)}".strip()
         _bar(figure, name, ends[place], text, legend=place == 0)
     spread = 2 * end_deviations(fit) / (box.upper - box.lower)[:, None]
-    figure.add_scatter(
-        x=ends.ravel(),
-        y=np.repeat(names, 2),
-        mode="markers",
-        marker={"color": LIGHT.series[0], "size": 9, "symbol": "line-ns-open", "line": {"width": 2}},
-        error_x={"array": np.minimum(spread, 1.0).ravel(), "color": LIGHT.ink, "width": 5},
-        hoverinfo="skip",
-        showlegend=False,
-    )
+    style = {
+        "marker": {"color": LIGHT.series[0], "size": 9, "symbol": "line-ns-open", "line": {"width": 2}},
+        "error_x": {"array": np.minimum(spread, 1.0).ravel(), "color": LIGHT.ink, "width": 5},
+    }
+    place = {"x": ends.ravel(), "y": np.repeat(names, 2)}
+    figure.add_scatter(**place, mode="markers", **style, hoverinfo="skip", showlegend=False)
     _diamonds(figure, fit, truth or {})
-    themed(figure, title, height=130 + 62 * len(box))
-    figure.update_xaxes(
-        range=[-0.05, 1.05], showgrid=False, tickvals=[0, 0.5, 1], ticktext=["lower", "middle", "upper"]
-    )
-    return figure.update_yaxes(range=[len(box) - 0.5, -0.7], showgrid=False).update_layout(margin_t=64)
+    x, y = {**BETWEEN, "range": [-0.05, 1.05]}, {"range": [len(box) - 0.5, -0.7], "showgrid": False}
+    return themed(figure, title, 130 + 62 * len(box), x=x, y=y, margin_t=64)
 
 
 def end_deviations(fit: BandFit) -> np.ndarray:
@@ -80,35 +73,26 @@ def _correlation(fit: BandFit, name: str) -> float:
 
 
 def _bar(figure: go.Figure, name: str, ends: np.ndarray, text: str, *, legend: bool) -> None:
-    figure.add_scatter(
-        x=[ends[0], ends.mean(), ends[1]],
-        y=[name] * 3,
-        name="identified",
-        legendgroup="identified",
-        showlegend=legend,
-        mode="lines+markers+text",
-        line={"color": LIGHT.series[0], "width": 8},
-        marker={"size": [0, 7, 0], "color": LIGHT.surface},
-        text=["", text, ""],
-        textposition=f"top {'right' if ends.mean() < 0.25 else 'left' if ends.mean() > 0.75 else 'center'}",
-        cliponaxis=False,
-        hoverinfo="text",
-    )
+    style = {
+        "mode": "lines+markers+text",
+        "marker": {"size": [0, 7, 0], "color": LIGHT.surface},
+        "text": ["", text, ""],
+        "textposition": f"top {side_of(ends.mean())}",
+        "cliponaxis": False,
+        "hoverinfo": "text",
+    }
+    x, own = [ends[0], ends.mean(), ends[1]], {"legendgroup": "identified", "showlegend": legend}
+    draw(figure, x, [name] * 3, "identified", LIGHT.series[0], 8, **own, **style)
 
 
 def _diamonds(figure: go.Figure, fit: BandFit, truth: Mapping[str, tuple[float, float]]) -> None:
-    known = [(place, item) for place, item in enumerate(fit.parameters) if item.name in truth]
-    at = [(np.array(truth[item.name]) - item.lower) / (item.upper - item.lower) for _, item in known]
-    figure.add_scatter(
-        x=np.ravel(at),
-        y=[plain(item.name) for _, item in known for _ in range(2)],
-        name="true",
-        mode="markers",
-        marker={"symbol": "diamond-open", "size": 11, "color": LIGHT.series[1], "line": {"width": 2}},
-        text=[shown(float(end)) for _, item in known for end in truth[item.name]],
-        hoverinfo="text",
-        showlegend=bool(known),
-    )
+    known = [item for item in fit.parameters if item.name in truth]
+    at = [(np.array(truth[item.name]) - item.lower) / (item.upper - item.lower) for item in known]
+    names = [plain(item.name) for item in known for _ in range(2)]
+    marker = {"symbol": "diamond-open", "size": 11, "color": LIGHT.series[1], "line": {"width": 2}}
+    text = [shown(float(end)) for item in known for end in truth[item.name]]
+    style = {"mode": "markers", "marker": marker, "text": text, "hoverinfo": "text", "showlegend": bool(known)}
+    figure.add_scatter(x=np.ravel(at), y=names, name="true", **style)
 
 
 def _placed(fit: BandFit, values: np.ndarray) -> np.ndarray:

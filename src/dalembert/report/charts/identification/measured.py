@@ -3,9 +3,10 @@
 import plotly.graph_objects as go
 
 from dalembert.data import Measurements
-from dalembert.report.look import LIGHT, plain, themed
-from dalembert.report.quantities import labelled, quantity
-from dalembert.report.thin import thin
+from dalembert.report.charts.drawing import colour_of
+from dalembert.report.look import plain, themed
+from dalembert.report.quantities import common, labelled, quantity
+from dalembert.report.thin import thinned
 
 FEW = 500
 """Samples up to which each is drawn as a circle."""
@@ -27,14 +28,8 @@ def measured(data: Measurements, *, title: str = "") -> go.Figure:
     mode = "markers" if len(along.values) <= FEW else "lines"
     for place, name in enumerate(data.channels):
         taken = data.taken[:, place]
-        values, colour = data.values[taken, place], LIGHT.series[place % len(LIGHT.series)]
-        kept = thin(values)
-        figure.add_scatter(x=along.values[taken][kept], y=values[kept], mode=mode, name=plain(name))
-        figure.update_traces(
-            marker={"color": colour, "size": 5}, line={"color": colour}, selector={"name": plain(name)}
-        )
-    themed(figure, title)
-    quantities = {quantity(name) for name in data.channels}
-    if len(quantities) == 1:
-        figure.update_yaxes(title_text=quantities.pop())
-    return figure.update_xaxes(title_text=labelled(along.name, along.unit)).update_layout(hovermode="x unified")
+        x, y = thinned(along.values[taken], data.values[taken, place])
+        style = {"marker": {"color": colour_of(place), "size": 5}, "line_color": colour_of(place)}
+        figure.add_scatter(x=x, y=y, mode=mode, name=plain(name), **style)
+    label = common(map(quantity, data.channels), "")
+    return themed(figure, title, x=labelled(along.name, along.unit), y=label, hovermode="x unified")

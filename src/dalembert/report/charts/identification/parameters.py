@@ -1,13 +1,18 @@
 """Identified parameters within their bounds."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import plotly.graph_objects as go
 
 from dalembert.inverse import Fit
 from dalembert.parameters import Parameters
+from dalembert.report.charts.drawing import draw
 from dalembert.report.digits import shown
 from dalembert.report.look import LIGHT, plain, themed
 
+BETWEEN = {"showgrid": False, "tickvals": [0, 0.5, 1], "ticktext": ["lower", "middle", "upper"]}
+"""Axis of the way between the bounds."""
 ON_BOUND = 1e-6
 """Part of the way between the bounds within which a value counts as on one."""
 
@@ -38,42 +43,31 @@ def parameters(fit: Fit, *, title: str = "Parameters within their bounds") -> go
         for item, value, deviation in zip(box, fit.values, fit.deviations, strict=True)
     ]
     names = [plain(name) for name in box.names]
-    track = {"color": LIGHT.grid, "width": 8}
-    figure = go.Figure(
-        [
-            go.Scatter(x=[0, 1], y=[name, name], mode="lines", line=track, hoverinfo="skip", showlegend=False)
-            for name in names
-        ]
-    )
-    figure.add_trace(
-        go.Scatter(
-            x=place,
-            y=names,
-            error_x={
-                "array": high - place,
-                "arrayminus": place - low,
-                "symmetric": False,
-                "thickness": 2,
-                "width": 6,
-                "color": LIGHT.ink,
-            },
-            mode="markers+text",
-            text=texts,
-            textposition=[
-                f"top {side}" for side in np.select([place < 0.25, place > 0.75], ["right", "left"], "center")
-            ],
-            cliponaxis=False,
-            marker={
-                "size": 11,
-                "symbol": ["diamond" if at else "circle" for at in stuck],
-                "color": [LIGHT.series[1] if at else LIGHT.series[0] for at in stuck],
-            },
-            showlegend=False,
-        )
-    )
-    themed(figure, title, height=110 + 56 * len(box))
-    figure.update_xaxes(range=[-0.1, 1.1], showgrid=False, tickvals=[0, 0.5, 1], ticktext=["lower", "middle", "upper"])
-    return figure.update_yaxes(range=[len(box) - 0.5, -0.7], showgrid=False).update_layout(margin_t=56)
+    figure = tracks(names)
+    bars = {"array": high - place, "arrayminus": place - low, "symmetric": False}
+    symbols = [("diamond", LIGHT.series[1]) if at else ("circle", LIGHT.series[0]) for at in stuck]
+    style = {
+        "error_x": {**bars, "thickness": 2, "width": 6, "color": LIGHT.ink},
+        "textposition": [f"top {side_of(at)}" for at in place],
+        "cliponaxis": False,
+        "marker": {"size": 11, "symbol": [one for one, _ in symbols], "color": [colour for _, colour in symbols]},
+    }
+    figure.add_scatter(x=place, y=names, mode="markers+text", text=texts, **style, showlegend=False)
+    x, y = {**BETWEEN, "range": [-0.1, 1.1]}, {"range": [len(box) - 0.5, -0.7], "showgrid": False}
+    return themed(figure, title, 110 + 56 * len(box), x=x, y=y, margin_t=56)
+
+
+def tracks(names: Sequence[str]) -> go.Figure:
+    """A figure with a track between the bounds of each parameter, from 0 to 1, a row each."""
+    figure = go.Figure()
+    for name in names:
+        draw(figure, [0, 1], [name, name], "", LIGHT.grid, 8, hoverinfo="skip", showlegend=False)
+    return figure
+
+
+def side_of(place: float) -> str:
+    """Side of a point on its track at which its text has room."""
+    return "right" if place < 0.25 else "left" if place > 0.75 else "center"
 
 
 def on_bound(fit: Fit) -> np.ndarray:

@@ -9,6 +9,7 @@ import plotly.graph_objects as go
 
 from dalembert.errors import InputError, unknown
 from dalembert.inverse import ParameterSet
+from dalembert.report.charts.drawing import draw
 from dalembert.report.look import LIGHT, faint, plain, themed
 from dalembert.report.quantities import labelled
 
@@ -58,34 +59,22 @@ def paving(
         ("undecided", found.boundary, LIGHT.series[1], 0.22),
         ("consistent", found.inside, LIGHT.series[0], 0.6),
     ):
-        x, y = rectangles(boxes[:, :, axes])
-        figure.add_scatter(
-            x=x,
-            y=y,
-            name=f"{word} boxes" if len(names) <= 2 else f"{word}, projected",
-            mode="lines",
-            line={"width": edge, "color": colour},
-            fill="toself",
-            fillcolor=faint(colour, opacity),
-            hoverinfo="skip",
-            showlegend=len(boxes) > 0,
-        )
+        name = f"{word} boxes" if len(names) <= 2 else f"{word}, projected"
+        style: dict[str, Any] = {"fill": "toself", "fillcolor": faint(colour, opacity), "hoverinfo": "skip"}
+        draw(figure, *rectangles(boxes[:, :, axes]), name, colour, edge, **style, showlegend=len(boxes) > 0)
     for word, box, dash in (("outer box", found.outer, "dash"), ("inner box", found.inner, "solid")):
         if box is not None:
             x, y = rectangles(np.stack([box.lower, box.upper])[None, :, axes])
-            figure.add_scatter(x=x, y=y, name=word, mode="lines", line={"width": 2, "color": LIGHT.ink, "dash": dash})
+            draw(figure, x, y, word, LIGHT.ink, line_dash=dash)
     _mark(figure, chosen, truth or {})
     seen = [found.parameters.items[axis] for axis in axes]
-    themed(
-        figure,
-        f"Set of {' and '.join(map(plain, chosen))}" if title is None else title,
-        height=520 if axes[1:] else 220,
-    )
-    ranges = _ranges(found, axes)
-    figure.update_xaxes(title=labelled(plain(seen[0].name), plain(seen[0].unit)), range=ranges[0])
-    if len(seen) == 1:
-        return figure.update_yaxes(visible=False, range=[-0.2, 1.2])
-    return figure.update_yaxes(title=labelled(plain(seen[1].name), plain(seen[1].unit)), range=ranges[1])
+    settings = [
+        {"title": labelled(plain(item.name), plain(item.unit)), "range": ends}
+        for item, ends in zip(seen, _ranges(found, axes), strict=True)
+    ]
+    x, y = [*settings, {"visible": False, "range": [-0.2, 1.2]}][:2]
+    title = f"Set of {' and '.join(map(plain, chosen))}" if title is None else title
+    return themed(figure, title, 520 if axes[1:] else 220, x=x, y=y)
 
 
 def planes(names: Sequence[str]) -> list[tuple[str, ...]]:

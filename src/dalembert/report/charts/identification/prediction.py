@@ -4,13 +4,13 @@ from collections.abc import Sequence
 
 import numpy as np
 import plotly.graph_objects as go
-from plotly.subplots import make_subplots
 
 from dalembert.inverse import Prediction
 from dalembert.report.charts.bounds.bands import draw_line, dressed, fill_band, selected
+from dalembert.report.charts.drawing import colour_of, stacked
 from dalembert.report.charts.identification.responses import FEW
-from dalembert.report.look import LIGHT, faint, plain
-from dalembert.report.thin import thin
+from dalembert.report.look import faint, plain
+from dalembert.report.thin import thinned
 
 
 def prediction(result: Prediction, channels: Sequence[str] | None = None, *, title: str = "Prediction") -> go.Figure:
@@ -33,9 +33,9 @@ def prediction(result: Prediction, channels: Sequence[str] | None = None, *, tit
         For a channel that is not predicted.
     """
     chosen = selected(result, channels, "prediction")
-    figure = make_subplots(rows=2, shared_xaxes=True, row_heights=[0.72, 0.28], vertical_spacing=0.05)
+    figure = stacked(0.72, 0.28, spacing=0.05)
     for place, name in enumerate(chosen):
-        _channel(figure, result, result.channels.index(name), LIGHT.series[place % len(LIGHT.series)])
+        _channel(figure, result, result.channels.index(name), colour_of(place))
     return dressed(figure, result, chosen, title, below="± band").update_yaxes(rangemode="tozero", row=2)
 
 
@@ -52,22 +52,12 @@ def _channel(figure: go.Figure, result: Prediction, column: int, colour: str) ->
         at, lower, upper = along[there], lower[there], upper[there]  # a band may end before the response
         legend = f"{name}, {100 * result.level:g} % of {word}"
         fill_band(figure, at, lower, upper, legend, name, colour, faint(colour, opacity))
-        look = {"color": colour, "width": 1.5, "dash": dash}
-        draw_line(figure, at, (upper - lower) / 2, f"{name}, ± {word}", name, look, row=2)
-    draw_line(figure, along, centre, f"{name} predicted", name, {"color": colour, "width": 2}, row=1, legend=True)
+        draw_line(figure, at, (upper - lower) / 2, f"{name}, ± {word}", name, colour, row=2, line_dash=dash)
+    draw_line(figure, along, centre, f"{name} predicted", name, colour, 2, row=1, showlegend=True)
     if result.data is not None and result.channels[column] in result.data.channels:
         place = result.data.channels.index(result.channels[column])
         taken = result.data.taken[:, place]
-        measured, when = result.data.values[taken, place], result.data.coordinate.values[taken]
-        kept = thin(measured)
-        size = 6 if len(when) <= FEW else 3
-        figure.add_scatter(
-            x=when[kept],
-            y=measured[kept],
-            name=f"{name} measured",
-            legendgroup=name,
-            mode="markers",
-            marker={"color": colour, "size": size, "symbol": "circle-open"},
-            row=1,
-            col=1,
-        )
+        when, measured = thinned(result.data.coordinate.values[taken], result.data.values[taken, place])
+        marker = {"color": colour, "size": 6 if len(when) <= FEW else 3, "symbol": "circle-open"}
+        style = {"legendgroup": name, "mode": "markers", "marker": marker}
+        figure.add_scatter(x=when, y=measured, name=f"{name} measured", **style, row=1, col=1)

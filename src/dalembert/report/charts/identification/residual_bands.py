@@ -3,10 +3,10 @@
 from collections.abc import Sequence
 
 import plotly.graph_objects as go
-from plotly.subplots import make_subplots
 
 from dalembert.inverse import BandFit
 from dalembert.report.charts.bounds.bands import draw_band, draw_line, dressed, selected
+from dalembert.report.charts.drawing import colour_of, stacked
 from dalembert.report.look import LIGHT, plain
 
 DASHES = {"lower": "solid", "upper": "dot"}
@@ -36,9 +36,9 @@ def residual_bands(
         For a channel that the bands do not have.
     """
     chosen = selected(fit.bands, channels, "residual_bands")
-    figure = make_subplots(rows=2, shared_xaxes=True, row_heights=[0.68, 0.32], vertical_spacing=0.05)
+    figure = stacked(0.68, 0.32, spacing=0.05)
     for place, name in enumerate(chosen):
-        _channel(figure, fit, fit.bands.channels.index(name), LIGHT.series[place % len(LIGHT.series)])
+        _channel(figure, fit, fit.bands.channels.index(name), colour_of(place))
     return dressed(figure, fit.bands, chosen, title, below="residual")
 
 
@@ -47,11 +47,9 @@ def _channel(figure: go.Figure, fit: BandFit, column: int, colour: str) -> None:
     draw_band(figure, fit.bands, column, colour, legend=", given")
     for side, found in reproduced(fit).items():
         values, given = found[:, column], getattr(fit.bands, side)[:, column]
-        for row, series, word, line in (
-            (1, values, "reproduced", {"color": LIGHT.ink, "width": 1.5, "dash": "dash"}),
-            (2, values - given, "residual", {"color": colour, "width": 1.5, "dash": DASHES[side]}),
-        ):
-            draw_line(figure, at, series, f"{name} {word}, {side}", name, line, row=row)
+        draw_line(figure, at, values, f"{name} reproduced, {side}", name, LIGHT.ink, row=1, line_dash="dash")
+        residual, dash = values - given, DASHES[side]
+        draw_line(figure, at, residual, f"{name} residual, {side}", name, colour, row=2, line_dash=dash)
 
 
 def reproduced(fit: BandFit) -> dict:

@@ -5,13 +5,12 @@ from typing import Any
 
 import numpy as np
 import plotly.graph_objects as go
-from plotly.subplots import make_subplots
 
-from dalembert.errors import InputError, unknown
 from dalembert.inverse import ExperimentFit, Fit
-from dalembert.report.look import LIGHT, plain, themed
-from dalembert.report.quantities import labelled, quantity
-from dalembert.report.thin import thin
+from dalembert.report.charts.bounds.bands import draw_line, dressed, selected
+from dalembert.report.charts.drawing import colour_of, stacked
+from dalembert.report.look import plain
+from dalembert.report.thin import thinned
 
 FEW = 200
 """Samples up to which each is drawn as a circle of its own."""
@@ -40,22 +39,10 @@ def responses(
     InputError
         For a channel that the data do not have.
     """
-    known = fit.data.channels
-    chosen = known if channels is None else tuple(channels)
-    for name in chosen:
-        if name not in known:
-            raise InputError(unknown("channel", name, known, where="responses"))
-    along = fit.data.coordinate
-    figure = make_subplots(rows=2, shared_xaxes=True, row_heights=[0.7, 0.3], vertical_spacing=0.05)
+    chosen, figure = selected(fit.data, channels, "responses"), stacked(0.7, 0.3, spacing=0.05)
     for place, name in enumerate(chosen):
-        _channel(figure, fit, known.index(name), LIGHT.series[place % len(LIGHT.series)])
-    themed(figure, title, height=480)
-    labels = {quantity(name) for name in chosen}
-    label = labels.pop() if len(labels) == 1 else "response"
-    figure.update_yaxes(title_text=label, row=1)
-    figure.update_yaxes(title_text=label.replace(label.partition(" (")[0], "residual"), row=2)
-    figure.update_xaxes(title_text=labelled(along.name, along.unit), row=2)
-    return figure.update_layout(hovermode="x unified")
+        _channel(figure, fit, fit.data.channels.index(name), colour_of(place))
+    return dressed(figure, fit.data, chosen, title, below="residual")
 
 
 def _channel(figure: go.Figure, fit: Fit | ExperimentFit, column: int, colour: str) -> None:
@@ -65,20 +52,13 @@ def _channel(figure: go.Figure, fit: Fit | ExperimentFit, column: int, colour: s
     computed, nearest = fit.response[:, column], measured + residual
     computed = np.where(np.abs(computed - nearest) > 1, nearest, computed)  # whole turns away, where they do not count
     few = len(taken) <= FEW
-    dots = (
-        {"color": colour, "size": 7, "symbol": "circle-open"} if few else {"color": colour, "size": 3, "opacity": 0.4}
-    )
-    small = {"color": colour, "size": 4}
-    for word, values, row, style in (
-        ("measured", measured[taken], 1, {"mode": "markers", "marker": dots}),
-        ("computed", computed, 1, {"mode": "lines", "line": {"color": colour, "width": 2}}),
-        ("residual", residual[taken], 2, {"mode": "lines+markers" if few else "lines", "marker": small}),
-    ):
-        kept = thin(values)
-        along = at if word == "computed" else at[taken]
-        trace = go.Scatter(x=along[kept], y=values[kept], name=f"{name} {word}", legendgroup=name, showlegend=row == 1)
-        figure.add_trace(trace.update(style), row=row, col=1)
-    figure.update_traces(line={"color": colour, "width": 1}, selector={"name": f"{name} residual"})
+    dots = {"size": 7, "symbol": "circle-open"} if few else {"size": 3, "opacity": 0.4}
+    x, y = thinned(at[taken], measured[taken])
+    style = {"mode": "markers", "marker": {"color": colour, **dots}, "legendgroup": name}
+    figure.add_scatter(x=x, y=y, name=f"{name} measured", **style, showlegend=True, row=1, col=1)
+    draw_line(figure, at, computed, f"{name} computed", name, colour, 2, row=1, showlegend=True)
+    style = {"mode": "lines+markers" if few else "lines", "marker": {"color": colour, "size": 4}}
+    draw_line(figure, at[taken], residual[taken], f"{name} residual", name, colour, 1, row=2, **style)
     if fit.data.deviations is not None:
         line: Any = {"color": colour, "width": 1, "dash": "dot"}
         for bound in (-2 * fit.data.deviations[column], 2 * fit.data.deviations[column]):

@@ -1,6 +1,7 @@
 """The mechanism in motion: drawn to scale, with play button, slider and the paths of chosen points."""
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import plotly.graph_objects as go
@@ -75,10 +76,9 @@ def mechanism(
         for frame in playback.frames
     ]
     box = _box([*drawing.lines.values(), *drawing.joints.values(), *(paths or {}).values(), *(measured or {}).values()])
-    themed(figure, title, height=520)
-    figure.update_xaxes(title="x (m)", range=box[0].tolist())
-    figure.update_yaxes(title="y (m)", range=box[1].tolist(), scaleanchor="x", scaleratio=1)
-    return figure.update_layout(**playback.film.controls())
+    across = {"title": "x (m)", "range": box[0].tolist()}
+    up = {"title": "y (m)", "range": box[1].tolist(), "scaleanchor": "x", "scaleratio": 1}
+    return themed(figure, title, 520, x=across, y=up, **playback.film.controls())
 
 
 def _bodies(drawing: Drawing) -> dict[str, np.ndarray]:
@@ -102,14 +102,7 @@ def _kept(points: int, stride: int) -> np.ndarray:
 
 def _pose(bodies: dict[str, np.ndarray], frame: int) -> list[go.Scatter]:
     return [
-        go.Scatter(
-            x=motion[frame, :, 0],
-            y=motion[frame, :, 1],
-            name=plain(name),
-            mode="lines",
-            line={"width": 5, "color": colour},
-            hoverinfo="name",
-        )
+        _line(motion[frame], 5, colour, name=plain(name), hoverinfo="name")
         for (name, motion), colour in zip(bodies.items(), LIGHT.series, strict=False)
     ]
 
@@ -119,20 +112,17 @@ def _ghosts(bodies: dict[str, np.ndarray], frames: np.ndarray) -> go.Scatter:
     poses = frames[np.unique(np.linspace(0, len(frames) - 1, GHOSTS).round().astype(int))]
     gap = np.full((1, 2), np.nan, dtype=np.float32)
     outline = np.concatenate([part for pose in poses for line in bodies.values() for part in (line[pose], gap)])
-    return go.Scatter(
-        x=outline[:, 0],
-        y=outline[:, 1],
-        mode="lines",
-        line={"width": 3, "color": LIGHT.grid},
-        hoverinfo="skip",
-        showlegend=False,
-    )
+    return _line(outline, 3, LIGHT.grid, hoverinfo="skip", showlegend=False)
 
 
 def _path(name: str, path: np.ndarray) -> go.Scatter:
     path = np.asarray(path, dtype=np.float32)[:: max(1, len(path) // 2000)]
-    line = {"width": 1.5, "color": LIGHT.muted, "dash": "dot"}
-    return go.Scatter(x=path[:, 0], y=path[:, 1], name=f"path of {plain(name)}", mode="lines", line=line)
+    return _line(path, 1.5, LIGHT.muted, name=f"path of {plain(name)}", line_dash="dot")
+
+
+def _line(points: np.ndarray, width: float, colour: str, **style: Any) -> go.Scatter:
+    """A line through points (points, 2)."""
+    return go.Scatter(x=points[:, 0], y=points[:, 1], mode="lines", line_width=width, line_color=colour, **style)
 
 
 def _crosses(name: str, points: np.ndarray) -> go.Scatter:

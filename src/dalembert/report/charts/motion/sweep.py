@@ -3,10 +3,10 @@
 from typing import Any
 
 import plotly.graph_objects as go
-from plotly.subplots import make_subplots
 
-from dalembert.report.look import LIGHT, plain, themed
-from dalembert.report.quantities import derivative, labelled, quantity
+from dalembert.report.charts.drawing import colour_of, draw, stacked
+from dalembert.report.look import plain, themed
+from dalembert.report.quantities import common, derivative, labelled, quantity
 
 
 def sweep(curve: Any, at: str = "", *, title: str | None = None) -> go.Figure:
@@ -25,29 +25,20 @@ def sweep(curve: Any, at: str = "", *, title: str | None = None) -> go.Figure:
     plotly.graph_objects.Figure
     """
     slopes = curve.sensitivities
-    rows = 1 if slopes is None else 2
-    figure = make_subplots(rows=rows, shared_xaxes=True, vertical_spacing=0.06)
+    shown = [curve.responses] if slopes is None else [curve.responses, slopes]
+    figure = stacked(*[1.0 for _ in shown])
+    mode = "lines+markers" if len(curve.values) <= 60 else "lines"
     for place, channel in enumerate(curve.channels):
-        name = plain(channel)
-        style = {
-            "name": name,
-            "legendgroup": name,
-            "mode": "lines+markers" if len(curve.values) <= 60 else "lines",
-            "line": {"color": LIGHT.series[place % len(LIGHT.series)], "width": 2},
-            "marker": {"size": 5},
-        }
-        figure.add_scatter(x=curve.values, y=curve.responses[:, place], row=1, col=1, **style)
-        if slopes is not None:
-            figure.add_scatter(x=curve.values, y=slopes[:, place], row=2, col=1, showlegend=False, **style)
-    labels = {
+        style = {"legendgroup": plain(channel), "mode": mode, "marker_size": 5}
+        for row, values in enumerate(shown, start=1):
+            legend = None if row == 1 else False
+            y, colour = values[:, place], colour_of(place)
+            draw(figure, curve.values, y, plain(channel), colour, row=row, showlegend=legend, **style)
+    labels = [
         (quantity(channel, plain(unit)), derivative(channel, plain(curve.unit), plain(unit)))
         for channel, unit in zip(curve.channels, curve.units, strict=True)
-    }
-    label, slope = labels.pop() if len(labels) == 1 else ("response", "derivative")
+    ]
     name = plain(curve.parameter)
-    themed(figure, title or f"Response along {name}{' at ' + plain(at) if at else ''}", height=300 + 160 * (rows - 1))
-    figure.update_yaxes(title_text=label, row=1)
-    if slopes is not None:
-        figure.update_yaxes(title_text=slope, row=2)
-    figure.update_xaxes(title_text=labelled(name, plain(curve.unit)), row=rows)
-    return figure.update_layout(hovermode="x unified")
+    title = title or f"Response along {name}{' at ' + plain(at) if at else ''}"
+    x, y = labelled(name, plain(curve.unit)), common(labels, ("response", "derivative"))[: len(shown)]
+    return themed(figure, title, 140 + 160 * len(shown), x=x, y=y, hovermode="x unified")

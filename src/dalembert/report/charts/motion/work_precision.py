@@ -4,7 +4,7 @@ import numpy as np
 import plotly.graph_objects as go
 
 from dalembert.multibody import WorkPrecision
-from dalembert.report.charts.logarithm import logarithmic, positive
+from dalembert.report.charts.drawing import colour_of, draw, logarithmic, positive
 from dalembert.report.look import LIGHT, plain, themed
 
 SYMBOLS = ("circle", "square", "diamond", "triangle-up", "x", "star", "cross", "pentagon")
@@ -25,20 +25,13 @@ def work_precision(found: WorkPrecision, *, title: str = "Error against run time
     figure = go.Figure()
     for place, method in enumerate(found.methods):
         own = [row for row in found.rows if row.method == method and not row.failure]
-        figure.add_scatter(
-            x=positive(np.array([row.seconds for row in own])),
-            y=positive(np.array([row.error for row in own])),
-            name=plain(method),
-            text=[plain(row.settings) for row in own],
-            hovertemplate="%{text}<br>%{x:.3g} s, error %{y:.2e}<extra></extra>",
-            mode="lines+markers",
-            line={"width": 1.5, "color": LIGHT.series[place % len(LIGHT.series)]},
-            marker={"size": 8, "symbol": SYMBOLS[place % len(SYMBOLS)]},
-        )
+        seconds, errors = (positive(np.array([getattr(row, key) for row in own])) for key in ("seconds", "error"))
+        marker = {"size": 8, "symbol": SYMBOLS[place % len(SYMBOLS)]}
+        hover = "%{text}<br>%{x:.3g} s, error %{y:.2e}<extra></extra>"
+        style = {"text": [plain(row.settings) for row in own], "hovertemplate": hover, "marker": marker}
+        draw(figure, seconds, errors, plain(method), colour_of(place), 1.5, mode="lines+markers", **style)
     if found.apart > 0:
         figure.add_hline(y=found.apart, line={"color": LIGHT.muted, "dash": "dot"})
-    themed(figure, title, height=480)
-    figure.update_xaxes(title="run time (s)", **logarithmic(figure, "x"))
-    return figure.update_yaxes(title="largest error, relative to the range", **logarithmic(figure)).update_layout(
-        showlegend=True
-    )
+    x = {"title": "run time (s)", **logarithmic(figure, "x")}
+    y = {"title": "largest error, relative to the range", **logarithmic(figure)}
+    return themed(figure, title, 480, x=x, y=y, showlegend=True)

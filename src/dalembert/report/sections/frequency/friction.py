@@ -5,7 +5,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from dalembert.report import charts
-from dalembert.report.charts.frequency.contact_states import shares
+from dalembert.report.charts.frequency.contacts import shares
 from dalembert.report.digits import percent, shown
 from dalembert.report.focus import Look, dissipation_of, of_contacts, of_springs
 from dalembert.report.look import plain

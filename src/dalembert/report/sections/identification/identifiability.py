@@ -2,7 +2,7 @@
 
 from dalembert.inverse import BandFit, Fit
 from dalembert.report import charts
-from dalembert.report.charts.identification.correlation import unknowns
+from dalembert.report.charts.identification.identifiability import unknowns
 from dalembert.report.plot import Plot
 from dalembert.report.section import Listed, Row, Section
 

@@ -2,9 +2,9 @@
 
 from dalembert.inverse import BandFit, Fit
 from dalembert.report import charts
-from dalembert.report.charts.identification.correlation import unknowns
-from dalembert.report.charts.identification.l_curve import accounts
-from dalembert.report.charts.identification.starts import ranked
+from dalembert.report.charts.identification.identifiability import unknowns
+from dalembert.report.charts.identification.regularisation import accounts
+from dalembert.report.charts.identification.search import ranked
 from dalembert.report.plot import Plot
 from dalembert.report.section import Fold, Row, Section
 from dalembert.report.table import Table, cells, unless

@@ -7,7 +7,7 @@ import plotly.graph_objects as go
 
 from dalembert.multibody import Trajectory
 from dalembert.report import charts
-from dalembert.report.charts.motion.violations import LEVELS
+from dalembert.report.charts.motion.diagnostics import LEVELS
 from dalembert.report.look import plain
 from dalembert.report.plot import Plot, numbered
 from dalembert.report.section import Block, Row, Section

@@ -1,13 +1,18 @@
-"""Whether contacts stick, slip or separate: over a period, and over frequency."""
+"""What contacts do: whether they stick, slip or separate, and the energy that they take from the motion."""
 
 import numpy as np
 import plotly.graph_objects as go
 
+from dalembert.report.charts.drawing import draw
+from dalembert.report.focus import dissipation_of, foremost
 from dalembert.report.look import LIGHT, plain, themed
+from dalembert.report.prefixes import prefixed
+from dalembert.report.quantities import labelled
 from dalembert.vibration import FrequencyCurve
 
 STATES = ("separated", "stuck", "slipping")
 COLOURS = {"separated": LIGHT.grid, "stuck": LIGHT.series[0], "slipping": LIGHT.series[1]}
+PHASE = {"title": "phase of the period (°)", "dtick": 90, "range": [0, 360]}
 NAMED = 40
 """Contacts up to which each has its name beside its row."""
 
@@ -47,12 +52,9 @@ def contact_states(curve: FrequencyCurve, point: int, *, title: str = "Contact s
     for state in STATES:
         marker = {"symbol": "square", "size": 11, "color": COLOURS[state]}
         figure.add_scatter(x=[None], y=[None], name=state, mode="markers", marker=marker)
-    themed(figure, title, height=min(220 + 22 * len(states), 720))
-    figure.update_xaxes(title="phase of the period (°)", dtick=90, range=[0, 360], showgrid=False)
-    figure.update_yaxes(
-        showgrid=False, ticks="", autorange="reversed", showticklabels=len(states) <= NAMED, automargin=True
-    )
-    return figure.update_layout(showlegend=True)
+    y = {"showgrid": False, "ticks": "", "autorange": "reversed", "showticklabels": len(states) <= NAMED}
+    height = min(220 + 22 * len(states), 720)
+    return themed(figure, title, height, x={**PHASE, "showgrid": False}, y={**y, "automargin": True}, showlegend=True)
 
 
 def contact_shares(curve: FrequencyCurve, *, title: str = "Contact states over frequency") -> go.Figure:
@@ -73,16 +75,33 @@ def contact_shares(curve: FrequencyCurve, *, title: str = "Contact states over f
         if not share.any():
             continue
         colour = LIGHT.muted if state == "separated" else COLOURS[state]
-        figure.add_scatter(
-            x=curve.frequencies,
-            y=np.where(curve.converged, 100 * share, np.nan),
-            name=state,
-            mode="lines",
-            line={"color": colour, "width": 2},
-        )
-    themed(figure, title, height=360)
-    figure.update_xaxes(title="frequency (Hz)")
-    return figure.update_yaxes(title="part of the period (%)", range=[-2, 102]).update_layout(showlegend=True)
+        draw(figure, curve.frequencies, np.where(curve.converged, 100 * share, np.nan), state, colour)
+    y = {"title": "part of the period (%)", "range": [-2, 102]}
+    return themed(figure, title, 360, x="frequency (Hz)", y=y, showlegend=True)
+
+
+def dissipation(curve: FrequencyCurve, *, title: str = "Friction energy of a period") -> go.Figure:
+    """Energy dissipated in a period by each contact, of many those that take most, and by all together.
+
+    Parameters
+    ----------
+    curve : FrequencyCurve
+    title : str
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    energies, figure = dissipation_of(curve), go.Figure()
+    total = np.sum(list(energies.values()), axis=0)
+    factor, unit = prefixed(float(np.nanmax(total, initial=0.0)), "J")
+    kept = foremost({name: float(np.nanmax(energy, initial=0.0)) for name, energy in energies.items()})
+    for name, colour in zip(kept, LIGHT.series, strict=False):
+        draw(figure, curve.frequencies, factor * energies[name], plain(name), colour)
+    if len(energies) > 1:
+        draw(figure, curve.frequencies, factor * total, f"all {len(energies)} contacts", LIGHT.ink)
+    y = {"title": labelled("energy of a period", unit), "rangemode": "tozero"}
+    return themed(figure, title, 360, x="frequency (Hz)", y=y, showlegend=True)
 
 
 def shares(states: np.ndarray) -> dict[str, np.ndarray]:

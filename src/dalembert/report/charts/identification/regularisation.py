@@ -1,0 +1,98 @@
+"""How much regularisation the steps of response sensitivity chose, and how these steps went."""
+
+import numpy as np
+import plotly.graph_objects as go
+
+from dalembert.inverse import BandFit, Fit
+from dalembert.optimize.minimum import RegularisedStep
+from dalembert.report.charts.drawing import draw, logarithmic, positive, stacked
+from dalembert.report.charts.identification.search import ranked
+from dalembert.report.look import LIGHT, themed
+
+
+def l_curve(fit: Fit | BandFit, *, title: str = "L-curves") -> go.Figure:
+    """Length of a step over the residual that it would leave, for all weights, with the weight chosen and that taken.
+
+    One curve a step of the best start; in colour the last one that has a corner.
+
+    Parameters
+    ----------
+    fit : Fit or BandFit
+        With at least one step that has an account of its regularisation.
+    title : str
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    steps = accounts(fit)
+    figure = go.Figure()
+    bent = [number for number, step in enumerate(steps, 1) if step.chosen > step.weights[0]]
+    for number, step in enumerate(steps, 1):
+        told = number == (bent[-1] if bent else len(steps))
+        x, y = (positive(np.asarray(norms, dtype=float)) for norms in (step.residual_norms, step.step_norms))
+        text = [f"μ = {weight:.3g}" for weight in step.weights]
+        colour, width, opacity = (LIGHT.series[0], 2.5, 1) if told else (LIGHT.muted, 1, 0.6)
+        draw(figure, x, y, f"step {number}", colour, width, text=text, opacity=opacity, showlegend=told)
+    for name, key, marker in (
+        ("chosen", "chosen", {"color": LIGHT.series[1], "size": 9}),
+        ("taken", "mu", {"color": LIGHT.ink, "size": 13, "symbol": "circle-open"}),
+    ):
+        x, y = positive(np.array([_at(step, getattr(step, key)) for step in steps])).T
+        text = [f"step {number}: μ = {getattr(step, key):.3g}" for number, step in enumerate(steps, 1)]
+        figure.add_scatter(x=x, y=y, text=text, name=name, mode="markers", marker=marker)
+    x = {"title": "residual that the linear model leaves", **logarithmic(figure, "x")}
+    return themed(figure, title, x=x, y={"title": "length of the step", **logarithmic(figure)})
+
+
+def steps(fit: Fit | BandFit, *, title: str = "Steps of the best start") -> go.Figure:
+    """Residual before each step, weights chosen and taken, and agreement with the linear model, over the steps.
+
+    Parameters
+    ----------
+    fit : Fit or BandFit
+        With at least one step that has an account of its regularisation.
+    title : str
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    own = accounts(fit)
+    number = np.arange(1, len(own) + 1)
+    figure = stacked(1, 1, 1)
+    for row, name, key, colour, symbol in (
+        (1, "residual before the step", "residual", LIGHT.series[0], "circle"),
+        (2, "weight chosen", "chosen", LIGHT.series[1], "circle"),
+        (2, "weight taken", "mu", LIGHT.ink, "circle-open"),
+        (3, "agreement", "agreement", LIGHT.series[2], "circle"),
+    ):
+        values = np.array([getattr(step, key) for step in own], dtype=float)
+        y, text = values if row == 3 else positive(values), [f"{step.trials} tried" for step in own]
+        marker = {"symbol": symbol, "size": 9 if symbol == "circle-open" else 6}
+        draw(figure, number, y, name, colour, 1.5, row=row, mode="lines+markers", text=text, marker=marker)
+    figure.add_hline(y=1, line={"color": LIGHT.muted, "dash": "dot"}, row=3, col=1)  # pyright: ignore[reportArgumentType]
+    logarithmically = [{"title": label, "type": "log", "rangemode": "normal"} for label in ("residual", "weight μ")]
+    y = (*logarithmically, {"title": "agreement", "type": "linear", "rangemode": "tozero"})
+    return themed(figure, title, 560, x={"title": "step", "dtick": max(1, len(own) // 10)}, y=y)
+
+
+def accounts(fit: Fit | BandFit) -> list[RegularisedStep]:
+    """Accounts of the steps of the best start that has several of them, or of the best that has any."""
+    best: list[RegularisedStep] = []
+    for start in ranked(fit):
+        steps = [step.regularised for step in fit.history if step.start == start]
+        own = [step for step in steps if step is not None]
+        if len(own) > 1:
+            return own
+        best = best or own
+    return best
+
+
+def _at(step: RegularisedStep, weight: float) -> tuple[float, float]:
+    """Where a weight stands on the L-curve, between its points or at its ends."""
+    along = np.log(weight), np.log(step.weights)
+    return tuple(  # pyright: ignore[reportReturnType]
+        float(np.exp(np.interp(*along, np.log(np.maximum(norms, 1e-300)))))
+        for norms in (step.residual_norms, step.step_norms)
+    )

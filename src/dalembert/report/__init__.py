@@ -1,7 +1,7 @@
 """Figures, one function each, and a report that opens without a network; for notebooks and run folders alike."""
 
 from dalembert.report import charts
-from dalembert.report.gather import figures
+from dalembert.report.contents import figures
 from dalembert.report.look import dark
 from dalembert.report.page import report
 from dalembert.report.registry import sections_of

@@ -29,6 +29,14 @@ class Headline(Section):
     doubts: Sequence[str] = ()
     findings: Sequence[Finding] = ()
 
+    @classmethod
+    def of(
+        cls, title: str, success: bool, verdicts: tuple[str, str], status: str, facts: Mapping[str, str]
+    ) -> "Headline":
+        """Headline of a result whose verdict is the first of two where it is a success, else the second."""
+        verdict = verdicts[0] if success else verdicts[1]
+        return cls(title=title, verdict=verdict, success=success, status=status, facts=facts)
+
     @property
     def doubtful(self) -> bool:
         """Return True if a finding is a reason to doubt the result."""

@@ -18,7 +18,7 @@ from dalembert.files import write_text
 from dalembert.report.asked import asked
 from dalembert.report.contents import contents
 from dalembert.report.look import DARK, FONT, LIGHT, exchanged, template
-from dalembert.report.plot import SAFE
+from dalembert.report.section import SAFE
 
 
 def report(

@@ -48,8 +48,22 @@ class Table:
     @classmethod
     def of(cls, name: str, caption: str, columns: Mapping[str, Iterable[object]]) -> "Table":
         """A table of columns: values, or cells."""
-        rows = [tuple(map(cell, row)) for row in zip(*columns.values(), strict=True)]
-        return cls(name, caption, tuple(columns), rows)
+        return cls.of_rows(name, caption, tuple(columns), zip(*columns.values(), strict=True))
+
+    @classmethod
+    def of_rows(cls, name: str, caption: str, columns: Sequence[str], rows: Iterable[Iterable[object]]) -> "Table":
+        """A table of rows: values, or cells."""
+        return cls(name, caption, columns, [tuple(map(cell, row)) for row in rows])
+
+    @classmethod
+    def of_experiments(
+        cls, name: str, caption: str, columns: Sequence[str], rows: Mapping[str, Iterable[Iterable[object]]]
+    ) -> "Table":
+        """A table of the rows of each experiment, whose names are the first column unless one has no name."""
+        if "" not in rows:
+            columns = ("experiment", *columns)
+            rows = {experiment: [(experiment, *row) for row in own] for experiment, own in rows.items()}
+        return cls.of_rows(name, caption, columns, [row for own in rows.values() for row in own])
 
     @property
     def csv(self) -> str:

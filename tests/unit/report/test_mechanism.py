@@ -3,7 +3,7 @@ import pytest
 
 from dalembert.report.charts import mechanism
 from dalembert.report.charts.motion.playback import Playback
-from dalembert.report.plot import Plot
+from dalembert.report.section import Plot
 from stand_ins import motion
 
 

@@ -9,9 +9,8 @@ import pytest
 from dalembert.multibody import Trajectory
 from dalembert.report import Part, Table, figures, report, sections_of
 from dalembert.report.page import environment
-from dalembert.report.plot import Plot
 from dalembert.report.registry import _SECTIONS
-from dalembert.report.section import Download, Fold, Listed, Row, Section, Source
+from dalembert.report.section import Download, Fold, Listed, Plot, Row, Section, Source
 from pages import Page, read_page
 from stand_ins import motion, stand_in
 

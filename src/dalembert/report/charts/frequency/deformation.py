@@ -4,7 +4,7 @@ import numpy as np
 import plotly.graph_objects as go
 
 from dalembert.report.charts.frequency.body import magnification, outline, space, surface
-from dalembert.report.charts.motion.film import Film
+from dalembert.report.charts.motion.film import Film, slowness
 from dalembert.report.digits import shown
 from dalembert.report.look import themed
 from dalembert.report.prefixes import prefixed
@@ -52,7 +52,7 @@ def deformation(shape: Deformation, *, title: str | None = None) -> go.Figure:
         for number, frame in enumerate(positions)
     ]
     labels = [f"{360 * number / count:.0f}" for number in order]
-    film = Film(labels, SECONDS, "phase", "°", slowness(shape.frequency), endless=True)
+    film = Film(labels, SECONDS, "phase", "°", slowness(SECONDS * shape.frequency), endless=True)
     space(figure, np.concatenate([positions.reshape(-1, 3), shape.places]))
     return themed(figure, title or f"Deformed shape at {shown(shape.frequency)} Hz", 520, **film.controls())
 
@@ -61,15 +61,3 @@ def magnified(shape: Deformation) -> float:
     """How much larger than they are displacements are drawn."""
     motion = shape.motion(2 * np.pi * np.arange(FRAMES) / FRAMES)
     return magnification(shape.places, np.linalg.norm(motion, axis=2).max(axis=0))
-
-
-def slowness(frequency: float) -> str:
-    """Speed of a film of a period, in words.
-
-    >>> slowness(400.0), slowness(0.1)
-    ('800 times slower than real', '5 times faster than real')
-    """
-    ratio = SECONDS * frequency
-    if abs(ratio - 1) < 0.02:
-        return "played in real time"
-    return f"{shown(max(ratio, 1 / ratio), digits=3)} times {'slower' if ratio > 1 else 'faster'} than real"

@@ -5,8 +5,8 @@ import plotly.graph_objects as go
 
 from dalembert.report.charts.frequency.body import edges
 from dalembert.report.charts.frequency.contacts import COLOURS, STATES, shares
-from dalembert.report.charts.frequency.deformation import SECONDS, slowness
-from dalembert.report.charts.motion.film import Film
+from dalembert.report.charts.frequency.deformation import SECONDS
+from dalembert.report.charts.motion.film import Film, slowness
 from dalembert.report.look import LIGHT, plain, themed
 from dalembert.report.prefixes import prefixed
 from dalembert.vibration import Deformation
@@ -67,7 +67,7 @@ def interface_map(shape: Deformation, *, title: str | None = None) -> go.Figure:
     across["constrain"] = "domain"
     up |= {"scaleanchor": "x", "scaleratio": 1}
     labels = [f"{360 * number / FRAMES:.0f}" for number in range(FRAMES)]
-    film = Film(labels, SECONDS, "phase", "°", slowness(shape.frequency), endless=True)
+    film = Film(labels, SECONDS, "phase", "°", slowness(SECONDS * shape.frequency), endless=True)
     title = title or "Contact states over the interface"
     return themed(figure, title, 480, x=across, y=up, showlegend=True, **film.controls())
 

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from dalembert.report.digits import shown
 from dalembert.report.look import LIGHT
 
 
@@ -59,43 +60,31 @@ class Film:
             for name, label in zip(names, self.labels, strict=True)
         ]
         place: dict[str, Any] = {"xanchor": "left", "y": self.y, "yanchor": "top"}
-        return {
-            "updatemenus": [
-                {
-                    **place,
-                    "type": "buttons",
-                    "direction": "left",
-                    "showactive": False,
-                    "buttons": buttons,
-                    "x": 0,
-                    "pad": {"t": 22, "r": 10},
-                }
-            ],
-            "sliders": [
-                {
-                    **place,
-                    "steps": steps,
-                    "currentvalue": {
-                        "prefix": f"{self.name} ",
-                        "suffix": f" {self.unit}" + (f", {self.pace}" if self.pace else ""),
-                        "font": {"size": 12, "color": LIGHT.ink},
-                    },
-                    "ticklen": 0,
-                    "minorticklen": 0,
-                    "font": {"color": "rgba(0, 0, 0, 0)", "size": 1},
-                    "x": 0.26,
-                    "len": 0.74,
-                    "pad": {"t": 4},
-                }
-            ],
-            "meta": {
-                "labels": list(self.labels),
-                "seconds": self.seconds,
-                "pace": self.pace,
-                "before": f"{self.name} ",
-                "after": f" {self.unit}".rstrip(),
-                "asks": self.asks or self.name,
-                "endless": self.endless,
-                "redraw": self.redraw,
-            },
+        before, after = f"{self.name} ", f" {self.unit}"
+        shown = {"prefix": before, "suffix": after + (f", {self.pace}" if self.pace else "")}
+        menu = {"type": "buttons", "direction": "left", "showactive": False, "buttons": buttons}
+        slider = {
+            "steps": steps,
+            "currentvalue": {**shown, "font": {"size": 12, "color": LIGHT.ink}},
+            "ticklen": 0,
+            "minorticklen": 0,
+            "font": {"color": "rgba(0, 0, 0, 0)", "size": 1},
         }
+        kept = {key: getattr(self, key) for key in ("seconds", "pace", "endless", "redraw")}
+        words = {"before": before, "after": after.rstrip(), "asks": self.asks or self.name}
+        return {
+            "updatemenus": [{**place, **menu, "x": 0, "pad": {"t": 22, "r": 10}}],
+            "sliders": [{**place, **slider, "x": 0.26, "len": 0.74, "pad": {"t": 4}}],
+            "meta": {"labels": list(self.labels), **kept, **words},
+        }
+
+
+def slowness(ratio: float) -> str:
+    """Speed of a film in words, from its duration relative to that of the motion.
+
+    >>> slowness(800.0), slowness(0.2), slowness(1.01)
+    ('800 times slower than real', '5 times faster than real', 'in real time')
+    """
+    if abs(ratio - 1) < 0.02:
+        return "in real time"
+    return f"{shown(max(ratio, 1 / ratio), digits=3)} times {'slower' if ratio > 1 else 'faster'} than real"

@@ -4,8 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dalembert.report.charts.motion.film import Film
-from dalembert.report.digits import shown
+from dalembert.report.charts.motion.film import Film, slowness
 
 FRAMES = 150
 FRAMES_A_SECOND = 25
@@ -59,23 +58,10 @@ class Playback:
     @property
     def pace(self) -> str:
         """The film's speed, in words."""
-        ratio = self.seconds / max(float(self.times[-1] - self.times[0]), 1e-12)
-        if abs(ratio - 1) < 0.02:
-            return "played in real time"
-        return f"played {shown(max(ratio, 1 / ratio), digits=3)} times {'slower' if ratio > 1 else 'faster'} than real"
+        return f"played {slowness(self.seconds / max(float(self.times[-1] - self.times[0]), 1e-12))}"
 
     @property
     def film(self) -> Film:
         """The film of these frames."""
-        numbers = [str(frame) for frame in self.frames]
-        return Film(
-            self.labels,
-            self.seconds,
-            "t =",
-            "s",
-            self.pace,
-            asks="Time in seconds",
-            frames=numbers,
-            y=-0.16,
-            redraw=False,
-        )
+        numbers, asks = [str(frame) for frame in self.frames], "Time in seconds"
+        return Film(self.labels, self.seconds, "t =", "s", self.pace, asks=asks, frames=numbers, y=-0.16, redraw=False)

@@ -7,9 +7,8 @@ from dalembert.report.asked import Asked
 from dalembert.report.charts.bounds.methods import reference
 from dalembert.report.digits import counted
 from dalembert.report.headline import Headline
-from dalembert.report.plot import Plot
 from dalembert.report.registry import sections_of
-from dalembert.report.section import Row, Section
+from dalembert.report.section import Plot, Row, Section
 from dalembert.report.sections.bounds.propagation import bounds
 from dalembert.report.table import Table, cell, cells
 from dalembert.uncertainty import Comparison
@@ -19,24 +18,16 @@ from dalembert.uncertainty import Comparison
 def comparison(result: Comparison, asked: Asked) -> list[Section]:
     """Methods, and the bounds of the one that the others are measured by."""
     known = reference(result)
-    headline = Headline(
-        title="Methods compared",
-        verdict="compared" if result.success else "incomplete",
-        success=result.success,
-        status=result.status,
-        facts={
-            "methods": counted(len(result.results) + len(result.refused)),
-            "reference": known.method,
-            "its runs": counted(known.runs),
-            "runs altogether": counted(sum(one.runs for one in result.results)),
-        },
-    )
+    facts = {
+        "methods": counted(len(result.results) + len(result.refused)),
+        "reference": known.method,
+        "its runs": counted(known.runs),
+        "runs altogether": counted(sum(one.runs for one in result.results)),
+    }
+    headline = Headline.of("Methods compared", result.success, ("compared", "incomplete"), result.status, facts)
     against = "Further down is closer to the reference, further left is cheaper."
     where = f"Largest distance of any bound from that of {result.reference}, sample by sample; none in a gap."
-    plots = (
-        Plot("methods", charts.methods(result), against),
-        Plot("differences", charts.differences(result), where),
-    )
+    plots = [Plot("methods", charts.methods(result), against), Plot("differences", charts.differences(result), where)]
     return [headline, Section("Methods", (_table(result), Row(plots))), bounds(known)]
 
 
@@ -51,5 +42,4 @@ def _table(result: Comparison) -> Table:
         rows.append((row.method, row.kind, row.width, *cells(errors, 3), *cost))
     rows += [(method, "none", *[np.nan] * 5, cell(reason, mark=True)) for method, reason in result.refused]
     names = ("method", "kind", "mean width", "largest error", "rms error", "runs", "time (s)", "note")
-    rows = [tuple(map(cell, row)) for row in rows]
-    return Table("methods", "Methods on the same box; errors are distances from the reference", names, rows)
+    return Table.of_rows("methods", "Methods on the same box; errors are distances from the reference", names, rows)

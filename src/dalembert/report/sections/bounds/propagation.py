@@ -7,10 +7,9 @@ from dalembert.report.asked import Asked
 from dalembert.report.digits import counted, shown
 from dalembert.report.headline import Headline
 from dalembert.report.look import plain
-from dalembert.report.plot import Plot
 from dalembert.report.quantities import by_quantity, labelled, unit
 from dalembert.report.registry import sections_of
-from dalembert.report.section import Listed, Section
+from dalembert.report.section import Listed, Plot, Section
 from dalembert.report.sections.box import box_table
 from dalembert.report.sections.samples import samples
 from dalembert.report.table import Cell, Table, cells, noted
@@ -28,20 +27,15 @@ MEANING = {
 def propagation(result: Propagation, asked: Asked) -> list[Section]:
     """Bounds by one method."""
     error = result.error
-    headline = Headline(
-        title="Bounds of the response",
-        verdict="bounded" if result.success else "not bounded",
-        success=result.success,
-        status=result.status,
-        facts={
-            "method": result.method,
-            "the bounds are": result.kind,
-            "largest estimated error": "unknown" if error is None else shown(float(error.max()), digits=2),
-            "runs of the model": counted(result.runs),
-            "time": f"{shown(result.seconds, digits=3)} s",
-        },
-    )
-    return [headline, bounds(result)]
+    facts = {
+        "method": result.method,
+        "the bounds are": result.kind,
+        "largest estimated error": "unknown" if error is None else shown(float(error.max()), digits=2),
+        "runs of the model": counted(result.runs),
+        "time": f"{shown(result.seconds, digits=3)} s",
+    }
+    verdicts = ("bounded", "not bounded")
+    return [Headline.of("Bounds of the response", result.success, verdicts, result.status, facts), bounds(result)]
 
 
 def bounds(result: Propagation) -> Section:

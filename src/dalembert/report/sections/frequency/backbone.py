@@ -6,10 +6,9 @@ from dalembert.report import charts
 from dalembert.report.asked import Asked
 from dalembert.report.digits import counted, percent, shown
 from dalembert.report.headline import Headline
-from dalembert.report.plot import Plot
 from dalembert.report.quantities import labelled
 from dalembert.report.registry import sections_of
-from dalembert.report.section import Fold, Section
+from dalembert.report.section import Fold, Plot, Section
 from dalembert.report.table import Table, cells, noted, unless
 from dalembert.units import unit_of
 from dalembert.vibration import Backbone
@@ -26,13 +25,9 @@ def backbone(mode: Backbone, asked: Asked) -> list[Section]:
         ends = [shown(float(np.asarray(mode.frequencies)[found][end])) for end in (0, -1)]
         facts["frequency"] = f"{' to '.join(dict.fromkeys(ends))} Hz"
         facts["largest damping ratio"] = percent(np.asarray(mode.damping)[found].max())
-    headline = Headline(
-        title="Nonlinear mode",
-        verdict="computed" if found.all() else "incomplete",
-        success=bool(found.all()),
-        status=f"Mode {mode.mode} was found at {int(found.sum())} of {len(found)} amplitudes of {mode.dof}.",
-        facts={**facts, "amplitudes": counted(len(found))},
-    )
+    facts["amplitudes"] = counted(len(found))
+    status = f"Mode {mode.mode} was found at {int(found.sum())} of {len(found)} amplitudes of {mode.dof}."
+    headline = Headline.of("Nonlinear mode", bool(found.all()), ("computed", "incomplete"), status, facts)
     return [headline, nonlinear_mode(mode)]
 
 

@@ -4,8 +4,7 @@ import numpy as np
 
 from dalembert.report import charts
 from dalembert.report.digits import shown
-from dalembert.report.plot import Plot
-from dalembert.report.section import Fold, Section
+from dalembert.report.section import Fold, Plot, Section
 from dalembert.report.table import Table, cells
 from dalembert.vibration import FrequencyCurve
 

@@ -38,14 +38,14 @@ def frequency_curve(curve: FrequencyCurve, asked: Asked) -> list[Section]:
 
 def beside(asked: Asked, curve: FrequencyCurve | None = None) -> list[Section]:
     """Sections of what was computed beside a response."""
-    shape, mode, reduction = asked.one(Deformation), asked.one(Backbone), asked.one(ReductionErrors)
-    compared = asked.one(TimeComparison)
-    return [
-        *([deformed(shape)] if shape is not None else []),
-        *([nonlinear_mode(mode)] if mode is not None else []),
-        *([in_time(compared, curve)] if compared is not None else []),
-        *([reduced(reduction)] if reduction is not None else []),
-    ]
+    sections = {
+        Deformation: deformed,
+        Backbone: nonlinear_mode,
+        TimeComparison: lambda compared: in_time(compared, curve),
+        ReductionErrors: reduced,
+    }
+    found = {kind: asked.one(kind) for kind in sections}
+    return [section(found[kind]) for kind, section in sections.items() if found[kind] is not None]
 
 
 def _headline(curve: FrequencyCurve, look: Look | None) -> Headline:

@@ -7,9 +7,8 @@ from dalembert.report.asked import Asked
 from dalembert.report.charts.frequency.deformation import magnified
 from dalembert.report.digits import counted, percent, shown
 from dalembert.report.headline import Headline
-from dalembert.report.plot import Plot
 from dalembert.report.registry import sections_of
-from dalembert.report.section import Block, Section
+from dalembert.report.section import Block, Plot, Section
 from dalembert.vibration import Deformation
 
 

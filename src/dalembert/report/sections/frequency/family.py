@@ -8,11 +8,10 @@ from dalembert.report.charts.frequency.resonance_peaks import value_text
 from dalembert.report.digits import counted, percent, shown
 from dalembert.report.focus import Look, family_dofs
 from dalembert.report.headline import Headline
-from dalembert.report.plot import Plot
 from dalembert.report.prefixes import in_words
 from dalembert.report.quantities import labelled
 from dalembert.report.registry import sections_of
-from dalembert.report.section import Fold, Row, Section
+from dalembert.report.section import Fold, Plot, Row, Section
 from dalembert.report.sections.frequency.curve import beside
 from dalembert.report.sections.frequency.friction import friction
 from dalembert.report.table import Table, cells, marks, noted
@@ -33,13 +32,8 @@ def curve_family(family: CurveFamily, asked: Asked) -> list[Section]:
         if curve is not None and curve.coordinates:
             lead = f"With {family.parameter} = {value_text(family, float(family.values[best]))}, "
             own.append(friction(Look.of(curve, dofs[:1], kind), lead))
-    headline = Headline(
-        title=f"Forced response over {family.parameter}",
-        verdict="computed" if family.success else "incomplete",
-        success=family.success,
-        status=f"{family.status}.",
-        facts=facts,
-    )
+    title, verdicts = f"Forced response over {family.parameter}", ("computed", "incomplete")
+    headline = Headline.of(title, family.success, verdicts, f"{family.status}.", facts)
     return [headline, *own, *beside(asked)]
 
 

@@ -3,9 +3,8 @@
 from dalembert.report import charts
 from dalembert.report.digits import shown
 from dalembert.report.focus import Look, marked, movers, unstable
-from dalembert.report.plot import Plot
 from dalembert.report.quantities import labelled, size_label
-from dalembert.report.section import Fold, Section
+from dalembert.report.section import Fold, Plot, Section
 from dalembert.report.table import Table, cells
 from dalembert.units import unit_of
 from dalembert.vibration import Backbone

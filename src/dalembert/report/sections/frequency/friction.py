@@ -9,8 +9,7 @@ from dalembert.report.charts.frequency.contacts import shares
 from dalembert.report.digits import percent, shown
 from dalembert.report.focus import Look, dissipation_of, of_contacts, of_springs
 from dalembert.report.look import plain
-from dalembert.report.plot import Plot
-from dalembert.report.section import Block, Fold, Row, Section
+from dalembert.report.section import Block, Fold, Plot, Row, Section
 from dalembert.report.table import Cell, Table, cells
 
 FEW_SPRINGS = 6

@@ -4,9 +4,8 @@ from dalembert.report import charts
 from dalembert.report.charts.frequency.harmonic_content import by_order
 from dalembert.report.digits import percent
 from dalembert.report.focus import Look
-from dalembert.report.plot import Plot
 from dalembert.report.quantities import labelled
-from dalembert.report.section import Fold, Section
+from dalembert.report.section import Fold, Plot, Section
 from dalembert.report.table import Table, cells
 from dalembert.units import unit_of
 

@@ -7,13 +7,14 @@ from dalembert.report.asked import Asked
 from dalembert.report.charts.frequency.time_comparison import compared_dofs
 from dalembert.report.digits import counted, percent, shown
 from dalembert.report.headline import Headline
-from dalembert.report.plot import Plot
 from dalembert.report.quantities import labelled
 from dalembert.report.registry import sections_of
-from dalembert.report.section import Fold, Section
+from dalembert.report.section import Fold, Plot, Section
 from dalembert.report.table import Table, cells, noted, unless
 from dalembert.units import unit_of
 from dalembert.vibration import FrequencyCurve, TimeComparison
+
+HEADING = "Comparison with time integration"
 
 
 @sections_of(TimeComparison)
@@ -21,25 +22,20 @@ def time_comparison(compared: TimeComparison, asked: Asked) -> list[Section]:
     """The comparison alone."""
     found = np.asarray(compared.converged)
     most = float(np.nanmax(np.abs(compared.differences[found]), initial=0.0))
-    headline = Headline(
-        title="Comparison with time integration",
-        verdict="compared" if found.all() else "incomplete",
-        success=bool(found.all()),
-        status="All points are periodic in time." if found.all() else "Some points are not periodic in time yet.",
-        facts={
-            "points": counted(len(found)),
-            "largest difference": percent(most, 2),
-            "steps a period": counted(int(compared.provenance["method"]["steps_per_period"])),
-        },
-    )
-    return [headline, in_time(compared)]
+    status = "All points are periodic in time." if found.all() else "Some points are not periodic in time yet."
+    facts = {
+        "points": counted(len(found)),
+        "largest difference": percent(most, 2),
+        "steps a period": counted(int(compared.provenance["method"]["steps_per_period"])),
+    }
+    return [Headline.of(HEADING, bool(found.all()), ("compared", "incomplete"), status, facts), in_time(compared)]
 
 
 def in_time(compared: TimeComparison, curve: FrequencyCurve | None = None) -> Section:
     """Points of the curve that were integrated in time, and how far harmonic balance is from them."""
     how = "Crosses: in time; circles: harmonic balance at the same frequencies."
     plot = Plot("time-comparison", charts.time_comparison(compared, curve), how)
-    return Section("Comparison with time integration", (*_sentences(compared), plot, Fold(_table(compared))))
+    return Section(HEADING, (*_sentences(compared), plot, Fold(_table(compared))))
 
 
 def _sentences(compared: TimeComparison) -> tuple[str, ...]:

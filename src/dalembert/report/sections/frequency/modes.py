@@ -5,9 +5,8 @@ from dalembert.report.asked import Asked
 from dalembert.report.charts.frequency.mode_shapes import MOST
 from dalembert.report.digits import shown
 from dalembert.report.headline import MOST_VALUES, Headline
-from dalembert.report.plot import Plot
 from dalembert.report.registry import sections_of
-from dalembert.report.section import Fold, Section
+from dalembert.report.section import Fold, Plot, Section
 from dalembert.report.table import Table
 from dalembert.structure import ModeShapes
 

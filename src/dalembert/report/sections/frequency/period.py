@@ -4,9 +4,8 @@ from dalembert.report import charts
 from dalembert.report.asked import Asked
 from dalembert.report.digits import counted, shown
 from dalembert.report.headline import Headline
-from dalembert.report.plot import Plot
 from dalembert.report.registry import sections_of
-from dalembert.report.section import Row, Section
+from dalembert.report.section import Plot, Row, Section
 from dalembert.vibration import PeriodicMotion
 
 
@@ -21,15 +20,11 @@ def period(motion: PeriodicMotion, asked: Asked) -> list[Section]:
 
 
 def _headline(motion: PeriodicMotion) -> Headline:
-    return Headline(
-        title="Periodic motion",
-        verdict="periodic" if motion.converged else "not periodic",
-        success=motion.converged,
-        status="The motion repeats itself." if motion.converged else "The motion does not repeat itself yet.",
-        facts={
-            "frequency": f"{shown(motion.frequency)} Hz",
-            "periods": counted(motion.periods),
-            "change over the last one": shown(motion.residual, digits=2),
-            "steps of a period": counted(len(motion.times)),
-        },
-    )
+    status = "The motion repeats itself." if motion.converged else "The motion does not repeat itself yet."
+    facts = {
+        "frequency": f"{shown(motion.frequency)} Hz",
+        "periods": counted(motion.periods),
+        "change over the last one": shown(motion.residual, digits=2),
+        "steps of a period": counted(len(motion.times)),
+    }
+    return Headline.of("Periodic motion", motion.converged, ("periodic", "not periodic"), status, facts)

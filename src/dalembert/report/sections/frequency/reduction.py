@@ -6,9 +6,8 @@ from dalembert.report import charts
 from dalembert.report.asked import Asked
 from dalembert.report.digits import counted, percent, shown
 from dalembert.report.headline import Headline
-from dalembert.report.plot import Plot
 from dalembert.report.registry import sections_of
-from dalembert.report.section import Fold, Section
+from dalembert.report.section import Fold, Plot, Section
 from dalembert.report.table import Table, cells
 from dalembert.structure import ReductionErrors
 

@@ -7,11 +7,10 @@ from dalembert.report.asked import Asked
 from dalembert.report.charts.frequency.resonance_peaks import value_text
 from dalembert.report.digits import counted, shown
 from dalembert.report.headline import Headline
-from dalembert.report.plot import Plot
 from dalembert.report.prefixes import in_words
 from dalembert.report.quantities import labelled
 from dalembert.report.registry import sections_of
-from dalembert.report.section import Fold, Section
+from dalembert.report.section import Fold, Plot, Section
 from dalembert.report.table import Table, noted, unless
 from dalembert.units import unit_of
 from dalembert.vibration import ResonanceTrack
@@ -38,13 +37,9 @@ def _headline(track: ResonanceTrack) -> Headline:
     if found.any():
         facts[f"{track.parameter} of the smallest peak"] = value_text(track, track.best())
         facts[f"peak of {track.dof} there"] = in_words(float(np.nanmin(track.amplitudes)), unit_of(track.dof), 5)
-    return Headline(
-        title=f"Resonance over {track.parameter}",
-        verdict="tracked" if found.all() else "incomplete",
-        success=bool(found.all()),
-        status=f"The peak was found at {int(found.sum())} of {len(found)} values of {track.parameter}.",
-        facts=facts,
-    )
+    title, verdicts = f"Resonance over {track.parameter}", ("tracked", "incomplete")
+    status = f"The peak was found at {int(found.sum())} of {len(found)} values of {track.parameter}."
+    return Headline.of(title, bool(found.all()), verdicts, status, facts)
 
 
 def _sentences(track: ResonanceTrack) -> tuple[str, ...]:

@@ -11,10 +11,9 @@ from dalembert.report.charts.identification.residual_bands import reproduced
 from dalembert.report.digits import counted, interval, shown
 from dalembert.report.headline import Headline, few
 from dalembert.report.look import plain
-from dalembert.report.plot import Plot
 from dalembert.report.quantities import by_quantity, labelled, unit
 from dalembert.report.registry import sections_of
-from dalembert.report.section import Section
+from dalembert.report.section import Plot, Section
 from dalembert.report.sections.identification.identifiability import identifiability
 from dalembert.report.sections.identification.search import search
 from dalembert.report.sections.identification.verdict import identified
@@ -104,8 +103,7 @@ def _residuals(fit: BandFit) -> Table:
         for side, found in reproduced(fit).items():
             residual = np.abs(found[:, column] - getattr(bands, side)[:, column])
             sizes = cells((np.sqrt(np.mean(residual**2)), residual.max()), 3)
-            row = (channel, side, *sizes, bands.coordinate.values[residual.argmax()], unit(channel))
-            rows.append(tuple(map(cell, row)))
+            rows.append((channel, side, *sizes, bands.coordinate.values[residual.argmax()], unit(channel)))
     at = labelled(f"largest at {bands.coordinate.name}", bands.coordinate.unit)
     names = ("channel", "bound", "rms residual", "largest residual", at, "unit")
-    return noted(Table("band-residuals", "Residuals of the bounds", names, rows))
+    return noted(Table.of_rows("band-residuals", "Residuals of the bounds", names, rows))

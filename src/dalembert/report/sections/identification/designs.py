@@ -7,28 +7,22 @@ from dalembert.report import charts
 from dalembert.report.asked import Asked
 from dalembert.report.digits import counted, shown
 from dalembert.report.headline import Headline
-from dalembert.report.plot import Plot
 from dalembert.report.quantities import labelled
 from dalembert.report.registry import sections_of
-from dalembert.report.section import Fold, Section
+from dalembert.report.section import Fold, Plot, Section
 from dalembert.report.table import Table, cell, cells, marks
 
 
 @sections_of(Designs)
 def designs(told: Designs, asked: Asked) -> list[Section]:
     """The designs, the best first."""
-    headline = Headline(
-        title="Design of the experiment",
-        verdict="ranked" if told.success else "not ranked",
-        success=told.success,
-        status=told.status,
-        facts={
-            "best sensors": ", ".join(told.sensors[0]),
-            f"until {told.along}": f"{shown(float(told.horizons[0]))} {told.unit}".rstrip(),
-            "criterion": told.criterion,
-            "designs": counted(len(told.scores)),
-        },
-    )
+    facts = {
+        "best sensors": ", ".join(told.sensors[0]),
+        f"until {told.along}": f"{shown(float(told.horizons[0]))} {told.unit}".rstrip(),
+        "criterion": told.criterion,
+        "designs": counted(len(told.scores)),
+    }
+    headline = Headline.of("Design of the experiment", told.success, ("ranked", "not ranked"), told.status, facts)
     how = "Further left is better: the deviations to be expected, in parts of the parameters' scales."
     plots = [Plot("ranking", charts.ranking(told), how)]
     if len(np.unique(told.horizons)) > 1:

@@ -8,8 +8,7 @@ from dalembert.inverse import Fit
 from dalembert.parameters import Parameter
 from dalembert.report import charts
 from dalembert.report.charts.identification.parameters import on_bound
-from dalembert.report.plot import Plot
-from dalembert.report.section import Section
+from dalembert.report.section import Plot, Section
 from dalembert.report.table import Cell, Table, cell, cells, noted
 
 

@@ -3,8 +3,7 @@
 from dalembert.inverse import BandFit, Fit
 from dalembert.report import charts
 from dalembert.report.charts.identification.identifiability import unknowns
-from dalembert.report.plot import Plot
-from dalembert.report.section import Listed, Row, Section
+from dalembert.report.section import Listed, Plot, Row, Section
 
 MOST_BESIDE = 3
 """Unknowns up to which the figures have room side by side: combinations of many have long names."""

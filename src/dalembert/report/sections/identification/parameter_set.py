@@ -8,9 +8,8 @@ from dalembert.report.asked import Asked
 from dalembert.report.charts.identification.paving import planes
 from dalembert.report.digits import counted, interval, shown
 from dalembert.report.headline import Headline, few
-from dalembert.report.plot import Plot
 from dalembert.report.registry import sections_of
-from dalembert.report.section import Row, Section
+from dalembert.report.section import Plot, Row, Section
 from dalembert.report.sections.box import box_table
 
 BOXES = (

@@ -10,24 +10,18 @@ from dalembert.report.asked import Asked
 from dalembert.report.digits import counted
 from dalembert.report.headline import Headline
 from dalembert.report.look import plain
-from dalembert.report.plot import Plot, numbered
 from dalembert.report.quantities import by_quantity
 from dalembert.report.registry import sections_of
-from dalembert.report.section import Section
-from dalembert.report.table import Table, cell, cells
+from dalembert.report.section import Plot, Section, numbered
+from dalembert.report.table import Table, cells
 
 
 @sections_of(Prediction)
 def prediction(told: Prediction, asked: Asked) -> list[Section]:
     """The prediction alone."""
-    headline = Headline(
-        title="Predicted response",
-        verdict="predicted" if told.success else "not bounded",
-        success=told.success,
-        status=told.status,
-        facts={"level": f"{100 * told.level:g} %", "channels": counted(len(told.channels))},
-    )
-    return [headline, predicted({"": told})]
+    facts = {"level": f"{100 * told.level:g} %", "channels": counted(len(told.channels))}
+    verdicts = ("predicted", "not bounded")
+    return [Headline.of("Predicted response", told.success, verdicts, told.status, facts), predicted({"": told})]
 
 
 def predicted(predictions: Mapping[str, Prediction]) -> Section:
@@ -44,13 +38,11 @@ def predicted(predictions: Mapping[str, Prediction]) -> Section:
 
 
 def _table(predictions: Mapping[str, Prediction]) -> Table:
-    rows, several = [], "" not in predictions
+    rows = {}
     for experiment, told in predictions.items():
         half = (told.upper - told.lower) / 2, (told.measured_upper - told.measured_lower) / 2
         widest = (cells(np.fmax.reduce(widths, axis=0), 3) for widths in half)
-        own = zip(told.channels, told.units, *widest, strict=True)
-        rows += [tuple(map(cell, (experiment, *row) if several else row)) for row in own]
+        rows[experiment] = list(zip(told.channels, told.units, *widest, strict=True))
     names = ("channel", "unit", "± response at most", "± measurement at most")
-    names = ("experiment", *names) if several else names
     caption = f"Half widths of the {100 * next(iter(predictions.values())).level:g} % bands"
-    return Table("prediction", caption, names, rows)
+    return Table.of_experiments("prediction", caption, names, rows)

@@ -5,9 +5,8 @@ from dalembert.report import charts
 from dalembert.report.asked import Asked
 from dalembert.report.digits import counted, interval
 from dalembert.report.headline import Headline, few
-from dalembert.report.plot import Plot
 from dalembert.report.registry import sections_of
-from dalembert.report.section import Listed, Row, Section
+from dalembert.report.section import Listed, Plot, Row, Section
 from dalembert.report.table import Table, cell, cells, marks
 
 
@@ -16,18 +15,13 @@ def profiles(told: Profiles, asked: Asked) -> list[Section]:
     """The profiles alone."""
     items = {item.name: item for item in told.parameters}
     ends = [interval(curve.lower, curve.upper) for curve in told.curves]
-    headline = Headline(
-        title="Profile likelihood",
-        verdict="profiled" if told.success else "not settled",
-        success=told.success,
-        status=told.status,
-        facts={
-            **few([items[curve.name] for curve in told.curves], ends),
-            "level": f"{100 * told.level:g} %",
-            "simulations": counted(told.simulations),
-        },
-    )
-    return [headline, profiled(told)]
+    facts = {
+        **few([items[curve.name] for curve in told.curves], ends),
+        "level": f"{100 * told.level:g} %",
+        "simulations": counted(told.simulations),
+    }
+    verdicts = ("profiled", "not settled")
+    return [Headline.of("Profile likelihood", told.success, verdicts, told.status, facts), profiled(told)]
 
 
 def profiled(told: Profiles) -> Section:

@@ -7,9 +7,8 @@ import numpy as np
 from dalembert.inverse import ExperimentFit, Fit
 from dalembert.report import charts
 from dalembert.report.look import LIGHT, plain
-from dalembert.report.plot import Plot
 from dalembert.report.quantities import by_quantity, labelled, unit
-from dalembert.report.section import Download, Section
+from dalembert.report.section import Download, Plot, Section
 from dalembert.report.sections.samples import samples
 from dalembert.report.table import Table, cell, cells, noted
 
@@ -39,8 +38,8 @@ def experiments(fit: Fit) -> Section:
         words = f"Download all samples of {item.name} as CSV"
         downloads.append(_samples(item, f"responses-{number}-{file}", words))
         note = cell("" if item.fitted else "predicted", mark=not item.fitted)
-        rows += [(cell(item.name), *map(cell, row), note) for row in zip(*_residuals(item), strict=True)]
-    table = Table("residuals", "Residuals", ("experiment", *NAMES, "note"), rows)
+        rows += [(item.name, *row, note) for row in zip(*_residuals(item), strict=True)]
+    table = Table.of_rows("residuals", "Residuals", ("experiment", *NAMES, "note"), rows)
     return Section("Experiments", (_validation(fit), *plots, noted(table), *downloads))
 
 

@@ -5,8 +5,7 @@ from dalembert.report import charts
 from dalembert.report.charts.identification.identifiability import unknowns
 from dalembert.report.charts.identification.regularisation import accounts
 from dalembert.report.charts.identification.search import ranked
-from dalembert.report.plot import Plot
-from dalembert.report.section import Fold, Row, Section
+from dalembert.report.section import Fold, Plot, Row, Section
 from dalembert.report.table import Table, cells, unless
 
 GREW = "Fewer samples were fitted first: a line begins where all are compared, its simulations counting those before."

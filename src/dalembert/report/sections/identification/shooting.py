@@ -6,9 +6,8 @@ import numpy as np
 
 from dalembert.inverse import Fit, Nodes
 from dalembert.report import charts
-from dalembert.report.plot import Plot
 from dalembert.report.quantities import labelled
-from dalembert.report.section import Section
+from dalembert.report.section import Plot, Section
 from dalembert.report.table import Table, cells
 
 

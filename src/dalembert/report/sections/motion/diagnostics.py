@@ -9,8 +9,7 @@ from dalembert.multibody import Trajectory
 from dalembert.report import charts
 from dalembert.report.charts.motion.diagnostics import LEVELS
 from dalembert.report.look import plain
-from dalembert.report.plot import Plot, numbered
-from dalembert.report.section import Block, Row, Section
+from dalembert.report.section import Block, Plot, Row, Section, numbered
 from dalembert.report.table import Table, cells
 
 
@@ -29,13 +28,8 @@ def diagnostics(trajectories: Mapping[str, Trajectory]) -> Section:
 
 
 def _table(trajectories: Mapping[str, Trajectory]) -> Table:
-    several = [] if "" in trajectories else ["experiment"]
-    rows = [
-        cells([experiment, *row] if several else row, 3)
-        for experiment, one in trajectories.items()
-        for row in _rows(one)
-    ]
-    return Table("diagnostics", "Diagnostics", (*several, "quantity", "value", "unit"), rows)
+    rows = {experiment: [cells(row, 3) for row in _rows(one)] for experiment, one in trajectories.items()}
+    return Table.of_experiments("diagnostics", "Diagnostics", ("quantity", "value", "unit"), rows)
 
 
 def _named(experiment: str, figure: go.Figure) -> go.Figure:

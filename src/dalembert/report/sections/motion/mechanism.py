@@ -8,8 +8,7 @@ from dalembert.data import Measurements
 from dalembert.multibody import Drawing, Trajectory
 from dalembert.report import charts
 from dalembert.report.look import plain
-from dalembert.report.plot import Plot, numbered
-from dalembert.report.section import Section
+from dalembert.report.section import Plot, Section, numbered
 
 HEADING = "Mechanism"
 MOST_PATHS = 3

@@ -5,10 +5,9 @@ from typing import Any
 from dalembert.report import charts
 from dalembert.report.asked import Asked
 from dalembert.report.headline import MOST_VALUES, Headline
-from dalembert.report.plot import Plot
 from dalembert.report.quantities import labelled
 from dalembert.report.registry import sections_of
-from dalembert.report.section import Fold, Row, Section
+from dalembert.report.section import Fold, Plot, Row, Section
 from dalembert.report.table import Table
 
 
@@ -16,22 +15,12 @@ from dalembert.report.table import Table
 def sweep(result: Any, asked: Asked) -> list[Section]:
     """A figure and a table for each parameter."""
     names = ", ".join(curve.parameter for curve in result.curves)
-    headline = Headline(
-        title="Parameter sweep",
-        verdict="swept" if result.success else "incomplete",
-        success=result.success,
-        status=f"Responses at {result.at}, one parameter varied at a time: {names}. {result.status}",
-        facts={f"values of {curve.parameter}": str(len(curve.values)) for curve in result.curves[:MOST_VALUES]},
-    )
+    status = f"Responses at {result.at}, one parameter varied at a time: {names}. {result.status}"
+    facts = {f"values of {curve.parameter}": str(len(curve.values)) for curve in result.curves[:MOST_VALUES]}
+    headline = Headline.of("Parameter sweep", result.success, ("swept", "incomplete"), status, facts)
     places = list(enumerate(result.curves, start=1))
-    plots = [
-        Plot(
-            f"sweep-{place}",
-            charts.sweep(curve, result.at),
-            "" if curve.sensitivities is None else "Below, its slope.",
-        )
-        for place, curve in places
-    ]
+    how = ["" if curve.sensitivities is None else "Below, its slope." for curve in result.curves]
+    plots = [Plot(f"sweep-{place}", charts.sweep(curve, result.at), how[place - 1]) for place, curve in places]
     tables = [Fold(_table(place, curve), 0, "values") for place, curve in places]
     return [headline, Section("Sweep", (Row(plots), *tables))]
 

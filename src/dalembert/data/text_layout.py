@@ -59,18 +59,24 @@ class Layout:
 
 
 def layout(lines: Sequence[Line], time: str | int, separator: str = AUTO, decimal: str = AUTO) -> Layout:
-    """The layout of lines that are not blank.
+    """Return the layout of lines that are not blank.
 
-    Cells that are numbers decide: of all separators and decimal marks those that leave the fewest other cells, and of
-    these the ones that give the most columns.
+    All pairs of a separator and a decimal mark are tried on the lines in the middle. The pair is taken that leaves the
+    fewest cells that are not numbers; of several, the one that gives the most columns. There is always a result: it
+    has no rows if no line has numbers.
 
     Parameters
     ----------
     lines : sequence of (line number, text)
     time : str or int
-        Column of the times: a first line that has this name is a header though it may hold numbers.
+        Name of the column of times, or its number from 1. A first line with a cell of this name is a header, even if
+        all its cells are numbers.
     separator, decimal : str
-        ``"auto"``, or what they are.
+        ``"auto"``, or the separator (a blank stands for any number of blanks and tabs) and the decimal mark.
+
+    Returns
+    -------
+    Layout
 
     Examples
     --------

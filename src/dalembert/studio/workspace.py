@@ -78,7 +78,8 @@ class Workspace:
         Raises
         ------
         InputError
-            For a name that is taken or cannot be one, and a text that is too large.
+            If a study has this name already, if the name has characters that :func:`checked` does not allow, and if
+            the text has more than ``LARGEST`` bytes.
         """
         folder = self.root / "studies" / checked(name)
         if folder.exists():
@@ -94,12 +95,22 @@ class Workspace:
         write_text(path, content)
 
     def put(self, study: str, name: str, content: bytes) -> Path:
-        """A file beside a study, such as its measured data.
+        """Write a file, such as measured data, into the folder of a study; return its path.
+
+        Parameters
+        ----------
+        study : str
+            ``"folder/file"``, as :meth:`studies` lists it.
+        name : str
+            File name. A file of this name is replaced.
+        content : bytes
 
         Raises
         ------
         InputError
-            For a name that cannot be one, Python code, and a file that is too large.
+            If the study does not exist, if the name has other characters than letters, digits, spaces, dots, hyphens
+            and underscores or more than 100, if it ends in ``.py``, ``.pyc``, ``.so`` or ``.toml``, and if the content
+            has more than ``MOST_BYTES`` bytes.
         """
         name = checked(name)
         if Path(name).suffix.lower() in (".py", ".pyc", ".so", ".toml"):

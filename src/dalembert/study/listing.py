@@ -41,10 +41,14 @@ def _row(folder: RunFolder) -> dict[str, str]:
 
 
 def counted(state: dict) -> str:
-    """How many warnings and errors there are about a result, in words.
+    """Return the numbers of errors and warnings about a result in words; empty if there are none.
 
     >>> counted({"findings": [{"severity": "warning"}, {"severity": "note"}, {"severity": "warning"}]})
     '2 warnings'
+    >>> counted({"findings": [{"severity": "warning"}, {"severity": "error"}]})
+    '1 error, 1 warning'
+    >>> counted({"findings": [{"severity": "note"}]})
+    ''
     """
     given = [finding.get("severity") for finding in state.get("findings") or []]
     counts = {severity: given.count(severity) for severity in ("error", "warning")}

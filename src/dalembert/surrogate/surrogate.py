@@ -77,10 +77,10 @@ class Surrogate:
         return self.scheme.shells(self.polynomial.exponents, self.polynomial.coefficients)
 
     def needed_order(self, tolerance: ArrayLike) -> int:
-        """Order that would do for this tolerance, a number or (outputs,), if the coefficients go on as they decay.
+        """Return the order that suffices for a tolerance, a number or (outputs,), if the decay continues.
 
-        Where they do not decay yet, twice the order: the next one to try. Where the held-out runs show a larger error
-        than the coefficients do, the tolerance is taken as much smaller.
+        Where the coefficients do not decay yet, it is twice the order: the next one to try. Where the held-out runs
+        show a larger error than the coefficients, the tolerance is reduced by the ratio of the two.
         """
         return self._needed(np.broadcast_to(np.asarray(tolerance, dtype=float), self.tail.shape))[0]
 
@@ -95,9 +95,17 @@ class Surrogate:
         return max(self.order + 1, *orders), all(seen)
 
     def slow_directions(self, tolerance: np.ndarray) -> list[int]:
-        """Return the directions in which the coefficients decay as those of a function with a kink or a step.
+        """Return the directions in which the coefficients decay as slowly as those of a kink or a step.
 
-        Only those in which so slow a decay leaves out more than ``tolerance`` (outputs,).
+        Parameters
+        ----------
+        tolerance : array, shape (outputs,)
+            A direction counts if, for at least one output, the terms left out along it add more than this.
+
+        Returns
+        -------
+        list of int
+            Numbers of the directions, that is of the columns of the points, from 0.
         """
         shells = by_direction(self.polynomial.exponents, self.polynomial.coefficients)
         return [k for k, own in enumerate(shells) if np.any(slow_tail(own) > tolerance)]

@@ -113,8 +113,11 @@ def _overestimation(excess: np.ndarray, scale: np.ndarray, tolerance: float) -> 
     if np.all(parts <= tolerance):
         return []
     worst = float(parts.max())
-    message = f"The Bernstein form overestimates the surrogate by up to {worst:.2g} of the response's variation."
-    advice = 'Use bounds="optimise" or a smaller box.'
+    message = (
+        f"The enclosure by Bernstein coefficients is wider than the extremes of the surrogate by up to {worst:.2g} of the "
+        "response's variation."
+    )
+    advice = 'Use Chebyshev(bounds="optimise") or a smaller box.'
     return [Finding("wide-enclosure", "warning", {"overestimation": worst}, message, advice)]
 
 

@@ -74,10 +74,11 @@ class Optimise(Checked):
         """Return why the error is unknown: expansions around the runs see no more than these do."""
         found = search.extremes
         gain = share_of(gains, found.lower, found.upper)
-        reason = f"Expansions around the runs let expect {'no more' if gain == 0 else f'{gain:.2g} of the width more'}."
+        wider = "no wider bounds" if gain == 0 else f"bounds that are wider by {gain:.2g} of the width"
+        reason = f"Expansions around the runs predict {wider}."
         points = runs.box.middle + np.zeros((len(search.tried), len(runs.box)))
         points[:, runs.free] += np.array(search.tried).reshape(len(points), -1) * runs.box.radius[runs.free]
-        return unknown_error(runs, points, reason, {"expected gain": gain}, "Increase start to see narrower ones.")
+        return unknown_error(runs, points, reason, {"expected gain": gain}, "Increase start to find narrower features.")
 
     def _design(self, runs: Runs, seed: int) -> np.ndarray:
         """First points η, shape (points, free intervals)."""

@@ -107,9 +107,9 @@ class Vertex(Grid):
     name: ClassVar[str] = "vertex"
     message: ClassVar[str] = (
         "The bounds are the extremes over the corners of the box. They are exact where the response is monotone in "
-        "each parameter, and too narrow elsewhere."
+        "each parameter, and can be too narrow elsewhere."
     )
-    advice: ClassVar[str] = "Use 'optimise' for extremes inside the box."
+    advice: ClassVar[str] = "Use the method 'optimise', which also finds extremes inside the box."
     instead: ClassVar[str] = "Taylor() or Optimise()"
     points_each: ClassVar[int] = 2
     most_runs: int = 65536

@@ -137,4 +137,7 @@ def test_the_summary_tells_widths_intervals_kind_runs_and_status():
     assert ["rate", "0.5", "1"] in lines
     assert ["kind", "inner", "bound"] in lines
     assert ["runs", "4"] in lines
-    assert "Use 'optimise' for extremes inside the box.\nThe error of the bounds is unknown." in text
+    assert (
+        "Use the method 'optimise', which also finds extremes inside the box.\nThe error of the bounds is unknown."
+        in text
+    )

@@ -17,7 +17,7 @@ CRITERIA = {"D": "geometric mean of the standard deviations", "E": "largest stan
 
 @dataclass(frozen=True, eq=False)
 class Designs(EndedResult):
-    """Experiments, the best first: those that leave fewer combinations unseen, then those of the smaller score.
+    """Experiments, the best first: those that leave fewer combinations undetermined, then those of the smaller score.
 
     Parameters
     ----------
@@ -33,9 +33,9 @@ class Designs(EndedResult):
     horizons : array, shape (designs,)
     samples : array of int, shape (designs,)
     scores : array, shape (designs,)
-        In p/scale; infinite where a combination is not seen.
+        In p/scale; infinite where a combination is not determined.
     unseen : array of int, shape (designs,)
-        How many combinations of the parameters the response does not see.
+        Number of combinations of the parameters that do not change the response.
     deviations : array, shape (designs, parameters)
         Standard deviations to be expected.
     singular_values : array, shape (designs, parameters)
@@ -80,8 +80,13 @@ class Designs(EndedResult):
     def _outcome(self) -> Iterator[Finding]:
         if not self.success:
             lost = int(self.unseen[0])
-            message = f"No design identifies all parameters: the best one does not see {counted(lost, 'combination')}."
-            advice = "Measure other channels, or fix parameters."
+            mixed = zip(self.parameters.names, np.isinf(self.deviations[0]), strict=True)
+            names = listed([repr(name) for name, free in mixed if free])
+            message = (
+                f"No design identifies all parameters: even the best one, {self.named(0)}, does not determine "
+                f"{counted(lost, 'combination')} of {names}."
+            )
+            advice = f"Measure other channels, or fix one of {names} for each combination."
             yield Finding("insufficient-design", "error", {"combinations": lost}, message, advice)
             return
         best, score = self.named(0), float(self.scores[0])

@@ -97,7 +97,8 @@ class Prediction(EndedResult):
     def _outcome(self) -> Iterator[Finding]:
         if np.all(np.isnan(self.deviations)):
             message = "No bands: the fit has no standard deviations, since the model has no sensitivities."
-            yield Finding("no-bands", "error", {}, message)
+            advice = "Use a solver, or bounds, for which the derivatives of the response can be computed."
+            yield Finding("no-bands", "error", {}, message, advice)
             return
         lost = [name for name, wide in zip(self.channels, self.deviations.T, strict=True) if np.isinf(wide).any()]
         if lost:
@@ -105,7 +106,8 @@ class Prediction(EndedResult):
                 f"The band of {listed(list(map(repr, lost)))} is infinitely wide: it depends on a combination of the "
                 "parameters that the data do not identify."
             )
-            yield Finding("infinite-band", "error", {"channels": ", ".join(lost)}, message)
+            advice = "Measure a quantity that identifies it, or fix a parameter."
+            yield Finding("infinite-band", "error", {"channels": ", ".join(lost)}, message, advice)
         widest = np.fmax.reduce(self.deviations, axis=0)
         ratio = 2 * self.quantile * widest / np.maximum(np.ptp(self.response, axis=0), 1e-300)
         finite = np.flatnonzero(np.isfinite(ratio))

@@ -175,7 +175,8 @@ class Profiles(EndedResult):
             if reason:
                 values = {"parameter": curve.name, "side": side, "reason": reason}
                 message = f"The {side} side of the profile of {curve.name!r} is incomplete: {reason}."
-                yield Finding("incomplete-profile", "error", values, message)
+                advice = "Increase points, or narrow the bounds to where the model can be run."
+                yield Finding("incomplete-profile", "error", values, message, advice)
         if all(curve.open):
             message = (
                 f"{curve.name!r} is not identifiable: all values between its bounds explain the data within their "
@@ -187,10 +188,11 @@ class Profiles(EndedResult):
             side = "lower" if curve.open[0] else "upper"
             bound = float(getattr(item, side))
             message = (
-                f"The data give no {side} limit of {curve.name!r}: up to its bound {bound:.6g} they are explained "
+                f"The data give no {side} limit of {curve.name!r}: all values up to its bound {bound:.6g} explain them "
                 "within their noise."
             )
-            yield Finding("open-interval", "warning", {"parameter": curve.name, "side": side, "bound": bound}, message)
+            values = {"parameter": curve.name, "side": side, "bound": bound}
+            yield Finding("open-interval", "warning", values, message, "Measure a quantity that depends on it.")
         elif not any(curve.broken):
             below, above = value - curve.lower, curve.upper - value
             if max(below, above) > ASYMMETRIC * min(below, above):

@@ -19,6 +19,8 @@ from dalembert.stored_fields import Labels, OptionalTable, Over, StoredBox, Stor
 ZERO = 1e-6
 """Lengths below this part of the bounds' width are zero."""
 
+ADVICE = "Identify it as a number without a radius, or give bands of a quantity that depends more on it."
+
 
 @dataclass(frozen=True, eq=False)
 class BandFit(EndedResult):
@@ -196,10 +198,10 @@ def _of_one(fit: BandFit, k: int, item: Parameter) -> Iterator[Finding]:
     values = {"parameter": item.name, "radius": radius, "deviation": deviation}
     if radius <= small:
         message = f"The radius of {item.name!r} is zero: one value of it explains the bands."
-        yield Finding("zero-radius", "warning", values, message)
+        yield Finding("zero-radius", "warning", values, message, ADVICE)
     elif radius <= 2 * deviation < np.inf:
         message = (
             f"The radius of {item.name!r}, {radius:.2g} ± {deviation:.2g}, does not differ significantly from zero: "
             "the bands do not show that it varies."
         )
-        yield Finding("zero-radius", "warning", values, message)
+        yield Finding("zero-radius", "warning", values, message, ADVICE)

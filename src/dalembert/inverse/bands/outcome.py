@@ -26,16 +26,18 @@ CORRELATED = 4.0
 
 
 def outcome(problem: BandProblem, found: BandSolution) -> Iterator[Finding]:
-    """Yield whether the search converged, how far given and reproduced bands differ, and what true runs show."""
+    """Yield whether the search converged, the difference of given and reproduced bands, and the check by runs."""
     yield converged(found.success, found.message)
     yield from failed_simulations(problem.journal.failures)
     yield from _differences(problem, found)
     if found.check is None:
-        yield Finding("surrogate-unchecked", "note", {}, "The bounds of the surrogate are not checked by true runs.")
+        yield Finding(
+            "surrogate-unchecked", "note", {}, "The bounds of the surrogate are not checked by runs of the model."
+        )
     else:
         worst, points = float(np.max(found.check.error / scale(problem))), len(found.check.points)
         message = (
-            f"The surrogate differs from true runs at {points} points, where it takes its bounds, by at most "
+            f"At the {points} points where the surrogate has its bounds, it differs from runs of the model by at most "
             f"{worst:.1g} of a channel's range."
         )
         yield Finding("surrogate-checked", "note", {"points": points, "difference": worst}, message)
@@ -73,8 +75,8 @@ def conclusions(problem: BandProblem, found: BandSolution) -> Iterator[Finding]:
     share = float(_shares(problem, apart).max())
     if share > SMALL and not _rounded(problem, apart) and not _random(problem, apart):
         message = (
-            "The bands are inconsistent: no box of the parameters has them. The best box differs by "
-            f"{100 * share:.2g} % of their mean width."
+            "The bands are inconsistent: no box of the parameters gives them. The bands of the best box differ "
+            f"by {100 * share:.2g} % of their mean width."
         )
         advice = "Check the bands, the model and the bounds of the parameters."
         yield Finding("inconsistent-bands", "error" if share > CLEAR else "warning", {"share": share}, message, advice)

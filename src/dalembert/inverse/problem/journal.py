@@ -18,13 +18,28 @@ class First:
 
 @dataclass
 class Journal:
-    """Counts simulations, keeps history and ends, and passes every event on.
+    """Counts simulations, keeps the steps of the search and the result of each start, and passes on every event.
 
     Parameters
     ----------
     samples : int
         Samples of the whole data; only steps that compare all of them enter the history.
     on_event : callable, optional
+        Called as ``on_event(event)`` with each event, see :mod:`dalembert.inverse.events`.
+    simulations : int
+        Simulations so far.
+    failures : list of str
+        Reason of each failed simulation.
+    history : list of Step
+        Steps of all starts.
+    starts : list of StartEnd
+        Start point, end point and misfit of each start that has ended.
+    first : First, optional
+        The first response without NaN.
+
+    Notes
+    -----
+    ``_iteration`` counts the steps of the current start; ``_before`` is the number of simulations before it.
     """
 
     samples: int

@@ -71,9 +71,9 @@ def prior_findings(parameters: Parameters, deviations: np.ndarray, correlation: 
                 "prior-dominates",
                 "warning",
                 {"parameters": names[k], "prior": float(before[k]), "deviation": float(deviations[known[k]])},
-                f"The data add nothing to the prior of {names[k]!r}: its standard deviation is {before[k]:.3g} without "
-                f"and {deviations[known[k]]:.3g} with the data.",
-                "Measure a quantity that depends on it.",
+                f"The data add nothing to the prior of {names[k]!r}: its standard deviation is {before[k]:.3g} in the "
+                f"prior and {deviations[known[k]]:.3g} with the data.",
+                f"Check that the prior is not too narrow, or measure a quantity that depends on {names[k]!r}.",
             )
         else:
             yield Finding(

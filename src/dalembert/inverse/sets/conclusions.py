@@ -40,7 +40,7 @@ def _unseen(first: Surrogate, paving: Paving, names: Sequence[str]) -> Finding:
     seen = unseen(first, names)
     another = "a" if paving.hull is None else "another"
     message = f"The set may have {another} component where the response has a narrow feature. {seen.message}"
-    return Finding(seen.code, seen.severity, seen.values, message, "Search again within smaller bounds.")
+    return Finding(seen.code, seen.severity, seen.values, message, "Search again within narrower bounds.")
 
 
 def _coarse(surrogate: Surrogate, inversion: Inversion, share: float, names: Sequence[str]) -> Finding:
@@ -50,7 +50,8 @@ def _coarse(surrogate: Surrogate, inversion: Inversion, share: float, names: Seq
         "coarse-surrogate",
         "warning",
         {"share": share, "directions": ", ".join(slow)},
-        f"The surrogate's error is {share:.2g} times that of the data, so that it decides little. "
+        f"The surrogate's error is {share:.2g} times that of the data, so that the set is much too large. "
         + (f"The coefficients do not decay{where}." if slow else ""),
-        "Use smaller bounds on either side of a step, or a scheme with a smaller tolerance.",
+        "If the response jumps over a parameter, search on each side of the jump with separate, narrower bounds. Else "
+        "use a scheme with a smaller tolerance.",
     )

@@ -27,7 +27,7 @@ SLACK = 1e-9
 """Part of the paving's extent by which a point may lie outside of a box for rounding."""
 
 CORNERS = 6
-"""Parameters up to which all corners of a box are checked by true runs."""
+"""Parameters up to which all corners of a box are checked by runs of the model."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,28 +41,36 @@ class Nearest:
 
 @dataclass(eq=False)
 class Inversion:
-    """Outputs of true runs that are to keep within ``error`` of ``data``, all three (outputs,).
+    """Search for the parameters whose outputs differ from ``data`` by at most ``error``.
+
+    The method `zoomed` makes the surrogates, `paved` divides a box into boxes inside, outside and at the boundary of
+    the set, `consistent` and `outside` check the result by runs of the model itself.
 
     Parameters
     ----------
     run : callable
-        Search points (n, d) to outputs (n, outputs); NaN where a run failed.
+        Returns the outputs (n, outputs) of runs of the model at points (n, d); NaN where a run failed. Points are
+        search coordinates: p/scale, or ln(p/lower) for parameters whose logarithm is searched (`SearchCoordinates`).
     data, error : array, shape (outputs,)
-        NaN among the data for what was not measured.
+        In the units of the channels. NaN among the data for what was not measured.
     wraps : array of bool, shape (outputs,)
-        Angles that count modulo a turn.
+        Whether an output is an angle in rad that is compared modulo 2π.
     shape : (int, int)
         Samples and channels; outputs are samples × channels, flat.
     scheme : Scheme
+        Which terms a surrogate has, and its tolerance.
     most_boxes : int
+        Number of boxes after which a paving stops; the result then has the finding "paving-unfinished".
     seed : int
+        All random numbers follow from it.
     journal : Journal
+        Counts the runs and passes on events.
     nearest : Nearest
-        Of all runs so far.
+        The run so far that differs least from the data.
     first : Surrogate
-        The one on the whole search box, which decides what is left out.
+        The surrogate on the whole search box, which decides which parts of it are left out.
     members : list of arrays (d,)
-        Points of the runs that keep within the error.
+        Points of the runs that differ from the data by at most the error.
     """
 
     run: Callable[[np.ndarray], np.ndarray]
@@ -102,7 +110,7 @@ class Inversion:
         )
 
     def consistent(self, box: np.ndarray) -> bool:
-        """Whether true runs at the corners of a box (2, d) keep within the error; two opposite ones of many."""
+        """Return True if runs at the corners of a box (2, d) are consistent; at two opposite corners of many."""
         d = box.shape[1]
         choices = list(product((0, 1), repeat=d)) if d <= CORNERS else [(0,) * d, (1,) * d]
         corners = box[np.array(choices), np.arange(d)]
@@ -124,7 +132,7 @@ class Inversion:
         return np.where(np.isnan(excess), np.inf, excess)
 
     def _seen(self, points: np.ndarray) -> np.ndarray:
-        """True runs, the nearest one remembered."""
+        """Return the outputs of runs of the model, and keep the nearest run."""
         values = self.run(points)
         excess = self._excess(values)
         worst = excess.max(axis=1)

@@ -51,14 +51,18 @@ def outcome(
         yield Finding("surrogate-error", "note", {"share": share}, message, TIGHTER)
     if not believed:
         message = (
-            "True runs at the corners of the inner box exceed the error: the surrogate is worse than its estimate."
+            "At corners of the inner box, runs of the model differ from the data by more than their error: the error "
+            "of the surrogate is larger than its estimate."
         )
         yield Finding("inner-box-contradicted", "error", {}, message, TIGHTER)
 
 
 def _paved(data: Measurements, paving: Paving, nearest: Nearest | None, at: str) -> Iterator[Finding]:
     if paving.hull is None:
-        message = "No consistent parameters: the surrogate exceeds the error everywhere within the bounds."
+        message = (
+            "No parameters within the bounds are consistent with the data: everywhere, the surrogate differs from the "
+            "data by more than their error."
+        )
         yield Finding("empty-set", "note", {}, message)
         if nearest is not None and np.isfinite(nearest.excess):
             where = place(data, nearest.output)
@@ -67,11 +71,15 @@ def _paved(data: Measurements, paving: Paving, nearest: Nearest | None, at: str)
             yield Finding("nearest-run", "note", {"ratio": float(nearest.excess)}, message, advice)
     elif not paving.finished:
         message = (
-            "The paving stopped before its boundary was sharp: it contains the set, but more boxes may lie inside."
+            "The paving stopped before all boxes at the boundary of the set were as small as the resolution: it "
+            "contains the set, but more boxes may lie inside."
         )
-        yield Finding("paving-unfinished", "error", {}, message, "Increase most_boxes or the resolution.")
+        advice = "Increase most_boxes, or choose a coarser resolution (a larger number)."
+        yield Finding("paving-unfinished", "error", {}, message, advice)
     elif not len(paving.inside):
-        message = "Paved, but no box lies completely in the set: it is thinner than the resolution."
-        yield Finding("thin-set", "note", {}, message, "Decrease the resolution.")
+        message = "Paved, but no box lies completely in the set: it is thinner than the smallest boxes."
+        yield Finding("thin-set", "note", {}, message, "Choose a finer resolution (a smaller number).")
     else:
-        yield Finding("paved", "note", {}, "Paved down to the resolution.")
+        yield Finding(
+            "paved", "note", {}, "Paved: all boxes at the boundary of the set are as small as the resolution."
+        )

@@ -86,10 +86,27 @@ def project(
     problem: Problem, terms: Terms, models: Models, t: float, within: float, state: MotionState, dstates: MotionStates,
     tools: Tools,
 ) -> bool:  # fmt: skip
-    """Move coordinates, then velocities, onto the constraints, with their derivatives; whether that was possible.
+    """Move coordinates, then velocities, onto the constraints in place; return True if both iterations converged.
 
-    With the state's mass matrix M and Jacobian J: M w + J^T m = 0 such that the constraints of q - w vanish, by
-    Newton's iteration with J kept; then v alike, which is linear.
+    With the state's mass matrix M and Jacobian J, the coordinates move to q - w with M w + J^T m = 0 and
+    Phi(q - w) = 0, by Newton's iteration with J kept. The velocities then move to v - w with M w + J^T m = 0 and
+    J (v - w) + Phi_t = 0, which is linear.
+
+    Parameters
+    ----------
+    problem, terms, models
+        The mechanism, see their classes.
+    t : float
+        Time, s.
+    within : float
+        A time in the smooth interval of the motion to which ``t`` belongs, s: it decides on which side of a jump
+        the signals are evaluated.
+    state : MotionState
+        Coordinates and velocities, which are moved.
+    dstates : MotionStates
+        Derivatives of the state, which are moved with it; of length 0 if there are none.
+    tools : Tools
+        Matrices and vectors to work in.
     """
     n, last, base, change = problem.n, len(state.x) - 1, tools.base, tools.change
     set_signals(models.real, t, within, tools.work)

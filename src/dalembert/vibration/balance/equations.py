@@ -200,7 +200,8 @@ def equations(
     Raises
     ------
     InputError
-        For parts on degrees of freedom that are not there, and for odd harmonics where something acts in one direction.
+        For parts on degrees of freedom that the structure lacks, and for odd harmonics alone where a force has a mean
+        or even harmonics.
     ModelError
         For rigid contacts that depend on each other, and for mean forces along a motion that nothing holds.
     """
@@ -277,7 +278,7 @@ def _require_symmetry(lowered: Lowered) -> None:
     ]
     if lopsided:
         raise InputError(
-            f"HarmonicBalance: odd_only=True with {lopsided[0]}, which acts in one direction; keep all harmonics"
+            f"HarmonicBalance: odd_only=True, but {lopsided[0]} causes a mean or even harmonics; use odd_only=False"
         )
 
 

@@ -39,7 +39,10 @@ class Law:
 
     def __init__(self, function: Callable) -> None:
         if not isinstance(function, FunctionType):
-            raise InputError(f"law: {shown(function)} was given; expected a Python function")
+            raise InputError(
+                f"the function of a law is {shown(function)}; expected a Python function({', '.join(ARGUMENTS)}) that "
+                "writes the forces"
+            )
         if len(inspect.signature(function).parameters) != len(ARGUMENTS):
             raise InputError(
                 f"law {function.__name__!r}: the function takes {len(inspect.signature(function).parameters)} "

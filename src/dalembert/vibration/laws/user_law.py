@@ -10,7 +10,7 @@ from dalembert.arguments import limited
 from dalembert.errors import InputError, shown
 from dalembert.vibration.laws.contacts import Number
 from dalembert.vibration.laws.element import LawElement
-from dalembert.vibration.laws.law import Law
+from dalembert.vibration.laws.law import ARGUMENTS, Law
 
 
 @dataclass(frozen=True)
@@ -79,6 +79,9 @@ class UserLaw(LawElement):
     @property
     def law(self) -> Law:  # type: ignore[override] - of the element, not of its class
         """The compiled function."""
+        if self.function is None:
+            takes = ", ".join(ARGUMENTS)
+            raise InputError(f"UserLaw {self.name!r}: function is missing; give a Python function({takes})")
         return _law_of(self.function)
 
     @property

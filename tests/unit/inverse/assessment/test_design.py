@@ -52,7 +52,7 @@ def test_what_is_unseen_comes_last_and_is_counted():
     assert not alone.success
     assert codes(alone) == ["insufficient-design"]
     assert alone.status == snapshot(
-        "No design identifies all parameters: the best one does not see 1 combination. Measure other channels, or fix parameters."
+        "No design identifies all parameters: even the best one, r until time 4 s, does not determine 1 combination of 'a' and 'b'. Measure other channels, or fix one of 'a' and 'b' for each combination."
     )
 
 
@@ -168,7 +168,7 @@ def test_a_prior_that_decides_alone_is_named():
     box = {"offset": (-5.0, 5.0), "slope": Parameter("slope", -5.0, 5.0, start=1.0, deviation=1e-5)}
     told = identifiability(PythonModel(LINE.function, box, ["x", "y"], TIMES), deviations=0.1)
     assert str(told.findings[0]) == snapshot(
-        "The data add nothing to the prior of 'slope': its standard deviation is 1e-05 without and 1e-05 with the data. Measure a quantity that depends on it."
+        "The data add nothing to the prior of 'slope': its standard deviation is 1e-05 in the prior and 1e-05 with the data. Check that the prior is not too narrow, or measure a quantity that depends on 'slope'."
     )
 
 

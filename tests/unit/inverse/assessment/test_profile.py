@@ -94,7 +94,7 @@ def test_a_side_without_a_limit_is_told():
     told = profile(model, data, identify(model, data))
     assert told["rate"].open == (False, True)
     assert str(told.outcome[1]) == snapshot(
-        "The data give no upper limit of 'rate': up to its bound 50 they are explained within their noise."
+        "The data give no upper limit of 'rate': all values up to its bound 50 explain them within their noise. Measure a quantity that depends on it."
     )
     assert codes(told) == ["profile-level", "open-interval"]
     assert "50 (bound)" in told.summary()

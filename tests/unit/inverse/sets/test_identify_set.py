@@ -133,7 +133,7 @@ def test_inconsistent_data_have_an_empty_set_and_a_sentence_that_says_where():
     assert found.volume == (0.0, 0.0)
     assert [item.code for item in found.outcome] == ["empty-set", "nearest-run"]
     assert found.status == snapshot(
-        "No consistent parameters: the surrogate exceeds the error everywhere within the bounds. The nearest run, at x = 2, y = 2, differs by 4 times the error in channel 'r', time 0 s. Increase the error, widen the bounds, or check the model structure."
+        "No parameters within the bounds are consistent with the data: everywhere, the surrogate differs from the data by more than their error. The nearest run, at x = 2, y = 2, differs by 4 times the error in channel 'r', time 0 s. Increase the error, widen the bounds, or check the model structure."
     )
     assert "none" in found.summary()
     (finding,) = found.findings

@@ -312,7 +312,7 @@ def test_odd_harmonics_suffice_where_opposite_displacements_have_opposite_forces
     with refused(
         InputError,
         snapshot(
-            "HarmonicBalance: odd_only=True with the element 'stop', which acts in one direction; keep all harmonics"
+            "HarmonicBalance: odd_only=True, but the element 'stop' causes a mean or even harmonics; use odd_only=False"
         ),
     ):
         frequency_response(made, np.array([0.2]), HarmonicBalance(7, odd_only=True))
@@ -333,7 +333,10 @@ def test_elements_of_one_law_are_one_block() -> None:
             lambda: UserLaw("w", "a.x", function=lambda u: u),
             snapshot("law '<lambda>': the function takes 1 arguments; expected u, v, z, numbers, force"),
         ),
-        (lambda: UserLaw("w", "a.x"), snapshot("law: None was given; expected a Python function")),
+        (
+            lambda: UserLaw("w", "a.x"),
+            snapshot("UserLaw 'w': function is missing; give a Python function(u, v, z, numbers, force)"),
+        ),
         (
             lambda: UserLaw("w", "a.x", function=drag, values=[np.nan]),
             snapshot("UserLaw 'w': values is [nan]; expected a list of finite numbers"),
@@ -342,7 +345,12 @@ def test_elements_of_one_law_are_one_block() -> None:
             lambda: UserLaw("w", "a.x", function=drag, internal=-1),
             snapshot("UserLaw 'w': internal is -1; expected zero or a positive whole number"),
         ),
-        (lambda: law(3), snapshot("law: 3 was given; expected a Python function")),  # type: ignore[arg-type]
+        (
+            lambda: law(3),  # type: ignore[arg-type]
+            snapshot(
+                "the function of a law is 3; expected a Python function(u, v, z, numbers, force) that writes the forces"
+            ),
+        ),
         (
             lambda: BoucWen("m", "a.x", stiffness=1.0, yield_displacement=-1.0),
             snapshot("BoucWen 'm': yield_displacement is -1 m; expected a positive number"),

@@ -144,8 +144,8 @@ CONTACT = {"friction": 0.3, "preload": 1.0}
             free_mass(FORCE, StaticForce("b", 1.0)),
             {"method": HarmonicBalance(3, odd_only=True)},
             InputError,
-            "HarmonicBalance: odd_only=True with the static force on 'b', which acts in one direction; "
-            "keep all harmonics",
+            "HarmonicBalance: odd_only=True, but the static force on 'b' causes a mean or even harmonics; "
+            "use odd_only=False",
         ),
         (
             free_mass(FORCE),

@@ -58,11 +58,15 @@ def contact_states(curve: FrequencyCurve, point: int, *, title: str = "Contact s
 
 
 def contact_shares(curve: FrequencyCurve, *, title: str = "Contact states over frequency") -> go.Figure:
-    """Part of the period that contacts are stuck, slip and are separated, mean of all, over frequency.
+    """Draw the share of the period in which contacts are stuck, slipping and separated, over frequency.
+
+    The share is the mean over all contacts. A contact without friction is either stuck or separated. Points that are
+    not converged are left out.
 
     Parameters
     ----------
     curve : FrequencyCurve
+        With at least one contact.
     title : str
 
     Returns
@@ -105,5 +109,5 @@ def dissipation(curve: FrequencyCurve, *, title: str = "Friction energy of a per
 
 
 def shares(states: np.ndarray) -> dict[str, np.ndarray]:
-    """Part of the period in each state, (contacts,), from states (contacts, phases)."""
+    """Return the share of the period in each state, (contacts,), from states (contacts, phases)."""
     return {name: np.mean(np.asarray(states) == number, axis=1) for number, name in enumerate(STATES)}

@@ -10,28 +10,29 @@ from dalembert.report.look import LIGHT
 
 @dataclass(frozen=True)
 class Film:
-    """What a slider goes through.
+    """The frames of an animated figure, and the play button and slider that show them.
 
     Parameters
     ----------
     labels : sequence of str
-        Of the frames.
+        Texts at the slider, one for each frame.
     seconds : float
-        How long it takes once.
+        Duration of one pass through all frames, s.
     name, unit : str
-        Of what the labels are.
+        Name and unit of the quantity that the labels give, such as time and s.
     pace : str
-        The speed, in words.
+        The speed in words, such as "10 times slower".
     endless : bool
-        Whether the end is the beginning again.
+        Whether the last frame is followed by the first one, as in a period.
     redraw : bool
-        Whether more than the lines of a plane figure changes.
+        Whether plotly draws each frame anew. False is faster and suffices if only lines of a plane figure change; with
+        other changes the figure stays as it was.
     asks : str
-        What the slider is for, if not the name.
+        What the slider is for, as a text for screen readers; ``name`` if not given.
     frames : sequence of str
-        Names of the frames; their numbers if not given.
+        Names of the plotly frames; their numbers from 0 if not given.
     y : float
-        Height of the controls.
+        Vertical position of the controls, as a part of the height of the plot: 0 is its lower edge.
     """
 
     labels: Sequence[str]

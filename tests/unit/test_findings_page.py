@@ -84,3 +84,30 @@ def test_findings_that_are_handed_on_make_none(source):
 def test_a_code_or_severity_that_cannot_be_read_is_refused(source):
     with pytest.raises(ValueError, match="malformed"):
         list(made(source))
+
+
+def keys_of_sources() -> dict[str, set[str]]:
+    """Keys of the values of findings whose code and values are literals, by code."""
+    found = defaultdict(set)
+    for path in sorted((ROOT / "src").rglob("*.py")):
+        for call in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if not (isinstance(call, ast.Call) and ast.unparse(call.func) == "Finding" and len(call.args) > 2):
+                continue
+            code, _, values = call.args[:3]
+            if isinstance(code, ast.Constant) and isinstance(values, ast.Dict):
+                found[code.value] |= {key.value for key in values.keys if isinstance(key, ast.Constant)}
+    return {code: keys for code, keys in found.items() if keys}
+
+
+def test_the_page_lists_the_keys_of_the_values():
+    page = (ROOT / "docs" / "how-to" / "findings.md").read_text(encoding="utf-8")
+    rows = [row.split("|")[1:3] for row in page.partition("\n## Keys of `values`\n")[2].splitlines() if "| `" in row]
+    listed = {
+        code: set(re.findall("`([^`]+)`", keys)) for codes, keys in rows for code in re.findall("`([^`]+)`", codes)
+    }
+    known = keys_of_sources()
+    assert len(known) > 40
+    assert {
+        code: keys - listed.get(code, set()) for code, keys in known.items() if keys - listed.get(code, set())
+    } == {}
+    assert set(listed) <= set(findings_of_sources())

@@ -582,7 +582,7 @@ CASES: dict[str, Case] = {
             deviations=0.1,
         ),
         (
-            "The data add nothing to the prior of 'slope': its standard deviation is 1e-05 without and 1e-05 with the data.",
+            "The data add nothing to the prior of 'slope': its standard deviation is 1e-05 in the prior and 1e-05 with the data.",
         ),
     ),
     "two priors": Case(
@@ -666,7 +666,7 @@ CASES: dict[str, Case] = {
     ),
     "open profiles": Case(
         lambda: _profiled(SUM, _exact(SUM, [0.5, 1.0], noise=0.01, deviations=0.01), names=["a"]),
-        ("The data give no lower limit of 'a': up to its bound 0 they are explained within their noise.",),
+        ("The data give no lower limit of 'a': all values up to its bound 0 explain them within their noise.",),
     ),
     "flat profile": Case(
         lambda: _profiled(GHOST, _exact(GHOST, [1.0, 0.5], noise=0.1, deviations=0.1), names=["ghost"]),
@@ -718,7 +718,7 @@ CASES: dict[str, Case] = {
     # ── intervals from bands ────────────────────────────────────────────────────────────────────────────────────────
     "exact bands": Case(
         lambda: da.identify_bands(DECAY, BANDS),
-        ("The surrogate differs from true runs at", "points, where it takes its bounds, by at most"),
+        ("points where the surrogate has its bounds, it differs from runs of the model by at most",),
         ("intervals", "residual-bands-1", "convergence"),
         {"truth": {"size": (1.8, 2.2)}},
     ),
@@ -741,7 +741,7 @@ CASES: dict[str, Case] = {
     ),
     "bands of another model": Case(
         lambda: da.identify_bands(DECAY, Bands.of(TIMES, {"x": (np.cos(3 * TIMES) - 0.1, np.cos(3 * TIMES) + 0.1)})),
-        ("The bands are inconsistent: no box of the parameters has them.",),
+        ("The bands are inconsistent: no box of the parameters gives them.",),
     ),
     "an interval on its bound": Case(
         lambda: da.identify_bands(
@@ -758,7 +758,7 @@ CASES: dict[str, Case] = {
     ),
     "bands without a check": Case(
         lambda: da.identify_bands(DECAY, BANDS, method=GlobalSurrogate(Adaptive(1e-6), checks=0)),
-        ("The bounds of the surrogate are not checked by true runs.",),
+        ("The bounds of the surrogate are not checked by runs of the model.",),
     ),
     "bands with one descent": Case(
         lambda: da.identify_bands(DECAY, BANDS, method=GlobalSurrogate(starts=1)),
@@ -768,12 +768,15 @@ CASES: dict[str, Case] = {
     # ── sets ────────────────────────────────────────────────────────────────────────────────────────────────────────
     "a set": Case(
         lambda: da.identify_set(DISC, AT_ZERO, error=1.0),
-        ("Paved down to the resolution.",),
+        ("Paved: all boxes at the boundary of the set are as small as the resolution.",),
         ("paving-1",),
     ),
     "an empty set": Case(
         lambda: da.identify_set(DISC, Measurements.of(NOW, {"r": [10.0]}), error=0.5),
-        ("No consistent parameters:", "The nearest run, at x = 2, y = 2, differs by 4 times the error in channel 'r'"),
+        (
+            "No parameters within the bounds are consistent with the data:",
+            "The nearest run, at x = 2, y = 2, differs by 4 times the error in channel 'r'",
+        ),
     ),
     "a thin set": Case(
         lambda: da.identify_set(DISC, Measurements.of(NOW, {"r": [1.0]}), error=1e-3),
@@ -781,7 +784,7 @@ CASES: dict[str, Case] = {
     ),
     "too few boxes": Case(
         lambda: da.identify_set(DISC, AT_ZERO, error=1.0, resolution=1e-3, most_boxes=300),
-        ("The paving stopped before its boundary was sharp:",),
+        ("The paving stopped before all boxes at the boundary of the set were as small as the resolution:",),
     ),
     "a set by a coarse surrogate": Case(
         lambda: da.identify_set(
@@ -792,7 +795,9 @@ CASES: dict[str, Case] = {
         ),
         ("The surrogate's error is up to", "times that of the data and widens the boundary by as much."),
     ),
-    "a set whose surrogate is wrong": Case(_spiked, ("True runs at the corners of the inner box exceed the error:",)),
+    "a set whose surrogate is wrong": Case(
+        _spiked, ("At corners of the inner box, runs of the model differ from the data by more than their error:",)
+    ),
     "a set with failing runs": Case(
         lambda: da.identify_set(
             PythonModel(_far, DISC.parameters, ["r"], NOW), AT_ZERO, error=1.0, scheme=TotalDegree(2, oversampling=4)
@@ -815,7 +820,7 @@ CASES: dict[str, Case] = {
     ),
     "an enclosure that is wide": Case(
         lambda: da.propagate(NEAR_POLE, {"a": (-1.0, 1.0)}, Chebyshev(bounds="bernstein")),
-        ("The Bernstein form overestimates the surrogate by up to", 'Use bounds="optimise" or a smaller box.'),
+        ("The enclosure by Bernstein coefficients is wider", 'Use Chebyshev(bounds="optimise") or a smaller box.'),
     ),
     "bounds where runs fail": Case(
         lambda: da.propagate(FRAGILE, {"a": (0.0, 1.0)}, Scan(11)), ("runs failed, the first:",)

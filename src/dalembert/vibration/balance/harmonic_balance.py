@@ -23,8 +23,8 @@ class HarmonicBalance(Checked):
     harmonics : int
         Highest harmonic.
     odd_only : bool
-        Keep odd harmonics only: for motions that are their own opposite half a period later. Nothing in the system may
-        then act in one direction alone.
+        Keep odd harmonics only: for motions that are their own opposite half a period later. Forces with a mean or
+        even harmonics, such as those of stops and static forces, raise InputError.
     samples : int or "automatic"
         Samples of a period at which the elements' forces are evaluated. Automatic: doubled until twice as many change
         the balance of forces by less than ``sampling``.
@@ -35,7 +35,8 @@ class HarmonicBalance(Checked):
     sampling : float
         Largest change, as part of the forces, for which samples are enough.
     tolerance : float
-        Residual of a converged point, as part of the forces.
+        Residual of a converged point, as part of the forces. Where rounding is larger, a residual of that size
+        converges too, up to 1e-8.
     iterations : int
         Newton iterations of a point, at most. The step to a point that is not converged is halved.
     halvings : int

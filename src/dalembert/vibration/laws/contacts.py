@@ -74,8 +74,8 @@ class Rigid(Checked):
     Parameters
     ----------
     penalty : float, optional
-        N/m; it scales the prediction, and is no stiffness of the contact. That of the structure behind the contact,
-        with everything else held, if not given: much larger values converge more slowly with the number of harmonics.
+        N/m; it scales the prediction, and is no stiffness of the contact. The default is the stiffness of the structure
+        behind the contact, with everything else held. Much larger values need more harmonics.
     kind : {"displacement", "velocity"}
         Predict stuck motion by displacements, with a slider that remembers, or by velocities, without history. The
         latter is the more robust for contacts that carry mass.

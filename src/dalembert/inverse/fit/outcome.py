@@ -20,8 +20,8 @@ _SOURCES = {
     "arithmetic": "rounding errors of the arithmetic",
 }
 _MORE = (
-    "Measure more samples or channels, fix parameters by equal bounds, or give the deviation of what is known before "
-    "the data."
+    "Measure more samples or channels, fix parameters by equal bounds, or give priors: the start and the deviation of "
+    "parameters."
 )
 
 

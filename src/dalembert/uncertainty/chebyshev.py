@@ -114,8 +114,8 @@ def _overestimation(excess: np.ndarray, scale: np.ndarray, tolerance: float) -> 
         return []
     worst = float(parts.max())
     message = (
-        f"The enclosure by Bernstein coefficients is wider than the extremes of the surrogate by up to {worst:.2g} of the "
-        "response's variation."
+        f"The enclosure by Bernstein coefficients is wider than the extremes of the surrogate by up to {worst:.2g} of "
+        "the response's variation."
     )
     advice = 'Use Chebyshev(bounds="optimise") or a smaller box.'
     return [Finding("wide-enclosure", "warning", {"overestimation": worst}, message, advice)]

@@ -7,9 +7,10 @@ import numpy as np
 import dalembert.multibody as mb
 from dalembert.kernels.kernel import inlined
 from dalembert.kernels.views import stack
+from dalembert.multibody.components.body import POSITION, with_points
 from dalembert.multibody.components.fields import Number
 from dalembert.multibody.components.planar import markers
-from dalembert.multibody.components.planar.body import GRADIENT, POSITION, Body, Marker, with_points
+from dalembert.multibody.components.planar.body import GRADIENT, Body, Marker
 from dalembert.multibody.components.planar.joint import Joint
 from dalembert.multibody.components.planar.load import Load
 from dalembert.multibody.kernels.charts import Chart, flat

@@ -117,7 +117,7 @@ class BlockKernel(Compiled):
         if self._owner is None:
             return super().origin
         kind, role, dtype = self._owner
-        return origin_of(kind.source.__module__, kind, role, dtype.__name__)
+        return origin_of(kind.module, kind, role, dtype.__name__)
 
     @property
     def family(self) -> str:

@@ -13,7 +13,7 @@ import numpy as np
 from scipy.linalg import qr
 
 from dalembert.errors import ModelError, require_known
-from dalembert.multibody.components.planar.body import Body
+from dalembert.multibody.components.body import BaseBody
 from dalembert.multibody.equilibrium_start import begin_at_rest, unstable_body
 from dalembert.multibody.evaluate import constraint_jacobian, residual
 from dalembert.multibody.initial_velocities import initial_velocities
@@ -21,15 +21,23 @@ from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.model import Model
 from dalembert.multibody.lowered import Lowered
 from dalembert.multibody.lowering import lower
-from dalembert.multibody.rigid_motions import CLOSED, coordinates_of, modes_of, size_of, smallest, spread, unknowns
+from dalembert.multibody.rigid_motions import (
+    CLOSED,
+    coordinates_of,
+    modes_of,
+    size_of,
+    smallest,
+    spread,
+    turning,
+    unknowns,
+)
 from dalembert.multibody.scales import scales
-from dalembert.multibody.system import EQUILIBRIUM, System
+from dalembert.multibody.system import EQUILIBRIUM, Mechanism
 
 _MOST_ITERATIONS = 60
-_FRAME = {"x": 0, "y": 1, "angle": 2}
 
 
-def assembled(system: System, perturbed: bool = False, placed: Lowered | None = None, begin: float = 0.0) -> Lowered:
+def assembled(system: Mechanism, perturbed: bool = False, placed: Lowered | None = None, begin: float = 0.0) -> Lowered:
     """Arrays of a system whose joints are closed and whose velocities are consistent, at the time ``begin`` (s).
 
     A system that starts at its equilibrium is moved there once its joints are closed.
@@ -78,7 +86,7 @@ def refuse_kinks(lowered: Lowered, end: float) -> None:
             )
 
 
-def refuse_unstable_start(system: System, lowered: Lowered) -> None:
+def refuse_unstable_start(system: Mechanism, lowered: Lowered) -> None:
     """Raise where a system that starts at its equilibrium would fall away from it.
 
     Raises
@@ -135,19 +143,22 @@ def refuse_redundancy(lowered: Lowered) -> None:
         )
 
 
-def _free(system: System) -> np.ndarray:
-    """Mask of the frame coordinates that assembly may change, (bodies, 3)."""
+def _free(system: Mechanism) -> np.ndarray:
+    """Mask of the frame coordinates that assembly may change, (bodies, rates)."""
     names = [body.name for body in system.bodies]
-    free = np.array([[True, True, body.turns] for body in system.bodies])
+    free = turning(system.bodies)
     for entry in system.driving:
         name, _, coordinate = entry.rpartition(".")
-        require_known("coordinate", coordinate, _FRAME, f"driving {entry!r}")
+        known = system.bodies[0].FRAME
+        require_known("coordinate", coordinate, known, f"driving {entry!r}")
         require_known("body", name, names, f"driving {entry!r}")
-        free[names.index(name), _FRAME[coordinate]] = False
+        free[names.index(name), known.index(coordinate)] = False
     return free
 
 
-def _close(bodies: Sequence[Body], lowered: Lowered, model: Model, free: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _close(
+    bodies: Sequence[BaseBody], lowered: Lowered, model: Model, free: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """Frames at which all joints are closed, and the unknowns there."""
     frames = lowered.frames
     still = np.zeros_like(lowered.x)
@@ -167,8 +178,7 @@ def _close(bodies: Sequence[Body], lowered: Lowered, model: Model, free: np.ndar
         longest = np.abs(np.real(step)).max(initial=0.0)
         if not np.isfinite(longest):
             break
-        frames = frames.copy()
-        frames[free] += step * min(1.0, 0.5 * extent / (longest + 1e-300))
+        frames = moved(bodies, frames, free, step * min(1.0, 0.5 * extent / (longest + 1e-300)))
         if longest <= 1e-15 and closed <= 1e3 * CLOSED:
             return frames, unknowns(lowered, coordinates_of(bodies, frames))
     structure = lowered.structure

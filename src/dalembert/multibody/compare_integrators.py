@@ -19,7 +19,7 @@ from dalembert.multibody.integrators.integrator import Integrator
 from dalembert.multibody.integrators.run import make_problem
 from dalembert.multibody.lowering import lower
 from dalembert.multibody.simulation import prepared, simulate
-from dalembert.multibody.system import System
+from dalembert.multibody.system import Mechanism
 from dalembert.multibody.trajectory import Trajectory
 from dalembert.results import Result
 from dalembert.stored_fields import Source, Store
@@ -140,7 +140,7 @@ class WorkPrecision(Result):
 
 @takes_checked()
 def work_precision(
-    system: System,
+    system: Mechanism,
     end: float,
     channels: Sequence[str],
     solvers: Mapping[str, Sequence[Integrator]],
@@ -155,7 +155,7 @@ def work_precision(
 
     Parameters
     ----------
-    system : System
+    system : Mechanism
     end : float
         s.
     channels : sequence of str
@@ -226,7 +226,7 @@ def work_precision(
 class _Comparison:
     """A motion whose runs are kept where there is a checkpoint."""
 
-    system: System
+    system: Mechanism
     end: float
     times: np.ndarray
     channels: tuple[str, ...]
@@ -272,7 +272,7 @@ class _Comparison:
             return fingerprint(lower(self.system), self.times, self.end, self.channels, self.reference)
 
 
-def _seconds(system: System, end: float, solver: Integrator, times: np.ndarray, repeats: int) -> float:
+def _seconds(system: Mechanism, end: float, solver: Integrator, times: np.ndarray, repeats: int) -> float:
     """Shortest time of the integration alone, to the output times and no others."""
     lowered, chosen = prepared(system, end, solver)
     problem = make_problem(lowered, times)

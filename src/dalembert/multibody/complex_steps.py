@@ -25,7 +25,7 @@ from dalembert.multibody.kernels.motion import MotionState
 from dalembert.multibody.lowered import Lowered
 from dalembert.multibody.lowering import lower
 from dalembert.multibody.observe import Observer
-from dalembert.multibody.system import System
+from dalembert.multibody.system import Mechanism
 from dalembert.parameters import Parameters
 
 _STATES = 5  # of a motion at which functions are compared
@@ -63,7 +63,7 @@ class Along:
 
 
 def check_numbers(
-    builder: Callable[..., System], parameters: Parameters, vector: np.ndarray, thorough: bool = True
+    builder: Callable[..., Mechanism], parameters: Parameters, vector: np.ndarray, thorough: bool = True
 ) -> None:
     """Raise where a number of the model, or a function of time, loses the complex step of a parameter.
 
@@ -83,7 +83,7 @@ def check_numbers(
         check_steps(parameters, vector, lambda at: _numbers(lowered(at)), place, thorough=thorough)
 
 
-def _built(builder: Callable[..., System], parameters: Parameters, vector: np.ndarray) -> System:
+def _built(builder: Callable[..., Mechanism], parameters: Parameters, vector: np.ndarray) -> Mechanism:
     """The system with functions of the user's as Python runs them, since compiling one takes a second."""
     given = [value if value.imag else value.real for value in vector.tolist()]  # one of them is complex at most
     system = copy(builder(**parameters.arguments(given)))
@@ -111,7 +111,7 @@ def _place(lowered: Lowered, entry: int) -> str:
     return names[entry]
 
 
-def check_closures(builder: Callable[..., System], parameters: Parameters, vector: np.ndarray, along: Along) -> None:
+def check_closures(builder: Callable[..., Mechanism], parameters: Parameters, vector: np.ndarray, along: Along) -> None:
     """Raise where a function of the user's, or a kind of another package, loses the complex step of a parameter.
 
     Raises
@@ -134,7 +134,7 @@ def check_closures(builder: Callable[..., System], parameters: Parameters, vecto
             check_steps(parameters, vector, lambda at: np.concatenate([own for _, own in answers(at)]), place)
 
 
-def _of_signals(system: System, along: Along) -> Iterator[tuple[str, np.ndarray]]:
+def _of_signals(system: Mechanism, along: Along) -> Iterator[tuple[str, np.ndarray]]:
     """Values and rates of functions of time."""
     for component in (*system.bodies, *system.joints, *system.loads):
         for name, signal in vars(component).items():

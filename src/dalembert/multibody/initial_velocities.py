@@ -10,16 +10,16 @@ import numpy as np
 
 from dalembert.errors import ModelError
 from dalembert.multibody.carried_rates import carried_rates
-from dalembert.multibody.components.planar.body import Body
+from dalembert.multibody.components.body import BaseBody
 from dalembert.multibody.evaluate import constraint_rates
 from dalembert.multibody.kernels.model import Model
 from dalembert.multibody.lowered import Lowered
-from dalembert.multibody.rigid_motions import CLOSED, modes_of, size_of, smallest, spread
+from dalembert.multibody.rigid_motions import CLOSED, modes_of, size_of, smallest, spread, turning
 
 _ROUNDING = 1e-9  # of the largest velocity: what stated velocities may leave of a constraint's rate
 
 
-def initial_velocities(bodies: Sequence[Body], lowered: Lowered, model: Model) -> np.ndarray:
+def initial_velocities(bodies: Sequence[BaseBody], lowered: Lowered, model: Model) -> np.ndarray:
     """Velocities of rigid motions that satisfy the joints, (N + 1,).
 
     Raises
@@ -28,13 +28,13 @@ def initial_velocities(bodies: Sequence[Body], lowered: Lowered, model: Model) -
         Where the stated velocities contradict a joint, with the velocities that are stated and the nearest possible
         ones; where no velocities satisfy the joints.
     """
-    turning = np.array([[True, True, body.turns] for body in bodies])
+    rates = turning(bodies)
     motion = _RigidMotion(bodies, lowered, model)
-    _, v, left = motion.completed(np.where(lowered.stated, lowered.rates, 0.0), turning & ~lowered.stated)
+    _, v, left = motion.completed(np.where(lowered.stated, lowered.rates, 0.0), rates & ~lowered.stated)
     wrong, wrong_slope = size_of(left)
     speed, slope = motion.sizes(v)
     if wrong > _ROUNDING * speed:
-        raise _contradiction(motion, turning, left)
+        raise _contradiction(motion, rates, left)
     if wrong_slope > _ROUNDING * slope:
         row = int(np.argmax(np.abs(np.imag(left))))
         raise ModelError(
@@ -45,9 +45,9 @@ def initial_velocities(bodies: Sequence[Body], lowered: Lowered, model: Model) -
 
 
 class _RigidMotion:
-    """The first rigid motion of a mechanism as a function of the chosen rates, (bodies, 3)."""
+    """The first rigid motion of a mechanism as a function of the chosen rates, (bodies, rates)."""
 
-    def __init__(self, bodies: Sequence[Body], lowered: Lowered, model: Model) -> None:
+    def __init__(self, bodies: Sequence[BaseBody], lowered: Lowered, model: Model) -> None:
         self.bodies, self.lowered, self.model = bodies, lowered, model
         first = [lowered.structure.first[body.name] for body in bodies]
         self._coordinates = [lowered.x[k : k + body.size] for k, body in zip(first, bodies, strict=True)]
@@ -94,12 +94,12 @@ class _RigidMotion:
         return np.tensordot(self._modes, rates, 2)
 
 
-def _contradiction(motion: _RigidMotion, turning: np.ndarray, left: np.ndarray) -> ModelError:
+def _contradiction(motion: _RigidMotion, rates: np.ndarray, left: np.ndarray) -> ModelError:
     """Error for stated velocities that leave constraint rates."""
     wide = np.abs(np.real(left))
     joints = sorted({motion.owner(row) for row in np.flatnonzero(wide > 0.5 * wide.max()).tolist()})
     lowered, given = motion.lowered, np.where(motion.lowered.stated, motion.lowered.rates, 0.0)
-    possible, v, remains = motion.completed(given, turning)
+    possible, v, remains = motion.completed(given, rates)
     worst = int(np.argmax(np.abs(np.real(remains))))
     if size_of(remains)[0] > _ROUNDING * motion.sizes(v)[0]:
         return ModelError(
@@ -110,12 +110,25 @@ def _contradiction(motion: _RigidMotion, turning: np.ndarray, left: np.ndarray) 
     for body, own, near, mask in zip(motion.bodies, np.real(given), np.real(possible), lowered.stated, strict=True):
         near = np.where(np.abs(near) < 1e-12 * np.abs(near).max(), 0.0, near)
         changed = mask & (np.abs(near - own) > 1e-9 * max(1.0, np.abs(own).max()))
-        if changed[:2].any():
-            ours, theirs = (f"({x:.6g}, {y:.6g})" for x, y in (own[:2], near[:2]))
-            parts.append(f"{body.name}.velocity is {ours} m/s (nearest possible: {theirs})")
-        if changed[2]:
-            parts.append(f"{body.name}.angular_velocity is {own[2]:.6g} rad/s (nearest possible: {near[2]:.6g})")
+        for what, unit, part in _velocities_of(body):
+            if changed[part].any():
+                ours, theirs = _numbers(own[part]), _numbers(near[part])
+                parts.append(f"{body.name}.{what} is {ours} {unit} (nearest possible: {theirs})")
     return ModelError(
         f"the stated initial velocities contradict joint {', '.join(map(repr, joints))} by {wide.max():.3g} (m/s or "
         f"rad/s): {', '.join(parts)}. Correct them, or leave out those that follow from the joints"
     )
+
+
+def _velocities_of(body: BaseBody) -> tuple[tuple[str, str, slice], ...]:
+    """Names, units and rates of the stated velocities of a body."""
+    return (
+        ("velocity", "m/s", slice(body.dimension)),
+        ("angular_velocity", "rad/s", slice(body.dimension, None)),
+    )
+
+
+def _numbers(values: np.ndarray) -> str:
+    """Numbers as they are written in a model."""
+    numbers = ", ".join(f"{value:.6g}" for value in values)
+    return numbers if len(values) == 1 else f"({numbers})"

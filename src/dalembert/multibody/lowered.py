@@ -7,7 +7,7 @@ import numpy as np
 
 from dalembert.kernels.kernel import Compiled
 from dalembert.multibody.callbacks import Callback, Failures
-from dalembert.multibody.components.planar.body import Body
+from dalembert.multibody.components.body import BaseBody
 from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.kernels.model import Blocks, Model, Signals
 from dalembert.multibody.kernels.signals import EVALUATE
@@ -21,13 +21,15 @@ class Lowered:
     Parameters
     ----------
     structure : Structure
-    bodies : mapping of name to Body
+    bodies : mapping of name to BaseBody
     data : mapping of kind to array (count, -)
     signal_data, knots : array
     callbacks : tuple of Callback
-    frames, rates : array, shape (bodies, 3)
-        Place (x, y) and angle of each body at first, and their stated rates, zero where none is.
-    stated : array of bool, shape (bodies, 3)
+    frames : array, shape (bodies, -)
+        Initial frame of each body.
+    rates : array, shape (bodies, rates)
+        Their stated rates, zero where none is stated.
+    stated : array of bool, shape (bodies, rates)
         Which rates the bodies state.
     x, v : array, shape (N + 1,)
         First unknowns and velocities, as placed: joints may not be closed yet.
@@ -44,7 +46,7 @@ class Lowered:
     """
 
     structure: Structure
-    bodies: dict[str, Body]
+    bodies: dict[str, BaseBody]
     data: dict[Kind, np.ndarray]
     signal_data: np.ndarray
     knots: np.ndarray
@@ -59,6 +61,11 @@ class Lowered:
     kinks: tuple[tuple[float, str], ...]
     failures: Failures = field(compare=False, repr=False)
     parts: dict[Kind, tuple[str, ...]] = field(compare=False, repr=False)
+
+    @property
+    def dimension(self) -> int:
+        """Number of coordinates of a position: 2 in the plane, 3 in space."""
+        return next(iter(self.bodies.values())).dimension
 
     @property
     def is_complex(self) -> bool:

@@ -4,7 +4,9 @@ What depends only on the kinds and connections of components is a `Structure`, f
 an ensemble; what depends on numbers is in `Lowered`.
 """
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence, ValuesView
+from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -12,26 +14,24 @@ import numpy as np
 from dalembert.errors import InputError, ModelError, shown
 from dalembert.multibody.callbacks import Callback, Failures, force_callback, signal_callback
 from dalembert.multibody.carried_rates import carried_rates
+from dalembert.multibody.components.body import BaseBody
 from dalembert.multibody.components.fields import Number
-from dalembert.multibody.components.lowering import Pair
-from dalembert.multibody.components.planar import markers
-from dalembert.multibody.components.planar.body import Body, Marker
-from dalembert.multibody.components.points import Ground, GroundPoint, Place, Point, Side
+from dalembert.multibody.components.points import Point
 from dalembert.multibody.components.signals import Course, Custom, Signal, as_signal
 from dalembert.multibody.kernels import signals as signal_kinds
 from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.lowered import Lowered
 from dalembert.multibody.structure import Structure
-from dalembert.multibody.system import System
+from dalembert.multibody.system import Mechanism
 
 _ABSENT = -1
 _ROUNDING = 1e-14  # relative, of differences of times
 
 
-class SystemLowering:
+class MechanismLowering(ABC):
     """Collects the rows of the kernels while the components write them."""
 
-    def __init__(self, system: System, begin: float = 0.0) -> None:
+    def __init__(self, system: Mechanism, begin: float = 0.0) -> None:
         self.gravity = system.gravity
         self.kinks: list[tuple[float, str]] = []
         self._system = system
@@ -47,7 +47,7 @@ class SystemLowering:
         self._owners: list[str] = []
         self._component = ""  # that writes its rows
         self._failures = Failures()
-        self._bodies: dict[str, Body] = {}
+        self._bodies: dict[str, BaseBody] = {}
         self._coordinates: dict[str, np.ndarray] = {}
         self._first: dict[str, int] = {}
 
@@ -103,59 +103,19 @@ class SystemLowering:
         self._callbacks.append(force_callback(function, owner, self._failures))
         return len(self._callbacks) - 1
 
-    def pair(self, a: Side, b: Side | None, owner: str) -> Pair:
-        """The markers of two sides; a bare ground stands where the other side is."""
-        if not isinstance(a, Point) and not isinstance(b, Point):
-            raise ModelError(f"{owner!r}: it acts on the ground only; give it a point of a body")
-        if isinstance(a, Point) and isinstance(b, Point) and a.body is b.body and a.body.rigid:
-            raise ModelError(
-                f"{owner!r}: both its points, {a} and {b}, belong to the same rigid body, so it does nothing; "
-                "give it points of two bodies, or of a body and the ground"
-            )
-        first = self._stand(b if isinstance(a, Ground) and b is not None else a, owner)
-        second = self._stand(a if b is None or isinstance(b, Ground) else b, owner)
-        sides = self._marker(a, owner, first), self._marker(b or Ground(), owner, second)
-        dx, dy = second[0] - first[0], second[1] - first[1]
-        square = dx * dx + dy * dy
-        c, s = np.cos(first[2]), np.sin(first[2])
-        return Pair(
-            slots=[*sides[0].slots, *sides[1].slots],
-            data=[*sides[0].data, *sides[1].data],
-            integers=[sides[0].kind, sides[1].kind, int(markers.NODE in (sides[0].kind, sides[1].kind))],
-            distance=np.sqrt(square) if np.real(square) > 0 else 0.0,
-            rest_angle=second[2] - first[2],
-            angles=(first[2], second[2]),
-            relative=(c * dx + s * dy, c * dy - s * dx),
-        )
-
     # -- placing --------------------------------------------------------------------------------------------------
 
-    def _stand(self, side: Side | Place, owner: str) -> tuple[Number, Number, Number]:
-        """Position and angle of a side at first."""
-        if isinstance(side, GroundPoint):
-            return side.x, side.y, side.angle
-        if isinstance(side, Ground):
-            return 0.0, 0.0, 0.0
-        if isinstance(side, Point):
-            marker = self._known(side, owner)
-            return _stand(marker, self._coordinates[side.body.name])
-        return side[0], side[1], 0.0
+    @abstractmethod
+    def frame(self, body: BaseBody) -> np.ndarray:
+        """Initial frame of a body; those that it is placed at are known already."""
 
-    def _known(self, point: Point, owner: str) -> Marker:
+    def _known(self, point: Point, owner: str) -> Any:
         if self._bodies.get(point.body.name) is not point.body:
             raise ModelError(
                 f"{owner!r}: its point {point} belongs to a body that is not in the system (or not yet); "
                 f"add {point.body.name!r} first"
             )
         return point.body.marker(point.name)
-
-    def _marker(self, side: Side, owner: str, stand: tuple[Number, Number, Number]) -> Marker:
-        if isinstance(side, Point):
-            marker = self._known(side, owner)
-            first = self._first[side.body.name]
-            return marker._replace(slots=tuple(None if k is None else first + k for k in marker.slots))
-        place = (*stand[:2], 0.0) if isinstance(side, Ground) else (side.x, side.y, side.angle)
-        return Marker(markers.GROUND, (None,) * 4, place)
 
     def _refuse_infinite(self) -> None:
         """Raise for the first number of a component that is not finite."""
@@ -165,7 +125,9 @@ class SystemLowering:
         for owner, part in parts:
             for name, value in vars(part).items():
                 numbers = value.lower()[1] if isinstance(value, Signal) else value
-                if not _finite(list(vars(value).values()) if isinstance(value, GroundPoint) else numbers):
+                if not _finite(
+                    list(vars(value).values()) if is_dataclass(value) and not isinstance(value, Signal) else numbers
+                ):
                     raise ModelError(f"{owner}: {name} is {value}; expected finite numbers")
 
     def _since(self, time: float) -> float:
@@ -178,13 +140,12 @@ class SystemLowering:
         system = self._system
         frames, kinds = [], []
         for body in system.bodies:
-            x, y, _ = self._stand(body.place, body.name)
+            frame = self.frame(body)
             self._bodies[body.name] = body
             self._first[body.name] = len(self._owners)
             self._owners += [body.name] * body.size
-            own = body.coordinates(x, y, body.turn)
-            self._coordinates[body.name] = own
-            frames.append(np.array([x, y, body.turn]))
+            self._coordinates[body.name] = body.placed(frame)
+            frames.append(frame)
             kinds += body.coordinate_kinds
         n = len(self._owners)
         if n == 0:
@@ -238,7 +199,7 @@ class SystemLowering:
         return lowered
 
 
-def lower(system: System, begin: float = 0.0) -> Lowered:
+def lower(system: Mechanism, begin: float = 0.0) -> Lowered:
     """Arrays of a system, with its bodies as placed; its motion starts at the time ``begin`` (s) of its signals.
 
     Raises
@@ -246,10 +207,11 @@ def lower(system: System, begin: float = 0.0) -> Lowered:
     InputError
         For what is no System.
     """
-    if not isinstance(system, System):
+    if not isinstance(system, Mechanism):
         own = "; give its system, in which the bodies are placed as they begin" if hasattr(system, "system") else ""
         raise InputError(f"{shown(system)} was given as the mechanism; expected a System{own}")
-    return SystemLowering(system, begin).run()
+    module, _, name = system.LOWERING.rpartition(".")
+    return getattr(import_module(module), name)(system, begin).run()
 
 
 def _finite(value: object) -> bool:
@@ -266,18 +228,3 @@ def _integers(rows: Sequence, width: int, absent: int) -> np.ndarray:
     array[:, : len(rows[0])] = rows
     array[array == _ABSENT] = absent
     return array
-
-
-def _stand(marker: Marker, coordinates: np.ndarray) -> tuple[Number, Number, Number]:
-    """Position and angle of a marker of undeformed coordinates."""
-    own = [coordinates[k] if k is not None else 0.0 for k in marker.slots]
-    sx, sy, phi = marker.data
-    if marker.kind == markers.RIGID:
-        c, s = np.cos(own[2]), np.sin(own[2])
-        return own[0] + c * sx - s * sy, own[1] + s * sx + c * sy, own[2]
-    if marker.kind == markers.NODE:
-        real = np.arctan2(np.real(own[3]), np.real(own[2]))
-        # First-order imaginary part: the gradient has length one here.
-        turn = np.imag(own[3]) * np.real(own[2]) - np.imag(own[2]) * np.real(own[3])
-        return own[0], own[1], (real + 1j * turn if np.iscomplexobj(coordinates) else real) + phi
-    return own[0], own[1], 0.0

@@ -27,7 +27,7 @@ from dalembert.multibody.lowered import Lowered
 from dalembert.multibody.lowering import lower
 from dalembert.multibody.observe import Observer, observer
 from dalembert.multibody.simulation import prepared
-from dalembert.multibody.system import System
+from dalembert.multibody.system import Mechanism
 from dalembert.parameters import Parameters
 
 
@@ -154,7 +154,7 @@ class MotionModel(ABC):
 class BuiltModel(MotionModel):
     """A model of motions whose mechanism a function builds from parameters."""
 
-    builder: Callable[..., System]
+    builder: Callable[..., Mechanism]
     parameters: Parameters
     channel_names: tuple[str, ...]
     times: np.ndarray
@@ -173,12 +173,12 @@ class BuiltModel(MotionModel):
         """Channels with their units."""
         return self.observer.channels
 
-    def system(self, vector: np.ndarray) -> System:
+    def system(self, vector: np.ndarray) -> Mechanism:
         """The mechanism at a parameter vector (parameters,)."""
-        return built(self.builder, self.parameters.mapping(vector), System)
+        return built(self.builder, self.parameters.mapping(vector), Mechanism)
 
     @cached_property
-    def first_system(self) -> System:
+    def first_system(self) -> Mechanism:
         """The mechanism that all samples share their structure with."""
         return self.system(self.parameters.start if self.built_at is None else self.built_at)
 
@@ -251,7 +251,7 @@ class BuiltModel(MotionModel):
         """The arrays of :meth:`lowered_at`, moved by a complex step of the scale of one parameter."""
         name, value = self.parameters.names[column], complex(vector[column], STEP * self.parameters.scale[column])
         try:
-            system = built(self.builder, self.parameters.mapping(vector) | {name: value}, System)
+            system = built(self.builder, self.parameters.mapping(vector) | {name: value}, Mechanism)
             return self._fit(assembled(system, perturbed=True, begin=begin) if closed else lower(system, begin))
         except (TypeError, ModelError, np.exceptions.ComplexWarning) as error:
             cause = error.__cause__ if isinstance(error, ModelError) else error

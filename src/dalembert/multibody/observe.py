@@ -8,15 +8,13 @@ import numpy as np
 from dalembert.errors import InputError, unknown
 from dalembert.forward import Channel
 from dalembert.kernels.kernel import Compiled
-from dalembert.multibody.components.planar import markers
-from dalembert.multibody.components.planar.sensor import DIRECTIONAL, SENSOR
 from dalembert.multibody.evaluate import energies, energy_kernels
 from dalembert.multibody.kernels.histories import outputs_history
 from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.kernels.model import Model
 from dalembert.multibody.kernels.records import BLOCK
 from dalembert.multibody.lowered import Lowered
-from dalembert.multibody.system import System
+from dalembert.multibody.system import Mechanism
 
 _OF_SYSTEM = {"kinetic_energy": (1.0, 0.0), "potential_energy": (0.0, 1.0), "total_energy": (1.0, 1.0)}
 
@@ -39,15 +37,17 @@ class _Row:
     @property
     def turns(self) -> bool:
         """Whether it is an angle that is known up to whole turns."""
-        if self.kind is None or "wraps" not in self.kind.integers:
+        if self.kind is None:
             return False
-        return self.kind.outputs[self.output][0] == "angle" and self.integers[self.kind.integers.index("wraps")] == 1
+        name, wraps = self.kind.outputs[self.output][0], "wraps" in self.kind.integers
+        wrapped = wraps and name == "angle" and self.integers[self.kind.integers.index("wraps")] == 1
+        return wrapped or name in self.kind.angles
 
     def numbers(self, lowered: Lowered) -> np.ndarray:
         """The numbers of the component in a sample."""
         if isinstance(self.source, tuple):
             body, point = self.source
-            return np.array([0.0, 0.0, 0.0, *lowered.bodies[body].marker(point).data])
+            return np.array(lowered.bodies[body].point_numbers(point))
         assert self.kind is not None
         return lowered.data[self.kind][self.source]
 
@@ -119,7 +119,7 @@ def beside(times: np.ndarray, side: int) -> np.ndarray:
     return np.maximum(times + side * 1e-9 * times[-1], 0.0) if len(times) else times
 
 
-def observer(system: System, lowered: Lowered, names: Sequence[str]) -> Observer:
+def observer(system: Mechanism, lowered: Lowered, names: Sequence[str]) -> Observer:
     """Channels by name.
 
     Raises
@@ -131,21 +131,17 @@ def observer(system: System, lowered: Lowered, names: Sequence[str]) -> Observer
     return Observer(tuple(Channel(name, row.unit) for name, row in zip(names, rows, strict=True)), rows)
 
 
-def channel_names(system: System) -> tuple[str, ...]:
+def channel_names(system: Mechanism) -> tuple[str, ...]:
     """All channels that a system offers."""
     names = []
     for body in system.bodies:
-        names += [f"{body.name}.{point}.{entry}" for point in body.point_names for entry in _point_outputs(body.turns)]
+        names += [f"{body.name}.{point}.{entry}" for point in body.point_names for entry, _ in body.point_outputs]
     for component in (*system.joints, *system.loads):
         names += [f"{component.name}.{entry}" for entry, _ in component.kind.outputs]
     return (*names, *(f"system.{entry}" for entry in _OF_SYSTEM))
 
 
-def _point_outputs(turns: bool) -> list[str]:
-    return [name for name, _ in SENSOR.outputs if turns or name not in DIRECTIONAL]
-
-
-def _row(system: System, lowered: Lowered, name: str) -> _Row:
+def _row(system: Mechanism, lowered: Lowered, name: str) -> _Row:
     structure = lowered.structure
     owner, _, entry = name.rpartition(".")
     if owner == "system" and entry in _OF_SYSTEM:
@@ -158,11 +154,9 @@ def _row(system: System, lowered: Lowered, name: str) -> _Row:
                 return _Row(unit, kind, output, tuple(index.tolist()), tuple(integers.tolist()), row)
     body_name, _, point = owner.rpartition(".")
     for body in system.bodies:
-        if body.name == body_name and point in body.point_names and entry in _point_outputs(body.turns):
-            marker, first, absent = body.marker(point), structure.first[body.name], structure.size
-            slots = [absent if k is None else first + k for k in marker.slots]
-            integers = (markers.GROUND, marker.kind, int(marker.kind == markers.NODE))
-            output = [known for known, _ in SENSOR.outputs].index(entry)
-            index = (absent,) * 4 + tuple(slots)
-            return _Row(SENSOR.outputs[output][1], SENSOR, output, index, integers, (body_name, point))
+        units = dict(body.point_outputs)
+        if body.name == body_name and point in body.point_names and entry in units:
+            index, integers = body.point_index(point, structure.first[body.name], structure.size)
+            output = [known for known, _ in body.sensor.outputs].index(entry)
+            return _Row(units[entry], body.sensor, output, index, integers, (body_name, point))
     raise InputError(unknown("channel", name, channel_names(system)))

@@ -9,7 +9,8 @@ from scipy.linalg import null_space, qr
 
 from dalembert.errors import SolveError
 from dalembert.forward import Channel, StateChart
-from dalembert.multibody.components.planar.body import ANGLE, POSITION
+from dalembert.multibody.components.body import POSITION
+from dalembert.multibody.components.planar.body import ANGLE
 from dalembert.multibody.evaluate import constraint_jacobian, constraint_rates, residual
 from dalembert.multibody.fingerprint import fingerprint
 from dalembert.multibody.kernels.elementary import STEP
@@ -72,9 +73,9 @@ def _coordinate_names(lowered: Lowered) -> list[str]:
         counts: dict[str, int] = {}
         for kind in body.coordinate_kinds:
             number = counts[kind] = counts.get(kind, -1) + 1
-            what = "xy"[number % 2] if kind == POSITION else kind if kind == ANGLE else f"{kind} {'xy'[number % 2]}"
-            node = number if kind == ANGLE else number // 2
-            names.append(f"{body.name}.{what}" + (f" {node + 1}" if body.size > 3 else ""))
+            node, axis = (number, "") if kind == ANGLE else divmod(number, body.dimension)
+            what = kind if kind == ANGLE else "xyz"[axis] if kind == POSITION else f"{kind} {'xyz'[axis]}"
+            names.append(f"{body.name}.{what}" + ("" if body.rigid and kind in (ANGLE, POSITION) else f" {node + 1}"))
     return names
 
 

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from dalembert.multibody.components.planar.body import Body
+from dalembert.multibody.components.body import BaseBody
 from dalembert.multibody.evaluate import constraint_jacobian, constraint_rates, residual
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.model import Model
@@ -13,9 +13,22 @@ from dalembert.multibody.lowered import Lowered
 CLOSED = 1e-13  # violation against the scale that counts as none
 
 
-def coordinates_of(bodies: Sequence[Body], frames: np.ndarray) -> list[np.ndarray]:
+def coordinates_of(bodies: Sequence[BaseBody], frames: np.ndarray) -> list[np.ndarray]:
     """Coordinates of each undeformed body in its frame."""
-    return [body.coordinates(*frame) for body, frame in zip(bodies, frames, strict=True)]
+    return [body.placed(frame) for body, frame in zip(bodies, frames, strict=True)]
+
+
+def turning(bodies: Sequence[BaseBody]) -> np.ndarray:
+    """Mask of the rates of frames that the bodies have, (bodies, rates): points do not turn."""
+    dimension = bodies[0].dimension
+    return np.array([[body.turns or rate < dimension for rate in range(len(body.FRAME))] for body in bodies])
+
+
+def moved(bodies: Sequence[BaseBody], frames: np.ndarray, free: np.ndarray, step: np.ndarray) -> np.ndarray:
+    """Frames after a step (free,) of the free ones of their rates, ``free`` (bodies, rates)."""
+    steps = np.zeros(free.shape, dtype=np.result_type(frames, step))
+    steps[free] = step
+    return np.array([body.moved(frame, own) for body, frame, own in zip(bodies, frames, steps, strict=True)])
 
 
 def unknowns(lowered: Lowered, coordinates: Sequence[np.ndarray]) -> np.ndarray:
@@ -23,14 +36,14 @@ def unknowns(lowered: Lowered, coordinates: Sequence[np.ndarray]) -> np.ndarray:
     return np.concatenate([*coordinates, np.zeros(lowered.structure.size + 1 - lowered.structure.n)])
 
 
-def modes_of(bodies: Sequence[Body], coordinates: Sequence[np.ndarray], frames: np.ndarray) -> list[np.ndarray]:
-    """Derivatives of the coordinates of each body by its frame, (size, 3)."""
+def modes_of(bodies: Sequence[BaseBody], coordinates: Sequence[np.ndarray], frames: np.ndarray) -> list[np.ndarray]:
+    """Derivatives of the coordinates of each body by its frame, (size, rates)."""
     return [body.rigid_modes(own, frame) for body, own, frame in zip(bodies, coordinates, frames, strict=True)]
 
 
-def spread(lowered: Lowered, bodies: Sequence[Body], modes: Sequence[np.ndarray]) -> np.ndarray:
-    """Derivatives of all coordinates by all frames, (n, bodies, 3)."""
-    spread = np.zeros((lowered.structure.n, len(bodies), 3), dtype=lowered.x.dtype)
+def spread(lowered: Lowered, bodies: Sequence[BaseBody], modes: Sequence[np.ndarray]) -> np.ndarray:
+    """Derivatives of all coordinates by all frames, (n, bodies, rates)."""
+    spread = np.zeros((lowered.structure.n, len(bodies), len(bodies[0].FRAME)), dtype=lowered.x.dtype)
     for number, (body, own) in enumerate(zip(bodies, modes, strict=True)):
         first = lowered.structure.first[body.name]
         spread[first : first + body.size, number] = own

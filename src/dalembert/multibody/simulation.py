@@ -18,7 +18,7 @@ from dalembert.multibody.long_runs import MOST_STEPS, check_pace, check_steps, w
 from dalembert.multibody.lowered import Lowered
 from dalembert.multibody.lowering import lower
 from dalembert.multibody.observe import Observer
-from dalembert.multibody.system import System
+from dalembert.multibody.system import Mechanism
 from dalembert.multibody.trajectory import Trajectory
 
 _ADAPTIVE_OUTPUTS = 1001
@@ -27,7 +27,7 @@ _ROOM = 20_000_000  # numbers up to which the states of all steps are kept, wher
 
 @takes_checked("system", "end", "solver", "times", "most_steps")
 def simulate(
-    system: System,
+    system: Mechanism,
     end: float,
     solver: Integrator | str | None = None,
     times: np.ndarray | None = None,
@@ -39,7 +39,7 @@ def simulate(
 
     Parameters
     ----------
-    system : System
+    system : Mechanism
     end : float
         s.
     solver : Integrator or "auto", optional
@@ -93,7 +93,7 @@ def simulate(
 
 
 def posed(
-    system: System,
+    system: Mechanism,
     end: float,
     solver: Integrator | str | None,
     times: np.ndarray | None,
@@ -146,7 +146,7 @@ def begin_time(where: str, begin: Any) -> float:
 
 
 def prepared(
-    system: System, end: float, solver: Integrator, begin: float = 0.0, readers: Observer | None = None
+    system: Mechanism, end: float, solver: Integrator, begin: float = 0.0, readers: Observer | None = None
 ) -> tuple[Lowered, Integrator]:
     """Return the assembled mechanism and the integrator that suits it, compiled and checked; with its channels."""
     placed = lower(system, begin)

@@ -5,8 +5,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from dalembert.findings import Finding
-from dalembert.multibody.components.planar.friction import Smoothing
-from dalembert.multibody.system import System
+from dalembert.multibody.components.joint import Smoothing
+from dalembert.multibody.system import Mechanism
 
 CROSSING = 1.0  # steps, at least, in which the motion should cross the smoothed zone
 SMOOTH = 3.0  # steps in a crossing with the proposed slip rate
@@ -15,7 +15,7 @@ LARGE = 0.05  # part of the joint's largest rate that a slip rate should not exc
 STAY = 10.0  # crossings at the mean acceleration, after which friction holds the joint
 
 
-def rubbing(system: System) -> dict[str, Smoothing]:
+def rubbing(system: Mechanism) -> dict[str, Smoothing]:
     """Return how joints with Coulomb friction smooth it, by their names."""
     return {joint.name: joint.smoothing for joint in system.joints if joint.smoothing}
 

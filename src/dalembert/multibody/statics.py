@@ -20,7 +20,7 @@ from dalembert.multibody.lowered import Lowered
 from dalembert.multibody.lowering import lower
 from dalembert.multibody.observe import Observer, observer
 from dalembert.multibody.scales import scales
-from dalembert.multibody.system import System
+from dalembert.multibody.system import Mechanism
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +29,7 @@ class Equilibrium:
 
     Parameters
     ----------
-    system : System
+    system : Mechanism
     lowered : Lowered
     x : array, shape (N + 1,)
         Coordinates and multipliers.
@@ -37,7 +37,7 @@ class Equilibrium:
         Newton iterations.
     """
 
-    system: System
+    system: Mechanism
     lowered: Lowered
     x: np.ndarray
     iterations: int
@@ -71,7 +71,7 @@ class Modes:
     shapes: np.ndarray
 
 
-def equilibrium(system: System) -> Equilibrium:
+def equilibrium(system: Mechanism) -> Equilibrium:
     """State of rest under gravity and the loads at time 0, nearest to the first placement.
 
     Newton's method; where it does not converge at once, gravity, loads and springs are raised in steps from the
@@ -79,7 +79,7 @@ def equilibrium(system: System) -> Equilibrium:
 
     Parameters
     ----------
-    system : System
+    system : Mechanism
 
     Returns
     -------
@@ -108,7 +108,7 @@ def equilibrium(system: System) -> Equilibrium:
 
 
 @takes_checked()
-def modes(state: System | Equilibrium, count: int | None = None) -> Modes:
+def modes(state: Mechanism | Equilibrium, count: int | None = None) -> Modes:
     """Frequencies, damping ratios and shapes of small vibrations that satisfy the joints.
 
     The equations of motion are linearised about the state, with damping and with the stiffness of the joint forces
@@ -116,7 +116,7 @@ def modes(state: System | Equilibrium, count: int | None = None) -> Modes:
 
     Parameters
     ----------
-    state : System or Equilibrium
+    state : Mechanism or Equilibrium
         A system stands for its equilibrium.
     count : int, optional
         How many, from the lowest; all if not given.

@@ -1,12 +1,15 @@
 """A mechanism: bodies, joints, loads and gravity."""
 
 from collections.abc import Sequence
-from typing import Any, TypeVar
+from typing import Any, ClassVar, TypeVar
 
 from dalembert.arguments import is_number, names_of
 from dalembert.errors import InputError, ModelError, require_known, shown
 from dalembert.findings import Finding
+from dalembert.multibody.components.body import BaseBody
 from dalembert.multibody.components.fields import Number
+from dalembert.multibody.components.joint import BaseJoint
+from dalembert.multibody.components.load import BaseLoad
 from dalembert.multibody.components.planar.body import Body
 from dalembert.multibody.components.planar.joint import Joint
 from dalembert.multibody.components.planar.load import Load
@@ -15,10 +18,74 @@ from dalembert.multibody.components.points import Ground
 PLACED, EQUILIBRIUM = STARTS = "placed", "equilibrium"
 """Where a motion begins: as the bodies are placed, or at rest under gravity and the loads."""
 
-Component = TypeVar("Component", bound=Body | Joint | Load)
+Component = TypeVar("Component", bound=BaseBody | BaseJoint | BaseLoad)
 
 
-class System:
+class Mechanism:
+    """What mechanisms in the plane and in space share: a mechanism is built by adding components.
+
+    Parameters
+    ----------
+    gravity : tuple of float
+        m/s^2.
+    driving : sequence of str
+        Initial coordinates that assembly keeps.
+    start : {"placed", "equilibrium"}
+        Where a motion begins.
+    """
+
+    KINDS: ClassVar[tuple[type, type, type]]
+    """Base classes of its bodies, joints and loads."""
+    SPACE: ClassVar[str]
+    """Where its components act, for messages."""
+    AXES: ClassVar[str]
+    LOWERING: ClassVar[str]
+    """Class that makes its arrays; its module is imported when it is first used."""
+
+    bodies: list[Any]
+    joints: list[Any]
+    loads: list[Any]
+
+    def __init__(self, gravity: Sequence[Number], driving: Sequence[str], start: str) -> None:
+        self.gravity: Any = _checked_gravity(gravity, type(self).__name__, self.AXES)
+        self.driving = names_of(driving, type(self).__name__, "driving")
+        require_known("start", str(start), STARTS, type(self).__name__)
+        self.start = start
+        self.bodies, self.joints, self.loads = [], [], []
+        self._names: set[str] = set()
+
+    def add(self, component: Component) -> Component:
+        """Add a body, a joint or a load, and hand it back."""
+        for kind, members in zip(self.KINDS, (self.bodies, self.joints, self.loads), strict=True):
+            if isinstance(component, kind):
+                if component.name in self._names or component.name in ("ground", "system"):
+                    raise ModelError(
+                        f"{type(component).__name__} {component.name!r}: the name is taken; give each component its own"
+                    )
+                self._names.add(component.name)
+                members.append(component)
+                return component
+        if isinstance(component, BaseBody | BaseJoint | BaseLoad):
+            raise InputError(
+                f"{type(component).__name__} {component.name!r} is not a component {self.SPACE}, as a "
+                f"{type(self).__name__} needs. Planar components belong to a System, those of dalembert.multibody."
+                "spatial to a SpatialSystem"
+            )
+        raise InputError(f"{component!r} was added to a system; expected a body, a joint or a load")
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """What there is to say about the choice of bodies, such as elements that lock."""
+        return tuple(finding for body in self.bodies for finding in body.findings)
+
+    def body(self, name: str) -> Any:
+        """The body of this name."""
+        bodies = {body.name: body for body in self.bodies}
+        require_known("body", name, bodies)
+        return bodies[name]
+
+
+class System(Mechanism):
     """A planar mechanism, built by adding components.
 
     Parameters
@@ -43,49 +110,29 @@ class System:
     ['rod', 'pin']
     """
 
+    KINDS = (Body, Joint, Load)
+    SPACE = "in the plane"
+    AXES = "xy"
+    LOWERING = "dalembert.multibody.planar_lowering.PlanarLowering"
+
     def __init__(
         self, gravity: tuple[Number, Number] = (0.0, -9.81), driving: Sequence[str] = (), start: str = PLACED
     ) -> None:
-        try:
-            usable = len(gravity) == 2 and all(map(is_number, gravity))
-        except TypeError:
-            usable = False
-        if not usable:
-            raise InputError(
-                f"System: gravity is {shown(gravity)}; expected two finite numbers in m/s^2, along x and y, such as "
-                "(0.0, -9.81)"
-            )
-        self.gravity = gravity
-        self.driving = names_of(driving, "System", "driving")
-        require_known("start", str(start), STARTS, "System")
-        self.start = start
+        super().__init__(gravity, driving, start)
         self.ground = Ground()
-        self.bodies: list[Body] = []
-        self.joints: list[Joint] = []
-        self.loads: list[Load] = []
-        self._names: set[str] = set()
 
-    def add(self, component: Component) -> Component:
-        """Add a body, a joint or a load, and hand it back."""
-        kinds: list[tuple[type, list[Any]]] = [(Body, self.bodies), (Joint, self.joints), (Load, self.loads)]
-        for kind, members in kinds:
-            if isinstance(component, kind):
-                if component.name in self._names or component.name in ("ground", "system"):
-                    raise ModelError(
-                        f"{type(component).__name__} {component.name!r}: the name is taken; give each component its own"
-                    )
-                self._names.add(component.name)
-                members.append(component)
-                return component
-        raise InputError(f"{component!r} was added to a system; expected a body, a joint or a load")
 
-    @property
-    def findings(self) -> tuple[Finding, ...]:
-        """What there is to say about the choice of bodies, such as elements that lock."""
-        return tuple(finding for body in self.bodies for finding in body.findings)
-
-    def body(self, name: str) -> Body:
-        """The body of this name."""
-        bodies = {body.name: body for body in self.bodies}
-        require_known("body", name, bodies)
-        return bodies[name]
+def _checked_gravity(gravity: Any, owner: str, axes: str) -> Any:
+    """Gravity, refused where it is not a number for each axis."""
+    try:
+        usable = len(gravity) == len(axes) and all(map(is_number, gravity))
+    except TypeError:
+        usable = False
+    if not usable:
+        example = ", ".join(["0.0"] * (len(axes) - 1) + ["-9.81"])
+        count = {2: "two", 3: "three"}[len(axes)]
+        raise InputError(
+            f"{owner}: gravity is {shown(gravity)}; expected {count} finite numbers in m/s^2, along "
+            f"{', '.join(axes[:-1])} and {axes[-1]}, such as ({example})"
+        )
+    return gravity

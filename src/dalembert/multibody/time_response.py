@@ -23,7 +23,7 @@ from dalembert.multibody.restart import MotionSegment, chart
 from dalembert.multibody.simulation import begin_time, checked, integrator, simulate
 from dalembert.multibody.skipped_samples import late_samples, skipped_samples
 from dalembert.multibody.slip_rates import rubbing
-from dalembert.multibody.system import System
+from dalembert.multibody.system import Mechanism
 from dalembert.parameters import Parameter, Parameters
 
 _MOST_STEPS = 1e9  # hours, even of the smallest mechanisms
@@ -71,7 +71,7 @@ class TimeResponse(BuiltModel):
 
     def __init__(
         self,
-        builder: Callable[..., System],
+        builder: Callable[..., Mechanism],
         parameters: Parameters | Mapping[str, Parameter | tuple[float, float]],
         channels: Sequence[str],
         times: ArrayLike,

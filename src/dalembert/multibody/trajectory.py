@@ -24,7 +24,7 @@ from dalembert.multibody.lowered import Lowered
 from dalembert.multibody.observe import beside, channel_names, observer
 from dalembert.multibody.skipped_samples import skipped_samples
 from dalembert.multibody.slip_rates import rubbing, slip_findings
-from dalembert.multibody.system import System
+from dalembert.multibody.system import Mechanism
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -36,7 +36,7 @@ class Trajectory:
 
     Parameters
     ----------
-    system : System
+    system : Mechanism
         The mechanism.
     lowered : Lowered
         Its arrays, which kernels take.
@@ -48,7 +48,7 @@ class Trajectory:
         Indices of the output times among the times of the run.
     """
 
-    system: System
+    system: Mechanism
     lowered: Lowered
     solver: Integrator
     run: Run

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from dalembert.multibody.components.planar.friction import Smoothing
 
 from dalembert.multibody import (
     DistanceJoint,
@@ -15,7 +16,6 @@ from dalembert.multibody import (
     TimeResponse,
     simulate,
 )
-from dalembert.multibody.components.planar.friction import Smoothing
 from dalembert.multibody.slip_rates import slip_findings
 
 TIMES = np.linspace(0, 6, 61)

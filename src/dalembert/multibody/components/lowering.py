@@ -26,10 +26,9 @@ class Pair(NamedTuple):
     relative: tuple[Number, Number]
 
 
-class Lowering(Protocol):
+class Rows(Protocol):
     """Collects the rows of the kernels."""
 
-    gravity: tuple[Number, Number]
     kinks: list[tuple[float, str]]
 
     def add(
@@ -56,6 +55,12 @@ class Lowering(Protocol):
     def callback(self, function: Callable[..., Any], owner: str) -> int:
         """Number of a force function of the user's."""
         ...
+
+
+class Lowering(Rows, Protocol):
+    """Collects the rows of the kernels of a planar mechanism."""
+
+    gravity: tuple[Number, Number]
 
     def pair(self, a: Side, b: Side | None, owner: str) -> Pair:
         """The markers of two sides; a bare ground stands where the other side is."""

@@ -46,6 +46,10 @@ class Declaration:
     outputs : tuple of (name, unit)
     observe : function (x, v, a, p, m, inputs, out), optional
         Fills the outputs.
+    angles : tuple of str
+        Outputs that are angles which are known up to whole turns. (``angle`` is one where the integer ``wraps`` is 1.)
+    home : str
+        Module that holds the kind, where its functions come from another module.
     observes_inputs : bool
         Whether the outputs depend on signals, which are evaluated only then.
     lengths : tuple of str
@@ -82,6 +86,8 @@ class Declaration:
     known: Callable[..., Any] | None = None
     outputs: tuple[tuple[str, str], ...] = ()
     observe: Callable[..., Any] | None = None
+    angles: tuple[str, ...] = ()
+    home: str = ""
     observes_inputs: bool = False
     lengths: tuple[str, ...] = ()
     gravity: tuple[str, ...] = ()
@@ -186,3 +192,8 @@ class Declaration:
     def source(self) -> Callable[..., Any]:
         """A function of the file that defines the kind."""
         return self.residual or self.constraint or self.observe  # type: ignore[return-value] - one of them is there
+
+    @property
+    def module(self) -> str | None:
+        """Module that holds the kind."""
+        return self.home or self.source.__module__

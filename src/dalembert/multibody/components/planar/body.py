@@ -3,20 +3,21 @@
 __all__ = ["Body"]
 
 from abc import abstractmethod
-from collections.abc import Callable
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
-from dalembert.arguments import Checked
-from dalembert.errors import require_known
-from dalembert.findings import Finding
+from dalembert.multibody.components.body import POSITION, BaseBody
 from dalembert.multibody.components.fields import Number
 from dalembert.multibody.components.lowering import Lowering
-from dalembert.multibody.components.points import Place, Point
+from dalembert.multibody.components.planar import markers
+from dalembert.multibody.components.planar.sensor import DIRECTIONAL, SENSOR
+from dalembert.multibody.components.points import Place
+from dalembert.multibody.kernels.kind import Kind
 
-POSITION, GRADIENT, ANGLE = "position", "gradient", "angle"
+GRADIENT, ANGLE = "gradient", "angle"
 
 
 class Marker(NamedTuple):
@@ -28,12 +29,13 @@ class Marker(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Body(Checked):
-    """Base of all bodies: a name, a first placement and a first rigid motion."""
+class Body(BaseBody):
+    """Base of all planar bodies: a name, a first placement and a first rigid motion. The frame is (x, y, angle)."""
 
-    name: str
+    FRAME: ClassVar[tuple[str, ...]] = ("x", "y", "angle")
+    sensor: ClassVar[Kind] = SENSOR
+    without_axes: ClassVar[tuple[str, ...]] = DIRECTIONAL
 
-    # The placed point is the start of beams and bars, the anchor of rigid bodies, the place of point masses.
     @property
     @abstractmethod
     def place(self) -> Place:
@@ -64,43 +66,33 @@ class Body(Checked):
     def marker(self, point: str) -> Marker:
         """The marker of a point."""
 
-    @property
-    @abstractmethod
-    def point_names(self) -> tuple[str, ...]:
-        """Names of the points."""
-
     @abstractmethod
     def lower(self, lowering: Lowering, first: int) -> None:
         """Write the rows of the kernels; ``first`` is the body's first coordinate."""
 
-    @abstractmethod
-    def outline(self, coordinates: np.ndarray, points: int) -> np.ndarray:
-        """Line to draw, shape (frames, -, 2), from coordinates (frames, size)."""
+    def frame(self, position: Sequence[Number], axes: None = None) -> np.ndarray:
+        return np.array([*position, self.turn])
 
-    @property
-    def turns(self) -> bool:
-        """Whether the body has a direction."""
-        return True
+    def moved(self, frame: np.ndarray, step: np.ndarray) -> np.ndarray:
+        return frame + step
 
-    @property
-    def findings(self) -> tuple[Finding, ...]:
-        """What there is to say about the choice of this body, such as that its elements lock."""
-        return ()
+    def placed(self, frame: np.ndarray) -> np.ndarray:
+        return self.coordinates(*frame)
 
-    @property
-    def rigid(self) -> bool:
-        """Whether the distances of its points never change."""
-        return self.size <= 3
+    def point_rates(self, marker: Marker, coordinates: np.ndarray, modes: np.ndarray) -> np.ndarray:
+        first, second = (modes[slot] for slot in marker.slots[:2] if slot is not None)
+        if marker.kind != markers.RIGID:
+            return np.array([first, second])
+        ox, oy = turned(*marker.data[:2], coordinates[2])
+        return np.array([first - oy * modes[2], second + ox * modes[2]])
 
-    @property
-    def size(self) -> int:
-        """Number of coordinates."""
-        return len(self.coordinate_kinds)
+    def point_index(self, point: str, first: int, absent: int) -> tuple[tuple[int, ...], tuple[int, ...]]:
+        marker = self.marker(point)
+        slots = tuple(absent if k is None else first + k for k in marker.slots)
+        return (absent,) * 4 + slots, (markers.GROUND, marker.kind, int(marker.kind == markers.NODE))
 
-    def point(self, name: str) -> Point:
-        """The point of this name."""
-        require_known("point", name, self.point_names, f"body {self.name!r}")
-        return Point(self, name)
+    def point_numbers(self, point: str) -> list[Number]:
+        return [0.0, 0.0, 0.0, *self.marker(point).data]
 
     def rigid_modes(self, coordinates: np.ndarray, frame: np.ndarray) -> np.ndarray:
         """Derivatives of the coordinates by the frame: place (x, y) and angle about that place, (size, 3)."""
@@ -118,17 +110,6 @@ class Body(Checked):
             modes[i, 2], modes[i + 1, 2] = -y, x
             i += 2
         return modes
-
-
-def with_points(*names: str) -> Callable[[type], type]:
-    """Give a class its named points as attributes, also where the constructor has an argument of that name."""
-
-    def give(component: type) -> type:
-        for name in names:
-            setattr(component, name, property(lambda body, name=name: Point(body, name), doc=f"The point {name!r}."))
-        return component
-
-    return give
 
 
 def turned(x: Number, y: Number, angle: Number) -> tuple[Number, Number]:

@@ -5,14 +5,16 @@ __all__ = ["Joint"]
 from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any
 
-from dalembert.arguments import Checked
+import numpy as np
+
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number
+from dalembert.multibody.components.joint import BaseJoint
 from dalembert.multibody.components.lowering import Lowering, Pair
-from dalembert.multibody.components.planar.friction import Smoothing
-from dalembert.multibody.components.planar.pairs import pair_kind, relative_angle, relative_spin
+from dalembert.multibody.components.planar import markers
+from dalembert.multibody.components.planar.pairs import INTEGERS, pair_kind, relative_angle, relative_spin
 from dalembert.multibody.components.points import Side, require_direction
 from dalembert.multibody.kernels.kind import Kind
 
@@ -28,23 +30,28 @@ def joint_kind(
 
 
 @dataclass(frozen=True)
-class Joint(Checked):
-    """Base of all joints: a name and two sides."""
+class Joint(BaseJoint):
+    """Base of all planar joints: a name and two sides."""
 
-    name: str
     a: Side
     b: Side
-
-    kind: ClassVar[Kind]
-
-    @property
-    def smoothing(self) -> Smoothing | None:
-        """How the joint smooths Coulomb friction; None without it. The finding ``slip-rate`` judges it."""
-        return None
 
     @abstractmethod
     def lower(self, lowering: Lowering) -> None:
         """Write the rows of the kernels."""
+
+    def position(self, kind: Kind, numbers: np.ndarray, integers: np.ndarray, x: np.ndarray) -> np.ndarray | None:
+        """Position of the second side, or of the first one if the second is the ground, (frames, 2)."""
+        if kind.integers[:2] != INTEGERS[:2]:  # a joint of another form has no position to draw
+            return None
+        side = 0 if integers[1] == markers.GROUND else 1
+        (sx, sy), own = numbers[3 * side : 3 * side + 2], x[:, 4 * side : 4 * side + 4]
+        if integers[side] == markers.GROUND:
+            return np.tile([sx, sy], (len(x), 1))
+        if integers[side] == markers.RIGID:
+            c, s = np.cos(own[:, 2]), np.sin(own[:, 2])
+            return own[:, :2] + np.column_stack([c * sx - s * sy, s * sx + c * sy])
+        return own[:, :2]
 
     def _add(
         self, lowering: Lowering, pair: Pair, numbers: Sequence[Number] = (), integers: Sequence[int] = ()

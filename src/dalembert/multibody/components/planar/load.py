@@ -1,23 +1,17 @@
-"""What acts without a constraint."""
+"""What acts without a constraint in the plane."""
 
 __all__ = ["Load"]
 
 from abc import abstractmethod
 from dataclasses import dataclass
-from typing import ClassVar
 
-from dalembert.arguments import Checked
+from dalembert.multibody.components.load import BaseLoad
 from dalembert.multibody.components.lowering import Lowering
-from dalembert.multibody.kernels.kind import Kind
 
 
 @dataclass(frozen=True)
-class Load(Checked):
-    """Base of all that acts without a constraint."""
-
-    name: str
-
-    kind: ClassVar[Kind]
+class Load(BaseLoad):
+    """Base of all that acts without a constraint in the plane."""
 
     @abstractmethod
     def lower(self, lowering: Lowering) -> None:

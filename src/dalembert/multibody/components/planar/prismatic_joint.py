@@ -5,9 +5,10 @@ __all__ = ["PrismaticJoint"]
 from dataclasses import dataclass
 
 from dalembert.kernels.kernel import inlined
+from dalembert.multibody.components import friction
 from dalembert.multibody.components.fields import Number, number
+from dalembert.multibody.components.joint import Smoothing
 from dalembert.multibody.components.lowering import Lowering
-from dalembert.multibody.components.planar import friction
 from dalembert.multibody.components.planar.joint import OUTPUTS, Joint, joint_kind, observe_joint
 from dalembert.multibody.components.planar.markers import direction, twist
 from dalembert.multibody.components.planar.pairs import (
@@ -142,10 +143,10 @@ class PrismaticJoint(Joint):
         friction.check(f"prismatic joint {self.name!r}", self, "stribeck_velocity")
 
     @property
-    def smoothing(self) -> friction.Smoothing | None:
+    def smoothing(self) -> Smoothing | None:
         if not friction.rubs(self):
             return None
-        return friction.Smoothing("sliding_velocity", "slip_velocity", self.slip_velocity, "m/s")
+        return Smoothing("sliding_velocity", "slip_velocity", self.slip_velocity, "m/s")
 
     def lower(self, lowering: Lowering) -> None:
         pair = lowering.pair(self.a, self.b, self.name)

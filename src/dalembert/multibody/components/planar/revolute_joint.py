@@ -6,9 +6,10 @@ from dataclasses import dataclass
 
 from dalembert.errors import InputError
 from dalembert.kernels.kernel import inlined, inner
+from dalembert.multibody.components import friction
 from dalembert.multibody.components.fields import Number, number
+from dalembert.multibody.components.joint import Smoothing
 from dalembert.multibody.components.lowering import Lowering
-from dalembert.multibody.components.planar import friction
 from dalembert.multibody.components.planar.joint import Joint, joint_kind, observe_joint
 from dalembert.multibody.components.planar.markers import GROUND, RIGID
 from dalembert.multibody.components.planar.pairs import pair_kind, push_pair, relative_spin, separation, twist_pair
@@ -140,8 +141,8 @@ class RevoluteJoint(Joint):
             )
 
     @property
-    def smoothing(self) -> friction.Smoothing | None:
-        return friction.Smoothing("rate", "slip_rate", self.slip_rate, "rad/s") if friction.rubs(self) else None
+    def smoothing(self) -> Smoothing | None:
+        return Smoothing("rate", "slip_rate", self.slip_rate, "rad/s") if friction.rubs(self) else None
 
     def lower(self, lowering: Lowering) -> None:
         pair = lowering.pair(self.a, self.b, self.name)

@@ -1,6 +1,6 @@
 """Friction in joints: viscous, smoothed Coulomb friction that may grow with the reaction, and Stribeck's."""
 
-from typing import Any, NamedTuple
+from typing import Any
 
 from dalembert.errors import InputError
 from dalembert.kernels.kernel import inlined
@@ -12,27 +12,6 @@ from dalembert.multibody.kernels.elementary import exponential, logarithm, tanh
 #: the force is at low rates, with the rate and the exponent of its decrease.
 NUMBERS = ("viscous", "coulomb", "per_reaction", "slip", "stribeck", "stribeck_rate", "stribeck_exponent")
 TINY = 1e-18  # keeps |reaction| differentiable where the reaction vanishes, N^2, and the power of a rate of zero
-
-
-class Smoothing(NamedTuple):
-    """How a joint smooths its Coulomb friction, as tanh(rate / slip).
-
-    Parameters
-    ----------
-    channel : str
-        Output of the joint that has the rate.
-    setting : str
-        Name of the field that has the slip.
-    slip : float
-        In the unit.
-    unit : str
-        Of the rate.
-    """
-
-    channel: str
-    setting: str
-    slip: Number
-    unit: str
 
 
 @inlined

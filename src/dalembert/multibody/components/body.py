@@ -1,0 +1,139 @@
+"""What every body offers, in the plane and in space."""
+
+from abc import abstractmethod
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from dalembert.arguments import Checked
+from dalembert.errors import require_known
+from dalembert.findings import Finding
+from dalembert.multibody.components.fields import Number
+from dalembert.multibody.components.points import Point
+from dalembert.multibody.kernels.kind import Kind
+
+POSITION = "position"
+
+
+@dataclass(frozen=True)
+class BaseBody(Checked):
+    """Base of all bodies: a name, an initial pose and an initial rigid motion.
+
+    The frame of a body is an array of numbers that pose the undeformed body; a step of ``FRAME`` numbers changes it.
+    """
+
+    name: str
+
+    FRAME: ClassVar[tuple[str, ...]]
+    sensor: ClassVar[Kind]
+    without_axes: ClassVar[tuple[str, ...]]
+    """Outputs of the sensor that a point without axes does not have."""
+
+    # The placed point is the start of beams and bars, the anchor of rigid bodies, the position of point masses.
+    @property
+    @abstractmethod
+    def place(self) -> Any:
+        """Initial position of the placed point, or the point of another body where it is."""
+
+    @property
+    @abstractmethod
+    def motion(self) -> tuple[Number | None, ...]:
+        """Initial rates of the frame, as many as ``FRAME``; None where they are not stated."""
+
+    @property
+    @abstractmethod
+    def coordinate_kinds(self) -> tuple[str, ...]:
+        """Kind of each coordinate."""
+
+    @property
+    @abstractmethod
+    def point_names(self) -> tuple[str, ...]:
+        """Names of the points."""
+
+    @abstractmethod
+    def frame(self, position: Sequence[Number], axes: Any = None) -> np.ndarray:
+        """Initial frame of the body with the placed point at a position."""
+
+    @abstractmethod
+    def moved(self, frame: np.ndarray, step: np.ndarray) -> np.ndarray:
+        """The frame after a step."""
+
+    @abstractmethod
+    def placed(self, frame: np.ndarray) -> np.ndarray:
+        """Coordinates of the undeformed body in a frame."""
+
+    @abstractmethod
+    def rigid_modes(self, coordinates: np.ndarray, frame: np.ndarray) -> np.ndarray:
+        """Derivatives of the coordinates by a step of the frame, (size, len(FRAME))."""
+
+    @abstractmethod
+    def marker(self, point: str) -> Any:
+        """The marker of a point."""
+
+    @abstractmethod
+    def point_rates(self, marker: Any, coordinates: np.ndarray, modes: np.ndarray) -> np.ndarray:
+        """Derivative of the position of a marker by the frame, (2 or 3, len(FRAME))."""
+
+    @abstractmethod
+    def point_index(self, point: str, first: int, absent: int) -> tuple[tuple[int, ...], tuple[int, ...]]:
+        """Unknowns and integers of the sensor at a point; ``absent`` is the number of no unknown."""
+
+    @abstractmethod
+    def point_numbers(self, point: str) -> list[Number]:
+        """Numbers of the sensor at a point."""
+
+    @abstractmethod
+    def lower(self, lowering: Any, first: int) -> None:
+        """Write the rows of the kernels; ``first`` is the body's first coordinate."""
+
+    @abstractmethod
+    def outline(self, coordinates: np.ndarray, points: int) -> np.ndarray:
+        """Line to draw, shape (frames, -, 2 or 3), from coordinates (frames, size)."""
+
+    @property
+    def dimension(self) -> int:
+        """Number of coordinates of a position."""
+        return sum(name in "xyz" for name in self.FRAME)
+
+    @property
+    def turns(self) -> bool:
+        """Whether the body has a direction."""
+        return True
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """What there is to say about the choice of this body, such as that its elements lock."""
+        return ()
+
+    @property
+    def rigid(self) -> bool:
+        """Whether the distances of its points never change."""
+        return self.size <= 3
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates."""
+        return len(self.coordinate_kinds)
+
+    @property
+    def point_outputs(self) -> tuple[tuple[str, str], ...]:
+        """Names and units of the channels of a point."""
+        return tuple(entry for entry in self.sensor.outputs if self.turns or entry[0] not in self.without_axes)
+
+    def point(self, name: str) -> Point:
+        """The point of this name."""
+        require_known("point", name, self.point_names, f"body {self.name!r}")
+        return Point(self, name)
+
+
+def with_points(*names: str) -> Callable[[type], type]:
+    """Give a class its named points as attributes, also where the constructor has an argument of that name."""
+
+    def give(component: type) -> type:
+        for name in names:
+            setattr(component, name, property(lambda body, name=name: Point(body, name), doc=f"The point {name!r}."))
+        return component
+
+    return give

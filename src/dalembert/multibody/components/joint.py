@@ -1,0 +1,56 @@
+"""What every joint offers, in the plane and in space."""
+
+from abc import abstractmethod
+from dataclasses import dataclass
+from typing import Any, ClassVar, NamedTuple
+
+import numpy as np
+
+from dalembert.arguments import Checked
+from dalembert.multibody.components.fields import Number
+from dalembert.multibody.kernels.kind import Kind
+
+
+class Smoothing(NamedTuple):
+    """How a joint smooths its Coulomb friction, as tanh(rate / slip).
+
+    Parameters
+    ----------
+    channel : str
+        Output of the joint that has the rate.
+    setting : str
+        Name of the field that has the slip.
+    slip : float
+        In the unit.
+    unit : str
+        Of the rate.
+    """
+
+    channel: str
+    setting: str
+    slip: Number
+    unit: str
+
+
+@dataclass(frozen=True)
+class BaseJoint(Checked):
+    """Base of all joints: a name and two sides."""
+
+    name: str
+    a: Any
+    b: Any
+
+    kind: ClassVar[Kind]
+
+    @property
+    def smoothing(self) -> Smoothing | None:
+        """How the joint smooths Coulomb friction; None without it. The finding ``slip-rate`` judges it."""
+        return None
+
+    def position(self, kind: Kind, numbers: np.ndarray, integers: np.ndarray, x: np.ndarray) -> np.ndarray | None:
+        """Where to draw the joint, (frames, 2 or 3), from its unknowns (frames, width); None for none."""
+        return None
+
+    @abstractmethod
+    def lower(self, lowering: Any) -> None:
+        """Write the rows of the kernels."""

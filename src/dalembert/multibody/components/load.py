@@ -1,0 +1,21 @@
+"""What acts without a constraint, in the plane and in space."""
+
+from abc import abstractmethod
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from dalembert.arguments import Checked
+from dalembert.multibody.kernels.kind import Kind
+
+
+@dataclass(frozen=True)
+class BaseLoad(Checked):
+    """Base of all that acts without a constraint."""
+
+    name: str
+
+    kind: ClassVar[Kind]
+
+    @abstractmethod
+    def lower(self, lowering: Any) -> None:
+        """Write the rows of the kernels."""

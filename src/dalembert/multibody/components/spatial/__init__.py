@@ -1,0 +1,1 @@
+"""Components of mechanisms in space: one file a kind."""

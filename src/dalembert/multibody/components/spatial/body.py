@@ -1,0 +1,92 @@
+"""What every body in space offers."""
+
+__all__ = ["Body"]
+
+from abc import abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple
+
+import numpy as np
+
+from dalembert.multibody.components.body import BaseBody
+from dalembert.multibody.components.fields import Number
+from dalembert.multibody.components.spatial import markers
+from dalembert.multibody.components.spatial.lowering import SpatialLowering
+from dalembert.multibody.components.spatial.orientation import Orientation, about
+from dalembert.multibody.components.spatial.sensor import AXIAL, SENSOR
+
+DIRECTOR = "director"
+FREE = None, None, None
+
+
+class Marker(NamedTuple):
+    """A point with axes as kernels see it: kind, coordinates of the body (None: absent), position, axes as columns."""
+
+    kind: int
+    slots: tuple[int | None, ...]
+    position: np.ndarray
+    axes: np.ndarray
+
+    @property
+    def numbers(self) -> list[Number]:
+        """Position, then the three axes one after the other."""
+        return [*self.position.tolist(), *self.axes.T.ravel().tolist()]
+
+
+@dataclass(frozen=True)
+class Body(BaseBody):
+    """Base of all bodies in space: a name, an initial pose and an initial rigid motion."""
+
+    FRAME: ClassVar[tuple[str, ...]] = ("x", "y", "z", "rotation_x", "rotation_y", "rotation_z")
+    sensor: ClassVar = SENSOR
+    without_axes: ClassVar = AXIAL
+
+    @property
+    def motion(self) -> tuple[Number | None, ...]:
+        """Initial velocity of the placed point and angular velocity; None where they are not stated."""
+        return *(getattr(self, "velocity", None) or FREE), *(getattr(self, "angular_velocity", None) or FREE)
+
+    @abstractmethod
+    def marker(self, point: str) -> Marker:
+        """The marker of a point."""
+
+    @abstractmethod
+    def lower(self, lowering: SpatialLowering, first: int) -> None:
+        """Write the rows of the kernels; ``first`` is the body's first coordinate."""
+
+    def frame(self, position: Sequence[Number], axes: np.ndarray | None = None) -> np.ndarray:
+        """Initial frame: position of the placed point, then the axes of the body one after the other, (12,).
+
+        The orientation of a body that is placed at a marker is relative to the ``axes`` of that marker.
+        """
+        own = getattr(self, "orientation", Orientation()).matrix
+        return np.concatenate([np.asarray(position), (own if axes is None else axes @ own).T.ravel()])
+
+    def moved(self, frame: np.ndarray, step: np.ndarray) -> np.ndarray:
+        """The frame after a displacement and a rotation vector (6,) in the fixed axes."""
+        shift, turn = step[:3], step[3:]
+        angle = np.sqrt(turn @ turn)
+        directors = frame[3:].reshape(3, 3)
+        if np.real(angle) > 0.0:
+            directors = directors @ about(turn / angle, angle).T
+        else:  # first order, which keeps a derivative
+            directors = directors + np.cross(turn, directors)
+        return np.concatenate([frame[:3] + shift, directors.ravel()])
+
+    def point_rates(self, marker: Marker, coordinates: np.ndarray, modes: np.ndarray) -> np.ndarray:
+        """Derivative of the position of a marker by the frame, (3, 6)."""
+        rates = modes[:3]
+        if marker.kind == markers.BODY:
+            rates = rates + np.tensordot(marker.position, modes[3:12].reshape(3, 3, -1), 1)
+        return rates
+
+    def point_index(self, point: str, first: int, absent: int) -> tuple[tuple[int, ...], tuple[int, ...]]:
+        """Unknowns and integers of the sensor at a point."""
+        marker = self.marker(point)
+        slots = tuple(absent if k is None else first + k for k in marker.slots)
+        return slots, (marker.kind,)
+
+    def point_numbers(self, point: str) -> list[Number]:
+        """Numbers of the sensor at a point."""
+        return self.marker(point).numbers

@@ -1,0 +1,32 @@
+"""The fixed joint in space."""
+
+__all__ = ["FixedJoint"]
+
+from dataclasses import dataclass
+
+from dalembert.multibody.components.spatial.conditions import MEETS, perpendicular
+from dalembert.multibody.components.spatial.joint import Joint, joint_kinds
+from dalembert.multibody.components.spatial.lowering import SpatialLowering
+
+KINDS = TO_GROUND, BETWEEN = joint_kinds(
+    "fixed_in_space", __name__, MEETS, perpendicular(1, 2), perpendicular(2, 3), perpendicular(3, 1)
+)
+
+
+@dataclass(frozen=True)
+class FixedJoint(Joint):
+    """A weld: points and axes of both markers coincide.
+
+    Parameters
+    ----------
+    name : str
+    a, b : Point or ground
+
+    As a force sensor: the channels ``force_1`` to ``torque_3`` are force and torque on b along the axes of a.
+    """
+
+    kinds = KINDS
+
+    def lower(self, lowering: SpatialLowering) -> None:
+        self._oriented()
+        super().lower(lowering)

@@ -1,0 +1,124 @@
+"""Inertia of rigid bodies in space: tensor, pseudo-inertia, and inertias of simple shapes.
+
+The pseudo-inertia P = integral of [1; s][1; s]^T dm, (4, 4), is symmetric and positive definite for every body that can
+exist, and linear in mass, first moments and inertia: P = [[m, m c^T], [m c, S]], S = tr(J) / 2 - J with the inertia
+tensor J about the body's origin (Wensing, Kim and Slotine 2018).
+"""
+
+__all__ = ["Inertia"]
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from dalembert.arguments import Checked
+from dalembert.errors import InputError
+from dalembert.multibody.components.fields import Number, number
+from dalembert.multibody.components.spatial.orientation import Vector
+
+_ROUNDING = 1e-12
+
+
+@dataclass(frozen=True)
+class Inertia(Checked):
+    """Mass, centre of mass and inertia tensor of a rigid body.
+
+    Parameters
+    ----------
+    mass : float
+        kg.
+    moments : (float, float, float)
+        Moments of inertia about axes through the centre of mass that are parallel to those of the body, kg m^2.
+    products : (float, float, float)
+        Entries xy, xz and yz of the inertia tensor, kg m^2: J_xy = -integral of x y dm.
+    centre : (float, float, float)
+        Centre of mass in the axes of the body, m.
+
+    Raises
+    ------
+    InputError
+        For a tensor that no body can have: a principal moment that is not positive, or is larger than the sum of both
+        others.
+
+    Examples
+    --------
+    >>> brick = Inertia.box(mass=6.0, sides=(0.1, 0.2, 0.3))
+    >>> [round(moment, 6) for moment in brick.moments]
+    [0.065, 0.05, 0.025]
+    """
+
+    mass: Number = number("kg", above=0)
+    moments: Vector = number("kg*m**2")
+    products: Vector = number("kg*m**2", (0.0, 0.0, 0.0))
+    centre: Vector = number("m", (0.0, 0.0, 0.0))
+
+    IN_WORDS = "an Inertia such as Inertia.box(mass=1.0, sides=(0.1, 0.2, 0.3))"
+
+    def __post_init__(self) -> None:
+        principal = np.linalg.eigvalsh(np.real(self.tensor))
+        if principal[0] <= 0.0:
+            raise InputError(
+                f"Inertia: the smallest principal moment is {principal[0]:.6g} kg m^2; expected a positive one. "
+                "Check moments and products"
+            )
+        excess = principal[2] - principal[0] - principal[1]
+        if excess > _ROUNDING * principal[2]:
+            raise InputError(
+                f"Inertia: the principal moments are {', '.join(f'{moment:.6g}' for moment in principal)} kg m^2; the "
+                f"largest is {excess:.6g} larger than the sum of both others, which no body can have. Check moments "
+                "and products"
+            )
+
+    @property
+    def tensor(self) -> np.ndarray:
+        """Inertia tensor about the centre of mass, (3, 3), kg m^2."""
+        (xx, yy, zz), (xy, xz, yz) = self.moments, self.products
+        return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+
+    @property
+    def pseudo(self) -> np.ndarray:
+        """Pseudo-inertia about the body's origin, (4, 4)."""
+        m, c, tensor = self.mass, np.array(self.centre), self.tensor
+        second = 0.5 * np.trace(tensor) * np.eye(3) - tensor + m * np.outer(c, c)
+        return np.block([[np.array([[m]]), m * c[None, :]], [m * c[:, None], second]])
+
+    @classmethod
+    def of(cls, mass: Number, tensor: np.ndarray, centre: Any = (0.0, 0.0, 0.0)) -> "Inertia":
+        """From a tensor about the centre of mass, (3, 3), kg m^2."""
+        t = np.asarray(tensor)
+        products = (t[0, 1], t[0, 2], t[1, 2])
+        return cls(mass, *(tuple(np.asarray(own).tolist()) for own in (np.diagonal(t), products, centre)))
+
+    @classmethod
+    def of_pseudo(cls, pseudo: np.ndarray) -> "Inertia":
+        """From a pseudo-inertia about the body's origin, (4, 4)."""
+        m = pseudo[0, 0]
+        centre = pseudo[0, 1:] / m
+        second = pseudo[1:, 1:] - m * np.outer(centre, centre)
+        return cls.of(m, np.trace(second) * np.eye(3) - second, centre)
+
+    @classmethod
+    def box(cls, mass: Number, sides: Sequence[Number]) -> "Inertia":
+        """A solid box with sides (m) along the axes, centred at the origin."""
+        x, y, z = (side * side for side in sides)
+        return cls(mass, (mass * (y + z) / 12.0, mass * (x + z) / 12.0, mass * (x + y) / 12.0))
+
+    @classmethod
+    def cylinder(cls, mass: Number, radius: Number, length: Number, inner: Number = 0.0) -> "Inertia":
+        """A cylinder along z, centred at the origin, or a tube with an ``inner`` radius, m."""
+        squares = radius * radius + inner * inner
+        across = mass * (3.0 * squares + length * length) / 12.0
+        return cls(mass, (across, across, 0.5 * mass * squares))
+
+    @classmethod
+    def sphere(cls, mass: Number, radius: Number) -> "Inertia":
+        """A solid sphere, centred at the origin; the radius in m."""
+        own = 0.4 * mass * radius * radius
+        return cls(mass, (own, own, own))
+
+    def moved(self, to: Any) -> "Inertia":
+        """The same body with its centre of mass shifted by a vector, m."""
+        centre = tuple(np.add(self.centre, to).tolist())
+        return Inertia(self.mass, self.moments, self.products, centre)

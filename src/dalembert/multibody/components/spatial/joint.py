@@ -1,0 +1,217 @@
+"""What joints in space share: the base class, and kinds made of conditions, with their channels.
+
+The joint frames: axes e1, e2, e3 at a and f1, f2, f3 at b. The third axes are the joint's axis, if it has one.
+"""
+
+__all__ = ["Joint"]
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from dalembert.kernels.kernel import inlined
+from dalembert.kernels.views import stack
+from dalembert.multibody.components.fields import Number
+from dalembert.multibody.components.joint import BaseJoint
+from dalembert.multibody.components.points import require_direction
+from dalembert.multibody.components.spatial import markers, pairs
+from dalembert.multibody.components.spatial.conditions import Condition, constraint_of, forces_of
+from dalembert.multibody.components.spatial.lowering import Pair, SpatialLowering
+from dalembert.multibody.components.spatial.markers import BODY, GROUND, SLOTS, position
+from dalembert.multibody.components.spatial.orientation import Orientation
+from dalembert.multibody.components.spatial.pairs import (
+    b_point,
+    e1,
+    e2,
+    e3,
+    f1,
+    relative_spin,
+    separation,
+    separation_rate,
+)  # fmt: skip
+from dalembert.multibody.components.spatial.points import Side
+from dalembert.multibody.components.spatial.vectors import at, cross, dot, minus, plus, times
+from dalembert.multibody.kernels.elementary import angle_of
+from dalembert.multibody.kernels.kind import Kind
+
+REACTIONS = (
+    ("force_x", "N"), ("force_y", "N"), ("force_z", "N"),
+    ("torque_x", "N*m"), ("torque_y", "N*m"), ("torque_z", "N*m"),
+    ("force_1", "N"), ("force_2", "N"), ("force_3", "N"),
+    ("torque_1", "N*m"), ("torque_2", "N*m"), ("torque_3", "N*m"),
+)  # fmt: skip
+ANGLE = (("angle", "rad"), ("rate", "rad/s"))
+DISPLACEMENT = (("displacement", "m"), ("speed", "m/s"))
+
+
+@inlined
+def joint_angle(x, p, m):
+    """Angle of b relative to a about e3, atan2(e2 . f1, e1 . f1), within (-pi, pi]."""
+    f = f1(x, p, m)
+    return angle_of(dot(e1(x, p, m), f), dot(e2(x, p, m), f))
+
+
+@inlined
+def joint_rate(x, v, p, m):
+    """Angular velocity of b relative to a about e3."""
+    return dot(relative_spin(x, v, m), e3(x, p, m))
+
+
+@inlined
+def joint_displacement(x, p, m):
+    """Displacement of b relative to a along e3."""
+    return dot(e3(x, p, m), separation(x, p, m))
+
+
+@inlined
+def joint_speed(x, v, p, m):
+    """Rate of the displacement, e3' . Delta + e3 . Delta' with e3' = omega_a x e3."""
+    axis = e3(x, p, m)
+    turning = cross(markers.spin(m.a_kind, 0, x, v), axis)
+    return dot(turning, separation(x, p, m)) + dot(axis, separation_rate(v, p, m))
+
+
+@inlined
+def _moment(k, x, r):
+    """Moment about the origin of a body of generalised forces on its directors, d_i x r_i."""
+    first, second = cross(at(x, k + 3), at(r, k + 3)), cross(at(x, k + 6), at(r, k + 6))
+    return plus(plus(first, second), cross(at(x, k + 9), at(r, k + 9)))
+
+
+@inlined
+def observe_reactions(x, p, m, r, out):
+    """Fill 12 outputs: force and torque on b at its point, from the generalised forces r on the left side.
+
+    In the fixed axes, then along the axes of the joint at a.
+    """
+    place = position(m.b_kind, m.b_at, x, b_point(p))
+    if m.b_kind != GROUND:
+        k, sign = m.b_at, -1.0
+    else:
+        k, sign = 0, 1.0
+    force, torque = at(r, k), times(0.0, at(r, k))
+    if (m.b_kind if m.b_kind != GROUND else m.a_kind) == BODY:
+        torque = minus(_moment(k, x, r), cross(minus(place, at(x, k)), force))
+    else:
+        torque = times(-1.0, cross(minus(place, at(x, k)), force))
+    force, torque = times(sign, force), times(sign, torque)
+    out[0], out[1], out[2] = force
+    out[3], out[4], out[5] = torque
+    first, second, third = e1(x, p, m), e2(x, p, m), e3(x, p, m)
+    out[6], out[7], out[8] = dot(force, first), dot(force, second), dot(force, third)
+    out[9], out[10], out[11] = dot(torque, first), dot(torque, second), dot(torque, third)
+
+
+def observed(forces: Any, width: int, angle: bool, displacement: bool) -> Callable[..., Any]:
+    """The function that fills the channels of a joint with these constraint forces."""
+    own = 12 + 2 * angle
+
+    @inlined
+    def observe(x, v, a, p, m, inputs, out):
+        r = stack(x, width)
+        for i in range(width):
+            r[i] = 0.0
+        forces(x, p, m, r)
+        observe_reactions(x, p, m, r, out)
+        if angle:
+            out[12], out[13] = joint_angle(x, p, m), joint_rate(x, v, p, m)
+        if displacement:
+            out[own], out[own + 1] = joint_displacement(x, p, m), joint_speed(x, v, p, m)
+
+    return observe
+
+
+def joint_kinds(
+    name: str, home: str, *conditions: Condition, angle: bool = False, displacement: bool = False, **properties: Any
+) -> tuple[Kind, Kind]:
+    """The kinds of a joint between a body and the ground, and between two bodies.
+
+    Parameters
+    ----------
+    name : str
+    home : str
+        Module that holds them.
+    conditions : Condition
+    angle, displacement : bool
+        Whether the joint has an angle about its axis, and a displacement along it.
+    properties : of the kinds
+    """
+    return (
+        _joint_kind(f"{name}_to_ground", home, SLOTS, conditions, angle, displacement, properties),
+        _joint_kind(name, home, 2 * SLOTS, conditions, angle, displacement, properties),
+    )
+
+
+def _joint_kind(
+    name: str, home: str, coordinates: int, conditions: tuple[Condition, ...], angle: bool, displacement: bool,
+    properties: dict[str, Any],
+) -> Kind:  # fmt: skip
+    count, forces = sum(entry.count for entry in conditions), forces_of(conditions, coordinates)
+    settings = {
+        "numbers": pairs.NUMBERS,
+        "integers": pairs.INTEGERS,
+        "constraint": constraint_of(conditions),
+        "forces": forces,
+        "outputs": (*REACTIONS, *ANGLE * angle, *DISPLACEMENT * displacement),
+        "angles": ("angle",) * angle,
+        "observe": observed(forces, coordinates + count, angle, displacement),
+        "lengths": pairs.LENGTHS,
+        "holds": True,
+    }
+    return Kind(
+        name, coordinates=coordinates, multipliers=count, charts=pairs.charts(coordinates), home=home,
+        **{**settings, **properties},
+    )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Joint(BaseJoint):
+    """Base of all joints in space: a name and two sides."""
+
+    a: Side
+    b: Side
+
+    kinds: ClassVar[tuple[Kind, Kind]]
+    """To the ground, and between two bodies."""
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        if "kinds" in cls.__dict__:
+            cls.kind = cls.kinds[1]
+
+    @property
+    def turned(self) -> tuple[np.ndarray, np.ndarray]:
+        """Rotations (3, 3) from the axes of both markers to those of the joint."""
+        axis = getattr(self, "axis", None)
+        own = np.eye(3) if axis is None else Orientation.by_axes(axis).matrix
+        return own, own
+
+    def lower(self, lowering: SpatialLowering) -> None:
+        self._add(lowering, self._pair(lowering))
+
+    def _pair(self, lowering: SpatialLowering) -> Pair:
+        return lowering.pair(self.a, self.b, self.name, self.turned)
+
+    def _add(
+        self, lowering: SpatialLowering, pair: Pair, numbers: Sequence[Number] = (), integers: Sequence[int] = ()
+    ) -> list[int | None]:
+        """Add the joint with the numbers and integers that follow those of its markers; its unknowns."""
+        kind = self.kinds[pair.between]
+        index = pair.slots + lowering.multipliers(self.name, kind.multipliers)
+        lowering.add(kind, index, [*pair.data, *numbers], [*pair.integers, *integers], self.name)
+        return index
+
+    def _oriented(self, advice: str = "a spherical or distance joint, or a rigid body") -> None:
+        """Refuse sides that have no axes."""
+        require_direction(f"{type(self).__name__} {self.name!r}", advice, self.a, self.b)
+
+    def position(self, kind: Kind, numbers: np.ndarray, integers: np.ndarray, x: np.ndarray) -> np.ndarray | None:
+        """Position of the second side, or of the first one if the second is the ground, (frames, 3)."""
+        if kind.integers[:3] != pairs.INTEGERS:
+            return None
+        side = 0 if integers[1] == GROUND else 1
+        k, place = (0 if side == 0 else int(integers[2])), numbers[12 * side : 12 * side + 3]
+        own = x[:, k : k + SLOTS].reshape(len(x), 4, 3)
+        return own[:, 0] + (np.einsum("i,fic->fc", place, own[:, 1:]) if integers[side] == BODY else 0.0)

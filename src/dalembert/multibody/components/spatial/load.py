@@ -1,0 +1,18 @@
+"""What acts without a constraint in space."""
+
+__all__ = ["Load"]
+
+from abc import abstractmethod
+from dataclasses import dataclass
+
+from dalembert.multibody.components.load import BaseLoad
+from dalembert.multibody.components.spatial.lowering import SpatialLowering
+
+
+@dataclass(frozen=True)
+class Load(BaseLoad):
+    """Base of all that acts without a constraint in space."""
+
+    @abstractmethod
+    def lower(self, lowering: SpatialLowering) -> None:
+        """Write the rows of the kernels."""

@@ -1,0 +1,35 @@
+"""The planar joint."""
+
+__all__ = ["PlanarJoint"]
+
+from dataclasses import dataclass
+
+from dalembert.multibody.components.spatial.conditions import level, perpendicular
+from dalembert.multibody.components.spatial.joint import Joint, joint_kinds
+from dalembert.multibody.components.spatial.lowering import SpatialLowering
+from dalembert.multibody.components.spatial.orientation import Vector
+
+KINDS = TO_GROUND, BETWEEN = joint_kinds(
+    "planar_joint", __name__, level(3), perpendicular(3, 1), perpendicular(3, 2), angle=True
+)
+
+
+@dataclass(frozen=True)
+class PlanarJoint(Joint):
+    """A contact of planes: b slides in the plane through a and turns about its normal.
+
+    Parameters
+    ----------
+    name : str
+    a, b : Point or ground
+    axis : (float, float, float)
+        Normal of the plane, the same in the axes of both markers.
+    """
+
+    axis: Vector = (0.0, 0.0, 1.0)
+
+    kinds = KINDS
+
+    def lower(self, lowering: SpatialLowering) -> None:
+        self._oriented()
+        super().lower(lowering)

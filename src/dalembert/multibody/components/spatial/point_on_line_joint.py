@@ -1,0 +1,30 @@
+"""A point on a line."""
+
+__all__ = ["PointOnLineJoint"]
+
+from dataclasses import dataclass
+
+from dalembert.multibody.components.spatial.conditions import level
+from dalembert.multibody.components.spatial.joint import Joint, joint_kinds
+from dalembert.multibody.components.spatial.orientation import Vector
+
+KINDS = TO_GROUND, BETWEEN = joint_kinds(
+    "point_on_line", __name__, level(1), level(2), displacement=True, holds_frame=True
+)
+
+
+@dataclass(frozen=True)
+class PointOnLineJoint(Joint):
+    """A ball in a straight groove: b stays on the line through a along the axis.
+
+    Parameters
+    ----------
+    name : str
+    a, b : Point or ground
+    axis : (float, float, float)
+        Direction of the line in the axes of a.
+    """
+
+    axis: Vector = (0.0, 0.0, 1.0)
+
+    kinds = KINDS

@@ -1,0 +1,47 @@
+"""The revolute joint in space."""
+
+__all__ = ["RevoluteJoint"]
+
+from dataclasses import dataclass
+
+from dalembert.multibody.components.spatial.conditions import MEETS, perpendicular
+from dalembert.multibody.components.spatial.joint import Joint, joint_kinds
+from dalembert.multibody.components.spatial.lowering import SpatialLowering
+from dalembert.multibody.components.spatial.orientation import Vector
+
+KINDS = TO_GROUND, BETWEEN = joint_kinds(
+    "revolute_in_space", __name__, MEETS, perpendicular(1, 3), perpendicular(2, 3), angle=True
+)
+
+
+@dataclass(frozen=True)
+class RevoluteJoint(Joint):
+    """A hinge: both points coincide, and b turns about the axis.
+
+    Parameters
+    ----------
+    name : str
+    a, b : Point or ground
+    axis : (float, float, float)
+        Direction of the axis, the same in the axes of both markers.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from dalembert.multibody import simulate
+    >>> from dalembert.multibody.spatial import Inertia, RigidBody, SpatialSystem
+    >>> system = SpatialSystem(gravity=(0.0, 0.0, 0.0))
+    >>> disc = Inertia.cylinder(mass=1.0, radius=0.1, length=0.02)
+    >>> wheel = system.add(RigidBody("wheel", disc, angular_velocity=(0.0, 0.0, 2.0)))
+    >>> _ = system.add(RevoluteJoint("pin", system.ground, wheel.point("origin")))
+    >>> simulate(system, end=1.0).channels(["pin.angle"])[-1].round(6)
+    array([2.])
+    """
+
+    axis: Vector = (0.0, 0.0, 1.0)
+
+    kinds = KINDS
+
+    def lower(self, lowering: SpatialLowering) -> None:
+        self._oriented()
+        super().lower(lowering)

@@ -1,0 +1,2 @@
+"""Components of mechanisms in space, for :class:`SpatialSystem`."""
+

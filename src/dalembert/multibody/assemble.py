@@ -24,6 +24,7 @@ from dalembert.multibody.lowering import lower
 from dalembert.multibody.rigid_motions import (
     CLOSED,
     coordinates_of,
+    frames_after,
     modes_of,
     size_of,
     smallest,
@@ -178,7 +179,7 @@ def _close(
         longest = np.abs(np.real(step)).max(initial=0.0)
         if not np.isfinite(longest):
             break
-        frames = moved(bodies, frames, free, step * min(1.0, 0.5 * extent / (longest + 1e-300)))
+        frames = frames_after(bodies, frames, free, step * min(1.0, 0.5 * extent / (longest + 1e-300)))
         if longest <= 1e-15 and closed <= 1e3 * CLOSED:
             return frames, unknowns(lowered, coordinates_of(bodies, frames))
     structure = lowered.structure

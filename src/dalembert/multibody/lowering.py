@@ -6,6 +6,7 @@ an ensemble; what depends on numbers is in `Lowered`.
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence, ValuesView
+from dataclasses import is_dataclass
 from importlib import import_module
 from typing import Any
 

@@ -73,7 +73,7 @@ def _coordinate_names(lowered: Lowered) -> list[str]:
         counts: dict[str, int] = {}
         for kind in body.coordinate_kinds:
             number = counts[kind] = counts.get(kind, -1) + 1
-            node, axis = (number, "") if kind == ANGLE else divmod(number, body.dimension)
+            node, axis = (number, 0) if kind == ANGLE else divmod(number, body.dimension)
             what = kind if kind == ANGLE else "xyz"[axis] if kind == POSITION else f"{kind} {'xyz'[axis]}"
             names.append(f"{body.name}.{what}" + ("" if body.rigid and kind in (ANGLE, POSITION) else f" {node + 1}"))
     return names

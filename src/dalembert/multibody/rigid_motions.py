@@ -24,7 +24,7 @@ def turning(bodies: Sequence[BaseBody]) -> np.ndarray:
     return np.array([[body.turns or rate < dimension for rate in range(len(body.FRAME))] for body in bodies])
 
 
-def moved(bodies: Sequence[BaseBody], frames: np.ndarray, free: np.ndarray, step: np.ndarray) -> np.ndarray:
+def frames_after(bodies: Sequence[BaseBody], frames: np.ndarray, free: np.ndarray, step: np.ndarray) -> np.ndarray:
     """Frames after a step (free,) of the free ones of their rates, ``free`` (bodies, rates)."""
     steps = np.zeros(free.shape, dtype=np.result_type(frames, step))
     steps[free] = step

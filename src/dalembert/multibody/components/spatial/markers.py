@@ -1,7 +1,7 @@
 """Markers: the points and axes of bodies that joints, loads and sensors refer to.
 
 A body has twelve coordinates from the slot ``k`` on, its origin r and its directors d1, d2, d3: the columns of its
-rotation matrix. A marker has constants: its position ``s``, and ``c`` for each of its axes, in the axes of the body. Its
+rotation matrix. A marker has constants in the axes of the body: its position ``s``, and ``c`` for each of its axes. Its
 point r + s_i d_i and its axes c_i d_i are linear in the coordinates, so one function serves for values, for rates and
 for second derivatives.
 

@@ -10,13 +10,15 @@ from dalembert.multibody.components.points import Ground as AnyGround
 from dalembert.multibody.components.points import Point
 from dalembert.multibody.components.spatial.orientation import Orientation, Vector
 
+FIXED_AXES = Orientation()
+
 
 @dataclass(frozen=True)
 class GroundPoint(Checked):
     """A fixed marker: position in m, and orientation."""
 
     position: Vector = number("m")
-    orientation: Orientation = Orientation()
+    orientation: Orientation = FIXED_AXES
 
     IN_WORDS = "a point of the ground such as system.ground.point((0.0, 0.0, 0.0))"
 
@@ -28,7 +30,7 @@ class GroundPoint(Checked):
 class Ground(AnyGround):
     """What does not move. As a side of a joint: the position of the other side at the start, with the fixed axes."""
 
-    def point(self, position: Vector, orientation: Orientation = Orientation()) -> GroundPoint:  # type: ignore[override]
+    def point(self, position: Vector, orientation: Orientation = FIXED_AXES) -> GroundPoint:  # type: ignore[override]
         """A fixed marker at a position in m."""
         return GroundPoint(position, orientation)
 

@@ -8,7 +8,7 @@ from dalembert.multibody.kernels.elementary import angle_of, real, reciprocal, r
 def quaternion(e1, e2, e3):
     """Quaternion, the scalar first and not negative; by the largest of its entries (Shepperd 1978)."""
     t1, t2, t3 = real(e1[0]), real(e2[1]), real(e3[2])
-    if t1 + t2 + t3 >= max(t1, max(t2, t3)):
+    if t1 + t2 + t3 >= max(t1, t2, t3):
         w = 0.5 * root(1.0 + e1[0] + e2[1] + e3[2])
         f = 0.25 * reciprocal(w)
         return w, f * (e2[2] - e3[1]), f * (e3[0] - e1[2]), f * (e1[1] - e2[0])

@@ -2,8 +2,13 @@
 
 from dalembert.multibody.components.points import Point as Point
 from dalembert.multibody.components.spatial.body import Body as Body
+from dalembert.multibody.components.spatial.bushing import Bushing as Bushing
 from dalembert.multibody.components.spatial.cylindrical_joint import CylindricalJoint as CylindricalJoint
+from dalembert.multibody.components.spatial.distance_joint import DistanceJoint as DistanceJoint
 from dalembert.multibody.components.spatial.fixed_joint import FixedJoint as FixedJoint
+from dalembert.multibody.components.spatial.force import Force as Force
+from dalembert.multibody.components.spatial.force import Torque as Torque
+from dalembert.multibody.components.spatial.friction import Friction as Friction
 from dalembert.multibody.components.spatial.inertia import Inertia as Inertia
 from dalembert.multibody.components.spatial.joint import Joint as Joint
 from dalembert.multibody.components.spatial.load import Load as Load
@@ -14,8 +19,13 @@ from dalembert.multibody.components.spatial.point_mass import PointMass as Point
 from dalembert.multibody.components.spatial.point_on_line_joint import PointOnLineJoint as PointOnLineJoint
 from dalembert.multibody.components.spatial.points import Ground as Ground
 from dalembert.multibody.components.spatial.points import GroundPoint as GroundPoint
+from dalembert.multibody.components.spatial.prescribed_motion import PrescribedMotion as PrescribedMotion
 from dalembert.multibody.components.spatial.prismatic_joint import PrismaticJoint as PrismaticJoint
 from dalembert.multibody.components.spatial.revolute_joint import RevoluteJoint as RevoluteJoint
 from dalembert.multibody.components.spatial.rigid_body import RigidBody as RigidBody
 from dalembert.multibody.components.spatial.spherical_joint import SphericalJoint as SphericalJoint
+from dalembert.multibody.components.spatial.spring import Spring as Spring
+from dalembert.multibody.components.spatial.spring import TorsionSpring as TorsionSpring
+from dalembert.multibody.components.spatial.universal_joint import ConstantVelocityJoint as ConstantVelocityJoint
+from dalembert.multibody.components.spatial.universal_joint import UniversalJoint as UniversalJoint
 from dalembert.multibody.spatial_system import SpatialSystem as SpatialSystem

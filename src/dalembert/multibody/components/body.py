@@ -1,7 +1,7 @@
 """What every body offers, in the plane and in space."""
 
 from abc import abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -53,7 +53,7 @@ class BaseBody(Checked):
         """Names of the points."""
 
     @abstractmethod
-    def frame(self, position: Sequence[Number], axes: Any = None) -> np.ndarray:
+    def frame(self, position: Any, axes: Any = None) -> np.ndarray:
         """Initial frame of the body with the placed point at a position."""
 
     @abstractmethod

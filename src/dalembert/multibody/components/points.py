@@ -71,7 +71,7 @@ class Ground:
         return GroundPoint(x, y, angle)
 
 
-def require_direction(owner: str, advice: str, *sides: Point | GroundPoint | Ground | None) -> None:
+def require_direction(owner: str, advice: str, *sides: object) -> None:
     """Refuse sides that have no direction: those of point masses."""
     for side in sides:
         if isinstance(side, Point) and not side.body.turns:

@@ -293,3 +293,18 @@ Course = Number | Signal
 def as_signal(value: Course) -> Signal:
     """Numbers become constants."""
     return value if isinstance(value, Signal) else Constant(value)
+
+
+def refuse_jumps(owner: str, motion: Any) -> None:
+    """Refuse a prescribed motion whose velocity jumps.
+
+    Raises
+    ------
+    InputError
+        With the kind of the function of time.
+    """
+    if isinstance(motion, Step) or (isinstance(motion, Table) and not motion.is_smooth):
+        raise InputError(
+            f"{owner}: the velocity of its {type(motion).__name__} jumps, which no mechanism can follow; expected a "
+            "smooth function of time, such as a cubic Table or a Polynomial"
+        )

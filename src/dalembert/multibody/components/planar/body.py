@@ -3,9 +3,8 @@
 __all__ = ["Body"]
 
 from abc import abstractmethod
-from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -70,7 +69,7 @@ class Body(BaseBody):
     def lower(self, lowering: Lowering, first: int) -> None:
         """Write the rows of the kernels; ``first`` is the body's first coordinate."""
 
-    def frame(self, position: Sequence[Number], axes: None = None) -> np.ndarray:
+    def frame(self, position: Any, axes: None = None) -> np.ndarray:
         return np.array([*position, self.turn])
 
     def moved(self, frame: np.ndarray, step: np.ndarray) -> np.ndarray:

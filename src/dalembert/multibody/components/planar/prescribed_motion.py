@@ -4,12 +4,12 @@ __all__ = ["PrescribedMotion"]
 
 from dataclasses import dataclass
 
-from dalembert.errors import InputError, require_known
+from dalembert.errors import require_known
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar.joint import Joint, joint_kind, observe_joint
 from dalembert.multibody.components.planar.pairs import push_pair, relative_angle, separation, twist_pair
-from dalembert.multibody.components.signals import Course, Step, Table, as_signal
+from dalembert.multibody.components.signals import Course, as_signal, refuse_jumps
 from dalembert.multibody.kernels.elementary import wrapped
 from dalembert.multibody.kernels.time_inputs import signal
 
@@ -80,11 +80,7 @@ class PrescribedMotion(Joint):
 
     def __post_init__(self) -> None:
         require_known("coordinate", self.coordinate, _COORDINATES, f"prescribed motion {self.name!r}")
-        if isinstance(self.motion, Step) or (isinstance(self.motion, Table) and not self.motion.is_smooth):
-            raise InputError(
-                f"prescribed motion {self.name!r}: the velocity of its {type(self.motion).__name__} jumps, which no "
-                "mechanism can follow; expected a smooth function of time, such as a cubic Table or a Polynomial"
-            )
+        refuse_jumps(f"prescribed motion {self.name!r}", self.motion)
 
     def lower(self, lowering: Lowering) -> None:
         pair = lowering.pair(self.a, self.b, self.name)

@@ -1,40 +1,19 @@
-"""Springs with dampers: tension = (stiffness + cubic e^2) e + damping de/dt, e the elongation (or the twist)."""
+"""Kinds of springs with dampers in the plane."""
 
 from collections.abc import Callable
 from typing import Any
 
-from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.planar.pairs import pair_kind
+from dalembert.multibody.components.spring_law import NUMBERS, law_functions
 from dalembert.multibody.kernels.kind import Kind
-
-
-@inlined
-def tension(elongation, rate, p):
-    """Force (or torque) with which the spring pulls its ends together."""
-    square = elongation * elongation  # not by **: the complex power loses the imaginary step of a negative number
-    return (p.stiffness + p.cubic * square) * elongation + p.damping * rate
 
 
 def spring_kind(name: str, stretch: Callable[..., Any], residual: Callable[..., Any], **properties: Any) -> Kind:
     """Kind of a spring, from ``stretch(x, v, p, m)``, which returns elongation and rate, and its residual."""
-    elongation_and_rate: Any = stretch
-
-    @inlined
-    def energy(x, v, p, m, inputs):
-        """No kinetic energy; energy stored; power of the damper."""
-        elongation, rate = elongation_and_rate(x, v, p, m)
-        square = elongation * elongation
-        stored = (0.5 * p.stiffness + 0.25 * p.cubic * square) * square
-        return 0.0 * stored, stored, -p.damping * rate * rate
-
-    @inlined
-    def observe(x, v, a, p, m, inputs, out):
-        elongation, rate = elongation_and_rate(x, v, p, m)
-        out[0], out[1] = elongation, tension(elongation, rate, p)
-
+    energy, observe = law_functions(stretch)
     return pair_kind(
         name,
-        ("rest", "stiffness", "damping", "cubic"),
+        NUMBERS,
         residual=residual,
         energy=energy,
         outputs=(("elongation", "m"), ("force", "N")),

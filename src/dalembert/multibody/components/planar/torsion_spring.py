@@ -9,8 +9,9 @@ from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.lowering import Lowering
 from dalembert.multibody.components.planar.load import Load
 from dalembert.multibody.components.planar.pairs import relative_angle, relative_spin, twist_pair
-from dalembert.multibody.components.planar.spring_law import spring_kind, tension
+from dalembert.multibody.components.planar.spring_law import spring_kind
 from dalembert.multibody.components.points import Side, require_direction
+from dalembert.multibody.components.spring_law import tension
 from dalembert.multibody.kernels.elementary import wrapped
 
 

@@ -3,9 +3,8 @@
 __all__ = ["Body"]
 
 from abc import abstractmethod
-from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -55,7 +54,7 @@ class Body(BaseBody):
     def lower(self, lowering: SpatialLowering, first: int) -> None:
         """Write the rows of the kernels; ``first`` is the body's first coordinate."""
 
-    def frame(self, position: Sequence[Number], axes: np.ndarray | None = None) -> np.ndarray:
+    def frame(self, position: Any, axes: np.ndarray | None = None) -> np.ndarray:
         """Initial frame: position of the placed point, then the axes of the body one after the other, (12,).
 
         The orientation of a body that is placed at a marker is relative to the ``axes`` of that marker.

@@ -13,7 +13,6 @@ import numpy as np
 
 from dalembert.kernels.kernel import inlined
 from dalembert.kernels.views import stack
-from dalembert.multibody.components.fields import Number
 from dalembert.multibody.components.joint import BaseJoint
 from dalembert.multibody.components.points import require_direction
 from dalembert.multibody.components.spatial import markers, pairs
@@ -195,7 +194,7 @@ class Joint(BaseJoint):
         return lowering.pair(self.a, self.b, self.name, self.turned)
 
     def _add(
-        self, lowering: SpatialLowering, pair: Pair, numbers: Sequence[Number] = (), integers: Sequence[int] = ()
+        self, lowering: SpatialLowering, pair: Pair, numbers: Sequence[Any] = (), integers: Sequence[int] = ()
     ) -> list[int | None]:
         """Add the joint with the numbers and integers that follow those of its markers; its unknowns."""
         kind = self.kinds[pair.between]

@@ -6,7 +6,7 @@ import numpy as np
 
 from dalembert.multibody.components.fields import Number
 from dalembert.multibody.components.lowering import Rows
-from dalembert.multibody.components.points import Side
+from dalembert.multibody.components.spatial.points import Side
 
 
 class Pair(NamedTuple):

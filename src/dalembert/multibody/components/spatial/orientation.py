@@ -158,7 +158,7 @@ def skew(vector: np.ndarray) -> np.ndarray:
     return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
 
 
-def about(unit: np.ndarray, angle: Number) -> np.ndarray:
+def about(unit: np.ndarray, angle: Any) -> np.ndarray:
     """Rotation matrix about a direction of length one, by Rodrigues' formula."""
     return np.cos(angle) * np.eye(3) + np.sin(angle) * skew(unit) + (1.0 - np.cos(angle)) * np.outer(unit, unit)
 

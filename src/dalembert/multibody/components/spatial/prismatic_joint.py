@@ -4,7 +4,9 @@ __all__ = ["PrismaticJoint"]
 
 from dataclasses import dataclass
 
+from dalembert.multibody.components.joint import Smoothing
 from dalembert.multibody.components.spatial.conditions import level, perpendicular
+from dalembert.multibody.components.spatial.friction import Friction, friction_kinds
 from dalembert.multibody.components.spatial.joint import Joint, joint_kinds
 from dalembert.multibody.components.spatial.lowering import SpatialLowering
 from dalembert.multibody.components.spatial.orientation import Vector
@@ -20,6 +22,10 @@ KINDS = TO_GROUND, BETWEEN = joint_kinds(
     displacement=True,
 )
 
+FRICTION = FRICTION_TO_GROUND, FRICTION_BETWEEN = friction_kinds(
+    "prismatic_friction_in_space", __name__, 5, (0, 1), False
+)
+
 
 @dataclass(frozen=True)
 class PrismaticJoint(Joint):
@@ -31,12 +37,22 @@ class PrismaticJoint(Joint):
     a, b : Point or ground
     axis : (float, float, float)
         Direction of the axis, the same in the axes of both markers.
+    friction : Friction, optional
     """
 
     axis: Vector = (0.0, 0.0, 1.0)
+    friction: Friction | None = None
 
     kinds = KINDS
 
+    @property
+    def smoothing(self) -> Smoothing | None:
+        return self.friction.smoothing("speed", "m/s") if self.friction else None
+
     def lower(self, lowering: SpatialLowering) -> None:
         self._oriented()
-        super().lower(lowering)
+        pair = self._pair(lowering)
+        index = self._add(lowering, pair)
+        if self.friction:
+            law = self.friction.law(f"prismatic joint {self.name!r}", turns=False)
+            lowering.add(FRICTION[pair.between], index, [*pair.data, *law], pair.integers)

@@ -4,13 +4,19 @@ __all__ = ["RevoluteJoint"]
 
 from dataclasses import dataclass
 
+from dalembert.multibody.components.joint import Smoothing
 from dalembert.multibody.components.spatial.conditions import MEETS, perpendicular
+from dalembert.multibody.components.spatial.friction import Friction, friction_kinds
 from dalembert.multibody.components.spatial.joint import Joint, joint_kinds
 from dalembert.multibody.components.spatial.lowering import SpatialLowering
 from dalembert.multibody.components.spatial.orientation import Vector
 
 KINDS = TO_GROUND, BETWEEN = joint_kinds(
     "revolute_in_space", __name__, MEETS, perpendicular(1, 3), perpendicular(2, 3), angle=True
+)
+
+FRICTION = FRICTION_TO_GROUND, FRICTION_BETWEEN = friction_kinds(
+    "revolute_friction_in_space", __name__, 5, (0, 1, 2), True
 )
 
 
@@ -24,6 +30,7 @@ class RevoluteJoint(Joint):
     a, b : Point or ground
     axis : (float, float, float)
         Direction of the axis, the same in the axes of both markers.
+    friction : Friction, optional
 
     Examples
     --------
@@ -39,9 +46,18 @@ class RevoluteJoint(Joint):
     """
 
     axis: Vector = (0.0, 0.0, 1.0)
+    friction: Friction | None = None
 
     kinds = KINDS
 
+    @property
+    def smoothing(self) -> Smoothing | None:
+        return self.friction.smoothing("rate", "rad/s") if self.friction else None
+
     def lower(self, lowering: SpatialLowering) -> None:
         self._oriented()
-        super().lower(lowering)
+        pair = self._pair(lowering)
+        index = self._add(lowering, pair)
+        if self.friction:
+            law = self.friction.law(f"revolute joint {self.name!r}", turns=True)
+            lowering.add(FRICTION[pair.between], index, [*pair.data, *law], pair.integers)

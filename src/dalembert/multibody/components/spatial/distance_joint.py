@@ -1,0 +1,60 @@
+"""The distance joint in space."""
+
+__all__ = ["DistanceJoint"]
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from dalembert.errors import ModelError
+from dalembert.kernels.kernel import inlined
+from dalembert.multibody.components.fields import Number, number
+from dalembert.multibody.components.spatial.conditions import Condition
+from dalembert.multibody.components.spatial.joint import Joint, joint_kinds
+from dalembert.multibody.components.spatial.lowering import SpatialLowering
+from dalembert.multibody.components.spatial.pairs import NUMBERS, push_pair, separation
+from dalembert.multibody.components.spatial.vectors import dot, times
+
+
+@inlined
+def _residual(x, p, m, row, g):
+    """(Delta . Delta / L - L) / 2."""
+    delta = separation(x, p, m)
+    g[row] = 0.5 * (dot(delta, delta) / p.length - p.length)
+
+
+@inlined
+def _forces(x, p, m, k, r):
+    push_pair(p, m, times(x[k] / p.length, separation(x, p, m)), r)
+
+
+KINDS = TO_GROUND, BETWEEN = joint_kinds(
+    "distance_in_space", __name__, Condition(1, _residual, _forces), numbers=(*NUMBERS, "length"), holds_frame=False
+)
+
+
+@dataclass(frozen=True)
+class DistanceJoint(Joint):
+    """A massless rod with ball joints at both ends: the points keep their distance.
+
+    Parameters
+    ----------
+    name : str
+    a, b : Point or ground
+    length : float, optional
+        m; the initial distance of the points if not given.
+    """
+
+    length: Number | None = number("m", None, above=0)
+
+    kinds = KINDS
+
+    def lower(self, lowering: SpatialLowering) -> None:
+        pair = self._pair(lowering)
+        length = np.sqrt(pair.separation @ pair.separation) if self.length is None else self.length
+        if not np.real(length) > 0.0:
+            raise ModelError(
+                f"distance joint {self.name!r}: its points coincide at the start. Give a length, or use a spherical "
+                "joint"
+            )
+        self._add(lowering, pair, [length])

@@ -1,0 +1,129 @@
+"""Prescribed motions in space: an angle about an axis, or a displacement along it, that follows a function of time."""
+
+__all__ = ["PrescribedMotion"]
+
+from dataclasses import dataclass
+
+from dalembert.errors import require_known
+from dalembert.kernels.kernel import inlined
+from dalembert.kernels.views import stack
+from dalembert.multibody.components.signals import Course, as_signal, refuse_jumps
+from dalembert.multibody.components.spatial.joint import (
+    ANGLE,
+    DISPLACEMENT,
+    REACTIONS,
+    Joint,
+    joint_angle,
+    joint_displacement,
+    joint_rate,
+    joint_speed,
+    observe_reactions,
+)  # fmt: skip
+from dalembert.multibody.components.spatial.kinds import pair_kind
+from dalembert.multibody.components.spatial.lowering import SpatialLowering
+from dalembert.multibody.components.spatial.markers import SLOTS
+from dalembert.multibody.components.spatial.orientation import Vector
+from dalembert.multibody.components.spatial.pairs import LENGTHS, e1, e2, f2
+from dalembert.multibody.components.spatial.vectors import dot
+from dalembert.multibody.kernels.constraints import forces_of
+from dalembert.multibody.kernels.elementary import sin_cos
+from dalembert.multibody.kernels.kind import Kind
+from dalembert.multibody.kernels.time_inputs import signal
+
+_ANGLE, _DISPLACEMENT = range(2)
+_COORDINATES = {"angle": _ANGLE, "displacement": _DISPLACEMENT}
+
+
+@inlined
+def _constraint(x, p, m, inputs, g):
+    """(cos u e1 + sin u e2) . f2 for an angle u, e3 . Delta - u for a displacement."""
+    target = signal(inputs, m.motion)
+    if m.coordinate == _ANGLE:
+        s, c = sin_cos(target)
+        axis = f2(x, p, m)
+        g[0] = c * dot(e1(x, p, m), axis) + s * dot(e2(x, p, m), axis)
+    else:
+        g[0] = joint_displacement(x, p, m) - target
+
+
+def _kind(name: str, coordinates: int) -> Kind:
+    width, forces = coordinates + 1, forces_of(_constraint, coordinates, 1)
+
+    @inlined
+    def energy(x, v, p, m, inputs):
+        """No energy; the power that the motion feeds in, -lambda dg/dt at a fixed position."""
+        rate = inputs.signals[m.motion, 1]
+        if m.coordinate == _ANGLE:
+            s, c = sin_cos(inputs.signals[m.motion, 0])
+            axis = f2(x, p, m)
+            rate *= s * dot(e1(x, p, m), axis) - c * dot(e2(x, p, m), axis)
+        nothing = 0.0 * x[0]
+        return nothing, nothing, -x[coordinates] * rate
+
+    @inlined
+    def observe(x, v, a, p, m, inputs, out):
+        r = stack(x, width)
+        for i in range(width):
+            r[i] = 0.0
+        forces(x, p, m, inputs, r)
+        observe_reactions(x, p, m, r, out)
+        out[12], out[13] = joint_angle(x, p, m), joint_rate(x, v, p, m)
+        out[14], out[15] = joint_displacement(x, p, m), joint_speed(x, v, p, m)
+
+    return pair_kind(
+        name,
+        __name__,
+        coordinates,
+        integers=("coordinate", "motion"),
+        multipliers=1,
+        constraint=_constraint,
+        energy=energy,
+        outputs=(*REACTIONS, *ANGLE, *DISPLACEMENT),
+        angles=("angle",),
+        observe=observe,
+        observes_inputs=True,
+        lengths=LENGTHS,
+        driven=True,
+        holds=True,
+    )
+
+
+KINDS = TO_GROUND, BETWEEN = (
+    _kind("prescribed_motion_to_ground", SLOTS),
+    _kind("prescribed_motion_in_space", 2 * SLOTS),
+)
+
+
+@dataclass(frozen=True)
+class PrescribedMotion(Joint):
+    """The angle of b relative to a about an axis, or its displacement along it, that follows a function of time.
+
+    It acts beside the joint that guides the motion, such as a revolute or a prismatic joint with the same axis.
+
+    Parameters
+    ----------
+    name : str
+    a, b : Point or ground
+    coordinate : {"angle", "displacement"}
+        The angle in rad, the displacement in m.
+    motion : float or Signal
+    axis : (float, float, float)
+        Direction of the axis, the same in the axes of both markers.
+    """
+
+    coordinate: str = "angle"
+    motion: Course = 0.0
+    axis: Vector = (0.0, 0.0, 1.0)
+
+    kinds = KINDS
+
+    def __post_init__(self) -> None:
+        owner = f"prescribed motion {self.name!r}"
+        require_known("coordinate", self.coordinate, _COORDINATES, owner)
+        refuse_jumps(owner, self.motion)
+
+    def lower(self, lowering: SpatialLowering) -> None:
+        self._oriented()
+        lowering.kinks += [(time, self.name) for time in as_signal(self.motion).kinks]
+        integers = [_COORDINATES[self.coordinate], lowering.signal(self.motion)]
+        self._add(lowering, self._pair(lowering), integers=integers)

@@ -1,0 +1,1 @@
+"""Robots and other trees of rigid bodies: description, import, inverse dynamics, linear regressor."""

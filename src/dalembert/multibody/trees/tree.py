@@ -1,0 +1,230 @@
+"""Trees of rigid links and joints, such as robots: a description that files are imported to, and systems are built of."""
+
+__all__ = ["Link", "Tree", "TreeJoint"]
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from dalembert.arguments import Checked
+from dalembert.errors import InputError, ModelError, require_known, unknown
+from dalembert.multibody.components.fields import Number, number
+from dalembert.multibody.components.spatial.inertia import Inertia
+from dalembert.multibody.components.spatial.orientation import Orientation, Pose, Vector
+
+REVOLUTE, PRISMATIC, FIXED = KINDS = "revolute", "prismatic", "fixed"
+ENTRIES = ("xx", "yy", "zz", "xy", "xz", "yz")
+JOINT_NUMBERS = ("damping", "friction", "armature")
+
+
+@dataclass(frozen=True)
+class TreeJoint(Checked):
+    """The joint by which a link hangs on its parent. The frame of the link is that of the joint.
+
+    Parameters
+    ----------
+    name : str
+    kind : {"revolute", "prismatic", "fixed"}
+    pose : Pose
+        Frame of the joint at the position zero, in the frame of the parent.
+    axis : (float, float, float)
+        In the frame of the joint.
+    lower, upper : float
+        Limits of the position, rad or m.
+    velocity, effort : float
+        Limits of the rate, rad/s or m/s, and of the torque or force, N m or N.
+    damping : float
+        Viscous friction, N m s or N s/m.
+    friction : float
+        Coulomb friction, N m or N.
+    armature : float
+        Inertia of the motor behind its gear, kg m^2 or kg.
+    mimic : (str, float, float), optional
+        Another joint, a factor and an offset: position = factor x position of the other joint + offset.
+    """
+
+    name: str
+    kind: str = REVOLUTE
+    pose: Pose = Pose()
+    axis: Vector = (0.0, 0.0, 1.0)
+    lower: float = -np.inf
+    upper: float = np.inf
+    velocity: float = np.inf
+    effort: float = np.inf
+    damping: Number = number("N*m*s", 0.0, least=0)
+    friction: Number = number("N*m", 0.0, least=0)
+    armature: Number = number("kg*m**2", 0.0, least=0)
+    mimic: tuple[str, float, float] | None = None
+
+    def __post_init__(self) -> None:
+        require_known("kind", self.kind, KINDS, f"joint {self.name!r}")
+
+    @property
+    def moves(self) -> bool:
+        """Whether the joint has a position."""
+        return self.kind != FIXED
+
+
+@dataclass(frozen=True)
+class Shape(Checked):
+    """What a link looks like: a box, a cylinder along z, a sphere or a mesh.
+
+    Parameters
+    ----------
+    kind : {"box", "cylinder", "sphere", "mesh"}
+    sizes : tuple of float
+        Sides; radius and length; radius; factors of the mesh along its axes. m.
+    pose : Pose
+        In the frame of the link.
+    file : str
+        Of a mesh.
+    """
+
+    kind: str
+    sizes: tuple[float, ...]
+    pose: Pose = Pose()
+    file: str = ""
+
+
+@dataclass(frozen=True)
+class Link(Checked):
+    """A rigid link.
+
+    Parameters
+    ----------
+    name : str
+    parent : str
+        Link that it hangs on.
+    joint : TreeJoint
+    inertia : Inertia or None
+        In the frame of the link; None for a link without mass.
+    shapes : tuple of Shape
+    """
+
+    name: str
+    parent: str
+    joint: TreeJoint
+    inertia: Inertia | None = None
+    shapes: tuple[Shape, ...] = ()
+
+
+@dataclass(frozen=True)
+class Tree(Checked):
+    """A tree of rigid links on a base that does not move.
+
+    Parameters
+    ----------
+    name : str
+    root : str
+        The base.
+    links : tuple of Link
+        Each after its parent.
+    shapes : tuple of Shape
+        Of the base.
+    unsupported : tuple of str
+        Elements and attributes of an imported file that have no counterpart here.
+
+    Raises
+    ------
+    ModelError
+        For a link whose parent is not there or comes later, and for names that are used twice.
+    """
+
+    name: str
+    root: str
+    links: tuple[Link, ...]
+    shapes: tuple[Shape, ...] = ()
+    unsupported: tuple[str, ...] = field(default=(), compare=False)
+
+    def __post_init__(self) -> None:
+        known = [self.root]
+        for link in self.links:
+            if link.parent not in known:
+                raise ModelError(f"link {link.name!r}: {unknown('parent', link.parent, known)} Give the parent first")
+            if link.name in known:
+                raise ModelError(f"link {link.name!r} is there twice. Give each link its own name")
+            known.append(link.name)
+        names = [link.joint.name for link in self.links]
+        for name in names:
+            if names.count(name) > 1:
+                raise ModelError(f"joint {name!r} is there twice. Give each joint its own name")
+        for joint in self.joints:
+            if joint.mimic and joint.mimic[0] not in names:
+                raise ModelError(f"joint {joint.name!r}: {unknown('joint', joint.mimic[0], names)}")
+
+    @property
+    def joints(self) -> tuple[TreeJoint, ...]:
+        """The joints of all links."""
+        return tuple(link.joint for link in self.links)
+
+    @cached_property
+    def moving(self) -> tuple[TreeJoint, ...]:
+        """The joints with a position that does not follow another one; positions (dofs,) are in this order."""
+        return tuple(joint for joint in self.joints if joint.moves and joint.mimic is None)
+
+    def link(self, name: str) -> Link:
+        """The link of this name."""
+        for link in self.links:
+            if link.name == name:
+                return link
+        raise InputError(unknown("link", name, [link.name for link in self.links]))
+
+    @cached_property
+    def numbers(self) -> dict[str, Number]:
+        """All numbers that may be parameters, by their names.
+
+        ``<link>.mass``, ``<link>.centre_x`` to ``_z``, ``<link>.inertia_xx`` to ``_yz`` (about the centre of mass),
+        ``<joint>.damping``, ``<joint>.friction`` and ``<joint>.armature``.
+        """
+        found: dict[str, Number] = {}
+        for link in self.links:
+            own = link.inertia
+            if own is not None:
+                found[f"{link.name}.mass"] = own.mass
+                found |= {f"{link.name}.centre_{axis}": own.centre[k] for k, axis in enumerate("xyz")}
+                values = (*own.moments, *own.products)
+                found |= {f"{link.name}.inertia_{entry}": values[k] for k, entry in enumerate(ENTRIES)}
+            if link.joint.moves:
+                found |= {f"{link.joint.name}.{name}": getattr(link.joint, name) for name in JOINT_NUMBERS}
+        return found
+
+    def with_numbers(self, values: Mapping[str, Number]) -> "Tree":
+        """The tree with other numbers, by the names of :attr:`numbers`.
+
+        Raises
+        ------
+        InputError
+            For an unknown name, with the nearest ones.
+        """
+        for name in values:
+            if name not in self.numbers:
+                raise InputError(unknown("number", name, list(self.numbers)))
+        return replace(self, links=tuple(_changed(link, values) for link in self.links))
+
+
+def _changed(link: Link, values: Mapping[str, Any]) -> Link:
+    """A link with other numbers."""
+    joint = {
+        name: values[f"{link.joint.name}.{name}"] for name in JOINT_NUMBERS if f"{link.joint.name}.{name}" in values
+    }
+    inertia = link.inertia
+    if inertia is not None and any(key.startswith(f"{link.name}.") for key in values):
+        own = lambda key, now: values.get(f"{link.name}.{key}", now)  # noqa: E731
+        six = [own(f"inertia_{entry}", now) for entry, now in zip(ENTRIES, (*inertia.moments, *inertia.products))]
+        centre = tuple(own(f"centre_{axis}", now) for axis, now in zip("xyz", inertia.centre))
+        inertia = Inertia(own("mass", inertia.mass), tuple(six[:3]), tuple(six[3:]), centre)
+    return replace(link, joint=replace(link.joint, **joint), inertia=inertia)
+
+
+def pose_matrix(pose: Pose) -> tuple[np.ndarray, np.ndarray]:
+    """Position (3,) and rotation matrix (3, 3) of a pose."""
+    return np.array(pose.position), pose.orientation.matrix
+
+
+def turned_about(axis: Vector, angle: Number) -> Orientation:
+    """Orientation after a rotation about a direction."""
+    own = np.array(axis)
+    return Orientation.by_rotation_vector(tuple((own * (angle / np.sqrt(own @ own))).tolist()))

@@ -24,7 +24,14 @@ AREAS = {
     "mechanisms": Area(
         "Mechanisms and beams",
         "Motion, frequencies and equilibria of rigid and flexible mechanisms.",
-        ("Beams", "Beams without locking", "Flexible mechanisms", "Gears and bushings", "Rigid mechanisms"),
+        (
+            "Beams",
+            "Beams without locking",
+            "Flexible mechanisms",
+            "Gears and bushings",
+            "Mechanisms in space",
+            "Rigid mechanisms",
+        ),
     ),
     "integrators": Area(
         "Integrators",

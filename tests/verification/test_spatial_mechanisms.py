@@ -1,5 +1,7 @@
 """Rigid mechanisms in space against closed forms, published values and independent integrations."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -7,6 +9,7 @@ from scipy.optimize import brentq
 from scipy.special import ellipj
 
 from dalembert.multibody import EnergyMomentum, GeneralizedAlpha, RadauIIA, RungeKutta4, Variational, simulate
+from dalembert.multibody.assemble import redundancy
 from dalembert.multibody.spatial import (
     DistanceJoint,
     Inertia,
@@ -17,6 +20,7 @@ from dalembert.multibody.spatial import (
     RigidBody,
     SpatialSystem,
     SphericalJoint,
+    Spring,
 )
 
 TOPIC = "Mechanisms in space"
@@ -287,8 +291,6 @@ def double_pendulum() -> SpatialSystem:
 @pytest.mark.parametrize(("solver", "order", "step"), ORDERS, ids=lambda value: type(value).__name__)
 def test_orders_in_space(solver, order, step, record_evidence):
     """Convergence of the position of a spatial double pendulum after 0.8 s."""
-    from dataclasses import replace
-
     times = np.array([0.0, 0.8])
     names = [f"lower.centre.{axis}" for axis in "xyz"]
     exact = simulate(double_pendulum(), 0.8, EXACT, times=times).channels(names)[-1]
@@ -305,4 +307,121 @@ def test_orders_in_space(solver, order, step, record_evidence):
         topic=TOPIC,
         kind="closed form",
         source="order of the method",
+    )
+
+
+BRICARD = np.array([(0, 0, 0), (1, 0, 0), (1, -1, 0), (1, -1, 1), (0, -1, 1), (0, 0, 1)], dtype=float)
+AXES = ((0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)) * 2
+
+
+def bricard() -> SpatialSystem:
+    """Five rods along edges of a cube, the ground as the sixth link, and six revolute joints (IFToMM library, A04)."""
+    system = SpatialSystem(gravity=(0.0, -9.81, 0.0))
+    last = system.ground.point(tuple(BRICARD[0]))
+    for number in range(5):
+        edge = BRICARD[number + 1] - BRICARD[number]
+        moments = tuple((1.0 - np.abs(edge)) / 12 + 1e-5)
+        rod = RigidBody(
+            f"rod {number + 1}",
+            Inertia(1.0, moments, centre=tuple(edge / 2)),
+            position=tuple(BRICARD[number]),
+            points={"end": tuple(edge)},
+        )
+        system.add(rod)
+        system.add(RevoluteJoint(f"joint {number + 1}", last, rod.point("origin"), axis=AXES[number]))
+        last = rod.point("end")
+    system.add(RevoluteJoint("joint 6", last, system.ground.point(tuple(BRICARD[5])), axis=AXES[5]))
+    return system
+
+
+def test_bricard_mechanism(record_evidence):
+    """A mechanism that moves although its constraints say that it cannot: energy and rank (IFToMM library, A04)."""
+    motion = simulate(bricard(), 2.0, RungeKutta4(step=1e-3), times=np.linspace(0.0, 2.0, 21))
+    energies = motion.energies
+    record_evidence(
+        "Bricard mechanism, change of the energy over the range of the kinetic energy in 2 s",
+        0.0,
+        float(np.abs(energies["balance"]).max() / np.ptp(energies["kinetic"])),
+        tolerance=1e-7,
+        topic=TOPIC,
+        kind="conservation law",
+        source="energy; mechanism of the IFToMM library, A04",
+    )
+    found = redundancy(motion.lowered)
+    record_evidence(
+        "Bricard mechanism, independent constraints of its six revolute joints",
+        29,
+        found.rank - 6 * 5,  # without those of the directors
+        tolerance=0,
+        topic=TOPIC,
+        kind="published",
+        source="IFToMM library, A04: one degree of freedom",
+    )
+    assert np.ptp(energies["kinetic"]) > 5.0
+
+
+ARM, BALL, ARM_MOMENT, ARM_AXIAL, SPINDLE = 0.5, 1.2, 0.35, 0.004, 0.08
+COLLAR_SPRING, HEIGHT = 400.0, 0.3
+
+
+def governor(speed: float) -> SpatialSystem:
+    """A spindle about z and two arms that are hinged to it, each held by a spring to a point of the spindle below."""
+    system = SpatialSystem()
+    spindle = system.add(
+        RigidBody(
+            "spindle",
+            Inertia(1.0, (SPINDLE, SPINDLE, SPINDLE)),
+            points={"seat": (0.0, 0.0, -HEIGHT)},
+            angular_velocity=(0.0, 0.0, speed),
+        )
+    )
+    system.add(RevoluteJoint("bearing", system.ground, spindle.point("origin")))
+    central = ARM_MOMENT - BALL * ARM**2
+    for name, side in (("left", -1.0), ("right", 1.0)):
+        tilt = Orientation.by_angles("y", [-side * 0.4])  # the arm hangs along -z of its axes
+        arm = system.add(
+            RigidBody(
+                f"{name} arm",
+                Inertia(BALL, (central, central, ARM_AXIAL), centre=(0.0, 0.0, -ARM)),
+                orientation=tilt,
+                points={"middle": (0.0, 0.0, -ARM / 2)},
+                angular_velocity=(0.0, 0.0, speed),
+            )
+        )
+        system.add(RevoluteJoint(f"{name} hinge", spindle.point("origin"), arm.point("origin"), axis=(0.0, 1.0, 0.0)))
+        system.add(Spring(f"{name} spring", spindle.point("seat"), arm.point("middle"), COLLAR_SPRING, free_length=0.1))
+    return system
+
+
+def test_flyball_governor(record_evidence):
+    """Angle of the arms against an integration of two coordinates (IFToMM library, A05, has such a mechanism)."""
+    speed, end = 7.0, 1.0
+    lever = ARM / 2
+
+    def lagrangian(tilt):
+        """Inertia about the spindle's axis and potential energy."""
+        s, c = np.sin(tilt), np.cos(tilt)
+        inertia = SPINDLE + 2 * (ARM_MOMENT * s * s + ARM_AXIAL * c * c)
+        stretch = np.sqrt((lever * s) ** 2 + (HEIGHT - lever * c) ** 2) - 0.1
+        return inertia, -2 * BALL * 9.81 * ARM * c + COLLAR_SPRING * stretch**2
+
+    momentum = lagrangian(0.4)[0] * speed
+
+    def motion(t, state):
+        step = 1e-30
+        inertia, _ = lagrangian(state[0])
+        slope, force = (np.imag(value) / step for value in lagrangian(state[0] + 1j * step))
+        return state[1], (0.5 * slope * (momentum / inertia) ** 2 - force) / (2 * ARM_MOMENT)
+
+    independent = solve_ivp(motion, (0.0, end), (0.4, 0.0), method="DOP853", rtol=1e-12, atol=1e-12)
+    ours = simulate(governor(speed), end, EXACT, times=np.array([0.0, end]))
+    record_evidence(
+        "Flyball governor, angle of the arms after 1 s",
+        float(independent.y[0, -1]),
+        float(-ours.channels(["right hinge.angle"])[-1, 0] + 0.0),
+        unit="rad",
+        tolerance=1e-8,
+        topic=TOPIC,
+        kind="other method",
+        source="two coordinates, SciPy's DOP853; mechanism after the IFToMM library, A05",
     )

@@ -9,7 +9,16 @@ from dalembert.kernels.words import Integers, Reals, Reals2, Reals3
 from dalembert.multibody.integrators.collocation_rule import Rule
 from dalembert.multibody.integrators.consistent import Consistency, accelerate, consistency
 from dalembert.multibody.integrators.ends import write
-from dalembert.multibody.integrators.partitioning import Partition, choose, dependence, invert, linearise, room, settle
+from dalembert.multibody.integrators.partitioning import (
+    DEPENDENT,
+    Partition,
+    choose,
+    dependence,
+    invert,
+    linearise,
+    room,
+    settle,
+)
 from dalembert.multibody.integrators.problem import DONE, NEWTON_FAILED, SINGULAR, VELOCITY, Models, Problem
 from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.model import Call
@@ -95,7 +104,7 @@ def _choose(problem, own, chosen):
     """Keep the independent coordinates, or choose others; whether there are as many as at first."""
     if chosen[0] > 0.0 and invert(problem, own) and dependence(problem, own) <= chosen[0]:
         return True
-    choose(problem, own)
+    choose(problem, own, DEPENDENT)
     chosen[1] = 0.0  # accelerations of the last step are those of other coordinates
     if own.rank[0] < len(own.rows) or not invert(problem, own):
         return False

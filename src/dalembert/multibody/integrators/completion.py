@@ -14,6 +14,7 @@ from dalembert.multibody.integrators.index1 import (
 )
 from dalembert.multibody.integrators.least_squares import surplus_room
 from dalembert.multibody.integrators.partitioning import (
+    DEPENDENT,
     Partition,
     choose,
     dependence,
@@ -64,7 +65,7 @@ def partition(
     linearise(problem, complex_model, state, work, own)
     if own.rank[0] > 0 and invert(problem, own) and dependence(problem, own) <= terms.limit:
         return False
-    choose(problem, own)
+    choose(problem, own, DEPENDENT)
     return own.rank[0] > 0
 
 

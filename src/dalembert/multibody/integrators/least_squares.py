@@ -18,6 +18,10 @@ from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.linear import Factors, factorise, resized, solve, storage
 from dalembert.multibody.kernels.motion import MotionState, clear, perturb
 
+# Pivot, against the first one, of a constraint that follows from the others. Positions that have drifted off the
+# constraints give it a pivot of the size of the drift.
+_DRIFTED = 1e-6
+
 
 class Surplus(NamedTuple):
     """Work for redundant constraints.
@@ -75,7 +79,7 @@ def _share(basis, scale, k, vector):
 def _find_range(problem, surplus):
     """Basis of the multipliers' range, by the Jacobian in ``surplus.partition.matrix``, with the rank decided anew."""
     partition, basis, scale = surplus.partition, surplus.basis, surplus.scale
-    choose(problem, partition)
+    choose(problem, partition, _DRIFTED)
     for k in range(partition.rank[0]):
         own = partition.columns[k] * problem.exact_layout.lead + problem.n
         for i in range(len(basis)):

@@ -16,7 +16,7 @@ from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.linear import DENSE, Factors, factorise, resized, solve, storage
 from dalembert.multibody.kernels.motion import MotionState, MotionStates, clear, perturb, row
 
-_DEPENDENT = 1e-9  # pivot, against the first one, of a constraint that follows from the others
+DEPENDENT = 1e-9  # pivot, against the first one, of a constraint that follows from the others
 _MOST_ITERATIONS = 20
 _CLOSED = 1e-9  # correction against the scale after which a quadratic iteration is at rounding
 
@@ -63,8 +63,11 @@ def linearise(problem, complex_model, state, complex_work, partition):
 
 
 @kernel
-def choose(problem: Problem, partition: Partition) -> None:
-    """Order coordinates and constraints by complete pivoting of the constraint Jacobian, in units of their scales."""
+def choose(problem: Problem, partition: Partition, dependent: float) -> None:
+    """Order coordinates and constraints by complete pivoting of the constraint Jacobian, in units of their scales.
+
+    A constraint whose pivot, against the first one, is at most ``dependent`` follows from the others.
+    """
     n, lead, a = problem.n, problem.exact_layout.lead, partition.pivots
     rows, columns = partition.rows, partition.columns
     m = len(rows)
@@ -88,7 +91,7 @@ def choose(problem: Problem, partition: Partition) -> None:
                     p, q = i, j
         if k == 0:
             first = abs(a[p, q])
-        if not abs(a[p, q]) > _DEPENDENT * first:
+        if not abs(a[p, q]) > dependent * first:
             return
         rows[k], rows[p] = rows[p], rows[k]
         columns[k], columns[q] = columns[q], columns[k]

@@ -46,12 +46,11 @@ class SpatialLowering(MechanismLowering):
         if turned is not None:
             own = [one._replace(axes=one.axes @ turn) for one, turn in zip(own, turned, strict=True)]
             axes = [one @ turn for one, turn in zip(axes, turned, strict=True)]
-        grounded = [one.kind == markers.GROUND for one in own]
-        slots = [slot for one, ground in zip(own, grounded, strict=True) if not ground for slot in one.slots]
+        slots = [slot for one in own for slot in one.slots]
         return Pair(
             slots=slots,
             data=[*own[0].numbers, *own[1].numbers],
-            integers=[own[0].kind, own[1].kind, 0 if any(grounded) else markers.SLOTS],
+            integers=[own[0].kind, own[1].kind, markers.SLOTS],
             separation=stands[1][0] - stands[0][0],
             axes=(axes[0], axes[1]),
         )

@@ -90,10 +90,8 @@ class Friction(Checked):
 
 def friction_kinds(name: str, home: str, multipliers: int, load: tuple[int, ...], turns: bool) -> Kinds:
     """Kinds of the friction of a joint, whose multipliers ``load`` are those of its reaction force."""
-    return (
-        _kind(f"{name}_to_ground", home, SLOTS, multipliers, load, turns),
-        _kind(name, home, 2 * SLOTS, multipliers, load, turns),
-    )
+    kind = _kind(name, home, 2 * SLOTS, multipliers, load, turns)
+    return kind, kind
 
 
 def _kind(name: str, home: str, coordinates: int, multipliers: int, load: tuple[int, ...], turns: bool) -> Kind:

@@ -137,10 +137,8 @@ def joint_kinds(
         Whether the joint has an angle about its axis, and a displacement along it.
     properties : of the kinds
     """
-    return (
-        _joint_kind(f"{name}_to_ground", home, SLOTS, conditions, angle, displacement, properties),
-        _joint_kind(name, home, 2 * SLOTS, conditions, angle, displacement, properties),
-    )
+    kind = _joint_kind(name, home, 2 * SLOTS, conditions, angle, displacement, properties)
+    return kind, kind
 
 
 def _joint_kind(

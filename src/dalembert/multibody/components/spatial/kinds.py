@@ -22,9 +22,8 @@ def pair_kinds(
     numbers, integers : tuple of str
     properties : of the kinds
     """
-    return pair_kind(f"{name}_to_ground", home, SLOTS, numbers, integers, **properties), pair_kind(
-        name, home, 2 * SLOTS, numbers, integers, **properties
-    )
+    kind = pair_kind(name, home, 2 * SLOTS, numbers, integers, **properties)
+    return kind, kind
 
 
 def pair_kind(

@@ -88,10 +88,7 @@ def _kind(name: str, coordinates: int) -> Kind:
     )
 
 
-KINDS = TO_GROUND, BETWEEN = (
-    _kind("prescribed_motion_to_ground", SLOTS),
-    _kind("prescribed_motion_in_space", 2 * SLOTS),
-)
+KINDS = TO_GROUND, BETWEEN = (_kind("prescribed_motion_in_space", 2 * SLOTS),) * 2
 
 
 @dataclass(frozen=True)

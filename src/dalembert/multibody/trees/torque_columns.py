@@ -1,0 +1,96 @@
+"""Compiled: torques of the joints of a tree as linear functions of mass, mass x centre and inertia of each frame.
+
+Atkeson, An and Hollerbach (1986). In the axes of a frame, w is its angular velocity, b its angular acceleration, and a
+the acceleration of its origin less gravity. A unit motion of a joint above turns the frame by t and moves its origin by
+d. The torque of that joint is m d.a + h.(d x b + (d x w) x w + a x t) + t.J b + (t x w).J w.
+"""
+
+from dalembert.kernels.kernel import inlined, inner, kernel
+from dalembert.kernels.words import Complexes, Complexes2, Complexes3, Reals, Reals2, Reals3
+from dalembert.multibody.components.spatial.vectors import at, cross, dot, minus, plus
+from dalembert.multibody.trees.frame_motion import (
+    ANGULAR,
+    LINEAR,
+    SHIFT,
+    SPIN,
+    move_frame,
+    out_of,
+    place_frame,
+    put,
+    start_base,
+    within,
+)  # fmt: skip
+from dalembert.multibody.trees.frames import AXIS, WIDTH, ComplexFrames, Frames
+
+TURNED, ORIGIN, DIRECTION, ROOM = 21, 30, 33, 36
+"""Row of the workspace: that of the frame's motion up to its acceleration, then columns of the rotation to the base,
+position and axis of the joint there."""
+
+
+@inlined
+def _place_in_base(frames, k, room, o, up):
+    """Write rotation, position and axis of a frame in the base."""
+    for i in range(0, 9, 3):
+        put(room, o + TURNED + i, out_of(room, up + TURNED, at(room, o + i)))
+    shift = out_of(room, up + TURNED, at(room, o + SHIFT))
+    put(room, o + ORIGIN, plus(at(room, up + ORIGIN), shift))
+    put(room, o + DIRECTION, out_of(room, o + TURNED, at(frames.numbers, k * WIDTH + AXIS)))
+
+
+@inlined
+def _put_columns(y, w, b, a, t, d):
+    """Set the ten columns of a frame in the row of a joint that turns it by t and moves its origin by d."""
+    y[0] = dot(d, a)
+    put(y, 1, plus(plus(cross(d, b), cross(cross(d, w), w)), cross(a, t)))
+    u = cross(t, w)
+    for i in range(3):
+        y[4 + i] = t[i] * b[i] + u[i] * w[i]
+    y[7] = t[0] * b[1] + t[1] * b[0] + u[0] * w[1] + u[1] * w[0]
+    y[8] = t[0] * b[2] + t[2] * b[0] + u[0] * w[2] + u[2] * w[0]
+    y[9] = t[1] * b[2] + t[2] * b[1] + u[1] * w[2] + u[2] * w[1]
+
+
+@inner
+def _fill(frames, gravity, q, v, a, room, columns):
+    count = len(frames.parents)
+    start_base(gravity, room)
+    for i in range(TURNED, ROOM):
+        room[i] = 0.0
+    room[TURNED] = room[TURNED + 4] = room[TURNED + 8] = 1.0
+    for s in range(len(q)):
+        for k in range(count):
+            o, up = (k + 1) * ROOM, frames.parents[k] * ROOM
+            place_frame(frames, k, q[s, k], room, o)
+            move_frame(frames, k, v[s, k], a[s, k], room, o, up)
+            _place_in_base(frames, k, room, o, up)
+            w, b, linear = at(room, o + SPIN), at(room, o + ANGULAR), at(room, o + LINEAR)
+            j = k + 1
+            while j > 0:
+                y, axis = columns[s, j - 1, 10 * k : 10 * k + 10], at(room, j * ROOM + DIRECTION)
+                turn = within(room, o + TURNED, axis)
+                if frames.turns[j - 1]:
+                    lever = minus(at(room, o + ORIGIN), at(room, j * ROOM + ORIGIN))
+                    _put_columns(y, w, b, linear, turn, within(room, o + TURNED, cross(axis, lever)))
+                else:
+                    _put_columns(y, w, b, linear, (0.0 * turn[0], 0.0 * turn[0], 0.0 * turn[0]), turn)
+                j = frames.parents[j - 1]
+
+
+@kernel
+def fill_columns(frames: Frames, gravity: Reals, q: Reals2, v: Reals2, a: Reals2, room: Reals, columns: Reals3) -> None:
+    """Fill the first ten columns a frame (samples, frames, columns), zero before; (frames + 1) x ROOM of workspace."""
+    _fill(frames, gravity, q, v, a, room, columns)
+
+
+@kernel
+def fill_complex_columns(
+    frames: ComplexFrames,
+    gravity: Complexes,
+    q: Complexes2,
+    v: Complexes2,
+    a: Complexes2,
+    room: Complexes,
+    columns: Complexes3,
+) -> None:
+    """The same in complex numbers."""
+    _fill(frames, gravity, q, v, a, room, columns)

@@ -21,10 +21,11 @@ NAMES = (
     "vibration",
     "events",
     "plate",
+    "robots",
     "startup",
 )
 
-PAGES = (*NAMES[:-2], "vibration-cost", *NAMES[-2:])
+PAGES = (*NAMES[:-3], "vibration-cost", *NAMES[-3:])
 """Results that the page shows, in its order."""
 
 

@@ -56,7 +56,7 @@ def text(value: object) -> str:
 
 def _machine() -> dict[str, object]:
     packages = {}
-    for package in ("dalembert", "exudyn", "pyharm-os", "pymoo", "cma", "numba", "numpy", "scipy"):
+    for package in ("dalembert", "exudyn", "pyharm-os", "pymoo", "cma", "pin", "numba", "numpy", "scipy"):
         try:
             packages[package] = version(package)
         except PackageNotFoundError:

@@ -1,5 +1,7 @@
 """Torques, mass matrices and regressors of robots against closed forms, conservation, simulations and Pinocchio."""
 
+from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -174,20 +176,24 @@ def theirs(model, q):
     return whole
 
 
+def models(pinocchio, **options):
+    """Models of example-robot-data by their files, without those that Pinocchio refuses."""
+    wheel = next(own for own in Path(pinocchio.__file__).parents if own.name == "cmeel.prefix")
+    found = {}
+    for path in sorted((wheel / "share/example-robot-data/robots").rglob("*.urdf")):
+        with suppress(ValueError):
+            found[path] = pinocchio.buildModelFromUrdf(str(path), **options)
+    return found
+
+
 @pytest.mark.slow
 def test_robots_against_pinocchio(record_evidence):
     """Mass matrix, bias forces, torques and regressor of the robots of example-robot-data."""
     pinocchio = pytest.importorskip("pinocchio")
-    wheel = next(own for own in Path(pinocchio.__file__).parents if own.name == "cmeel.prefix")
-    files = sorted((wheel / "share/example-robot-data/robots").rglob("*.urdf"))
     order = [0, 1, 2, 3, 4, 6, 9, 5, 7, 8]  # of Pinocchio's xx, xy, yy, xz, yz, zz
     worst = dict.fromkeys(("mass matrices", "bias forces", "torques", "regressors", "positions"), 0.0)
     compared = 0
-    for path in files:
-        try:
-            model = pinocchio.buildModelFromUrdf(str(path))
-        except ValueError:  # a file without a robot's name
-            continue
+    for model in models(pinocchio).values():
         model.armature = np.random.default_rng(model.nv).uniform(0.0, 0.2, model.nv)
         tree = tree_from(model)
         if tree is None or model.nv == 0:
@@ -224,6 +230,53 @@ def test_robots_against_pinocchio(record_evidence):
     for name, difference in worst.items():
         record_evidence(
             f"{compared} robots of example-robot-data, {name} (largest relative difference)",
+            0.0,
+            difference,
+            tolerance=1e-10,
+            topic=TOPIC,
+            kind="other code",
+            source=f"Pinocchio {pinocchio.__version__}",
+            noisy=True,
+        )
+
+
+@pytest.mark.slow
+def test_following_joints_against_pinocchio(record_evidence):
+    """Mass matrix and torques of robots with joints that follow others, such as grippers."""
+    pinocchio = pytest.importorskip("pinocchio")
+    compared, worst = 0, {"mass matrices": 0.0, "torques": 0.0}
+    free = models(pinocchio)
+    for path, model in models(pinocchio, mimic=True).items():
+        tree = tree_from(free[path])
+        if tree is None or model.nv == free[path].nv:
+            continue
+        leaders = {}
+        for k in range(1, model.njoints):
+            if model.joints[k].shortname() != "JointModelMimic":
+                leaders[model.joints[k].idx_q] = model.names[k]
+        links = []
+        for link in tree.links:
+            joint = model.joints[model.getJointId(link.joint.name)]
+            if joint.shortname() == "JointModelMimic":
+                mimic = leaders[joint.idx_q], joint.extract().scaling, joint.extract().offset
+                link = replace(link, joint=replace(link.joint, mimic=mimic))
+            links.append(link)
+        tree = replace(tree, links=tuple(links))
+        data, (q, v, a) = model.createData(), random_motion(tree, 5)
+        masses, torques = mass_matrix(tree, q), inverse_dynamics(tree, q, v, a)
+        for s, own in enumerate(theirs(model, q)):
+            upper = np.triu(pinocchio.crba(model, data, own))
+            pairs = {
+                "mass matrices": (masses[s], upper + np.triu(upper, 1).T),
+                "torques": (torques[s], pinocchio.rnea(model, data, own, v[s], a[s])),
+            }
+            for name, (ours, reference) in pairs.items():
+                worst[name] = max(worst[name], float(np.abs(ours - reference).max() / np.abs(reference).max()))
+        compared += 1
+    assert compared > 0
+    for name, difference in worst.items():
+        record_evidence(
+            f"{compared} robots with joints that follow others, {name} (largest relative difference)",
             0.0,
             difference,
             tolerance=1e-10,

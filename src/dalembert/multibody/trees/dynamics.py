@@ -178,8 +178,7 @@ def regressor(
     links, count = heavy(tree), len(own.joints)
     homes = {link.name: k for k, link in enumerate(tree.links)}
     slots = np.array([homes[link.name] for link in links], int)
-    direct = len(links) == count and np.array_equal(own.homes[slots], np.arange(1, count + 1))
-    direct = direct and all(link.joint.moves for link in links)
+    direct = np.array_equal(own.homes[slots], np.arange(1, count + 1)) and all(link.joint.moves for link in links)
     width = len(parameter_names(tree)) if direct else 10 * count
     columns = _filled(
         (torque_columns.fill_columns, torque_columns.fill_complex_columns), own,

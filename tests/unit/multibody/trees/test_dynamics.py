@@ -143,6 +143,15 @@ def test_parameters_may_be_complex():
     np.testing.assert_allclose(torques.imag / 1e-30, columns @ varied, **NEAR)
 
 
+def test_a_tree_with_other_numbers_has_other_torques():
+    tree = three_joints()
+    q, v, a = random_motion(tree, 3)
+    before = inverse_dynamics(tree, q, v, a)
+    heavier = tree.with_numbers({"link2.mass": 4.0})
+    assert np.abs(inverse_dynamics(heavier, q, v, a) - before).max() > 0.1
+    np.testing.assert_array_equal(inverse_dynamics(tree, q, v, a), before)
+
+
 def test_a_tree_without_joints_has_no_torques():
     for tree in (random_robot(1, "ff"), Tree("nothing", "base", ())):
         nothing = np.zeros((2, 0))

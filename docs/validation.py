@@ -62,6 +62,7 @@ AREAS = {
         "Sensitivities, least squares, starts, and the statistics of estimates.",
         (
             "Identification of chaotic motion",
+            "Inertial parameters",
             "Least squares: NIST regressions",
             "Response sensitivity",
             "Sensitivities",

@@ -1,0 +1,214 @@
+"""Trajectories of joints that excite inertial parameters as well as limits allow."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Annotated, ClassVar
+
+import numpy as np
+
+from dalembert.errors import InputError, require_known
+from dalembert.findings import Finding
+from dalembert.inverse.inertial.base_estimate import joint_names
+from dalembert.inverse.inertial.base_parameters import base_parameters
+from dalembert.inverse.inertial.fourier_motion import FINE, FourierMotion, JointLimits, largest_motion
+from dalembert.inverse.inertial.stacked import checked_deviations
+from dalembert.results import EndedResult, fact_lines, text_table
+from dalembert.stored_fields import Labels, Over
+
+Regressor = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
+CRITERIA = {"D": "mean log standard deviation", "condition": "log condition number"}
+SAMPLES = 8
+"""Samples per harmonic where the criterion is computed."""
+
+GROWN, SHRUNK = 1.5, 1.5**-0.25
+"""Factors of the step after a success and after a failure: it is constant at one success in five."""
+
+
+@dataclass(frozen=True, eq=False)
+class ExcitingTrajectory(EndedResult):
+    """A periodic motion that excites the parameters of a regressor.
+
+    Parameters
+    ----------
+    motion : FourierMotion
+    limits : JointLimits
+    joints : tuple of str
+    criterion : {"D", "condition"}
+    score : float
+        Of this motion; smaller is better.
+    usual_score : float
+        Median of random motions within the same limits.
+    condition, usual_condition : float
+        Condition numbers of the scaled columns of the base parameters, of this motion and the median of random ones.
+    history : array, shape (evaluations,)
+        Best score so far.
+    seed : int
+    outcome, findings : tuple of Finding
+    """
+
+    FORMAT: ClassVar[str] = "dalembert excitingtrajectory 1"
+
+    motion: FourierMotion
+    limits: JointLimits
+    joints: Annotated[tuple[str, ...], Labels("joint")]
+    criterion: str
+    score: float
+    usual_score: float
+    condition: float
+    usual_condition: float
+    history: Annotated[np.ndarray, Over("evaluation")]
+    seed: int
+    outcome: tuple[Finding, ...]
+    findings: tuple[Finding, ...] = ()
+
+    def sampled(self, rate: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Times (samples,), positions, velocities and accelerations (samples, joints) of a period at a rate, Hz."""
+        times = np.arange(int(np.floor(self.motion.period * rate)) + 1) / rate
+        return times, *self.motion.motion(times)
+
+    def summary(self) -> str:
+        """Return a table of the largest positions, velocities and accelerations, then the criterion."""
+        found = self.sampled(FINE * self.motion.sine.shape[1] / self.motion.period)[1:]
+        rows = [("joint", "positions", "limits", "velocity", "limit", "acceleration", "limit")]
+        for k, joint in enumerate(self.joints):
+            path, velocity, acceleration = (one[:, k] for one in found)
+            rows.append(
+                (
+                    joint,
+                    f"{path.min():.4g} to {path.max():.4g}",
+                    f"{self.limits.lower[k]:.4g} to {self.limits.upper[k]:.4g}",
+                    f"{np.abs(velocity).max():.4g}",
+                    f"{self.limits.velocity[k]:.4g}",
+                    f"{np.abs(acceleration).max():.4g}",
+                    f"{self.limits.acceleration[k]:.4g}",
+                )
+            )
+        facts = fact_lines(
+            period=f"{self.motion.period:.6g} s, {self.motion.sine.shape[1]} harmonics",
+            criterion=f"{CRITERIA[self.criterion]} {self.score:.4g}, of random motions {self.usual_score:.4g}",
+            evaluations=len(self.history),
+        )
+        return "\n".join([*text_table(rows), "", *facts, "", self.status, *map(str, self.findings)])
+
+
+def exciting_trajectory(
+    regressor: Regressor,
+    names: Sequence[str],
+    limits: JointLimits,
+    *,
+    period: float,
+    harmonics: int = 5,
+    joints: Sequence[str] = (),
+    criterion: str = "D",
+    deviations: float | Sequence[float] = 1.0,
+    random: int = 20,
+    evaluations: int = 1000,
+    seed: int = 0,
+) -> ExcitingTrajectory:
+    """Search a periodic motion within limits that excites the parameters of a regressor.
+
+    Parameters
+    ----------
+    regressor : callable
+        Positions, velocities and accelerations (samples, joints) to Y (samples, joints, parameters).
+    names : sequence of str, length parameters
+    limits : JointLimits
+    period : float
+        s. The highest frequency is harmonics / period.
+    harmonics : int
+        Of each joint.
+    joints : sequence of str, optional
+    criterion : {"D", "condition"}
+        The mean logarithm of the standard deviations, −log det(Σ YᵀY/σ²) / (2 base), which does not depend on units; or
+        the logarithm of the condition number of the scaled columns.
+    deviations : float or sequence of float, length joints
+        Standard deviations σ of the torques.
+    random : int
+        Random motions; the best one is where the search starts.
+    evaluations : int
+        Motions of the search.
+    seed : int
+
+    Raises
+    ------
+    InputError
+        For an unknown criterion, numbers that are not positive, or a regressor of another shape.
+
+    Notes
+    -----
+    Every shape is scaled to the largest motion that keeps all limits at all times, so no constraint is left. The
+    search is an evolution strategy with one parent and one child, whose step follows the rule of one success in five
+    (I. Rechenberg, Evolutionsstrategie, 1973).
+
+    Examples
+    --------
+    A pendulum: inertia, weight and friction.
+
+    >>> def regressor(q, v, a):
+    ...     return np.stack([a, np.cos(q), v], axis=-1)
+    >>> limits = JointLimits([-1.0], [1.0], [3.0], [20.0])
+    >>> found = exciting_trajectory(regressor, ["inertia", "weight", "damping"], limits, period=5.0, evaluations=200)
+    >>> bool(found.score < found.usual_score), bool(np.abs(found.sampled(100.0)[1]).max() <= 1.0)
+    (True, True)
+    """
+    where = "exciting_trajectory"
+    require_known("criterion", criterion, CRITERIA, where)
+    if not 0 < period < np.inf or harmonics < 1 or random < 2 or evaluations < 0:
+        raise InputError(
+            f"{where}: period {period}, harmonics {harmonics}, random {random}, evaluations {evaluations}; expected a "
+            "positive period, at least one harmonic, two random motions and no negative number"
+        )
+    joints = joint_names(joints, limits.joints, where)
+    noise = checked_deviations(deviations, limits.joints, where)
+    count = max(SAMPLES * harmonics, 2 * len(names) // limits.joints + 1)
+    times = np.arange(count) * period / count
+    rng = np.random.default_rng(seed)
+    size = (limits.joints, 2 * harmonics + 1)
+    shapes = [rng.uniform(-1.0, 1.0, size) for _ in range(random)]
+    tables = [regressor(*largest_motion(shape, period, limits).motion(times)) for shape in shapes]
+    base = base_parameters(np.concatenate(tables), names)
+
+    def scores(table: np.ndarray) -> tuple[float, float]:
+        """Score and condition number of a regressor."""
+        rows = (np.asarray(table, dtype=float)[..., base.independent] / noise[:, None]).reshape(-1, base.rank)
+        norms = np.linalg.norm(rows, axis=0)
+        if not np.all(np.isfinite(norms)) or not np.all(norms > 0):
+            return np.inf, np.inf
+        singular = np.linalg.svd(rows / norms, compute_uv=False)
+        if not singular[-1] > 0:
+            return np.inf, np.inf
+        condition = float(singular[0] / singular[-1])
+        if criterion == "condition":
+            return float(np.log(condition)), condition
+        return float(-np.mean(np.log(singular)) - np.mean(np.log(norms))), condition
+
+    found = [scores(table) for table in tables]
+    best = int(np.argmin([score for score, _ in found]))
+    shape, (score, condition) = shapes[best], found[best]
+    history, step = list(np.minimum.accumulate([one for one, _ in found])), 0.3
+    for _ in range(evaluations):
+        child = np.clip(shape + step * rng.standard_normal(size) / np.sqrt(shape.size) * 3.0, -1.0, 1.0)
+        own = scores(regressor(*largest_motion(child, period, limits).motion(times)))
+        step = min(1.0, step * (GROWN if own[0] < score else SHRUNK))
+        if own[0] < score:
+            shape, (score, condition) = child, own
+        history.append(score)
+    usual = np.median(np.array(found), axis=0)
+    message = (
+        f"The condition number of the scaled columns is {condition:.3g}, that of random motions {usual[1]:.3g} "
+        "(median). All limits hold at all times."
+    )
+    values = {"condition": condition, "random": float(usual[1]), "score": score}
+    return ExcitingTrajectory(
+        largest_motion(shape, period, limits),
+        limits,
+        joints,
+        criterion,
+        score,
+        float(usual[0]),
+        condition,
+        float(usual[1]),
+        np.array(history),
+        seed,
+        (Finding("exciting-trajectory", "note", values, message),),
+    )

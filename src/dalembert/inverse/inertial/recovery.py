@@ -1,0 +1,149 @@
+"""How well a planned experiment recovers known parameters: repeated identifications of simulated torques."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Annotated, ClassVar
+
+import numpy as np
+
+from dalembert.errors import InputError
+from dalembert.inverse.fit.fit import check_level
+from dalembert.inverse.inertial.base_parameters import base_parameters
+from dalembert.inverse.inertial.consistent import identify_inertias
+from dalembert.inverse.inertial.stacked import checked_regressor
+from dalembert.results import Result, fact_lines, text_table
+from dalembert.stored_fields import Labels, Over
+
+
+@dataclass(frozen=True, eq=False)
+class Recovery(Result):
+    """Repeated identifications of simulated torques with noise.
+
+    Parameters
+    ----------
+    base : tuple of str
+        Base parameters.
+    level : float
+    covered : array, shape (runs, base)
+        Whether the interval of a base parameter contains the true value.
+    plain_covered : array, shape (runs, base)
+        The same for weighted least squares without prior.
+    prediction : array, shape (runs,)
+        Rms difference of predicted and noisy torques along the unseen motion, relative to the standard deviation of the
+        noise. It varies with the noise of this record, too.
+    unseen_noise : array, shape (runs,)
+        Rms of this noise itself, relative to the same standard deviation.
+    consistent : array of bool, shape (runs, links)
+    decrements : array, shape (runs,)
+        Half the squared Newton decrements.
+    gradients : array, shape (runs,)
+        Largest entry of the gradient by the log-Cholesky parameters.
+    """
+
+    FORMAT: ClassVar[str] = "dalembert recovery 1"
+
+    base: Annotated[tuple[str, ...], Labels("base")]
+    level: float
+    covered: Annotated[np.ndarray, Over("run", "base")]
+    plain_covered: Annotated[np.ndarray, Over("run", "base")]
+    prediction: Annotated[np.ndarray, Over("run")]
+    unseen_noise: Annotated[np.ndarray, Over("run")]
+    consistent: Annotated[np.ndarray, Over("run", "link")]
+    decrements: Annotated[np.ndarray, Over("run")]
+    gradients: Annotated[np.ndarray, Over("run")]
+
+    @property
+    def coverage(self) -> np.ndarray:
+        """Share of runs (base,) whose interval contains the true value."""
+        return self.covered.mean(axis=0)
+
+    def summary(self) -> str:
+        """Return a table of the coverage of each base parameter, then the prediction."""
+        rows: list[tuple[str, ...]] = [("base parameter", "coverage", "without prior")]
+        for name, *shares in zip(self.base, self.coverage, self.plain_covered.mean(axis=0), strict=True):
+            rows.append((name, *(f"{share:.3g}" for share in shares)))
+        facts = fact_lines(
+            runs=len(self.prediction),
+            coverage=f"{self.covered.mean():.4g} of all intervals, nominal {self.level:.4g}",
+            prediction=f"{(self.prediction / self.unseen_noise).max():.4g} times the noise of the record at most",
+            consistent=f"{self.consistent.mean():.4g} of all links",
+        )
+        return "\n".join([*text_table(rows), "", *facts])
+
+
+def simulated_recovery(
+    regressor: np.ndarray,
+    unseen: np.ndarray,
+    names: Sequence[str],
+    truth: np.ndarray,
+    prior: np.ndarray,
+    *,
+    links: Sequence[str],
+    positive: Sequence[str] = (),
+    noise: float = 0.02,
+    regularisation: float = 1.0,
+    level: float = 0.95,
+    runs: int = 100,
+    seed: int = 0,
+) -> Recovery:
+    """Identify simulated torques with noise again and again, and compare with the true parameters.
+
+    Parameters
+    ----------
+    regressor, unseen : array, shape (samples, joints, parameters)
+        Along the motion that is fitted, and along one that is predicted.
+    names : sequence of str, length parameters
+    truth, prior : array, shape (parameters,)
+    links, positive, regularisation
+        As in :func:`identify_inertias`.
+    noise : float
+        Standard deviation of the torques of each joint, relative to their rms along the motion.
+    level : float
+        Of the intervals.
+    runs : int
+    seed : int
+        Run k draws from the generator of (seed, k).
+
+    Raises
+    ------
+    InputError
+        For arguments that :func:`identify_inertias` refuses, no runs, or a noise that is not positive.
+
+    Examples
+    --------
+    >>> motion = np.random.default_rng(0).standard_normal((2, 60, 1, 10))
+    >>> sphere = [5.0, 0, 0, 0, 0.02, 0.02, 0.02, 0, 0, 0]
+    >>> from dalembert.inverse.inertial import parameter_names
+    >>> found = simulated_recovery(*motion, parameter_names(["ball"]), sphere, sphere, links=["ball"], runs=3)
+    >>> found.covered.shape, bool(found.consistent.all())
+    ((3, 10), True)
+    """
+
+    def rms(values: np.ndarray) -> float:
+        return float(np.sqrt(np.mean(values**2)))
+
+    table = checked_regressor(regressor, names, "simulated_recovery")
+    check_level(level, "simulated_recovery")
+    if runs < 1 or not 0 < noise < np.inf:
+        raise InputError(f"simulated_recovery: runs {runs}, noise {noise}; expected positive numbers")
+    exact, other = table @ np.asarray(truth), np.asarray(unseen) @ np.asarray(truth)
+    size = noise * np.sqrt(np.mean(exact**2, axis=0))
+    base = base_parameters(table, names)
+    true = base.values(np.asarray(truth))
+    found = []
+    for run in range(runs):
+        rng = np.random.default_rng((seed, run))
+        torques = exact + size * rng.standard_normal(exact.shape)
+        one = identify_inertias(
+            table, torques, names, prior, links=links, positive=positive, regularisation=regularisation, base=base
+        )
+        inside = np.array(
+            [low <= value <= high for value, (low, high) in zip(true, one.intervals(level).values(), strict=True)]
+        )
+        quantile = (one.intervals(level)[base.base[0]][1] - one.base_values[0]) / one.base_deviations[0]
+        plain = np.abs(one.plain_values - true) <= quantile * np.sqrt(np.diagonal(one.plain_covariance))
+        added = rng.standard_normal(other.shape)
+        ratio = (one.torques(unseen) - other) / size - added
+        largest = float(np.max(np.abs(np.concatenate([one.gradient.ravel(), one.other_gradient]))))
+        found.append((inside, plain, rms(ratio), rms(added), one.consistent, one.decrement, largest))
+    return Recovery(base.base, level, *(np.array(column) for column in zip(*found, strict=True)))

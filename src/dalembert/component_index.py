@@ -71,3 +71,53 @@ KINDS = {
     ),
 }
 """What a model or a study may name, by base class."""
+
+SPATIAL_HOMES = {
+    "Body": "components.spatial.body",
+    "Bushing": "components.spatial.bushing",
+    "ConstantVelocityJoint": "components.spatial.universal_joint",
+    "CylindricalJoint": "components.spatial.cylindrical_joint",
+    "DistanceJoint": "components.spatial.distance_joint",
+    "FixedJoint": "components.spatial.fixed_joint",
+    "Force": "components.spatial.force",
+    "Friction": "components.spatial.friction",
+    "Ground": "components.spatial.points",
+    "GroundPoint": "components.spatial.points",
+    "Inertia": "components.spatial.inertia",
+    "Joint": "components.spatial.joint",
+    "Load": "components.spatial.load",
+    "Orientation": "components.spatial.orientation",
+    "PlanarJoint": "components.spatial.planar_joint",
+    "PointMass": "components.spatial.point_mass",
+    "PointOnLineJoint": "components.spatial.point_on_line_joint",
+    "Pose": "components.spatial.orientation",
+    "PrescribedMotion": "components.spatial.prescribed_motion",
+    "PrismaticJoint": "components.spatial.prismatic_joint",
+    "RevoluteJoint": "components.spatial.revolute_joint",
+    "RigidBody": "components.spatial.rigid_body",
+    "SphericalJoint": "components.spatial.spherical_joint",
+    "Spring": "components.spatial.spring",
+    "Torque": "components.spatial.force",
+    "TorsionSpring": "components.spatial.spring",
+    "UniversalJoint": "components.spatial.universal_joint",
+}
+"""Module in ``dalembert.multibody`` of each public name of ``dalembert.multibody.spatial``."""
+
+SPATIAL_KINDS = {
+    "Body": ("PointMass", "RigidBody"),
+    "Joint": (
+        "ConstantVelocityJoint",
+        "CylindricalJoint",
+        "DistanceJoint",
+        "FixedJoint",
+        "PlanarJoint",
+        "PointOnLineJoint",
+        "PrescribedMotion",
+        "PrismaticJoint",
+        "RevoluteJoint",
+        "SphericalJoint",
+        "UniversalJoint",
+    ),
+    "Load": ("Bushing", "Force", "Spring", "Torque", "TorsionSpring"),
+}
+"""What a model or a study in space may name, by base class."""

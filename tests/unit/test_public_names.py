@@ -7,15 +7,17 @@ from importlib import import_module
 from pathlib import Path
 from pkgutil import iter_modules
 from types import ModuleType
+from typing import Any
 
 import pytest
 
 import dalembert
 import public_names
 from dalembert import component_index, multibody
+from dalembert.multibody import spatial
 from dalembert.study.catalogue import ROLES, kinds_of
 
-LAZY = [dalembert, multibody]
+LAZY = [dalembert, multibody, spatial]
 
 
 def loaded_by(code: str) -> set[str]:
@@ -36,6 +38,12 @@ def test_listing_the_components_imports_none() -> None:
     assert ours == {"dalembert", "dalembert.component_index", "dalembert.lazy", "dalembert.multibody"}
 
 
+def test_components_in_space_are_imported_where_they_are_used() -> None:
+    loaded = loaded_by("from dalembert.multibody import RigidBody, spatial; dir(spatial)")
+    assert "dalembert.multibody.components.planar.rigid_body" in loaded
+    assert not [name for name in loaded if name.startswith("dalembert.multibody.components.spatial")]
+
+
 def test_the_generated_files_are_up_to_date() -> None:
     assert not public_names.outdated(public_names.SOURCES), "run `make names`"
 
@@ -51,7 +59,7 @@ def test_the_stub_for_type_checkers_hands_on_the_same_names_from_the_same_module
 
 @pytest.mark.parametrize("package", LAZY, ids=lambda package: package.__name__)
 def test_no_name_is_hidden_by_a_module_of_the_package(package: ModuleType) -> None:
-    assert not {entry.name for entry in iter_modules(package.__path__)} & package._HOMES.keys()
+    assert not {entry.name for entry in iter_modules(getattr(package, "__path__", []))} & package._HOMES.keys()
 
 
 @pytest.mark.parametrize("name", [f"{package.__name__} {name}" for package in LAZY for name in dir(package)])
@@ -60,13 +68,24 @@ def test_every_public_name_is_there(name: str) -> None:
     assert getattr(import_module(package), name) is not None
 
 
-@pytest.mark.parametrize(("role", "base"), ROLES.items())
-def test_the_index_lists_the_public_kinds_that_derive_from_a_base(role: str, base: str) -> None:
-    public = [getattr(multibody, name) for name in component_index.HOMES]
-    kinds = [kind for kind in public if inspect.isclass(kind) and getattr(multibody, base) in kind.__mro__[1:]]
-    assert sorted(kind.__name__ for kind in kinds) == list(component_index.KINDS[base])
-    assert all(dataclasses.is_dataclass(kind) and not inspect.isabstract(kind) for kind in kinds)
-    assert set(kinds) <= set(kinds_of(role))
+@pytest.mark.parametrize(
+    ("package", "homes", "index"),
+    [
+        (multibody, component_index.HOMES, component_index.KINDS),
+        (spatial, component_index.SPATIAL_HOMES, component_index.SPATIAL_KINDS),
+    ],
+    ids=["plane", "space"],
+)
+def test_the_index_lists_the_public_kinds_that_derive_from_a_base(
+    package: Any, homes: dict[str, str], index: dict[str, tuple[str, ...]]
+) -> None:
+    public = [getattr(package, name) for name in homes]
+    for base, names in index.items():
+        kinds = [kind for kind in public if inspect.isclass(kind) and getattr(package, base) in kind.__mro__[1:]]
+        assert sorted(kind.__name__ for kind in kinds) == list(names)
+        assert all(dataclasses.is_dataclass(kind) and not inspect.isabstract(kind) for kind in kinds)
+        (role,) = (role for role, own in ROLES.items() if own == base)
+        assert set(kinds) <= set(kinds_of(role, space=package is spatial))
 
 
 def test_an_unknown_name_is_an_attribute_error() -> None:

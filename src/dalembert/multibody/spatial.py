@@ -1,31 +1,14 @@
-"""Components of mechanisms in space, for :class:`SpatialSystem`."""
+"""Components of mechanisms in space, for :class:`SpatialSystem`.
 
-from dalembert.multibody.components.points import Point as Point
-from dalembert.multibody.components.spatial.body import Body as Body
-from dalembert.multibody.components.spatial.bushing import Bushing as Bushing
-from dalembert.multibody.components.spatial.cylindrical_joint import CylindricalJoint as CylindricalJoint
-from dalembert.multibody.components.spatial.distance_joint import DistanceJoint as DistanceJoint
-from dalembert.multibody.components.spatial.fixed_joint import FixedJoint as FixedJoint
-from dalembert.multibody.components.spatial.force import Force as Force
-from dalembert.multibody.components.spatial.force import Torque as Torque
-from dalembert.multibody.components.spatial.friction import Friction as Friction
-from dalembert.multibody.components.spatial.inertia import Inertia as Inertia
-from dalembert.multibody.components.spatial.joint import Joint as Joint
-from dalembert.multibody.components.spatial.load import Load as Load
-from dalembert.multibody.components.spatial.orientation import Orientation as Orientation
-from dalembert.multibody.components.spatial.orientation import Pose as Pose
-from dalembert.multibody.components.spatial.planar_joint import PlanarJoint as PlanarJoint
-from dalembert.multibody.components.spatial.point_mass import PointMass as PointMass
-from dalembert.multibody.components.spatial.point_on_line_joint import PointOnLineJoint as PointOnLineJoint
-from dalembert.multibody.components.spatial.points import Ground as Ground
-from dalembert.multibody.components.spatial.points import GroundPoint as GroundPoint
-from dalembert.multibody.components.spatial.prescribed_motion import PrescribedMotion as PrescribedMotion
-from dalembert.multibody.components.spatial.prismatic_joint import PrismaticJoint as PrismaticJoint
-from dalembert.multibody.components.spatial.revolute_joint import RevoluteJoint as RevoluteJoint
-from dalembert.multibody.components.spatial.rigid_body import RigidBody as RigidBody
-from dalembert.multibody.components.spatial.spherical_joint import SphericalJoint as SphericalJoint
-from dalembert.multibody.components.spatial.spring import Spring as Spring
-from dalembert.multibody.components.spatial.spring import TorsionSpring as TorsionSpring
-from dalembert.multibody.components.spatial.universal_joint import ConstantVelocityJoint as ConstantVelocityJoint
-from dalembert.multibody.components.spatial.universal_joint import UniversalJoint as UniversalJoint
-from dalembert.multibody.spatial_system import SpatialSystem as SpatialSystem
+The names are imported where they are first used; ``spatial.pyi``, which ``make names`` writes, says the same to type
+checkers and editors. Components list theirs in their modules.
+"""
+
+from dalembert.component_index import SPATIAL_HOMES
+from dalembert.lazy import lazy_names
+
+_NAMES = {"components.points": "Point", "spatial_system": "SpatialSystem"}
+_HOMES = {name: f"dalembert.multibody.{module}" for module, names in _NAMES.items() for name in names.split()}
+_HOMES |= {name: f"dalembert.multibody.{module}" for name, module in SPATIAL_HOMES.items()}
+
+__getattr__, __dir__ = lazy_names(__name__, _HOMES)

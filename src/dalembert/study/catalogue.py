@@ -3,11 +3,12 @@
 import sys
 from collections.abc import Iterator
 from functools import cache, lru_cache
+from importlib import import_module
 from typing import Annotated, Any, get_args
 
 from pydantic import AfterValidator
 
-from dalembert.component_index import HOMES, KINDS
+from dalembert.component_index import HOMES, KINDS, SPATIAL_HOMES, SPATIAL_KINDS
 from dalembert.kinds import derived_dataclasses, distinct, load_modules, load_plugins, named
 from dalembert.study.components import buildable, one_of, settings_of, table_of
 from dalembert.study.structure_parts import LinearSpring, LumpedMass
@@ -22,31 +23,33 @@ Words = frozenset[str] | None
 
 
 @lru_cache(maxsize=64)
-def kinds_of(role: str, words: Words = None) -> tuple[type, ...]:
+def kinds_of(role: str, words: Words = None, *, space: bool = False) -> tuple[type, ...]:
     """Dataclasses of a role, in the order of their names; only those that words name, if given.
 
     The role is that of the base class: what derives from ``Body`` stands in ``[[model.body]]``. Those of the package
-    are in its index; those of others are all that have been imported, or that an entry point names.
+    are in its index; those of others are all that have been imported, or that an entry point names. ``space``: the
+    kinds of mechanisms in space, not those in the plane.
     """
-    from dalembert import multibody
-
     base = ROLES[role]
-    own = [getattr(multibody, name) for name in KINDS[base] if words is None or name in words]
-    others = distinct(kind for kind in _of_others(base) if words is None or kind.__name__ in words)
+    package = import_module("dalembert.multibody.spatial" if space else "dalembert.multibody")
+    names = (SPATIAL_KINDS if space else KINDS)[base]
+    own = [getattr(package, name) for name in names if words is None or name in words]
+    others = distinct(kind for kind in _of_others(base, space) if words is None or kind.__name__ in words)
     return tuple(sorted([*own, *others.values()], key=lambda kind: kind.__name__))
 
 
 def kind_names() -> Iterator[str]:
     """Names of all kinds; none of the package is imported for them."""
-    for base, names in KINDS.items():
-        yield from names
-        yield from (kind.__name__ for kind in _of_others(base))
+    for space, kinds in ((False, KINDS), (True, SPATIAL_KINDS)):
+        for base, names in kinds.items():
+            yield from names
+            yield from (kind.__name__ for kind in _of_others(base, space))
 
 
-def _of_others(base: str) -> Iterator[type]:
+def _of_others(base: str, space: bool) -> Iterator[type]:
     """Public dataclasses of other packages that derive from a base."""
     load_plugins()
-    home = sys.modules.get(f"dalembert.multibody.{HOMES[base]}")
+    home = sys.modules.get(f"dalembert.multibody.{(SPATIAL_HOMES if space else HOMES)[base]}")
     kinds = derived_dataclasses(getattr(home, base)) if home is not None else ()  # without it nothing derives from it
     return (kind for kind in kinds if kind.__module__.partition(".")[0] != __name__.partition(".")[0])
 

@@ -1,11 +1,11 @@
-"""The function from parameters to a System that a study file's model is."""
+"""The function from parameters to a System, or a SpatialSystem, that a study file's model is."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from dalembert.errors import InputError
-from dalembert.study.components import KindTable
+from dalembert.study.components import KindTable, Written
 from dalembert.study.expressions import Expression
 from dalembert.study.functions import FunctionReference
 from dalembert.study.inputs import InputReference, MeasuredInput, input_named
@@ -14,7 +14,7 @@ from dalembert.study.places import Place
 from dalembert.study.table import placed
 
 if TYPE_CHECKING:
-    from dalembert.multibody import System
+    from dalembert.multibody.system import Mechanism
 
 Values = Mapping[str, Any]
 EMPTY: Values = {}
@@ -37,9 +37,7 @@ class SystemBuilder:
     constants: Mapping[str, float | Expression]
     inputs: Mapping[str, MeasuredInput] = field(default_factory=dict)
 
-    def __call__(self, **parameters: complex) -> "System":
-        from dalembert.multibody import System
-
+    def __call__(self, **parameters: complex) -> "Mechanism":
         values = named_values(self.constants, parameters)
         gravity = self.model.gravity
         options: dict[str, Any] = {
@@ -48,13 +46,23 @@ class SystemBuilder:
         }
         if gravity is not None:
             options["gravity"] = tuple(resolved(one, values, "[model], gravity") for one in gravity)
-        system = System(**options)
+        system = self._system(options)
         signals = signals_of(self.inputs, values)
         bodies: dict[str, Any] = {}
         for table, component in self.model.components:
             where = f"[[model.{table}]] {component.name!r}"
             bodies[component.name] = system.add(built(component, values, where, bodies, system, signals))
         return system
+
+    def _system(self, options: dict[str, Any]) -> "Mechanism":
+        """A mechanism without components, in the plane or in space."""
+        if self.model.space:
+            from dalembert.multibody.spatial import SpatialSystem
+
+            return SpatialSystem(**options)
+        from dalembert.multibody import System
+
+        return System(**options)
 
 
 @dataclass(frozen=True)
@@ -85,8 +93,8 @@ class FunctionBuilder:
             signals = signals_of(self.inputs, named_values(self.constants, parameters))
             arguments |= {key: signals[name] for key, value in arguments.items() if (name := input_named(value))}
         system = self.function(**parameters, **arguments)
-        expected = self._expected
-        if not isinstance(system, expected):
+        if not isinstance(system, self._expected):
+            expected = "VibrationSystem" if self.vibrates else "System"
             more = (
                 "the study is of a structure over frequency, since it has [harmonic_balance] or a task of structures"
                 if self.vibrates
@@ -94,7 +102,7 @@ class FunctionBuilder:
                 "VibrationSystem needs the table [harmonic_balance]"
             )
             raise InputError(
-                f"{self.function.__name__} returned a {type(system).__name__}; expected a {expected.__name__}; {more}"
+                f"{self.function.__name__} returned a {type(system).__name__}; expected a {expected}; {more}"
             )
         return system
 
@@ -104,9 +112,9 @@ class FunctionBuilder:
             from dalembert.vibration import VibrationSystem
 
             return VibrationSystem
-        from dalembert.multibody import System
+        from dalembert.multibody.system import Mechanism
 
-        return System
+        return Mechanism
 
 
 def named_values(constants: Mapping[str, float | Expression], parameters: Values) -> dict[str, Any]:
@@ -147,7 +155,8 @@ def built(
         else _resolved(given, values, bodies, system, f"{where}, {key}")
         for key, given in table.given().items()
     }
-    return table.target_type(**arguments)
+    made = table.target_type(**arguments)
+    return made.value if isinstance(made, Written) else made
 
 
 def _resolved(given: Any, values: Values, bodies: Values, system: Any, where: str) -> Any:
@@ -182,7 +191,8 @@ def resolved(given: float | Expression, values: Values, where: str) -> complex:
 def _place(given: Place, values: Values, bodies: Values, system: Any, where: str) -> Any:
     """Point of a body or of the ground."""
     if given.position is not None:
-        return system.ground.point(*(resolved(one, values, where) for one in given.position))
+        numbers = tuple(resolved(one, values, where) for one in given.position)
+        return system.ground.point(numbers) if len(system.AXES) == 3 else system.ground.point(*numbers)
     if not given.body:
         return system.ground
     with placed(where):

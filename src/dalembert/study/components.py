@@ -8,16 +8,18 @@ import dataclasses
 import inspect
 import types
 import typing
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping
 from functools import reduce
 from operator import or_
+from types import MappingProxyType
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import AfterValidator, Discriminator, Field, Tag, create_model
 
 from dalembert.study.functions import FunctionName
 from dalembert.study.numbers import fixed, number
-from dalembert.study.places import place
+from dalembert.study.places import place as planar_place
 from dalembert.study.table import Name, StudyTable, checked, told_apart
 
 FORM = "form"  # the key for an argument that is called kind, since the key kind names the dataclass
@@ -40,6 +42,15 @@ class KindTable(StudyTable):
         return checked(lambda: self.target_type(**{name: _settled(value) for name, value in self.given().items()}))
 
 
+class Written(ABC):
+    """What a table writes of an object that Python makes by other functions than its constructor."""
+
+    @property
+    @abstractmethod
+    def value(self) -> Any:
+        """The object."""
+
+
 def table_of(
     target: type,
     kind: str = "",
@@ -48,6 +59,9 @@ def table_of(
     default: bool = False,
     varying: bool = True,
     part: Callable[[str], Any] = lambda name: None,
+    place: Callable[[bool], Any] = planar_place,
+    units: Mapping[str, str] = MappingProxyType({}),
+    prefix: str = "",
 ) -> type[KindTable]:
     """Table with the constructor's arguments of a dataclass as keys, and ``kind`` to tell it from others.
 
@@ -63,17 +77,28 @@ def table_of(
     varying : bool
         Whether a number may be an expression of parameters.
     part : callable, optional
-        From the name of an argument's type to the type of its key, where the argument is a dataclass itself; else None.
+        From the name of an argument's type, or the metadata ``table`` of its field, to the type of its key, where the
+        argument is a dataclass itself; else None.
+    place : callable, optional
+        Type of a key that takes a point, from whether it takes the ground without a position.
+    units : mapping of str to str
+        Units in place of those that the fields have.
+    prefix : str
+        Of the table's name in the schema, where another table has this kind.
     """
     kind = kind or target.__name__
     hints = typing.get_type_hints(target.__init__)
     fields = target.__dataclass_fields__  # dataclasses.fields leaves out the arguments that are no fields
     keys: dict[str, Any] = {"kind": (Literal[kind], kind if default else ...)}  # pyright: ignore[reportInvalidTypeForm]
     for name, argument in inspect.signature(target).parameters.items():
-        numeric = (number if varying else fixed)(fields[name].metadata.get("unit"))
-        key = _key(name, _bare(hints[name]), numeric, signal, part)
+        unit = fields[name].metadata.get("unit")
+        numeric = (number if varying else fixed)(units.get(unit, unit))
+        own = part(fields[name].metadata.get("table", ""))
+        key = own or _key(name, _bare(hints[name]), numeric, signal, part, place)
         keys[FORM if name == "kind" else name] = (key, _default(argument))
-    table = create_model(kind, __base__=KindTable, __doc__=(target.__doc__ or kind).strip().split("\n")[0], **keys)
+    table = create_model(
+        prefix + kind, __base__=KindTable, __doc__=(target.__doc__ or kind).strip().split("\n")[0], **keys
+    )
     table.target_type = target
     return table
 
@@ -132,44 +157,65 @@ def _kind(value: Any, default: str) -> str:
     return value.get("kind", default) if isinstance(value, dict) else getattr(value, "kind", default)
 
 
-def _key(name: str, hint: Any, numeric: Any, signal: Any, part: Callable[[str], Any]) -> Any:
+def _key(
+    name: str, hint: Any, numeric: Any, signal: Any, part: Callable[[str], Any], place: Callable[[bool], Any]
+) -> Any:
     """Type of the key for an argument."""
     leaves = _leaves(hint)
     if name == "name":
         return Name if hint is str else hint
     names = {getattr(leaf, "__name__", "") for leaf in leaves}
     if names & _PLACES:
-        point = place(bare="Ground" in names)
+        point = place("Ground" in names)
         return point | None if _NONE in leaves else point
-    for own in filter(None, map(part, sorted(names))):
-        return own
+    if not any(map(_is_mapping, leaves)):
+        for own in filter(None, map(part, sorted(names))):
+            return own
     if signal is not None and "Signal" in names:
         return told_apart(lambda value: isinstance(value, dict | KindTable), signal, numeric)
     if Callable in leaves:
         return FunctionName
-    return _plain(hint, numeric)
+    return _plain(hint, numeric, part)
 
 
-def _plain(hint: Any, numeric: Any) -> Any:
+def _plain(hint: Any, numeric: Any, part: Callable[[str], Any]) -> Any:
     """Type in which TOML gives what a hint takes: numbers with units, lists for tuples, tables for mappings."""
     origin, arguments = typing.get_origin(hint), typing.get_args(hint)
     if hint in (float, complex):
         return numeric
     if origin in (typing.Union, types.UnionType):
         kinds = [argument for argument in arguments if argument not in (_NONE, float, complex)]
-        plain = reduce(or_, (_plain(kind, numeric) for kind in kinds)) if kinds else numeric
+        plain = (
+            _either([_plain(kind, numeric, part) for kind in kinds], list(map(_is_list, kinds))) if kinds else numeric
+        )
         if kinds and {float, complex} & set(arguments):
             plain = told_apart(lambda value: isinstance(value, list | KindTable), plain, numeric)
         return plain | None if _NONE in arguments else plain
     if origin is tuple and Ellipsis not in arguments:
-        return Annotated[
-            list[_plain(arguments[0], numeric)], Field(min_length=len(arguments), max_length=len(arguments))
-        ]
-    if isinstance(origin, type) and issubclass(origin, Mapping):
-        return dict[str, _plain(arguments[1], numeric)]
-    if isinstance(origin, type) and issubclass(origin, Iterable):
-        return list[_plain(arguments[0], numeric)]
-    return hint
+        entry = _plain(arguments[0], numeric, part)
+        return Annotated[list[entry], Field(min_length=len(arguments), max_length=len(arguments))]
+    if _is_mapping(origin):
+        return dict[str, _plain(arguments[1], numeric, part)]
+    if _is_list(hint):
+        return list[_plain(arguments[0], numeric, part)]
+    return part(getattr(hint, "__name__", "")) or hint
+
+
+def _either(kinds: list[Any], lists: list[bool]) -> Any:
+    """Type of a key that takes one of several things; a list or a table are told apart by what is given."""
+    if len(kinds) == 2 and lists == [True, False]:
+        return told_apart(lambda value: isinstance(value, list), *kinds)
+    return reduce(or_, kinds)
+
+
+def _is_mapping(kind: Any) -> bool:
+    return isinstance(kind, type) and issubclass(kind, Mapping)
+
+
+def _is_list(hint: Any) -> bool:
+    """Whether a list of TOML gives what a hint takes."""
+    origin = typing.get_origin(hint)
+    return isinstance(origin, type) and issubclass(origin, Iterable) and not _is_mapping(origin)
 
 
 def _settled(value: Any) -> Any:

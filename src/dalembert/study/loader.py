@@ -2,6 +2,7 @@
 
 import tomllib
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,7 @@ from dalembert.errors import InputError, no_text, unknown
 from dalembert.study.context import Context
 from dalembert.study.schema import study_file, words_of
 from dalembert.study.sentences import mistakes
+from dalembert.study.spaces import elsewhere, is_in_space
 from dalembert.study.study import Study
 from dalembert.study.study_file import StudyFile
 from dalembert.study.table import placed
@@ -65,7 +67,7 @@ def load(
     try:
         file = _validated(document, context)
     except ValidationError as error:
-        found = mistakes(error, document, context)
+        found = _of_other_space(document, context) or mistakes(error, document, context)
         lines = [f"{shared if shared and place[:1] == ('model',) else path.name}: {text}" for place, text in found]
         raise StudyError("\n".join(dict.fromkeys(lines)), found) from None
     return Study(path, content, file, dict(context.used), name or file.study.name or path.stem)
@@ -77,6 +79,16 @@ def _validated(document: dict[str, Any], context: Context) -> StudyFile:
         return study_file(words_of(document)).model_validate(document, context=context)
     except ValidationError:
         return study_file().model_validate(document, context=context)
+
+
+def _of_other_space(document: dict[str, Any], context: Context) -> list[tuple[tuple[str | int, ...], str]]:
+    """The mistake of a document that is in order in space instead of in the plane, or the other way round."""
+    try:
+        _validated(elsewhere(document), replace(context, used={}, _keys={}))
+    except ValidationError:
+        return []
+    told = "in the plane; leave out space = true" if is_in_space(document["model"]) else "in space; write space = true"
+    return [(("model",), f"[model]: its components are those of a mechanism {told}")]
 
 
 def _read(path: Path) -> tuple[bytes, dict[str, Any]]:

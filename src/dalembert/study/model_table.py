@@ -1,19 +1,19 @@
 """The table of a study file that describes its model: components as data, or a Python function."""
 
-from functools import lru_cache
+from functools import cache, lru_cache
 from typing import Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import ConfigDict, Field
 
 from dalembert.errors import repeated, unknown
 from dalembert.study.catalogue import Words, kinds_of
 from dalembert.study.components import one_of, table_of
 from dalembert.study.functions import FunctionName
 from dalembert.study.inputs import signal_or_input
-from dalembert.study.numbers import number, pair
 from dalembert.study.places import Place
+from dalembert.study.spaces import IN_SPACE, gravity_key, is_in_space
 from dalembert.study.structure_table import PARTS, StructureTable, part_tables, structure_table, wrong_structure
-from dalembert.study.table import Read, StudyTable, completed, problem
+from dalembert.study.table import Read, StudyTable, completed, problem, told_apart
 from dalembert.units import is_quantity, si
 
 _TABLES = ("body", "joint", "load")
@@ -22,15 +22,16 @@ _TABLES = ("body", "joint", "load")
 class ModelTable(StudyTable):
     """The model: a mechanism of bodies, joints and loads; a structure with forces and contacts; or a Python function.
 
-    ``function`` maps parameters to a System or a VibrationSystem, as these tables do; ``forward`` maps the parameters'
-    names and bounds to a ForwardModel of any kind.
+    ``function`` maps parameters to a System, a SpatialSystem or a VibrationSystem, as these tables do; ``forward`` maps
+    the parameters' names and bounds to a ForwardModel of any kind.
     """
 
     file: str | None = Field(None, description="another TOML file, which holds the model's tables")
     function: FunctionName | None = None
     forward: FunctionName | None = None
     arguments: dict[str, Any] = Field({}, description="fixed arguments of the function")
-    gravity: Annotated[list[Any], Read(pair(number("m/s^2")))] | None = None
+    space: Literal[False] = Field(False, description="true for a mechanism in space: its components and three axes")
+    gravity: Annotated[list[Any], Read(gravity_key(2))] | None = None
     driving: list[str] = Field(
         [], description="placement coordinates kept while a closed loop is assembled: 'AB.angle'"
     )
@@ -74,6 +75,8 @@ class ModelTable(StudyTable):
         }
 
     def _wrong(self) -> list[str]:
+        if self.space and not self.body:
+            raise problem("space belongs to a model of [[model.body]] tables, and there are none")
         ways = [name for name in ("function", "forward", "body") if getattr(self, name)]
         ways += ["mass" if self.mass else "structure"] * self.is_structure
         if len(ways) != 1:
@@ -120,16 +123,60 @@ def _wrong_names(components: list[tuple[str, Any]]) -> list[str]:
     return wrong
 
 
+def _only_mechanism(schema: dict[str, Any]) -> None:
+    """Leave keys of other models out of a schema."""
+    for key in ("function", "forward", "arguments", "structure", *PARTS):
+        schema["properties"].pop(key, None)
+
+
+class SpatialModelTable(ModelTable):
+    """The model: a mechanism in space of bodies, joints and loads."""
+
+    model_config = ConfigDict(json_schema_extra=_only_mechanism)
+
+    space: Literal[True]
+    gravity: Annotated[list[Any], Read(gravity_key(3))] | None = None
+    structure: Any = None
+
+    @property
+    def is_structure(self) -> bool:
+        return False
+
+
+@cache
+def model_key(words: Words = None) -> Any:
+    """Type of the model's key: the table of a mechanism in space, or of other models; one of them where words say."""
+    if words is not None:
+        return spatial_model_table(words) if IN_SPACE in words else model_table(words)
+    return told_apart(is_in_space, spatial_model_table(), model_table())
+
+
 @lru_cache(maxsize=16)
-def model_table(words: Words = None) -> type[ModelTable]:
-    """The model's table with all kinds of components that there are, or those that words name."""
+def spatial_model_table(words: Words = None) -> type[ModelTable]:
+    """The table of a mechanism in space with all kinds of components that there are, or those that words name."""
+    from dalembert.study.spatial_parts import spatial_part, spatial_place
+
+    options = {"part": spatial_part, "place": spatial_place, "prefix": "Spatial"}
+    return completed(SpatialModelTable, **_components(words, space=True, **options))
+
+
+def _components(words: Words, *, space: bool = False, **options: Any) -> dict[str, Any]:
+    """Keys for the components of a mechanism; ``options`` of their tables."""
     lists: dict[str, Any] = {}
     if words is None or not words.isdisjoint(_TABLES):
         signal = signal_or_input(one_of([table_of(target) for target in kinds_of("signal")]))
         for table in _TABLES:
-            kinds = kinds_of(table, words) or (kinds_of(table) if table in (words or ()) else ())
+            kinds = kinds_of(table, words, space=space)
+            kinds = kinds or (kinds_of(table, space=space) if table in (words or ()) else ())
             if kinds:
-                lists[table] = (list[one_of([table_of(target, signal=signal) for target in kinds])], [])
+                lists[table] = (list[one_of([table_of(target, signal=signal, **options) for target in kinds])], [])
+    return lists
+
+
+@lru_cache(maxsize=16)
+def model_table(words: Words = None) -> type[ModelTable]:
+    """The model's table with all kinds of components that there are, or those that words name."""
+    lists = _components(words)
     if words is None or not words.isdisjoint((*PARTS, "structure")):
         lists |= {name: (kind, []) for name, kind in part_tables().items()}
         lists["structure"] = (structure_table() | None, None)

@@ -119,7 +119,12 @@ def samples(unit: str | None) -> Any:
 
 def pair(of: Any) -> Any:
     """Type of a key that takes a list of two numbers of a type."""
-    return Annotated[list[of], Field(min_length=2, max_length=2)]
+    return row(of, 2)
+
+
+def row(of: Any, count: int) -> Any:
+    """Type of a key that takes a list of so many numbers of a type."""
+    return Annotated[list[of], Field(min_length=count, max_length=count)]
 
 
 def _increasing(given: Grid | list[float]) -> tuple[float, ...]:

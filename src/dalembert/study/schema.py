@@ -8,7 +8,8 @@ from pydantic import create_model
 
 from dalembert.study.catalogue import Words, kind_names, solver
 from dalembert.study.components import buildable_table
-from dalembert.study.model_table import model_table
+from dalembert.study.model_table import model_key
+from dalembert.study.spaces import IN_SPACE, is_in_space
 from dalembert.study.study_file import StudyFile
 from dalembert.study.table import StudyTable
 from dalembert.study.tasks import TASKS
@@ -29,7 +30,7 @@ def study_file(words: Words = None) -> type[StudyFile]:
     fields: dict[str, Any] = {
         name: (_task_table(name) | None, None) for name in TASKS if words is None or name in words
     }
-    fields["model"] = (model_table(words), ...)
+    fields["model"] = (model_key(words), ...)
     if words is None or "solver" in words:
         fields["solver"] = (solver(words) | None, None)
     if words is None or "harmonic_balance" in words:
@@ -48,7 +49,8 @@ def _task_table(name: str) -> type[StudyTable]:
 def words_of(document: Mapping[str, Any]) -> frozenset[str]:
     """Names that choose tables and kinds: tables of a document and of its model, and kinds that are named anywhere."""
     model = document.get("model")
-    tables = {*document, *(model if isinstance(model, Mapping) else ())}
+    tables = {*document, *(model if isinstance(model, Mapping) else ())} - {IN_SPACE}
+    tables |= {IN_SPACE} if is_in_space(model) else set()
     return frozenset(tables | {*kind_names()}.intersection(_texts(document)))
 
 

@@ -8,8 +8,10 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from dalembert.component_index import KINDS, SPATIAL_KINDS
 from dalembert.errors import unknown
 from dalembert.study.context import Context
+from dalembert.study.spaces import is_in_space
 
 _TABLE = re.compile(r"\[\[?[a-z]")
 _EXPECTED = {
@@ -49,7 +51,7 @@ def mistakes(error: ValidationError, document: Any, context: Context) -> list[tu
             *where, key = path
             texts = [unknown("key", str(key), context.known_keys(table))]
         else:
-            texts = _texts(entry)
+            texts = _texts(entry, is_in_space(document.get("model")))
         found += [(tuple(path), _placed(document, where, text)) for text in texts]
     return found
 
@@ -116,7 +118,7 @@ def _child(value: Any, step: str | int) -> Any:
 _NOTHING = object()
 
 
-def _texts(entry: Any) -> list[str]:
+def _texts(entry: Any, space: bool) -> list[str]:
     kind, details = entry["type"], entry.get("ctx", {})
     if kind == "dalembert":
         return details["sentences"].split("\n")
@@ -125,7 +127,9 @@ def _texts(entry: Any) -> list[str]:
     if kind == "union_tag_not_found":
         return ["the key 'kind' is missing"]
     if kind == "union_tag_invalid":
-        return [unknown("kind", str(details["tag"]), _quoted(details["expected_tags"]))]
+        return [_unknown_kind(str(details["tag"]), _quoted(details["expected_tags"]), space)]
+    if kind == "literal_error" and details["expected"] in ("True", "False"):
+        kind = "bool"
     if kind == "literal_error":
         known = _quoted(details["expected"].replace(" or ", ", "))
         close = get_close_matches(str(entry["input"]), known, n=1)
@@ -133,6 +137,21 @@ def _texts(entry: Any) -> list[str]:
         return [f"{entry['input']!r} was given; expected {details['expected']}{hint}"]
     expected = _EXPECTED.get(kind, _EXPECTED.get(kind.split("_")[0], ""))
     return [f"{_short(entry['input'])} was given; expected {expected.format(**details)}" if expected else entry["msg"]]
+
+
+def _unknown_kind(kind: str, known: list[str], space: bool) -> str:
+    """Sentence for a kind that is none of these; a component of the other mechanisms, in the plane or in space."""
+    others = KINDS if space else SPATIAL_KINDS
+    here = SPATIAL_KINDS if space else KINDS
+    for base in ("Body", "Joint", "Load"):
+        if kind in others[base] and not set(here[base]).isdisjoint(known):
+            what = (
+                "a planar component, and the model is in space (space = true)"
+                if space
+                else ("a component in space, and the model is planar without space = true")
+            )
+            return f"{kind!r} is {what}; expected one of {', '.join(known)}"
+    return unknown("kind", kind, known)
 
 
 def _quoted(listed: str) -> list[str]:

@@ -9,7 +9,18 @@ from dalembert.study import json_schema, load, run_study
 from dalembert.study.catalogue import ROLES, kinds_of
 
 PAGE = (Path(__file__).parents[3] / "docs/how-to/study-files.md").read_text(encoding="utf-8")
-OTHERS = {kind.__name__ for role in ROLES for kind in kinds_of(role) if not kind.__module__.startswith("dalembert.")}
+SPACE = "Components in space"
+PLANAR, _, IN_SPACE = PAGE.partition(f"## {SPACE}\n")
+IN_SPACE, _, REST = IN_SPACE.partition("\n## ")
+INERTIAS = IN_SPACE.partition("| inertia |")[2]
+OTHERS = {
+    f"{'Spatial' * space}{kind.__name__}"
+    for space in (False, True)
+    for role in ROLES
+    if not space or role in ("body", "joint", "load")
+    for kind in kinds_of(role, space=space)
+    if not kind.__module__.startswith("dalembert.")
+}
 DEFINITIONS = {"Study": json_schema(), **json_schema()["$defs"]}
 DEFINITIONS = {name: table for name, table in DEFINITIONS.items() if name not in OTHERS}  # those of test modules
 TABLES = {
@@ -17,6 +28,12 @@ TABLES = {
     "About": ["study"],
     "ParameterTable": [r"parameters\.NAME"],
     "ModelTable": ["model", "Structures"],
+    "SpatialModelTable": ["model"],
+    "Orientation": [SPACE],
+    "Pose": [SPACE],
+    "GroundPoint": [SPACE],
+    "Friction": [SPACE],
+    "SlidingFriction": [SPACE],
     "GeneralizedAlpha": ["solver"],
     "DataTable": ["data"],
     "ChannelFile": ["data"],
@@ -58,7 +75,7 @@ TABLES = {
 """Where the page tells of a table that is not one kind of several."""
 
 BODIES = {"AncfBeam", "AncfCable", "RigidBar", "RigidBarBetween", "RigidBody", "PointMass"}
-JOINTS = {"RevoluteJoint", "PrismaticJoint", "FixedJoint", "DistanceJoint", "PrescribedMotion", "GearJoint"}
+JOINTS = {name.removeprefix("Spatial") for name in DEFINITIONS if name.endswith(("Joint", "PrescribedMotion"))}
 LOADS = {"Force", "Torque", "Spring", "TorsionSpring", "UserForce", "Bushing", "Motor", "Servo"}
 EVERYWHERE = {kind: {"name"} for kind in BODIES | LOADS} | {kind: {"name", "a", "b"} for kind in JOINTS}
 """Keys that the page gives once for all kinds."""
@@ -76,7 +93,7 @@ def test_the_example_runs(tmp_path):
 @pytest.mark.parametrize("name", sorted(DEFINITIONS))
 def test_every_kind_key_and_choice_is_where_the_page_tells_of_its_table(name):
     table = DEFINITIONS[name]
-    there = _place(name, table)
+    there, name = _place(name, table), name.removeprefix("Spatial")
     words = set(re.findall(r"[A-Za-z]\w*", there))
     assert set(table.get("properties", {})) - {"kind"} <= words | EVERYWHERE.get(name, set())
     missing = [choice for choice in _choices(table) if f'"{choice}"' not in there and f"`{choice}`" not in there]
@@ -90,7 +107,7 @@ def _place(name, table):
     kind = table["properties"]["kind"]["const"]
     (row,) = [
         line
-        for line in PAGE.splitlines()
+        for line in (IN_SPACE if name.startswith("Spatial") else PLANAR + REST + INERTIAS).splitlines()
         if "|" in line and re.search(f'`{kind}`|kind = "{kind}"', line.strip(" |").partition(" |")[0])
     ]
     return row

@@ -219,8 +219,8 @@ class Bushing(Load):
 
     a: Side
     b: Side
-    stiffness: Any = field(default=(0.0,) * 6, metadata={"unit": "N/m"})
-    damping: Any = field(default=(0.0,) * 6, metadata={"unit": "N*s/m"})
+    stiffness: Any = field(default=(0.0,) * 6, metadata={"unit": "N/m", "table": "BushingStiffness"})
+    damping: Any = field(default=(0.0,) * 6, metadata={"unit": "N*s/m", "table": "BushingDamping"})
 
     kind = BUSHING_BETWEEN
 

@@ -19,6 +19,9 @@ from dalembert.multibody.components.spatial.vectors import times
 from dalembert.multibody.kernels.elementary import root
 from dalembert.multibody.kernels.kind import Kind
 
+ALONG = {"N*m*s": "N*s/m", "N*m": "N", "rad/s": "m/s"}
+"""Units of friction along an axis, by those about it."""
+
 
 @dataclass(frozen=True)
 class Friction(Checked):

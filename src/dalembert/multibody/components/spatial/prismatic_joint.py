@@ -2,7 +2,7 @@
 
 __all__ = ["PrismaticJoint"]
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from dalembert.multibody.components.joint import Smoothing
 from dalembert.multibody.components.spatial.conditions import level, perpendicular
@@ -41,7 +41,7 @@ class PrismaticJoint(Joint):
     """
 
     axis: Vector = (0.0, 0.0, 1.0)
-    friction: Friction | None = None
+    friction: Friction | None = field(default=None, metadata={"table": "FrictionAlong"})
 
     kinds = KINDS
 

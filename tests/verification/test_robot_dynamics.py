@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dalembert.errors import InputError
+from dalembert.errors import InputError, ModelError
 from dalembert.multibody import RadauIIA, simulate
 from dalembert.multibody.spatial import Inertia, Orientation, Pose
 from dalembert.multibody.trees.dynamics import bias_forces, inverse_dynamics, mass_matrix, poses, regressor
@@ -277,6 +277,56 @@ def test_following_joints_against_pinocchio(record_evidence):
     for name, difference in worst.items():
         record_evidence(
             f"{compared} robots with joints that follow others, {name} (largest relative difference)",
+            0.0,
+            difference,
+            tolerance=1e-10,
+            topic=TOPIC,
+            kind="other code",
+            source=f"Pinocchio {pinocchio.__version__}",
+            noisy=True,
+        )
+
+
+@pytest.mark.slow
+def test_robots_of_urdf_files_against_pinocchio(record_evidence):
+    """Mass matrix, bias forces and torques of robots that both read from the same files, links on fixed joints included."""
+    pinocchio = pytest.importorskip("pinocchio")
+    reader = pytest.importorskip("dalembert.multibody.trees.urdf_reader")
+    compared, worst = 0, {"mass matrices": 0.0, "bias forces": 0.0, "torques": 0.0}
+    for path, model in models(pinocchio).items():
+        try:
+            tree = reader.read_urdf(path)
+        except (InputError, ModelError):  # inertias that no body can have
+            continue
+        tree = replace(tree, links=tuple(replace(link, joint=replace(link.joint, mimic=None)) for link in tree.links))
+        order = [model.joints[model.getJointId(joint.name)].idx_v for joint in tree.moving]
+        if not order:
+            continue
+        assert sorted(order) == list(range(model.nv))
+        data, (q, v, a) = model.createData(), random_motion(tree, 5)
+        ours = {
+            "mass matrices": mass_matrix(tree, q[:, order], armature=False),
+            "bias forces": bias_forces(tree, q[:, order], v[:, order]),
+            "torques": inverse_dynamics(tree, q[:, order], v[:, order], a[:, order], friction=False, armature=False),
+        }
+        found = {name: [] for name in worst}
+        for own, rate, change in zip(theirs(model, q), v, a, strict=True):
+            upper = np.triu(pinocchio.crba(model, data, own))
+            found["mass matrices"].append((upper + np.triu(upper, 1).T)[np.ix_(order, order)])
+            found["bias forces"].append(pinocchio.nle(model, data, own, rate)[order])
+            found["torques"].append(pinocchio.rnea(model, data, own, rate, change)[order])
+        for name, reference in found.items():
+            worst[name] = max(
+                worst[name], float(np.abs(ours[name] - reference).max() / (np.abs(reference).max() or 1.0))
+            )
+        whole = inverse_dynamics(tree, q, v, a)
+        difference = np.abs(regressor(tree, q, v, a) @ parameters_of(tree) - whole).max()
+        assert difference <= 1e-12 * max(np.abs(whole).max(), 1.0)
+        compared += 1
+    assert compared >= 20
+    for name, difference in worst.items():
+        record_evidence(
+            f"{compared} URDF files, {name} (largest relative difference)",
             0.0,
             difference,
             tolerance=1e-10,

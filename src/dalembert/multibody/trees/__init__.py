@@ -1,5 +1,21 @@
 """Robots and other trees of rigid bodies: description, import, inverse dynamics, linear regressor."""
 
+__all__ = [
+    "Link",
+    "Poses",
+    "Shape",
+    "Tree",
+    "TreeJoint",
+    "bias_forces",
+    "inverse_dynamics",
+    "mass_matrix",
+    "parameter_names",
+    "parameters_of",
+    "poses",
+    "regressor",
+    "with_parameters",
+]
+
 from dalembert.multibody.trees.dynamics import Poses as Poses
 from dalembert.multibody.trees.dynamics import bias_forces as bias_forces
 from dalembert.multibody.trees.dynamics import inverse_dynamics as inverse_dynamics

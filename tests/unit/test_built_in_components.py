@@ -19,6 +19,7 @@ PLACES = {
     "components/planar/own_disc": "OwnDisc",
     "integrators/own_alpha": "OwnAlpha",
 }
+IN_SPACE = "components/spatial/own_pull"
 KINDS = {"joint": "OwnGears", "load": "OwnPull", "body": "OwnDisc", "solver": "OwnAlpha"}
 CODE = """
 import dalembert as da
@@ -31,6 +32,73 @@ for role, name in {kinds}.items():
     assert getattr(da, name) in kinds_of(role)
 study = load("study.toml")
 print([type(component).__name__ for component in study.system().bodies], type(study.solver).__name__)
+"""
+
+PULL_IN_SPACE = '''"""One more."""
+
+__all__ = ["OwnPull"]
+
+from dataclasses import dataclass
+
+from dalembert.kernels.kernel import inlined
+from dalembert.multibody.components.fields import Number, number
+from dalembert.multibody.components.spatial.kinds import pair_kinds
+from dalembert.multibody.components.spatial.load import Load
+from dalembert.multibody.components.spatial.orientation import Orientation
+from dalembert.multibody.components.spatial.pairs import push_pair, separation
+from dalembert.multibody.components.spatial.points import Side
+from dalembert.multibody.components.spatial.vectors import times
+
+
+@inlined
+def residual(x, v, a, p, m, inputs, r):
+    push_pair(p, m, times(p.stiffness, separation(x, p, m)), r)
+
+
+PULLS = pair_kinds("own_pull_in_space", __name__, ("stiffness",), residual=residual)
+
+
+@dataclass(frozen=True)
+class OwnPull(Load):
+    """A force that grows with the distance."""
+
+    a: Side
+    b: Side
+    stiffness: Number = number("N/m")
+    turned: Orientation = Orientation()
+
+    kind = PULLS[1]
+
+    def lower(self, lowering):
+        pair = lowering.pair(self.a, self.b, self.name)
+        lowering.add(PULLS[pair.between], pair.slots, [*pair.data, self.stiffness], pair.integers, self.name)
+'''
+IN_SPACE_STUDY = """
+[model]
+space = true
+[[model.body]]
+kind = "PointMass"
+name = "ball"
+mass = "2 kg"
+[[model.load]]
+kind = "OwnPull"
+name = "pull"
+a = "ground(0, 0, 0)"
+b = "ball.centre"
+stiffness = "20 N/mm"
+turned = { axes = "z", angles = "90 deg" }
+[solver]
+step = "1 ms"
+[simulate]
+end = "10 ms"
+"""
+IN_SPACE_CODE = """
+from dalembert.component_index import KINDS, SPATIAL_KINDS
+from dalembert.multibody.spatial import OwnPull
+from dalembert.study import load
+(pull,) = load("space.toml").system().loads
+assert "OwnPull" in SPATIAL_KINDS["Load"] and isinstance(pull, OwnPull)
+print(pull.stiffness, pull.turned.matrix.round().tolist())
 """
 
 METHODS_CODE = """
@@ -187,6 +255,28 @@ def test_one_file_each_and_the_generator_make_them_public(sources: Path) -> None
     assert run.stdout == "['OwnDisc', 'OwnDisc', 'RigidBar'] OwnAlpha\n"
 
 
+def test_one_file_is_enough_for_a_component_in_space(sources: Path) -> None:
+    """Also with the name of a planar one."""
+    path = sources / "dalembert" / "multibody" / f"{IN_SPACE}.py"
+    path.write_text(PULL_IN_SPACE)
+    before = digests(sources)
+    subprocess.run([sys.executable, public_names.__file__, sources], capture_output=True, check=True)
+    after = digests(sources)
+    changed = {name for name in after if after[name] != before.get(name)}
+    assert changed <= {"dalembert/component_index.py", "dalembert/multibody/spatial.pyi"}
+    (sources / "space.toml").write_text(IN_SPACE_STUDY)
+    run = subprocess.run(
+        [sys.executable, "-c", IN_SPACE_CODE],
+        cwd=sources,
+        env={**os.environ, "PYTHONPATH": str(sources)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert run.returncode == 0, run.stderr
+    assert run.stdout == "20000.0 [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]\n"
+
+
 def test_one_file_is_enough_for_a_swarm_a_sampling_and_a_format(sources: Path) -> None:
     for place, text in METHODS.items():
         (sources / "dalembert" / f"{place}.py").write_text(text)
@@ -228,7 +318,7 @@ def test_the_guide_names_the_folder_of_each_file() -> None:
     guide = (public_names.SOURCES.parent / "CONTRIBUTING.md").read_text(encoding="utf-8")
     table = guide.partition("## Where to add what")[2].partition("\n## ")[0]
     folders = set(re.findall(r"`src/dalembert/([\w/]+)/NAME\.py`", table))
-    added = [*(f"multibody/{place}" for place in PLACES), *METHODS, *OTHERS]
+    added = [*(f"multibody/{place}" for place in (*PLACES, IN_SPACE)), *METHODS, *OTHERS]
     assert folders == {str(Path(place).parent) for place in added}
 
 

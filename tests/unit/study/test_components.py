@@ -213,3 +213,43 @@ def test_the_schema_of_settings_tells_names_and_tables():
     schema = METHOD.json_schema()
     assert {"coarse", "fine", "method"} <= schema["$defs"].keys()
     assert {"enum": ["coarse", "fine"], "type": "string"} in schema["$defs"]["method"]["properties"]["grid"]["oneOf"]
+
+
+@dataclass(frozen=True)
+class Law:
+    viscous: float = field(default=0.0, metadata={"unit": "N*m*s"})
+
+
+@dataclass(frozen=True)
+class Slide:
+    name: str
+    law: Law | None = None
+    other: float = field(default=0.0, metadata={"unit": "m", "table": "Rows"})
+    marks: Mapping[str, tuple[float, float] | Law] = field(default_factory=dict, metadata={"unit": "m"})
+
+
+def part(name: str) -> object:
+    match name:
+        case "Law":
+            return table_of(Law, default=True, units={"N*m*s": "N*s/m"}, prefix="Sliding")
+        case "Rows":
+            return list[list[int]]
+    return None
+
+
+SLIDE = table_of(Slide, part=part)
+
+
+def test_parts_have_tables_by_their_type_or_by_the_name_in_the_metadata():
+    given = {"kind": "Slide", "name": "s", "law": {"viscous": "2 N*s/mm"}, "other": [[1], [2]]}
+    slide = SLIDE.model_validate({**given, "marks": {"a": [1, "2 mm"], "b": {"viscous": 3}}})
+    assert slide.law.given() == {"viscous": 2000.0}
+    assert slide.other == [[1], [2]]
+    assert slide.marks["a"] == [1.0, 0.002]
+    assert slide.marks["b"].settings() == Law(3.0)
+    assert {"Slide", "SlidingLaw"} <= {SLIDE.__name__, *SLIDE.model_json_schema()["$defs"]}
+
+
+def test_units_of_a_part_may_differ():
+    with pytest.raises(ValidationError, match="'2 N\\*m\\*s' was given; expected a damping coefficient such as"):
+        SLIDE.model_validate({"kind": "Slide", "name": "s", "law": {"viscous": "2 N*m*s"}})

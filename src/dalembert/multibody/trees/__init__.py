@@ -12,8 +12,10 @@ __all__ = [
     "parameter_names",
     "parameters_of",
     "poses",
+    "read_urdf",
     "regressor",
     "with_parameters",
+    "write_urdf",
 ]
 
 from dalembert.multibody.trees.dynamics import Poses as Poses
@@ -29,3 +31,5 @@ from dalembert.multibody.trees.tree import Link as Link
 from dalembert.multibody.trees.tree import Shape as Shape
 from dalembert.multibody.trees.tree import Tree as Tree
 from dalembert.multibody.trees.tree import TreeJoint as TreeJoint
+from dalembert.multibody.trees.urdf_reader import read_urdf as read_urdf
+from dalembert.multibody.trees.urdf_writer import write_urdf as write_urdf

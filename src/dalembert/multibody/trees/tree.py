@@ -1,11 +1,11 @@
-"""Trees of rigid links and joints, such as robots: a description that files are imported to, and systems are built of."""
+"""Trees of rigid links and joints, such as robots: a description that files are read to and systems are built of."""
 
-__all__ = ["Link", "Tree", "TreeJoint"]
+__all__ = ["Link", "Shape", "Tree", "TreeJoint"]
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,7 +15,11 @@ from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.spatial.inertia import Inertia
 from dalembert.multibody.components.spatial.orientation import Orientation, Pose, Vector
 
+if TYPE_CHECKING:
+    from dalembert.multibody.spatial_system import SpatialSystem
+
 REVOLUTE, PRISMATIC, FIXED = KINDS = "revolute", "prismatic", "fixed"
+ORIGIN = Pose()
 ENTRIES = ("xx", "yy", "zz", "xy", "xz", "yz")
 JOINT_NUMBERS = ("damping", "friction", "armature")
 
@@ -126,6 +130,8 @@ class Tree(Checked):
         Of the base.
     unsupported : tuple of str
         Elements and attributes of an imported file that have no counterpart here.
+    inertia : Inertia or None
+        Of the base; it does not move, so the inertia changes no motion.
 
     Raises
     ------
@@ -138,6 +144,8 @@ class Tree(Checked):
     links: tuple[Link, ...]
     shapes: tuple[Shape, ...] = ()
     unsupported: tuple[str, ...] = field(default=(), compare=False)
+    inertia: Inertia | None = None
+    changed: frozenset[str] = field(default=frozenset(), compare=False, repr=False)
 
     def __post_init__(self) -> None:
         known = [self.root]
@@ -202,7 +210,90 @@ class Tree(Checked):
         for name in values:
             if name not in self.numbers:
                 raise InputError(unknown("number", name, list(self.numbers)))
-        return replace(self, links=tuple(_changed(link, values) for link in self.links))
+        changed = self.changed | frozenset(values)
+        return replace(self, links=tuple(_changed(link, values) for link in self.links), changed=changed)
+
+    def with_fixed_joints(self, positions: Mapping[str, Number]) -> "Tree":
+        """The tree with joints fixed at positions (rad or m), such as fingers, or joints that follow others.
+
+        Raises
+        ------
+        InputError
+            For an unknown joint.
+        ModelError
+            For a joint that another one follows, which is not fixed with it.
+        """
+        from dalembert.multibody.trees.kinematics import fixed_joints
+
+        return fixed_joints(self, positions)
+
+    def marker(self, link: str) -> str:
+        """Body and point of a link in :meth:`system`, such as ``"forearm.origin"`` or ``"forearm.gripper"``.
+
+        Raises
+        ------
+        InputError
+            For an unknown link, and one that is fixed to the base.
+        """
+        from dalembert.multibody.trees.build import groups
+
+        self.link(link)
+        group = groups(self)[link]
+        if group.joint is None:
+            raise InputError(f"link {link!r} is fixed to the base and does not move. Choose a link that moves")
+        return f"{group.name}.{link if link != group.name else 'origin'}"
+
+    def system(
+        self,
+        positions: Mapping[str, Number] | Sequence[Number] | None = None,
+        rates: Mapping[str, Number] | Sequence[Number] | None = None,
+        gravity: tuple[Number, Number, Number] = (0.0, 0.0, -9.81),
+        *,
+        base: Pose = ORIGIN,
+        slip: Number = 1e-3,
+        start: str = "placed",
+    ) -> "SpatialSystem":
+        """The mechanism of the tree, with its base on the ground.
+
+        Links that are fixed to each other are one rigid body with the name of the first of them. Its marker
+        ``origin`` is the frame of this link; markers with the names of the others are theirs. Joints keep their names,
+        except where a body has the same name: then ``" joint"`` is appended. Damping and friction become
+        :class:`~dalembert.multibody.spatial.Friction`, armature inertias
+        :class:`~dalembert.multibody.spatial.Armature`. Limits of positions, rates and torques have no effect.
+
+        Parameters
+        ----------
+        positions, rates : mapping of str to float, or sequence
+            Of the moving joints at the start, rad and rad/s or m and m/s: by name (0 if missing), or in the order of
+            :attr:`moving`.
+        gravity : (float, float, float)
+            m/s^2.
+        base : Pose
+            Of the base.
+        slip : float
+            Rate over which Coulomb friction turns its sign, rad/s or m/s.
+        start : {"placed", "equilibrium"}
+            See :class:`~dalembert.multibody.spatial.SpatialSystem`.
+
+        Raises
+        ------
+        InputError
+            For unknown joints.
+        ModelError
+            For a link that moves without mass, and for joints that follow others.
+
+        Examples
+        --------
+        >>> from dalembert.multibody import simulate
+        >>> arm = Inertia(1.0, (0.1, 0.1, 0.01), centre=(0.0, 0.0, -0.5))
+        >>> tree = Tree("pendulum", "base", (Link("arm", "base", TreeJoint("pin", axis=(0.0, 1.0, 0.0)), arm),))
+        >>> motion = simulate(tree.system({"pin": 0.1}), end=0.5)
+        >>> motion.channels(["pin.angle"]).ravel()[[0, -1]].round(3)
+        array([ 0.1 , -0.03])
+        """
+        from dalembert.multibody.trees.build import built
+
+        return built(self, positions, rates, gravity, base, slip, start)
 
 
 def _changed(link: Link, values: Mapping[str, Any]) -> Link:
@@ -213,8 +304,11 @@ def _changed(link: Link, values: Mapping[str, Any]) -> Link:
     inertia = link.inertia
     if inertia is not None and any(key.startswith(f"{link.name}.") for key in values):
         own = lambda key, now: values.get(f"{link.name}.{key}", now)  # noqa: E731
-        six = [own(f"inertia_{entry}", now) for entry, now in zip(ENTRIES, (*inertia.moments, *inertia.products))]
-        centre = tuple(own(f"centre_{axis}", now) for axis, now in zip("xyz", inertia.centre))
+        six = [
+            own(f"inertia_{entry}", now)
+            for entry, now in zip(ENTRIES, (*inertia.moments, *inertia.products), strict=True)
+        ]
+        centre = tuple(own(f"centre_{axis}", now) for axis, now in zip("xyz", inertia.centre, strict=True))
         inertia = Inertia(own("mass", inertia.mass), tuple(six[:3]), tuple(six[3:]), centre)
     return replace(link, joint=replace(link.joint, **joint), inertia=inertia)
 

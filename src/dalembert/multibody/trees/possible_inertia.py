@@ -1,0 +1,48 @@
+"""Inertias of files: refused where no body can have them, or replaced by the nearest possible one."""
+
+import numpy as np
+
+from dalembert.errors import InputError, ModelError
+from dalembert.multibody.components.spatial.inertia import Inertia
+from dalembert.multibody.components.spatial.orientation import Vector
+
+REFUSE, REPLACE = TREATMENTS = "refuse", "replace"
+_RADIUS = 1e-3
+"""Least radius of gyration of a replaced inertia along a principal axis, m."""
+_SHARE = 1e-6
+"""Least second moment of a replaced inertia, relative to the largest one."""
+
+
+def possible(
+    mass: float, tensor: np.ndarray, centre: Vector, place: str, impossible: str, notes: list[str]
+) -> Inertia | None:
+    """The inertia of a link, from a tensor about its centre of mass (3, 3); None without mass and inertia.
+
+    The nearest possible one has the same principal axes; second moments along them, the eigenvalues of tr(J) / 2 - J,
+    that are too small are raised.
+
+    Raises
+    ------
+    ModelError
+        For an impossible inertia that is to be refused, with the place and the excess.
+    """
+    if mass == 0.0 and not np.any(tensor):
+        return None
+    if mass <= 0.0:
+        wrong = f"{place}: the mass is {mass:g} kg with an inertia tensor that is not zero"
+        if impossible == REFUSE:
+            raise ModelError(f"{wrong}; expected a positive mass. Correct it, or read with impossible='replace'")
+        notes.append(f"{wrong}; the link is imported without mass")
+        return None
+    try:
+        return Inertia.of(mass, tensor, centre)
+    except InputError as error:
+        if impossible == REFUSE:
+            raise ModelError(f"{place}: {error}, or read with impossible='replace'") from None
+        second, axes = np.linalg.eigh(0.5 * np.trace(tensor) * np.eye(3) - tensor)
+        raised = np.maximum(second, max(_SHARE * second[2], 0.0) or mass * _RADIUS**2)
+        own = axes @ np.diag(raised) @ axes.T
+        replaced = np.trace(own) * np.eye(3) - own
+        change = np.abs(replaced - tensor).max()
+        notes.append(f"{place}: {error}. Replaced by the nearest possible one, which differs by {change:.3g} kg m^2")
+        return Inertia.of(mass, replaced, centre)

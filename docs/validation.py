@@ -31,6 +31,7 @@ AREAS = {
             "Gears and bushings",
             "Mechanisms in space",
             "Rigid mechanisms",
+            "Robots",
         ),
     ),
     "integrators": Area(

@@ -73,6 +73,7 @@ KINDS = {
 """What a model or a study may name, by base class."""
 
 SPATIAL_HOMES = {
+    "Armature": "components.spatial.armature",
     "Body": "components.spatial.body",
     "Bushing": "components.spatial.bushing",
     "ConstantVelocityJoint": "components.spatial.universal_joint",
@@ -118,6 +119,6 @@ SPATIAL_KINDS = {
         "SphericalJoint",
         "UniversalJoint",
     ),
-    "Load": ("Bushing", "Force", "Spring", "Torque", "TorsionSpring"),
+    "Load": ("Armature", "Bushing", "Force", "Spring", "Torque", "TorsionSpring"),
 }
 """What a model or a study in space may name, by base class."""

@@ -10,7 +10,7 @@ from typing import Any, cast
 import numpy as np
 
 from dalembert.arguments import Checked
-from dalembert.errors import SolveError
+from dalembert.errors import ModelError, SolveError
 from dalembert.kernels.kernel import Compiled
 from dalembert.multibody.integrators.batch import Batch, make_batch, smooth_stretches
 from dalembert.multibody.integrators.problem import Problem
@@ -27,6 +27,7 @@ class Integrator(Checked, ABC):
     """
 
     takes_redundancy = False  #: whether constraints may follow from others
+    constant_masses = False  #: whether masses must not change with the coordinates
     convergence: int | None = None  #: order of coordinates and velocities at fixed steps; None if not known
 
     @abstractmethod
@@ -55,7 +56,17 @@ class Integrator(Checked, ABC):
         end : float
         logged : bool
             Keep what happened at each step.
+
+        Raises
+        ------
+        ModelError
+            For masses that change with the coordinates, if the method needs constant ones.
         """
+        if self.constant_masses and (varying := varying_masses(samples[0])):
+            raise ModelError(
+                f"{type(self).__name__} needs masses that do not change with the coordinates, as those of "
+                f"{varying!r} (armature inertia) do. Use GeneralizedAlpha, RungeKutta4 or OdeSolver"
+            )
         return self.run(make_batch(samples, perturbed, problem, end, logged))
 
     def __str__(self) -> str:
@@ -100,3 +111,8 @@ class Integrator(Checked, ABC):
         counts = np.maximum(1, np.ceil(lasting / self.fixed_step - 1e-6)).astype(int)
         places = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts) + 1
         return np.append(0.0, np.repeat(edges[:-1], counts) + np.repeat(lasting / counts, counts) * places)
+
+
+def varying_masses(lowered: Lowered) -> str:
+    """Name of a kind whose masses change with the coordinates; empty if there is none."""
+    return next((kind.name for kind in lowered.data if kind.varying_mass), "")

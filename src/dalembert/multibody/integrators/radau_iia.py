@@ -72,6 +72,8 @@ class RadauIIA(Integrator):
     9
     """
 
+    constant_masses = True
+
     tolerance: float = limited(1e-7, unit="", above=0)
     step: float | None = limited(None, unit="s", above=0)
     stages: int = 5

@@ -57,6 +57,7 @@ class Variational(Integrator):
 
     step: float = limited(unit="s", above=0)
     newton_tolerance: float = limited(1e-14, unit="", above=0)
+    constant_masses = True
     convergence = 2
 
     def kernels(self, structure: Structure, derivatives: bool) -> list[Compiled]:

@@ -63,6 +63,8 @@ class Declaration:
         Those of the coordinates, one after the other, `flat` ones between them; none if all are flat.
     dissipates : bool, str or tuple of str
         Whether a force depends on velocities; or the columns of which any entry that is not zero says so.
+    varying_mass : bool
+        Whether the masses that it adds change with the coordinates; some integrators need masses that do not.
     driven, loads : bool
         Whether a prescribed motion, or a load, may do work.
     holds : bool
@@ -94,6 +96,7 @@ class Declaration:
     chart: Chart | None = None
     charts: tuple[Chart, ...] = ()
     dissipates: bool | str | tuple[str, ...] = False
+    varying_mass: bool = False
     driven: bool = False
     loads: bool = False
     holds: bool = False

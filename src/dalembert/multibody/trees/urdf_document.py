@@ -168,7 +168,7 @@ def parsed(path: Path, tag: str, what: str) -> Element:
 
     def start(name: str, attributes: dict[str, Any]) -> None:
         outer = around[-1] if around else None
-        owner = outer.owner if len(around) > 1 else f"{name} {attributes.get('name', '')!r}"
+        owner = outer.owner if outer and len(around) > 1 else f"{name} {attributes.get('name', '')!r}"
         own = Element(name, parser.CurrentLineNumber, owner, attributes, file=path.name, depth=len(around))
         (outer.children if outer else whole).append(own)
         around.append(own)

@@ -7,7 +7,7 @@ import pytest
 from scipy.linalg import expm
 
 from dalembert.errors import InputError, ModelError
-from dalembert.multibody import GeneralizedAlpha, TimeResponse, simulate
+from dalembert.multibody import EnergyMomentum, GeneralizedAlpha, RadauIIA, TimeResponse, Variational, simulate
 from dalembert.multibody.components.spatial.inertia import Inertia
 from dalembert.multibody.components.spatial.orientation import Orientation, Pose
 from dalembert.multibody.trees import Link, Tree, TreeJoint, read_urdf
@@ -80,7 +80,7 @@ def test_links_that_are_fixed_to_each_other_are_one_body(arm):
     own = poses(arm, {})
     behind = np.real(np.linalg.inv(own["wrist"]) @ own["tool"])
     wrist, tool = arm.link("wrist").inertia, arm.link("tool").inertia
-    total = np.array([[1, *behind[:3, 3]], *np.column_stack([np.zeros(3), behind[:3, :3]])]).T  # [1; s] of the tool
+    total = behind[[3, 0, 1, 2]][:, [3, 0, 1, 2]]  # of [1; s]
     expected = wrist.pseudo + total @ tool.pseudo @ total.T
     assert np.abs(system.body("wrist").inertia.pseudo - expected).max() < 1e-16
     assert system.body("slider").inertia == arm.link("slider").inertia  # to the last bit
@@ -128,7 +128,7 @@ def test_numbers_of_a_tree_are_parameters(arm):
     point = np.array([*(arm.numbers[name] for name in PARAMETERS), -0.8])
     exact = model.jacobian(point)
     for k in range(len(point)):
-        step = 1e-4 * max(abs(point[k]), 0.01)
+        step = 1e-3 * max(abs(point[k]), 0.02)
         ends = model.evaluate(np.array([point + step * np.eye(len(point))[k], point - step * np.eye(len(point))[k]]))
         differences = (ends.values[0] - ends.values[1]) / (2 * step)
         size = np.abs(differences).max()
@@ -157,6 +157,16 @@ def test_a_number_that_is_zero_may_be_a_parameter(arm):
         values = model.evaluate(np.array([0 * step, step, 2 * step])).values[:, -1]
         differences = (-1.5 * values[0] + 2 * values[1] - 0.5 * values[2]) / 1e-4  # one-sided, of second order
         assert np.abs(exact[:, k] - differences).max() < 1e-5 * np.abs(differences).max()
+
+
+@pytest.mark.parametrize("solver", [RadauIIA(), Variational(step=1e-3), EnergyMomentum(step=1e-3)], ids=str)
+def test_armatures_are_refused_by_methods_that_need_constant_masses(arm, solver):
+    sentence = (
+        f"{type(solver).__name__} needs masses that do not change with the coordinates, as those of "
+        "'turning_armature_to_ground' (armature inertia) do. Use GeneralizedAlpha, RungeKutta4 or OdeSolver"
+    )
+    with pytest.raises(ModelError, match=says(sentence)):
+        simulate(arm.system(), 0.1, solver)
 
 
 def test_mimic_joints_are_refused_or_fixed(arm):

@@ -65,18 +65,21 @@ def _sliding_energy(x, v, p, m, inputs):
 
 
 TURNING = TURNING_TO_GROUND, TURNING_BETWEEN = pair_kinds(
-    "turning_armature", __name__, ("inertia",), residual=_turning_residual, energy=_turning_energy
-)
+    "turning_armature", __name__, ("inertia",), residual=_turning_residual, energy=_turning_energy,
+    varying_mass=True,
+)  # fmt: skip
 SLIDING = SLIDING_TO_GROUND, SLIDING_BETWEEN = pair_kinds(
-    "sliding_armature", __name__, ("inertia",), residual=_sliding_residual, energy=_sliding_energy
-)
+    "sliding_armature", __name__, ("inertia",), residual=_sliding_residual, energy=_sliding_energy,
+    varying_mass=True,
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
 class Armature(Load):
     """Inertia of a motor behind its gear, for a revolute or a prismatic joint between the same markers.
 
-    Kinetic energy = inertia x rate^2 / 2, with the rate of the joint. There is no weight.
+    Kinetic energy = inertia x rate^2 / 2, with the rate of the joint. There is no weight. The masses change with the
+    coordinates, which RadauIIA, Variational and EnergyMomentum refuse.
 
     Parameters
     ----------

@@ -1,0 +1,199 @@
+"""Robots from URDF files against an independent derivation, another program, and files of others."""
+
+import re
+from pathlib import Path
+from xml.dom import minidom
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.linalg import expm
+
+from dalembert.errors import ModelError
+from dalembert.multibody import OdeSolver, Partitioning, simulate
+from dalembert.multibody.trees import Tree, read_urdf, write_urdf
+from robot_files import ARM, POSITIONS, RATES
+
+TOPIC = "Robots"
+GRAVITY = np.array([0.0, 0.0, -9.81])
+
+
+@pytest.fixture(scope="module")
+def arm(tmp_path_factory) -> Tree:
+    path = tmp_path_factory.mktemp("arm") / "arm.urdf"
+    path.write_text(ARM.replace('friction="0.4"', 'friction="0"'))
+    return read_urdf(path)
+
+
+def twist_of(joint) -> np.ndarray:
+    """Twist (4, 4) of a joint in its frame."""
+    x, y, z = np.array(joint.axis) / np.linalg.norm(joint.axis)
+    twist = np.zeros((4, 4))
+    if joint.kind == "revolute":
+        twist[:3, :3] = [[0, -z, y], [z, 0, -x], [-y, x, 0]]
+    elif joint.kind == "prismatic":
+        twist[:3, 3] = x, y, z
+    return twist
+
+
+def equations(tree: Tree, q: np.ndarray, rates: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Mass matrix and right side of T = sum tr(H' P H'^T) / 2 + A q'^2 / 2, from derivatives of the poses H(q).
+
+    dH/dq_i = (product before the joint) S_i (product after it), with exact second derivatives in the same way.
+    """
+    names = [joint.name for joint in tree.moving]
+    chains = {tree.root: []}
+    for link in tree.links:
+        placed = np.eye(4)
+        placed[:3, :3], placed[:3, 3] = link.joint.pose.orientation.matrix, link.joint.pose.position
+        k = names.index(link.joint.name) if link.joint.moves else None
+        chains[link.name] = [*chains[link.parent], (placed, k, twist_of(link.joint))]
+    size = len(names)
+    mass, force = np.diag([joint.armature for joint in tree.moving]), np.zeros(size)
+    force -= [joint.damping * rate for joint, rate in zip(tree.moving, rates, strict=True)]
+    for link in tree.links:
+        if link.inertia is None:
+            continue
+
+        def derivative(*of, chain=chains[link.name]):
+            pose = np.eye(4)
+            for placed, k, twist in chain:
+                pose = pose @ placed
+                if k is not None:
+                    pose = pose @ np.linalg.matrix_power(twist, of.count(k)) @ expm(twist * q[k])
+            moving = {k for _, k, _ in chain}
+            return pose if set(of) <= moving else np.zeros((4, 4))
+
+        order = [1, 2, 3, 0]
+        pseudo = link.inertia.pseudo[order][:, order]  # of [s; 1]
+        first = [derivative(i) for i in range(size)]
+        carried = sum(derivative(i, j) * rates[i] * rates[j] for i in range(size) for j in range(size))
+        weight = np.outer(np.append(GRAVITY, 0.0), [0, 0, 0, 1])
+        for i in range(size):
+            force[i] += np.trace(first[i] @ pseudo @ (weight - carried).T)
+            for j in range(size):
+                mass[i, j] += np.trace(first[i] @ pseudo @ first[j].T)
+    return mass, force
+
+
+def test_motion_of_an_arm(arm, record_evidence):
+    """Joint positions after 0.5 s against Lagrange's equations in joint coordinates."""
+    names = list(POSITIONS)
+
+    def motion(t, state):
+        mass, force = equations(arm, state[:3], state[3:])
+        return np.concatenate([state[3:], np.linalg.solve(mass, force)])
+
+    start = [*(POSITIONS[name] for name in names), *(RATES[name] for name in names)]
+    independent = solve_ivp(motion, (0.0, 0.5), start, method="DOP853", rtol=1e-11, atol=1e-11)
+    ours = simulate(
+        arm.system(POSITIONS, RATES), 0.5, OdeSolver("DOP853", 1e-11, 1e-11, Partitioning()), times=np.array([0.0, 0.5])
+    )
+    record_evidence(
+        "Arm with a slide, merged links and armatures: joint positions after 0.5 s (largest difference)",
+        0.0,
+        float(
+            np.abs(ours.channels(["turn.angle", "slide.displacement", "bend.angle"])[-1] - independent.y[:3, -1]).max()
+        ),
+        tolerance=1e-8,
+        topic=TOPIC,
+        kind="other method",
+        source="joint coordinates, products of exponentials, SciPy's DOP853",
+    )
+    assert np.abs(ours.energies["balance"]).max() < 1e-7
+
+
+def robots() -> list[Path]:
+    """URDF files of the package example-robot-data."""
+    package = Path(pytest.importorskip("pinocchio").__file__).parents[4]
+    found = sorted(package.glob("share/example-robot-data/robots/**/*.urdf"))
+    if not found:
+        pytest.skip("example-robot-data is not installed")
+    return found
+
+
+INERTIAL = ["origin xyz rpy", "mass value", "inertia ixx iyy izz ixy ixz iyz"]
+SHAPES = ["box size", "cylinder radius length", "sphere radius", "mesh filename scale"]
+MOVING = ["dynamics damping friction armature", "mimic joint multiplier offset", "axis xyz"]
+IMPORTED = {
+    "robot": "name",
+    "robot/link": "name",
+    "robot/link/inertial": "",
+    "robot/link/visual": "",
+    "robot/link/visual/origin": "xyz rpy",
+    "robot/link/visual/geometry": "",
+    **{f"robot/link/inertial/{own.partition(' ')[0]}": own for own in INERTIAL},
+    **{f"robot/link/visual/geometry/{own.partition(' ')[0]}": own for own in SHAPES},
+}
+for _kind in ("fixed", "revolute", "continuous", "prismatic"):
+    IMPORTED |= {f"robot/{_kind}": "name type", f"robot/{_kind}/parent": "link", f"robot/{_kind}/child": "link"}
+    IMPORTED[f"robot/{_kind}/origin"] = "xyz rpy"
+    if _kind != "fixed":
+        IMPORTED |= {f"robot/{_kind}/{own.partition(' ')[0]}": own for own in MOVING}
+        IMPORTED[f"robot/{_kind}/limit"] = "effort velocity" + " lower upper" * (_kind != "continuous")
+LISTED = re.compile(r"not imported \((\d+) elements?, (\d+) attributes?\)$")
+
+
+def counted(node, path="") -> np.ndarray:
+    """Numbers of elements and attributes of a document, then of those that are imported, (2, 2)."""
+    path = f"{path}/{node.tagName}".lstrip("/")
+    if path == "robot/joint":
+        path = f"robot/{node.getAttribute('type')}"
+    found = np.array([[1, len(node.attributes)], [0, 0]])
+    if path in IMPORTED:
+        found[1] = 1, sum(name in IMPORTED[path].split() for name in node.attributes.keys())  # noqa: SIM118
+    seen = set()
+    for child in node.childNodes:
+        if child.nodeType == node.ELEMENT_NODE:
+            again = child.tagName in seen and child.tagName not in ("link", "joint", "visual")
+            found += counted(child, "repeated" if again else path)
+            seen.add(child.tagName)
+    return found
+
+
+def listed(tree: Tree) -> np.ndarray:
+    """Numbers of elements and attributes that are listed, (2,)."""
+    whole = [LISTED.search(note) for note in tree.unsupported]
+    attributes = sum(note.partition(": ")[2].startswith("attribute ") for note in tree.unsupported)
+    return np.sum([[0, attributes], *([int(own[1]), int(own[2])] for own in whole if own)], axis=0)
+
+
+@pytest.mark.slow
+def test_robots_of_others(record_evidence, tmp_path):
+    """Total mass is that of the file; every element and attribute is imported or listed; written files are the same."""
+    strict, read, gaps, errors = 0, 0, [], []
+    for path in robots():
+        document = minidom.parse(str(path)).documentElement
+        try:
+            tree = read_urdf(path)
+            strict += 1
+        except ModelError as error:
+            if "impossible" not in str(error):
+                continue  # no links, or a joint that follows a missing one
+            try:
+                tree = read_urdf(path, impossible="replace")
+            except ModelError:
+                continue
+        read += 1
+        total, imported = counted(document)
+        gaps.append(total - imported - listed(tree))
+        own = [node for node in document.childNodes if node.nodeName == "link"]
+        masses = [float(node.getAttribute("value")) for link in own for node in link.getElementsByTagName("mass")]
+        inertias = [one for one in [tree.inertia, *(link.inertia for link in tree.links)] if one is not None]
+        errors.append(sum(one.mass for one in inertias) - sum(masses))
+        write_urdf(tree, tmp_path / "again.urdf")
+        again = read_urdf(tmp_path / "again.urdf")
+        assert (again.numbers, again.inertia) == (tree.numbers, tree.inertia), path
+        assert [link.name for link in again.links] == [link.name for link in tree.links], path
+        assert [joint.axis for joint in again.moving] == [joint.axis for joint in tree.moving], path
+    assert strict >= 20
+    source = "example-robot-data 6.0, counted by another XML parser"
+    evidence = {"topic": TOPIC, "kind": "other method", "source": source}
+    record_evidence(
+        f"{read} URDF robots, total mass against the sum in the file (largest difference)",
+        0.0, float(np.abs(errors).max()), unit="kg", tolerance=1e-10, noisy=True, **evidence,
+    )  # fmt: skip
+    record_evidence(
+        f"{read} URDF robots, elements and attributes that are neither imported nor listed",
+        0.0, float(np.abs(gaps).sum()), tolerance=0.0, **evidence,
+    )  # fmt: skip

@@ -21,6 +21,7 @@ from dalembert.uncertainty import Chebyshev, LatinHypercube, MonteCarlo, Optimis
 from free_oscillations import NOISE, TRUTH, oscillation, oscillator, recorded, rubbing
 from free_oscillations import TIMES as OSCILLATING
 from frequency_cases import FREQUENCY_CASES
+from inertial_cases import INERTIAL_CASES
 from report_case import Case
 from small_models import DECAY, LINE, TIMES, banded, measured
 from stepped_models import TIMES as STEPPED_TIMES
@@ -892,4 +893,5 @@ CASES: dict[str, Case] = {
         ("sweep-1",),
     ),
     **FREQUENCY_CASES,
+    **INERTIAL_CASES,
 }

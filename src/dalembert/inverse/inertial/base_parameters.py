@@ -20,8 +20,10 @@ GAP = 10.0
 """Ratio of the last independent to the first dependent pivot below which the rank is not clear."""
 
 ILL = 100.0
-"""Condition number above which a motion excites the parameters badly: Schröer's rule, as in Hollerbach, Khalil and
-Gautier, Model identification, Springer Handbook of Robotics."""
+"""Condition number of the scaled columns above which a motion excites the parameters badly."""
+
+TIE = 1e-9
+"""Relative preference of a column to the next one, so that equal columns have a certain order."""
 
 SAFETY = 3.0
 """How many times the noise a pivot must exceed."""
@@ -130,6 +132,7 @@ def base_parameters(regressor: np.ndarray, names: Sequence[str], *, noise: float
     if not np.any(sizes):
         raise InputError("base_parameters: the regressor is zero. Give a regressor along a motion")
     seen = np.flatnonzero(sizes > ROUNDING * sizes.max())
+    sizes = sizes * (1.0 + TIE * np.arange(len(sizes)))
     threshold = max(ROUNDING, SAFETY * noise)
     triangle, order = _triangle(stacked[:, seen] / sizes[seen])
     pivots = np.abs(np.diagonal(triangle)) / np.abs(triangle[0, 0])

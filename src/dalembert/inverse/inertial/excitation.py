@@ -20,8 +20,8 @@ CRITERIA = {"D": "mean log standard deviation", "condition": "log condition numb
 SAMPLES = 8
 """Samples per harmonic where the criterion is computed."""
 
-GROWN, SHRUNK = 1.5, 1.5**-0.25
-"""Factors of the step after a success and after a failure: it is constant at one success in five."""
+FIRST, SMALLEST = 0.3, 1e-3
+"""Steps of the search: the first one, and that at which it starts again from another random motion."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,7 +138,7 @@ def exciting_trajectory(
     -----
     Every shape is scaled to the largest motion that keeps all limits at all times, so no constraint is left. The
     search is an evolution strategy with one parent and one child, whose step follows the rule of one success in five
-    (I. Rechenberg, Evolutionsstrategie, 1973).
+    (I. Rechenberg, Evolutionsstrategie, 1973); where the step gets small, it starts again from another random motion.
 
     Examples
     --------
@@ -185,13 +185,19 @@ def exciting_trajectory(
     found = [scores(table) for table in tables]
     best = int(np.argmin([score for score, _ in found]))
     shape, (score, condition) = shapes[best], found[best]
-    history, step = list(np.minimum.accumulate([one for one, _ in found])), 0.3
+    history, step, slow = list(np.minimum.accumulate([one for one, _ in found])), FIRST, 1 / np.sqrt(shape.size + 1)
+    parent, least = shape, score
     for _ in range(evaluations):
-        child = np.clip(shape + step * rng.standard_normal(size) / np.sqrt(shape.size) * 3.0, -1.0, 1.0)
+        child = np.clip(parent + step * rng.standard_normal(size), -1.0, 1.0)
         own = scores(regressor(*largest_motion(child, period, limits).motion(times)))
-        step = min(1.0, step * (GROWN if own[0] < score else SHRUNK))
-        if own[0] < score:
+        better = own[0] < least
+        step *= np.exp(slow if better else -slow / 4)  # constant at one success in five
+        if better:
+            parent, least = child, own[0]
+        if least < score:
             shape, (score, condition) = child, own
+        if step < SMALLEST:
+            parent, least, step = rng.uniform(-1.0, 1.0, size), np.inf, FIRST
         history.append(score)
     usual = np.median(np.array(found), axis=0)
     message = (

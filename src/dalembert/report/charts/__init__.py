@@ -20,6 +20,7 @@ _NAMES = {
     "frequency.resonance_peaks": "family_peaks resonance_track",
     "frequency.time_comparison": "time_comparison",
     "identification.designs": "horizons ranking",
+    "identification.exciting_motion": "exciting_motion",
     "identification.gaps": "gaps",
     "identification.identifiability": "correlation singular_values",
     "identification.intervals": "intervals",

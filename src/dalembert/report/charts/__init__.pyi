@@ -22,6 +22,7 @@ from dalembert.report.charts.frequency.resonance_peaks import resonance_track as
 from dalembert.report.charts.frequency.time_comparison import time_comparison as time_comparison
 from dalembert.report.charts.identification.designs import horizons as horizons
 from dalembert.report.charts.identification.designs import ranking as ranking
+from dalembert.report.charts.identification.exciting_motion import exciting_motion as exciting_motion
 from dalembert.report.charts.identification.gaps import gaps as gaps
 from dalembert.report.charts.identification.identifiability import correlation as correlation
 from dalembert.report.charts.identification.identifiability import singular_values as singular_values

@@ -1,6 +1,8 @@
 """Mechanisms in space as study files write them: what is understood, and every sentence about what cannot be."""
 
 import re
+import subprocess
+import sys
 import tomllib
 from pathlib import Path
 
@@ -264,6 +266,14 @@ def test_a_component_in_space_is_refused_in_the_plane(write):
         "[model], gravity: [0, 0, '-10 m/s^2'] was given; expected two numbers, along x and y; a mechanism in space has "
         "space = true in [model]"
     ) in lines
+
+
+def test_a_planar_study_imports_nothing_of_space(tmp_path):
+    path = begin("motion", tmp_path / "motion")
+    code = f"import sys; from dalembert.study import load; load({str(path)!r}).system(); print(*sys.modules)"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert "dalembert.multibody.components.planar.rigid_bar" in run.stdout.split()
+    assert not [name for name in run.stdout.split() if name.startswith("dalembert.") and "spatial" in name]
 
 
 def test_space_needs_components(tmp_path):

@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
 from dalembert.errors import ModelError
-from dalembert.multibody import OdeSolver, Partitioning, simulate
+from dalembert.multibody import GeneralizedAlpha, OdeSolver, Partitioning, simulate
 from dalembert.multibody.trees import Tree, read_urdf, write_urdf
 from robot_files import ARM, POSITIONS, RATES
 
@@ -196,4 +196,59 @@ def test_robots_of_others(record_evidence, tmp_path):
     record_evidence(
         f"{read} URDF robots, elements and attributes that are neither imported nor listed",
         0.0, float(np.abs(gaps).sum()), tolerance=0.0, **evidence,
+    )  # fmt: skip
+
+
+ROBOTS = {
+    "panda_description/urdf/panda.urdf": {"panda_finger_joint1": 0.01, "panda_finger_joint2": 0.01},
+    "ur_description/urdf/ur5_robot.urdf": {},
+    "xarm_description/urdf/xarm7.urdf": {},
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ROBOTS)
+def test_accelerations_against_pinocchio(name, record_evidence):
+    """Accelerations of all links of a robot in motion, with damping and armatures."""
+    pin = pytest.importorskip("pinocchio")
+    path = next(own for own in robots() if own.as_posix().endswith(name))
+    tree = read_urdf(path).with_fixed_joints(ROBOTS[name])
+    names = [joint.name for joint in tree.moving]
+    own = {f"{joint}.armature": 0.1 * (k + 1) for k, joint in enumerate(names)}
+    tree = tree.with_numbers(
+        own | {f"{joint}.damping": 0.2 for joint in names} | {f"{joint}.friction": 0.0 for joint in names}
+    )
+    rng = np.random.default_rng(0)
+    positions, rates = (dict(zip(names, rng.uniform(-1, 1, len(names)), strict=True)) for _ in range(2))
+    motion = simulate(tree.system(positions, rates), 1e-3, GeneralizedAlpha(step=1e-4))
+
+    whole = pin.buildModelFromUrdf(str(path))
+    neutral = pin.neutral(whole)
+    for joint, position in ROBOTS[name].items():
+        if whole.existJointName(joint):
+            neutral[whole.joints[whole.getJointId(joint)].idx_q] = position
+    locked = [whole.getJointId(joint) for joint in ROBOTS[name] if whole.existJointName(joint)]
+    model = pin.buildReducedModel(whole, locked, neutral)
+    data, q, v, torque = model.createData(), pin.neutral(model), np.zeros(model.nv), np.zeros(model.nv)
+    for joint in names:
+        known = model.joints[model.getJointId(joint)]
+        angle = positions[joint]
+        q[known.idx_q : known.idx_q + known.nq] = [np.cos(angle), np.sin(angle)] if known.nq == 2 else angle
+        v[known.idx_v], torque[known.idx_v] = rates[joint], -0.2 * rates[joint]
+        model.armature[known.idx_v] = own[f"{joint}.armature"]
+    pin.forwardKinematics(model, data, q, v, pin.aba(model, data, q, v, torque).copy())
+    ours, theirs = [], []
+    for link in tree.links:
+        if link.joint.moves:
+            k = model.getJointId(link.joint.name)
+            axes, spatial, velocity = data.oMi[k].rotation, data.a[k], data.v[k]
+            theirs += [
+                *(axes @ spatial.angular),
+                *(axes @ (spatial.linear + np.cross(velocity.angular, velocity.linear))),
+            ]
+            outputs = ("wx_rate", "wy_rate", "wz_rate", "ax", "ay", "az")
+            ours += motion.channels([f"{link.name}.origin.{output}" for output in outputs])[0].tolist()
+    record_evidence(
+        f"{path.stem}: accelerations of all links in motion, with armatures",
+        theirs, ours, tolerance=1e-12, relative=True, noisy=True, topic=TOPIC, kind="other code", source="Pinocchio 4.1",
     )  # fmt: skip

@@ -12,6 +12,7 @@ __all__ = [
     "parameter_names",
     "parameters_of",
     "poses",
+    "read_mjcf",
     "read_urdf",
     "regressor",
     "with_parameters",
@@ -27,6 +28,7 @@ from dalembert.multibody.trees.dynamics import regressor as regressor
 from dalembert.multibody.trees.parameters import parameter_names as parameter_names
 from dalembert.multibody.trees.parameters import parameters_of as parameters_of
 from dalembert.multibody.trees.parameters import with_parameters as with_parameters
+from dalembert.multibody.trees.mjcf_reader import read_mjcf as read_mjcf
 from dalembert.multibody.trees.tree import Link as Link
 from dalembert.multibody.trees.tree import Shape as Shape
 from dalembert.multibody.trees.tree import Tree as Tree

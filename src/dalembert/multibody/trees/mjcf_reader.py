@@ -1,0 +1,171 @@
+"""Robots from MJCF files, by MuJoCo's own parser."""
+
+__all__ = ["read_mjcf"]
+
+import os
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from dalembert.errors import InputError, counted, require_known
+from dalembert.multibody.components.spatial.inertia import Inertia
+from dalembert.multibody.components.spatial.orientation import Orientation, Pose
+from dalembert.multibody.trees.possible_inertia import REFUSE, TREATMENTS, possible
+from dalembert.multibody.trees.tree import FIXED, PRISMATIC, REVOLUTE, Link, Shape, Tree, TreeJoint
+
+_FREE, _BALL, _SLIDE, _HINGE = range(4)  # of mjtJoint
+_SPHERE, _CYLINDER, _BOX = 2, 5, 6  # of mjtGeom
+_OTHERS = {
+    "nu": "actuator", "ntendon": "tendon", "neq": "equality constraint", "nsensor": "sensor", "nflex": "flexible body",
+    "nplugin": "plugin", "ncam": "camera", "nlight": "light", "nsite": "site", "nkey": "key frame",
+    "npair": "contact pair", "nmat": "material", "ntex": "texture", "nskin": "skin",
+}  # fmt: skip
+"""Counts of a model that have no counterpart here."""
+
+
+def read_mjcf(path: str | os.PathLike[str], impossible: str = REFUSE) -> Tree:
+    """Return the robot of an MJCF file as MuJoCo compiles it, with defaults, included files and inertias of shapes.
+
+    Bodies with inertias are imported, hinges and slides with their axis, limits, damping, friction loss and armature,
+    and boxes, cylinders and spheres. Positions are relative to the reference of a joint. The frame of a link is
+    parallel to that of its body, with the origin at its joint. A body with several joints gets a link without mass for
+    each but the last. All else is listed in :attr:`Tree.unsupported`, such as free and ball joints, which are fixed,
+    springs of joints, contacts, actuators and sensors.
+
+    Needs the extra ``mujoco``: ``pip install 'dalembert[mujoco]'``.
+
+    Parameters
+    ----------
+    path : path
+    impossible : {"refuse", "replace"}
+        See :func:`read_urdf`.
+
+    Raises
+    ------
+    InputError
+        For a missing file, and what MuJoCo cannot read.
+    ModelError
+        For impossible inertias.
+    """
+    require_known("impossible", impossible, TREATMENTS, "read_mjcf")
+    path = Path(path)
+    if not path.is_file():
+        raise InputError(f"{path}: there is no such file. Check the path")
+    try:
+        mujoco: Any = import_module("mujoco")
+    except ImportError:
+        raise InputError(
+            "read_mjcf: MuJoCo is needed and not installed; run: pip install 'dalembert[mujoco]'"
+        ) from None
+    try:
+        model = mujoco.MjModel.from_xml_path(str(path))
+    except ValueError as error:
+        raise InputError(f"{path}: MuJoCo cannot read the file: {' '.join(str(error).split())}") from None
+    return _Reader(model, path, impossible).tree()
+
+
+class _Reader:
+    """Makes the tree of a compiled model."""
+
+    def __init__(self, model: Any, path: Path, impossible: str) -> None:
+        self.model, self.path, self.impossible = model, path, impossible
+        self.notes: list[str] = []
+        self.names = [model.body(i).name or f"body {i}" for i in range(model.nbody)]
+        self.origins = [np.zeros(3) for _ in self.names]
+        """Origin of each link in the frame of its body."""
+
+    def tree(self) -> Tree:
+        model = self.model
+        links = [link for i in range(1, model.nbody) for link in self._links(i)]
+        for count, what in _OTHERS.items():
+            if number := int(getattr(model, count, 0)):
+                self.notes.append(f"{counted(number, what)} not imported")
+        if np.any(model.geom_contype) or np.any(model.geom_conaffinity):
+            self.notes.append("contacts of shapes are not imported")
+        if not np.allclose(model.opt.gravity, [0.0, 0.0, -9.81]):
+            gravity = tuple(float(own) for own in model.opt.gravity)
+            self.notes.append(f"the gravity {gravity} is not imported; give it to Tree.system")
+        for name in ("density", "viscosity"):
+            if getattr(model.opt, name):
+                self.notes.append(f"the {name} of the fluid, {getattr(model.opt, name):g}, is not imported")
+        return Tree(self.path.stem, self.names[0], tuple(links), self._shapes(0), tuple(self.notes))
+
+    def _links(self, body: int) -> list[Link]:
+        """The links of a body: one for each joint, or one that is fixed to its parent."""
+        model, name = self.model, self.names[body]
+        first, number = int(model.body_jntadr[body]), int(model.body_jntnum[body])
+        joints = [k for k in range(first, first + number) if model.jnt_type[k] in (_SLIDE, _HINGE)]
+        for k in set(range(first, first + number)) - set(joints):
+            kind = "free" if model.jnt_type[k] == _FREE else "ball"
+            self.notes.append(
+                f"joint {self._joint_name(k)!r} of body {name!r} is {kind}, which is not supported; it is fixed"
+            )
+        if model.body_gravcomp[body]:
+            self.notes.append(f"the compensation of gravity of body {name!r} is not imported")
+        parent = int(model.body_parentid[body])
+        above, at = self.names[parent], self.origins[parent]
+        axes = Orientation.by_quaternion(*map(float, model.body_quat[body]))
+        placed = model.body_pos[body] - at
+        if not joints:
+            fixed = TreeJoint(f"{name} fixed", FIXED, Pose(_row(placed), axes))
+            return [Link(name, above, fixed, self._inertia(body), self._shapes(body))]
+        made, before = [], np.zeros(3)
+        for k in joints:
+            anchor = np.array(model.jnt_pos[k])
+            step = placed + axes.matrix @ anchor if k == joints[0] else anchor - before
+            pose = Pose(_row(step), axes if k == joints[0] else Orientation())
+            last = k == joints[-1]
+            own = name if last else f"{name} before {self._joint_name(joints[joints.index(k) + 1])}"
+            made.append(Link(own, above, self._joint(k, pose)))
+            above, before = own, anchor
+        self.origins[body] = before
+        made[-1] = Link(made[-1].name, made[-1].parent, made[-1].joint, self._inertia(body), self._shapes(body))
+        return made
+
+    def _joint_name(self, k: int) -> str:
+        return self.model.joint(k).name or f"joint {k}"
+
+    def _joint(self, k: int, pose: Pose) -> TreeJoint:
+        model, name = self.model, self._joint_name(k)
+        dof, reference = int(model.jnt_dofadr[k]), float(model.qpos0[model.jnt_qposadr[k]])
+        if reference:
+            self.notes.append(f"joint {name!r}: its reference {reference:g} is the position zero here")
+        if np.any(model.jnt_stiffness[k]):
+            self.notes.append(
+                f"joint {name!r}: its spring is not imported; add a TorsionSpring or a Spring to the system"
+            )
+        lower, upper = map(float, model.jnt_range[k] - reference) if model.jnt_limited[k] else (-np.inf, np.inf)
+        damping, *higher = np.atleast_1d(model.dof_damping[dof])
+        if np.any(higher):
+            self.notes.append(f"joint {name!r}: its nonlinear damping is not imported")
+        return TreeJoint(
+            name, REVOLUTE if model.jnt_type[k] == _HINGE else PRISMATIC, pose, _row(model.jnt_axis[k]), lower, upper,
+            damping=float(damping), friction=float(model.dof_frictionloss[dof]),
+            armature=float(model.dof_armature[dof]),
+        )  # fmt: skip
+
+    def _inertia(self, body: int) -> Inertia | None:
+        model, place = self.model, f"{self.path.name}: body {self.names[body]!r}"
+        axes = Orientation.by_quaternion(*map(float, model.body_iquat[body])).matrix
+        tensor = axes @ np.diag(model.body_inertia[body]) @ axes.T
+        centre = _row(model.body_ipos[body] - self.origins[body])
+        return possible(float(model.body_mass[body]), tensor, centre, place, self.impossible, self.notes)
+
+    def _shapes(self, body: int) -> tuple[Shape, ...]:
+        model, found = self.model, []
+        for k in range(int(model.body_geomadr[body]), int(model.body_geomadr[body] + model.body_geomnum[body])):
+            x, y, z = map(float, model.geom_size[k])
+            sizes = {_SPHERE: (x,), _CYLINDER: (x, 2 * y), _BOX: (2 * x, 2 * y, 2 * z)}.get(int(model.geom_type[k]))
+            if sizes is None:
+                self.notes.append(f"shape {model.geom(k).name or k!r} of body {self.names[body]!r} is not drawn")
+                continue
+            kind = {1: "sphere", 2: "cylinder", 3: "box"}[len(sizes)]
+            turn = Orientation.by_quaternion(*map(float, model.geom_quat[k]))
+            found.append(Shape(kind, sizes, Pose(_row(model.geom_pos[k] - self.origins[body]), turn)))
+        return tuple(found)
+
+
+def _row(vector: Any) -> tuple[float, float, float]:
+    return tuple(float(own) for own in vector)  # type: ignore[return-value]

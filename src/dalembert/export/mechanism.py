@@ -35,7 +35,9 @@ def motion(trajectory: Trajectory, frames: int | None, points: int) -> Iterator[
 
 
 def _in_space(places: np.ndarray) -> np.ndarray:
-    """Places in the plane (frames, points, 2) with z = 0."""
+    """Places (frames, points, 2 or 3), in the plane with z = 0."""
+    if places.shape[2] == 3:
+        return places
     return np.concatenate([places, np.zeros_like(places[..., :1])], axis=2)
 
 

@@ -99,8 +99,14 @@ class Trajectory:
         return own.read(self.lowered, self.lowered.real, self.states, self.times)
 
     def reactions(self, joint: str) -> np.ndarray:
-        """Force (N) along x and y and torque (N m) of a joint on its second side, (samples, 3)."""
-        return self.channels([f"{joint}.force_x", f"{joint}.force_y", f"{joint}.torque"])
+        """Force (N) and torque (N m) of a joint on its second side at its point, in the fixed axes.
+
+        In the plane the force along x and y and the torque, (samples, 3); in space three components of each,
+        (samples, 6).
+        """
+        axes = self.system.AXES
+        torques = ["torque"] if len(axes) == 2 else [f"torque_{axis}" for axis in axes]
+        return self.channels([f"{joint}.{name}" for name in (*(f"force_{axis}" for axis in axes), *torques)])
 
     @property
     def energies(self) -> dict[str, np.ndarray]:

@@ -9,21 +9,26 @@ from dalembert.units import unit_of
 Label = TypeVar("Label")
 SIZE = re.compile(r"(?P<dof>.+) (?P<kind>peak|rms|harmonic \d+)")
 """Channels of responses over frequency."""
+AXES = "xyz"
 QUANTITIES = {
-    "x": ("position", "m"),
-    "y": ("position", "m"),
+    **dict.fromkeys(AXES, ("position", "m")),
     "length": ("length", "m"),
     "angle": ("angle", "rad"),
-    "vx": ("velocity", "m/s"),
-    "vy": ("velocity", "m/s"),
+    **dict.fromkeys(("roll", "pitch", "yaw"), ("angle", "rad")),
+    **{f"rotation_{axis}": ("rotation vector", "rad") for axis in AXES},
+    **{f"q{number}": ("quaternion", "") for number in range(4)},
+    "displacement": ("displacement", "m"),
+    **{f"v{axis}": ("velocity", "m/s") for axis in AXES},
+    "speed": ("velocity", "m/s"),
     "rate": ("angular rate", "rad/s"),
-    "ax": ("acceleration", "m/s²"),
-    "ay": ("acceleration", "m/s²"),
+    **{f"w{axis}": ("angular rate", "rad/s") for axis in AXES},
+    **{f"a{axis}": ("acceleration", "m/s²") for axis in AXES},
+    **{f"w{axis}_rate": ("angular acceleration", "rad/s²") for axis in AXES},
     "acceleration": ("angular acceleration", "rad/s²"),
     "force": ("force", "N"),
-    "force_x": ("force", "N"),
-    "force_y": ("force", "N"),
+    **{f"force_{axis}": ("force", "N") for axis in (*AXES, *"123")},
     "torque": ("torque", "N m"),
+    **{f"torque_{axis}": ("torque", "N m") for axis in (*AXES, *"123")},
     "kinetic_energy": ("energy", "J"),
     "potential_energy": ("energy", "J"),
     "total_energy": ("energy", "J"),
@@ -46,6 +51,8 @@ def quantity(channel: str, unit: str = "") -> str:
     --------
     >>> quantity("AB.end.x"), quantity("O.torque"), quantity("gauge 7", "V")
     ('position (m)', 'torque (N m)', 'response (V)')
+    >>> quantity("arm.tip.z"), quantity("wrist.torque_x"), quantity("arm.tip.wy")
+    ('position (m)', 'torque (N m)', 'angular rate (rad/s)')
     >>> quantity("A.x peak"), quantity("m2 rms"), quantity("A.rx harmonic 1")
     ('amplitude (m)', 'rms (m)', 'amplitude of harmonic 1 (rad)')
     """

@@ -92,6 +92,15 @@ class BaseBody(Checked):
     def outline(self, coordinates: np.ndarray, points: int) -> np.ndarray:
         """Line to draw, shape (frames, -, 2 or 3), from coordinates (frames, size)."""
 
+    def moving_axes(self, coordinates: np.ndarray) -> np.ndarray | None:
+        """Origin and axes over time, (frames, 4, 3), of a body in space that has them; None for others."""
+        return None
+
+    @property
+    def surface(self) -> Any:
+        """Corners (corners, 3) in the axes of the body and triangles to draw; None where there are none."""
+        return None
+
     @property
     def dimension(self) -> int:
         """Number of coordinates of a position."""

@@ -14,6 +14,7 @@ from dalembert.errors import InputError, ModelError, require_known, unknown
 from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.spatial.inertia import Inertia
 from dalembert.multibody.components.spatial.orientation import Orientation, Pose, Vector
+from dalembert.multibody.components.spatial.shapes import Shape
 
 if TYPE_CHECKING:
     from dalembert.multibody.spatial_system import SpatialSystem
@@ -70,27 +71,6 @@ class TreeJoint(Checked):
     def moves(self) -> bool:
         """Whether the joint has a position."""
         return self.kind != FIXED
-
-
-@dataclass(frozen=True)
-class Shape(Checked):
-    """What a link looks like: a box, a cylinder along z, a sphere or a mesh.
-
-    Parameters
-    ----------
-    kind : {"box", "cylinder", "sphere", "mesh"}
-    sizes : tuple of float
-        Sides; radius and length; radius; factors of the mesh along its axes. m.
-    pose : Pose
-        In the frame of the link.
-    file : str
-        Of a mesh.
-    """
-
-    kind: str
-    sizes: tuple[float, ...]
-    pose: Pose = Pose()
-    file: str = ""
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 __all__ = ["RigidBody"]
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -18,6 +18,7 @@ from dalembert.multibody.components.spatial.inertia import Inertia
 from dalembert.multibody.components.spatial.lowering import SpatialLowering
 from dalembert.multibody.components.spatial.orientation import Orientation, Pose, Vector
 from dalembert.multibody.components.spatial.points import Place
+from dalembert.multibody.components.spatial.shapes import Shape, Surface, surface_of
 from dalembert.multibody.components.spatial.vectors import add_at, at, dot, minus, plus, times
 from dalembert.multibody.kernels.kind import Kind
 
@@ -92,6 +93,8 @@ class RigidBody(Body):
         joints may change it then.
     angular_velocity : (float, float, float), optional
         Initial angular velocity in the fixed axes, rad/s. If not given, zero; the joints may change it then.
+    shapes : sequence of Shape
+        What the body looks like, for reports and exported files.
 
     Examples
     --------
@@ -108,6 +111,7 @@ class RigidBody(Body):
     points: Mapping[str, Vector | Pose] = field(default_factory=dict, metadata={"unit": "m"})
     velocity: Vector | None = number("m/s", None)
     angular_velocity: Vector | None = number("rad/s", None)
+    shapes: Sequence[Shape] = ()
 
     def __post_init__(self) -> None:
         for taken in ("origin", "centre"):
@@ -167,3 +171,10 @@ class RigidBody(Body):
         local = [point for corner in corners for point in (centre, np.array(corner))]
         weights = np.column_stack([np.ones(len(local)), np.real(local)])
         return np.einsum("pk,fkc->fpc", weights, own)
+
+    def moving_axes(self, coordinates: np.ndarray) -> np.ndarray:
+        return coordinates.reshape(len(coordinates), 4, 3)
+
+    @property
+    def surface(self) -> Surface | None:
+        return surface_of(self.shapes)

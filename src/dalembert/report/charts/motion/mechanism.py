@@ -7,13 +7,10 @@ import numpy as np
 import plotly.graph_objects as go
 
 from dalembert.multibody import Drawing
+from dalembert.report.charts.motion.mechanism_in_space import mechanism_in_space
+from dalembert.report.charts.motion.outlines import bodies_of, outlines, path_of
 from dalembert.report.charts.motion.playback import Playback
 from dalembert.report.look import LIGHT, plain, themed
-
-NAMED_BODIES = 7
-"""More bodies than colours share one trace."""
-POINTS_A_FRAME = 1000
-GHOSTS = 6
 
 
 def mechanism(
@@ -23,18 +20,21 @@ def mechanism(
     measured: Mapping[str, np.ndarray] | None = None,
     title: str = "Mechanism",
 ) -> go.Figure:
-    """Animation of a mechanism with equal axes and a range that holds the whole motion.
+    """Animation of a mechanism in the plane or in space, with equal axes and a range that holds the whole motion.
 
     Played at 25 frames a second in real time where that takes 2 s to 6 s, else slower or faster, as its caption says;
     at most 150 frames. Faint outlines show the motion where nothing moves: in print and at rest.
 
+    In space, bodies that have shapes are drawn with them, up to seven bodies with their axes, and the mouse turns the
+    figure.
+
     Parameters
     ----------
     drawing : Drawing
-        Lines (frames, points, 2) and joints (frames, 2), by name, in m, at times (frames,) in s.
-    paths : mapping of str to array, shape (samples, 2), optional
+        Lines (frames, points, 2 or 3) and joints (frames, 2 or 3), by name, in m, at times (frames,) in s.
+    paths : mapping of str to array, shape (samples, 2 or 3), optional
         Paths of points, in m.
-    measured : mapping of str to array, shape (samples, 2), optional
+    measured : mapping of str to array, shape (samples, 2 or 3), optional
         Measured positions of points, in m, drawn as crosses.
     title : str
 
@@ -51,12 +51,15 @@ def mechanism(
     >>> len(mechanism(swing).frames)
     50
     """
+    places = next(iter([*drawing.lines.values(), *drawing.joints.values()]))
+    if places.shape[-1] == 3:
+        return mechanism_in_space(drawing, paths or {}, measured or {}, title)
     playback = Playback.of(np.asarray(drawing.times, dtype=float))
-    bodies = _bodies(drawing)
+    bodies = bodies_of(drawing.lines)
     grounded = {name: at for name, at in drawing.joints.items() if np.ptp(at, axis=0).max() == 0.0}
     moving = {name: at for name, at in drawing.joints.items() if name not in grounded}
     still = [
-        _ghosts(bodies, playback.frames),
+        _line(outlines(drawing.lines, playback.frames), 3, LIGHT.grid, hoverinfo="skip", showlegend=False),
         *(_path(name, path) for name, path in (paths or {}).items()),
         *(_crosses(name, points) for name, points in (measured or {}).items()),
         _markers("fixed to ground", grounded, 0, "triangle-up", LIGHT.muted),
@@ -81,25 +84,6 @@ def mechanism(
     return themed(figure, title, 520, x=across, y=up, **playback.film.controls())
 
 
-def _bodies(drawing: Drawing) -> dict[str, np.ndarray]:
-    """Lines (frames, points, 2) in single precision, thinned; many bodies become one line with gaps."""
-    total = sum(line.shape[1] for line in drawing.lines.values())
-    stride = max(1, -(-total // POINTS_A_FRAME))
-    lines = {
-        name: np.asarray(line[:, _kept(line.shape[1], stride)], dtype=np.float32)
-        for name, line in drawing.lines.items()
-    }
-    if len(lines) <= NAMED_BODIES:
-        return lines
-    gap = np.full((len(drawing.times), 1, 2), np.nan, dtype=np.float32)
-    return {f"{len(lines)} bodies": np.concatenate([part for line in lines.values() for part in (line, gap)], axis=1)}
-
-
-def _kept(points: int, stride: int) -> np.ndarray:
-    """Every so many of a line's points, its two ends always."""
-    return np.unique(np.linspace(0, points - 1, max(2, -(-points // stride))).round().astype(int))
-
-
 def _pose(bodies: dict[str, np.ndarray], frame: int) -> list[go.Scatter]:
     return [
         _line(motion[frame], 5, colour, name=plain(name), hoverinfo="name")
@@ -107,17 +91,8 @@ def _pose(bodies: dict[str, np.ndarray], frame: int) -> list[go.Scatter]:
     ]
 
 
-def _ghosts(bodies: dict[str, np.ndarray], frames: np.ndarray) -> go.Scatter:
-    """A few poses along the motion, as one faint line with gaps."""
-    poses = frames[np.unique(np.linspace(0, len(frames) - 1, GHOSTS).round().astype(int))]
-    gap = np.full((1, 2), np.nan, dtype=np.float32)
-    outline = np.concatenate([part for pose in poses for line in bodies.values() for part in (line[pose], gap)])
-    return _line(outline, 3, LIGHT.grid, hoverinfo="skip", showlegend=False)
-
-
 def _path(name: str, path: np.ndarray) -> go.Scatter:
-    path = np.asarray(path, dtype=np.float32)[:: max(1, len(path) // 2000)]
-    return _line(path, 1.5, LIGHT.muted, name=f"path of {plain(name)}", line_dash="dot")
+    return _line(path_of(path), 1.5, LIGHT.muted, name=f"path of {plain(name)}", line_dash="dot")
 
 
 def _line(points: np.ndarray, width: float, colour: str, **style: Any) -> go.Scatter:

@@ -32,21 +32,28 @@ def _film(
 ) -> Plot:
     """The mechanism with the paths of points, of the measured ones if none are named, and measured positions."""
     drawing = trajectory.drawing()
-    crosses = {} if data is None else measured(data.channels, data.values)
+    axes = _axes(drawing)
+    crosses = {} if data is None else measured(data.channels, data.values, axes)
     known = set(trajectory.channel_names)
-    followed = points or tuple(point for point in crosses if {f"{point}.x", f"{point}.y"} <= known)
+    followed = points or tuple(point for point in crosses if _channels(point, axes) <= known)
     title = plain(experiment) or HEADING
     figure = charts.mechanism(drawing, paths=paths(trajectory, drawing, followed), measured=crosses, title=title)
-    return Plot(place, figure, "Drawn to scale; faint outlines are poses along the motion.")
+    turned = " Drag to turn, scroll to zoom." if len(axes) == 3 else ""
+    return Plot(place, figure, f"Drawn to scale; faint outlines are poses along the motion.{turned}")
 
 
 def paths(trajectory: Trajectory, drawing: Drawing, points: tuple[str, ...]) -> dict[str, np.ndarray]:
-    """Paths (samples, 2) of the points given by name; of the free ends of bodies, or else of joints, if none is."""
+    """Paths (samples, 2 or 3) of the points given by name; of the free ends of bodies, or else of joints, if none is.
+
+    In space the end of a body is its last point.
+    """
+    axes = _axes(drawing)
     if points:
-        return {point: np.asarray(trajectory.channels([f"{point}.x", f"{point}.y"])) for point in points}
+        return {point: np.asarray(trajectory.channels([f"{point}.{axis}" for axis in axes])) for point in points}
     held = list(drawing.joints.values())
+    last = {body.name: body.point_names[-1] for body in trajectory.system.bodies} if len(axes) == 3 else {}
     ends = {
-        f"{name}'s end": line[:, -1]
+        f"{name}.{last[name]}" if name in last else f"{name}'s end": line[:, -1]
         for name, line in drawing.lines.items()
         if not any(np.allclose(line[:, -1], joint, atol=1e-6 * _size(drawing)) for joint in held)
     }
@@ -54,15 +61,25 @@ def paths(trajectory: Trajectory, drawing: Drawing, points: tuple[str, ...]) -> 
     return dict(list(moving.items())[-MOST_PATHS:])
 
 
-def measured(channels: Sequence[str], values: np.ndarray) -> dict[str, np.ndarray]:
-    """Positions (samples, 2) of the points of which both coordinates are among the channels."""
+def measured(channels: Sequence[str], values: np.ndarray, axes: str = "xy") -> dict[str, np.ndarray]:
+    """Positions (samples, 2 or 3) of the points of which all coordinates are among the channels."""
     channels = list(channels)
     return {
-        point: values[:, [channels.index(f"{point}.x"), channels.index(f"{point}.y")]]
+        point: values[:, [channels.index(f"{point}.{axis}") for axis in axes]]
         for point in dict.fromkeys(channel.rpartition(".")[0] for channel in channels)
-        if f"{point}.x" in channels and f"{point}.y" in channels
+        if _channels(point, axes) <= set(channels)
     }
 
 
+def _axes(drawing: Drawing) -> str:
+    """Axes of the positions: those of the plane or of space."""
+    return "xyz"[: next(iter([*drawing.lines.values(), *drawing.joints.values()])).shape[-1]]
+
+
+def _channels(point: str, axes: str) -> set[str]:
+    return {f"{point}.{axis}" for axis in axes}
+
+
 def _size(drawing: Drawing) -> float:
-    return max((float(np.ptp(line.reshape(-1, 2), axis=0).max()) for line in drawing.lines.values()), default=1.0)
+    across = len(_axes(drawing))
+    return max((float(np.ptp(line.reshape(-1, across), axis=0).max()) for line in drawing.lines.values()), default=1.0)

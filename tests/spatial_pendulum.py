@@ -45,7 +45,7 @@ def build(mass, length, spin) -> SpatialSystem:
     return system
 
 
-def motion(samples: int = 201, end: float = 1.0) -> Trajectory:
+def motion(samples: int = 251, end: float = 1.0) -> Trajectory:
     return simulate(build(*TRUE), end, SOLVER, np.linspace(0.0, end, samples))
 
 

@@ -119,6 +119,33 @@ def test_the_slider_shows_the_mechanism_at_its_time(chromium, path):
     assert page.evaluate("document.querySelector('.player output').textContent") == "t = 1.02 s"
 
 
+def test_a_mechanism_in_space_moves_and_turns(chromium, tmp_path):
+    from spatial_pendulum import motion as in_space
+
+    path = report(in_space(), tmp_path / "space.html")
+    page = chromium.open(path)
+    page.evaluate(
+        """(() => {
+            const slider = document.querySelector(".player input");
+            slider.value = 40;
+            slider.dispatchEvent(new Event("input"));
+        })()"""
+    )
+    frame = figures(in_space())["mechanism"].frames[40]
+    joints = "document.getElementById('figure-mechanism')._fullData.find((trace) => trace.name === 'joints')"
+    expected = next(float(data.z[0]) for data in frame.data if len(data.z) == 1)
+    wait_until(page, f"Math.abs({joints}.z[0] - {expected}) < 1e-6")
+    eye = "JSON.stringify(document.getElementById('figure-mechanism')._fullLayout.scene._scene.getCamera().eye)"
+    before = page.evaluate(eye)
+    box = page.locator("#figure-mechanism").bounding_box()
+    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    page.mouse.down()
+    page.mouse.move(box["x"] + box["width"] / 2 + 90, box["y"] + box["height"] / 2 + 20, steps=4)
+    page.mouse.up()
+    wait_until(page, f"{eye} !== '{before}'")
+    assert chromium.requests == [path.as_uri()]
+
+
 def test_a_phone_scrolls_down_and_never_sideways(chromium, path):
     page = chromium.open(path, width=400, height=800, touch=True)
     assert page.evaluate("[innerWidth, document.documentElement.scrollWidth]") == [400, 400]

@@ -23,6 +23,10 @@ from dalembert.multibody.scales import scales
 from dalembert.multibody.system import Mechanism
 
 
+_FREE = 3e-8
+"""Frequency, as part of the largest one, that rounding of squares gives a motion without stiffness."""
+
+
 @dataclass(frozen=True, eq=False)
 class Equilibrium:
     """A state of rest under the loads at time 0, as :func:`equilibrium` returns it.
@@ -112,7 +116,8 @@ def modes(state: Mechanism | Equilibrium, count: int | None = None) -> Modes:
     """Frequencies, damping ratios and shapes of small vibrations that satisfy the joints.
 
     The equations of motion are linearised about the state, with damping and with the stiffness of the joint forces
-    there, and projected on the motions that the joints leave free. Dense: for models to some thousand coordinates.
+    there, and projected on the motions that the joints leave free. Motions without stiffness, such as the rotation of
+    a body about a vertical axis on a ball joint, are left out. Dense: for models to some thousand coordinates.
 
     Parameters
     ----------
@@ -155,7 +160,7 @@ def modes(state: Mechanism | Equilibrium, count: int | None = None) -> Modes:
     roots, vectors = (
         _undamped(k, m) if not c.any() and np.allclose(k, k.T, 0, 1e-9 * abs(k).max()) else _damped(k, c, m)
     )
-    kept = np.flatnonzero(np.imag(roots) > 0)
+    kept = np.flatnonzero(np.imag(roots) > _FREE * np.abs(roots).max(initial=0.0))
     kept = kept[np.argsort(np.imag(roots[kept]))][:count]
     shapes = np.zeros((len(x), len(kept)), dtype=complex)
     shapes[:n] = free @ vectors[:, kept]

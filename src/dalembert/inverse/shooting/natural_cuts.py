@@ -188,12 +188,14 @@ class _Estimates:
         track, seen, numbers = self.track, self.seen, chart.values
         half, channels, sizes = len(numbers) // 2, track.picked, self._sizes(chart)
         model = restarted(track.model, float(track.times[sample]), [0.0, self._instant], chart, None)
-        far = FREE * sizes
+        far, closed = FREE * sizes, chart.values
         for _ in range(ITERATIONS):
             try:
                 values, jacobian = model.linearise(np.concatenate([own, numbers]))
-            except SolveError:
-                return numbers
+            except SolveError:  # no such state: a part of the way
+                numbers = closed + (numbers - closed) / 4
+                continue
+            closed = numbers
             slopes = jacobian[0][channels][:, len(own) :]
             placed = np.abs(slopes[:, half:]).max(axis=1) * self.frequency <= 1e-6 * np.abs(slopes).max(axis=1)
             noise = np.maximum(seen.deviations, 1e-6 * np.abs(slopes * sizes).max(axis=1) + 1e-300)
@@ -207,7 +209,7 @@ class _Estimates:
             numbers = chart.values + np.clip(numbers + step - chart.values, -far, far)
             if np.all(np.abs(step) <= 1e-4 * sizes):
                 break
-        return numbers
+        return closed if model.evaluate(np.concatenate([own, numbers])[None]).failures else numbers
 
     def _next(self, own: np.ndarray, chart: StateChart, state: np.ndarray, begin: float, end: float) -> StateChart:
         """Chart where a segment ends; where it began if it cannot be simulated."""

@@ -22,7 +22,6 @@ from dalembert.multibody.observe import Observer, observer
 from dalembert.multibody.scales import scales
 from dalembert.multibody.system import Mechanism
 
-
 _FREE = 3e-8
 """Frequency, as part of the largest one, that rounding of squares gives a motion without stiffness."""
 

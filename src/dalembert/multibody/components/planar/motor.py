@@ -4,12 +4,10 @@ __all__ = ["Motor"]
 
 from dataclasses import dataclass
 
-from dalembert.errors import InputError
 from dalembert.kernels.kernel import inlined
-from dalembert.multibody.components.fields import number
 from dalembert.multibody.components.lowering import Lowering
+from dalembert.multibody.components.motor_law import MotorNumbers
 from dalembert.multibody.components.planar.motor_law import Drive, drive_kind
-from dalembert.multibody.components.signals import Course
 
 
 @inlined
@@ -21,7 +19,7 @@ MOTOR = drive_kind("motor", _command, integers=("command",))
 
 
 @dataclass(frozen=True)
-class Motor(Drive):
+class Motor(MotorNumbers, Drive):
     """A direct-current motor with a gear between two bodies: it turns b against a.
 
     With the gear ratio N, the rate w of b against a, and the voltage U within its limit, the current is
@@ -85,22 +83,8 @@ class Motor(Drive):
     array([120.])
     """
 
-    voltage: Course | None = number("V", None)
-    current: Course | None = number("A", None)
-
     kind = MOTOR
 
-    def __post_init__(self) -> None:
-        owner = f"motor {self.name!r}"
-        if (self.voltage is None) == (self.current is None):
-            count = "neither voltage nor current" if self.voltage is None else "both voltage and current"
-            raise InputError(f"{owner}: {count} was given; give one of them")
-        if self.voltage is not None and self.resistance is None:
-            raise InputError(f"{owner}: a voltage was given without a resistance; give the resistance in ohm")
-        self._check(owner)
-
     def lower(self, lowering: Lowering) -> None:
-        command = self.current if self.voltage is None else self.voltage
-        assert command is not None
-        number = lowering.signal(command)
+        number = self._command(lowering)
         self._add(lowering, f"motor {self.name!r}", [], [number], by_current=self.voltage is None)

@@ -8,7 +8,8 @@ from dalembert.errors import InputError
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.lowering import Lowering
-from dalembert.multibody.components.planar.motor_law import Drive, clipped, drive_kind
+from dalembert.multibody.components.motor_law import clipped
+from dalembert.multibody.components.planar.motor_law import Drive, drive_kind
 from dalembert.multibody.components.planar.pairs import relative_angle, relative_spin
 from dalembert.multibody.components.signals import Course
 from dalembert.multibody.kernels.elementary import wrapped

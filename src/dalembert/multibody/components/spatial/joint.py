@@ -19,7 +19,7 @@ from dalembert.multibody.components.spatial import markers, pairs
 from dalembert.multibody.components.spatial.conditions import Condition, constraint_of, forces_of
 from dalembert.multibody.components.spatial.lowering import Pair, SpatialLowering
 from dalembert.multibody.components.spatial.markers import BODY, GROUND, SLOTS, position
-from dalembert.multibody.components.spatial.orientation import Orientation
+from dalembert.multibody.components.spatial.orientation import Orientation, Vector, direction
 from dalembert.multibody.components.spatial.pairs import (
     b_point,
     e1,
@@ -163,6 +163,12 @@ def _joint_kind(
     )  # fmt: skip
 
 
+def turned_to(axis: Vector, owner: str) -> tuple[np.ndarray, np.ndarray]:
+    """Rotations (3, 3) from the axes of both markers to those with this third axis."""
+    own = Orientation.by_axes(tuple(direction(axis, f"{owner}: the axis").tolist())).matrix
+    return own, own
+
+
 @dataclass(frozen=True)
 class Joint(BaseJoint):
     """Base of all joints in space: a name and two sides."""
@@ -182,8 +188,7 @@ class Joint(BaseJoint):
     def turned(self) -> tuple[np.ndarray, np.ndarray]:
         """Rotations (3, 3) from the axes of both markers to those of the joint."""
         axis = getattr(self, "axis", None)
-        own = np.eye(3) if axis is None else Orientation.by_axes(axis).matrix
-        return own, own
+        return turned_to((0.0, 0.0, 1.0) if axis is None else axis, f"{type(self).__name__} {self.name!r}")
 
     def lower(self, lowering: SpatialLowering) -> None:
         self._add(lowering, self._pair(lowering))

@@ -11,11 +11,11 @@ import numpy as np
 from dalembert.kernels.kernel import inlined
 from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.points import require_direction
-from dalembert.multibody.components.spatial.joint import joint_angle, joint_rate
+from dalembert.multibody.components.spatial.joint import joint_angle, joint_rate, turned_to
 from dalembert.multibody.components.spatial.kinds import Kinds, pair_kinds
 from dalembert.multibody.components.spatial.load import Load
 from dalembert.multibody.components.spatial.lowering import Pair, SpatialLowering
-from dalembert.multibody.components.spatial.orientation import Orientation, Vector
+from dalembert.multibody.components.spatial.orientation import Vector
 from dalembert.multibody.components.spatial.pairs import e3, push_pair, separation, separation_rate, twist_pair
 from dalembert.multibody.components.spatial.points import Side
 from dalembert.multibody.components.spatial.vectors import dot, times
@@ -140,9 +140,9 @@ class TorsionSpring(Load):
     kind = TORSION_SPRING_BETWEEN
 
     def lower(self, lowering: SpatialLowering) -> None:
-        require_direction(f"torsion spring {self.name!r}", "a spring, or a rigid body", self.a, self.b)
-        own = Orientation.by_axes(self.axis).matrix
-        pair = lowering.pair(self.a, self.b, self.name, (own, own))
+        owner = f"torsion spring {self.name!r}"
+        require_direction(owner, "a spring, or a rigid body", self.a, self.b)
+        pair = lowering.pair(self.a, self.b, self.name, turned_to(self.axis, owner))
         free = initial_angle(pair) if self.free_angle is None else self.free_angle
         _add(self, lowering, TORSION_SPRING, pair, free)
 

@@ -1,0 +1,323 @@
+"""Mechanisms in space for tests: one scene for each kind of component, as a function of all of its numbers."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+import dalembert.multibody as mb
+import dalembert.multibody.spatial as sp
+
+AXIS = (0.3, 0.2, 1.0)
+Scene = tuple[Callable[..., sp.SpatialSystem], dict]
+
+
+def by_angles(angles) -> sp.Orientation:
+    """The orientation of three angles about turning axes."""
+    return sp.Orientation.by_angles("zyx", angles)
+
+
+def two_rods(on_ball: bool = True) -> tuple[sp.SpatialSystem, sp.RigidBody, sp.RigidBody]:
+    """Two rods, the second placed at the end of the first; one turns, which must be on a ball joint."""
+    spin = (0.3, 0.4, 0.2)
+    system = sp.SpatialSystem()
+    rod = sp.Inertia.box(1.3, (0.1, 0.2, 0.5)).moved((0.02, 0.01, -0.25))
+    first = system.add(
+        sp.RigidBody(
+            "first",
+            rod,
+            points={"end": sp.Pose((0.05, 0.0, -0.5), by_angles([0.3, 0.1, 0.2]))},
+            orientation=sp.Orientation.by_angles("xyz", [0.1, 0.3, 0.2]),
+            angular_velocity=spin if on_ball else None,
+        )
+    )
+    second = system.add(
+        sp.RigidBody(
+            "second",
+            rod,
+            position=first.point("end"),
+            points={"tip": sp.Pose((0.0, 0.1, -0.4), by_angles([-0.2, 0.3, 0.1]))},
+            orientation=sp.Orientation.by_angles("x", [0.3]),
+            angular_velocity=None if on_ball else spin,
+        )
+    )
+    return system, first, second
+
+
+def jointed(kind: type, **fixed) -> Callable[..., sp.SpatialSystem]:
+    """Two rods: the first hangs on a ball joint, the second on the joint."""
+
+    def build(**fields) -> sp.SpatialSystem:
+        system, first, second = two_rods()
+        system.add(sp.SphericalJoint("hold", system.ground, first.point("origin")))
+        system.add(kind("part", first.point("end"), second.point("origin"), **fixed, **fields))
+        return system
+
+    return build
+
+
+def grounded(kind: type, **fixed) -> Callable[..., sp.SpatialSystem]:
+    """Two rods: the first hangs on the joint, the second on a ball joint."""
+
+    def build(**fields) -> sp.SpatialSystem:
+        system, first, second = two_rods(on_ball=False)
+        place = system.ground.point((0.0, 0.0, 0.0), by_angles([0.2, 0.1, 0.1]))
+        system.add(kind("part", place, first.point("origin"), **fixed, **fields))
+        system.add(sp.SphericalJoint("hold", first.point("end"), second.point("origin")))
+        return system
+
+    return build
+
+
+def acting(make: Callable) -> Callable[..., sp.SpatialSystem]:
+    """Two rods on ball joints, and what ``make`` adds for the system, the end of the first and the tip of the second."""
+
+    def build(**fields) -> sp.SpatialSystem:
+        system, first, second = two_rods()
+        system.add(sp.SphericalJoint("hold", system.ground, first.point("origin")))
+        system.add(sp.SphericalJoint("middle", first.point("end"), second.point("origin")))
+        system.add(make(system, first.point("end"), second.point("tip"), **fields))
+        return system
+
+    return build
+
+
+def between(kind: type, **fixed) -> Callable[..., sp.SpatialSystem]:
+    """A load between both rods."""
+    return acting(lambda system, a, b, **fields: kind("part", a, b, **fixed, **fields))
+
+
+def from_ground(kind: type, **fixed) -> Callable[..., sp.SpatialSystem]:
+    """A load between a point of the ground and the second rod."""
+
+    def make(system, a, b, **fields):
+        return kind("part", system.ground.point((0.3, 0.1, -1.0), by_angles([0.3, 0.2, 0.1])), b, **fixed, **fields)
+
+    return acting(make)
+
+
+def hung(length) -> sp.SpatialSystem:
+    """The second rod hangs on a massless rod at the first."""
+    system, first, second = two_rods()
+    system.add(sp.SphericalJoint("hold", system.ground, first.point("origin")))
+    system.add(sp.DistanceJoint("part", first.point("end"), second.point("tip"), length=length))
+    return system
+
+
+def pulling(kind: type, against: bool, follower: bool) -> Callable[..., sp.SpatialSystem]:
+    """A force or torque on the second rod, and its opposite on the first."""
+    return acting(lambda system, a, b, **own: kind("part", b, **own, follower=follower, against=a if against else None))
+
+
+def driven(coordinate: str, joint: Callable[..., sp.SpatialSystem]) -> Callable[..., sp.SpatialSystem]:
+    """A prescribed motion of a joint, which begins with the rate of the joint as it is placed."""
+
+    def build(axis, motion) -> sp.SpatialSystem:
+        system = joint(axis=axis)
+        guide = next(own for own in system.joints if own.name == "part")
+        course = mb.Polynomial([motion, 0.7, 0.4])
+        system.add(sp.PrescribedMotion("motion", guide.a, guide.b, coordinate, course, axis=axis))
+        return system
+
+    return build
+
+
+def wound(joint: Callable[..., sp.SpatialSystem]) -> Callable[..., sp.SpatialSystem]:
+    """A torsion spring at a hinge."""
+
+    def build(axis, **fields) -> sp.SpatialSystem:
+        system = joint(axis=axis)
+        hinge = next(own for own in system.joints if own.name == "part")
+        system.add(sp.TorsionSpring("spring", hinge.a, hinge.b, axis=axis, **fields))
+        return system
+
+    return build
+
+
+def powered(joint: Callable[..., sp.SpatialSystem]) -> Callable[..., sp.SpatialSystem]:
+    """Two motors at a hinge, one of them at the limit of its voltage."""
+
+    def build(axis, **fields) -> sp.SpatialSystem:
+        system = joint(axis=axis)
+        hinge = next(own for own in system.joints if own.name == "part")
+        system.add(sp.Motor("limited", hinge.a, hinge.b, axis=axis, **fields))
+        system.add(sp.Motor("free", hinge.a, hinge.b, axis=axis, **fields | {"voltage_limit": None}))
+        return system
+
+    return build
+
+
+def rubbing(build: Callable[..., sp.SpatialSystem]) -> Callable[..., sp.SpatialSystem]:
+    """A joint whose friction has the numbers."""
+    return lambda axis, **fields: build(axis=axis, friction=sp.Friction(**fields))
+
+
+def bushed(build: Callable[..., sp.SpatialSystem]) -> Callable[..., sp.SpatialSystem]:
+    """A bushing with two full symmetric matrices of numbers."""
+
+    def made(**fields) -> sp.SpatialSystem:
+        rows = {what: [[0.0] * 6 for _ in range(6)] for what in ("stiffness", "damping")}
+        for name, value in fields.items():
+            what, entry = name.split("_")
+            i, j = int(entry[0]), int(entry[1])
+            rows[what][i][j] = rows[what][j][i] = value
+        return build(**{what: np.array(matrix) for what, matrix in rows.items()})
+
+    return made
+
+
+def body(mass, moments, products, centre, position, angles, velocity, angular_velocity, tip, tip_angles):
+    """A body on springs."""
+    system = sp.SpatialSystem()
+    part = system.add(
+        sp.RigidBody(
+            "part",
+            sp.Inertia(mass, moments, products, centre),
+            position,
+            by_angles(angles),
+            anchor="tip",
+            points={"tip": sp.Pose(tip, by_angles(tip_angles))},
+            velocity=velocity,
+            angular_velocity=angular_velocity,
+        )
+    )
+    held = system.ground.point((-0.5, 1.0, 0.3))
+    system.add(sp.Spring("holder", held, part.point("tip"), 60.0, free_length=0.8))
+    system.add(sp.Bushing("winder", held, part.point("tip"), (1.0, 2.0, 3.0, 4.0, 5.0, 6.0), (0.1,) * 6))
+    return system
+
+
+def sensed(place, angles, **fields) -> sp.SpatialSystem:
+    """An inertial sensor on the second of two rods; its gains have all entries."""
+    system, first, second = two_rods()
+    points = {"tip": sp.Pose(place, by_angles(angles))}
+    system.bodies[1] = second = replace(second, points=points)
+    system.add(sp.SphericalJoint("hold", system.ground, first.point("origin")))
+    system.add(sp.SphericalJoint("middle", first.point("end"), second.point("origin")))
+    gains = {
+        what: np.array([fields.pop(f"{what}_{k}") for k in (1, 2, 3)]) for what in ("acceleration_gain", "rate_gain")
+    }
+    system.add(sp.InertialSensor("part", second.point("tip"), **fields, **gains))
+    return system
+
+
+def mass(**fields) -> sp.SpatialSystem:
+    """A point mass on a spring."""
+    system = sp.SpatialSystem()
+    point = system.add(sp.PointMass("part", **fields)).point("centre")
+    system.add(sp.Spring("holder", system.ground.point((-0.5, 1.0, 0.2)), point, 60.0, free_length=0.8))
+    return system
+
+
+def placed(position, angles, gravity) -> sp.SpatialSystem:
+    """A rod in a plane of the ground."""
+    system, first, second = two_rods(on_ball=False)
+    system.gravity = gravity
+    system.add(sp.PlanarJoint("part", system.ground.point(position, by_angles(angles)), first.point("origin")))
+    system.add(sp.SphericalJoint("middle", first.point("end"), second.point("origin")))
+    return system
+
+
+_ENTRIES = [(i, j) for i in range(6) for j in range(i, 6)]
+BUSHING = {f"stiffness_{i}{j}": 20.0 + 5 * i if i == j else 0.7 + 0.3 * i + 0.1 * j for i, j in _ENTRIES} | {
+    f"damping_{i}{j}": 0.3 + 0.1 * i if i == j else 0.02 + 0.01 * i + 0.005 * j for i, j in _ENTRIES
+}
+FRICTION = {
+    "viscous": 0.05, "coulomb": 0.1, "coefficient": 0.2, "radius": 0.05, "slip": 0.5, "stribeck": 0.1,
+    "stribeck_rate": 0.4, "stribeck_exponent": 1.4,
+}  # fmt: skip
+SLIDING = {name: value for name, value in FRICTION.items() if name != "radius"}
+VECTOR = {"x": 2.0, "y": -1.0, "z": 0.7}
+SPRING = {"stiffness": 90.0, "damping": 3.0, "free_length": 0.6, "cubic": 40.0}
+TORSION = {"stiffness": 9.0, "damping": 0.5, "free_angle": 0.4, "cubic": 4.0, "axis": AXIS}
+DRIVE = {
+    "axis": AXIS, "torque_constant": 0.05, "resistance": 0.8, "back_emf": 0.4, "voltage_limit": 3.0, "gear_ratio": 2.0,
+    "efficiency": 0.7, "slip_rate": 2.0, "armature_inertia": 2e-3, "enabled": 0.9, "voltage": 6.0,
+}  # fmt: skip
+AXIAL = (sp.PrismaticJoint, sp.CylindricalJoint, sp.PlanarJoint, sp.PointOnLineJoint, sp.ConstantVelocityJoint)
+
+SCENES: dict[str, Scene] = {
+    "rigid body": (
+        body,
+        {
+            "mass": 2.0,
+            "moments": (0.3, 0.35, 0.25),
+            "products": (0.02, -0.03, 0.01),
+            "centre": (0.05, -0.1, 0.2),
+            "position": (0.1, 0.2, -0.3),
+            "angles": (0.4, -0.3, 0.2),
+            "velocity": (0.3, -0.2, 0.1),
+            "angular_velocity": (0.8, -0.5, 0.6),
+            "tip": (0.6, 0.1, 0.2),
+            "tip_angles": (0.3, 0.2, -0.1),
+        },
+    ),
+    "point mass": (mass, {"mass": 1.5, "position": (0.3, 0.4, -0.2), "velocity": (0.5, -0.6, 0.4)}),
+    "ground": (placed, {"position": (0.1, 0.2, 0.05), "angles": (0.2, 0.1, -0.1), "gravity": (0.7, -0.4, -9.81)}),
+    "revolute": (rubbing(jointed(sp.RevoluteJoint)), {"axis": AXIS} | FRICTION),
+    "revolute to ground": (rubbing(grounded(sp.RevoluteJoint)), {"axis": AXIS} | FRICTION),
+    "prismatic, rubbing": (rubbing(jointed(sp.PrismaticJoint)), {"axis": AXIS} | SLIDING),
+    "prismatic to ground, rubbing": (rubbing(grounded(sp.PrismaticJoint)), {"axis": AXIS} | SLIDING),
+    **{f"{kind.__name__}": (jointed(kind), {"axis": AXIS}) for kind in AXIAL},
+    **{f"{kind.__name__} to ground": (grounded(kind), {"axis": AXIS}) for kind in AXIAL},
+    **{f"{kind.__name__}": (jointed(kind), {}) for kind in (sp.SphericalJoint, sp.FixedJoint)},
+    **{f"{kind.__name__} to ground": (grounded(kind), {}) for kind in (sp.SphericalJoint, sp.FixedJoint)},
+    "universal": (jointed(sp.UniversalJoint), {"axis_a": (1.0, 0.1, 0.2), "axis_b": (0.1, 1.0, -0.2)}),
+    "universal to ground": (grounded(sp.UniversalJoint), {"axis_a": (1.0, 0.1, 0.2), "axis_b": (0.1, 1.0, -0.2)}),
+    "distance": (hung, {"length": 0.4}),
+    "distance to ground": (from_ground(sp.DistanceJoint), {"length": 0.45}),
+    "prescribed angle": (driven("angle", jointed(sp.RevoluteJoint)), {"axis": AXIS, "motion": 0.2}),
+    "prescribed angle to ground": (driven("angle", grounded(sp.RevoluteJoint)), {"axis": AXIS, "motion": 0.2}),
+    "prescribed displacement": (
+        driven("displacement", jointed(sp.CylindricalJoint)),
+        {"axis": AXIS, "motion": 0.05},
+    ),
+    "inertial sensor": (
+        sensed,
+        {
+            "place": (0.1, -0.2, -0.3),
+            "angles": (0.2, 0.4, -0.3),
+            "acceleration_bias": (0.1, -0.2, 0.3),
+            "rate_bias": (0.02, 0.03, -0.01),
+            "acceleration_gain_1": (1.1, 0.02, -0.03),
+            "acceleration_gain_2": (0.01, 0.9, 0.03),
+            "acceleration_gain_3": (0.02, 0.04, 1.2),
+            "rate_gain_1": (1.05, 0.03, -0.02),
+            "rate_gain_2": (0.04, 0.95, 0.01),
+            "rate_gain_3": (0.02, -0.05, 1.1),
+        },
+    ),
+    "force": (pulling(sp.Force, False, False), VECTOR),
+    "force between": (pulling(sp.Force, True, False), VECTOR),
+    "follower force": (pulling(sp.Force, True, True), VECTOR),
+    "torque": (pulling(sp.Torque, False, False), VECTOR),
+    "follower torque": (pulling(sp.Torque, True, True), VECTOR),
+    "spring": (acting(lambda system, a, b, **own: sp.Spring("part", a.body.point("origin"), b, **own)), SPRING),
+    "spring to ground": (from_ground(sp.Spring), SPRING),
+    "torsion spring": (wound(jointed(sp.RevoluteJoint)), TORSION),
+    "torsion spring to ground": (wound(grounded(sp.RevoluteJoint)), TORSION),
+    "motor": (powered(jointed(sp.RevoluteJoint)), DRIVE),
+    "motor to ground": (powered(grounded(sp.RevoluteJoint)), DRIVE),
+    "bushing": (bushed(between(sp.Bushing)), BUSHING),
+    "bushing to ground": (bushed(from_ground(sp.Bushing)), BUSHING),
+}
+"""Scene: its builder, and values of its numbers. Tuples are vectors, one number for each entry."""
+
+
+def numbers_of(fields: dict) -> dict[str, float]:
+    """Numbers by name; those of a vector get names of their own."""
+    numbers = {}
+    for name, value in fields.items():
+        if isinstance(value, tuple):
+            numbers |= {f"{name}_{axis}": own for axis, own in zip("xyz", value, strict=True)}
+        else:
+            numbers[name] = value
+    return numbers
+
+
+def fields_of(fields: dict, numbers: dict) -> dict:
+    """The fields of a scene with other numbers."""
+    return {
+        name: tuple(numbers[f"{name}_{axis}"] for axis in "xyz") if isinstance(value, tuple) else numbers[name]
+        for name, value in fields.items()
+    }

@@ -179,7 +179,9 @@ def _close(
         longest = np.abs(np.real(step)).max(initial=0.0)
         if not np.isfinite(longest):
             break
-        frames = frames_after(bodies, frames, free, step * min(1.0, 0.5 * extent / (longest + 1e-300)))
+        # A power of two does not depend on parameters, so derivatives stay exact where steps are shortened.
+        share = np.exp2(np.floor(np.log2(min(1.0, 0.5 * extent / (longest + 1e-300)))))
+        frames = frames_after(bodies, frames, free, share * step)
         if longest <= 1e-15 and closed <= 1e3 * CLOSED:
             return frames, unknowns(lowered, coordinates_of(bodies, frames))
     structure = lowered.structure

@@ -10,8 +10,10 @@ from dalembert.multibody.components.spatial.force import Force as Force
 from dalembert.multibody.components.spatial.force import Torque as Torque
 from dalembert.multibody.components.spatial.friction import Friction as Friction
 from dalembert.multibody.components.spatial.inertia import Inertia as Inertia
+from dalembert.multibody.components.spatial.inertial_sensor import InertialSensor as InertialSensor
 from dalembert.multibody.components.spatial.joint import Joint as Joint
 from dalembert.multibody.components.spatial.load import Load as Load
+from dalembert.multibody.components.spatial.motor import Motor as Motor
 from dalembert.multibody.components.spatial.orientation import Orientation as Orientation
 from dalembert.multibody.components.spatial.orientation import Pose as Pose
 from dalembert.multibody.components.spatial.planar_joint import PlanarJoint as PlanarJoint
@@ -23,6 +25,8 @@ from dalembert.multibody.components.spatial.prescribed_motion import PrescribedM
 from dalembert.multibody.components.spatial.prismatic_joint import PrismaticJoint as PrismaticJoint
 from dalembert.multibody.components.spatial.revolute_joint import RevoluteJoint as RevoluteJoint
 from dalembert.multibody.components.spatial.rigid_body import RigidBody as RigidBody
+from dalembert.multibody.components.spatial.shapes import Shape as Shape
+from dalembert.multibody.components.spatial.shapes import Surface as Surface
 from dalembert.multibody.components.spatial.spherical_joint import SphericalJoint as SphericalJoint
 from dalembert.multibody.components.spatial.spring import Spring as Spring
 from dalembert.multibody.components.spatial.spring import TorsionSpring as TorsionSpring

@@ -25,10 +25,10 @@ from dalembert.multibody.trees.dynamics import inverse_dynamics as inverse_dynam
 from dalembert.multibody.trees.dynamics import mass_matrix as mass_matrix
 from dalembert.multibody.trees.dynamics import poses as poses
 from dalembert.multibody.trees.dynamics import regressor as regressor
+from dalembert.multibody.trees.mjcf_reader import read_mjcf as read_mjcf
 from dalembert.multibody.trees.parameters import parameter_names as parameter_names
 from dalembert.multibody.trees.parameters import parameters_of as parameters_of
 from dalembert.multibody.trees.parameters import with_parameters as with_parameters
-from dalembert.multibody.trees.mjcf_reader import read_mjcf as read_mjcf
 from dalembert.multibody.trees.tree import Link as Link
 from dalembert.multibody.trees.tree import Shape as Shape
 from dalembert.multibody.trees.tree import Tree as Tree

@@ -30,7 +30,8 @@ class Declaration:
     reactions : int
         Multipliers of a joint that the component depends on; its local unknowns behind the coordinates.
     residual : function (x, v, a, p, m, inputs, r), optional
-        Adds to ``r`` (zero before) what the component adds to the left side of the equations of motion.
+        Adds to ``r`` (zero before) what the component adds to the left side of the equations of motion
+        M a + J^T lambda - Q = 0: applied forces with the opposite sign.
     constraint : function (x, p, m, inputs, g), optional
         Fills ``g`` (multipliers,), which are zero where the joint is closed. Its time derivatives and the constraint
         forces follow by automatic differentiation; a signal's value is ``signal(inputs, number)``.
@@ -38,7 +39,8 @@ class Declaration:
         Adds the constraint forces J^T lambda by a formula, where that is faster; lambda stand in ``x`` behind the
         coordinates. A test holds it to the automatic ones.
     energy : function (x, v, p, m, inputs) -> (kinetic, potential, power), optional
-        Energies in J, and the power in W of what is not conservative. Without it, the power of all its forces.
+        Energies in J, and the power in W of the forces without a potential, negative where they dissipate. Without it,
+        all forces count as power.
     tangent : function (x, p, m, by_x, by_a, matrix), optional
         Fills the local matrix by_x dr/dx + by_a dr/da, where ``known`` says that it holds; multipliers by 1.
     known : function (p, m) -> bool, optional
@@ -62,7 +64,8 @@ class Declaration:
     charts : tuple of Chart
         Those of the coordinates, one after the other, `flat` ones between them; none if all are flat.
     dissipates : bool, str or tuple of str
-        Whether a force depends on velocities; or the columns of which any entry that is not zero says so.
+        Whether a force depends on velocities; or the columns of which any entry that is not zero says so. Without it
+        RadauIIA and the variational methods leave damping out of Newton's matrix, and converge more slowly or not.
     varying_mass : bool
         Whether the masses that it adds change with the coordinates; some integrators need masses that do not.
     driven, loads : bool

@@ -18,7 +18,8 @@ from dalembert.vibration.laws.sums import Sums
 class LawElement(Checked):
     """Base of elements that follow a law. A frozen dataclass that derives from it is a new kind of element.
 
-    Its fields with a unit in their metadata are the numbers of the law, in their order.
+    Its fields with a unit in their metadata (``""`` for a number without dimension) are the numbers of the law, in
+    their order.
 
     Parameters
     ----------
@@ -33,12 +34,14 @@ class LawElement(Checked):
     law : Law
         A function under :func:`dalembert.vibration.law`.
     rated : bool
-        Whether forces depend on velocities.
+        Whether the force depends on ``v``. If this is False although it does, harmonic balance computes a wrong force
+        or a wrong Jacobian.
     switches : bool
         Whether the stiffness jumps between two values, as where a stop is touched.
     events : Law, optional
-        ``events(u, v, z, numbers, values)`` writes functions whose zeros divide the motion into smooth parts, such as
-        ``v[0]`` where a law changes with the direction of motion. Harmonic balance finds the zeros between samples.
+        ``events(u, v, z, numbers, crossings)`` writes functions whose zeros divide the motion into smooth parts, such
+        as ``v[0]`` where a law changes with the direction of motion. ``z`` is the state that the law has written last,
+        and is not changed. Harmonic balance finds the zeros between samples.
     event_count : int
         Number of these functions.
     """
@@ -55,7 +58,7 @@ class LawElement(Checked):
 
     @property
     def states(self) -> int:
-        """Internal numbers of the law. They are 0 at rest."""
+        """Number of internal states of the law, which are 0 at rest. A law with states overrides this property."""
         return 0
 
     @property

@@ -34,9 +34,10 @@ class UserLaw(LawElement):
     internal : int
         Internal numbers, which are 0 at rest.
     events : callable, optional
-        ``events(u, v, z, numbers, values)`` writes functions whose zeros divide the motion into smooth parts, such as
-        ``values[0] = v[0]`` where the law changes with the direction of motion. Harmonic balance finds the zeros
-        between samples, and so needs fewer samples.
+        ``events(u, v, z, numbers, crossings)`` writes functions whose zeros divide the motion into smooth parts, such
+        as ``crossings[0] = v[0]`` where the law changes with the direction of motion. ``z`` is the state that
+        ``function`` has written last; ``events`` must not change it. Harmonic balance finds the zeros between samples,
+        and so needs fewer samples.
     event_count : int
         Number of these functions.
 

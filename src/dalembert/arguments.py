@@ -201,7 +201,7 @@ def takes_checked(*but: str) -> Callable[[Function], Function]:
     Parameters
     ----------
     but : str
-        Names of arguments that the function checks itself, in more words.
+        Names of arguments that are not checked here, because the function checks them with a more detailed message.
 
     Examples
     --------

@@ -35,7 +35,7 @@ class Equilibrium:
     system : Mechanism
     lowered : Lowered
     x : array, shape (N + 1,)
-        Coordinates and multipliers.
+        The N coordinates and multipliers, and a last entry, 0, which stands for absent coordinates.
     iterations : int
         Newton iterations.
     """
@@ -65,8 +65,11 @@ class Modes:
     frequencies : array, shape (modes,)
         Hz, ascending; of the damped vibration.
     damping_ratios : array, shape (modes,)
+        Relative to critical damping.
     shapes : complex array, shape (N + 1, modes)
-        Of the coordinates, largest entry one.
+        Rows as in ``x`` of the :class:`Equilibrium`: the coordinates of all bodies in their order in the system, from
+        row ``equilibrium.lowered.structure.first[name]`` on those of a body; the rows of multipliers and the last row
+        are zero. Each shape is scaled so that its entry of largest magnitude is 1 + 0j.
     """
 
     frequencies: np.ndarray

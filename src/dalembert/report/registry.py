@@ -75,7 +75,7 @@ def registered_sections(result: object, asked: Asked) -> list[Section]:
             return function(result, asked)
     raise InputError(
         f"report: a {type(result).__name__} was given; expected a result, such as identify(), simulate() or "
-        "propagate() return, or one whose sections are registered by sections_of"
+        "propagate() return. For a class of your own, register its sections first by dalembert.report.sections_of"
     )
 
 

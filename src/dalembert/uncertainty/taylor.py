@@ -19,11 +19,13 @@ CURVED = 0.1
 class Taylor(Checked):
     """Bounds of the response linearised in the middle of the box: ``f(x_c) ± Σ |∂f/∂x_i| x_w,i``.
 
+    ``x_c`` are the midpoints and ``x_w`` the half widths of the intervals.
+
     Parameters
     ----------
     held_out : int
-        Runs at random corners of the box; how far the linear response is from them at most is a finding. It is no
-        estimate of the error, as a response may be curved between its corners.
+        Runs at random corners of the box. A finding states the largest difference between these and the linear
+        response. It is no estimate of the error, as a response may be curved between its corners.
     """
 
     name: ClassVar[str] = "taylor"

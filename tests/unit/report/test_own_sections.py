@@ -60,7 +60,7 @@ def test_what_no_section_shows_is_refused(tmp_path: Path) -> None:
     with refused(
         InputError,
         snapshot(
-            "report: a object was given; expected a result, such as identify(), simulate() or propagate() return, or one whose sections are registered by sections_of"
+            "report: a object was given; expected a result, such as identify(), simulate() or propagate() return. For a class of your own, register its sections first by dalembert.report.sections_of"
         ),
     ):
         report(object(), tmp_path / "a.html")

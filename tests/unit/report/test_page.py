@@ -245,8 +245,8 @@ def test_something_else_is_refused(tmp_path):
     with refused(
         InputError,
         snapshot(
-            "report: a dict was given; expected a result, such as identify(), simulate() or propagate() return, or one "
-            "whose sections are registered by sections_of"
+            "report: a dict was given; expected a result, such as identify(), simulate() or propagate() return. For a "
+            "class of your own, register its sections first by dalembert.report.sections_of"
         ),
     ):
         report({}, tmp_path / "a.html")

@@ -106,7 +106,10 @@ class Prediction(EndedResult):
                 f"The band of {listed(list(map(repr, lost)))} is infinitely wide: it depends on a combination of the "
                 "parameters that the data do not identify."
             )
-            advice = "Measure a quantity that identifies it, or fix a parameter."
+            advice = (
+                "The findings of the fit name the combination. Measure a quantity that identifies it, or fix one of "
+                "its parameters."
+            )
             yield Finding("infinite-band", "error", {"channels": ", ".join(lost)}, message, advice)
         widest = np.fmax.reduce(self.deviations, axis=0)
         ratio = 2 * self.quantile * widest / np.maximum(np.ptp(self.response, axis=0), 1e-300)

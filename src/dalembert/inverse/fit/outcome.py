@@ -129,7 +129,10 @@ def _compared(
         yield Finding("residuals-as-given", "note", {}, message)
     elif floor.known:
         ratio = float(np.sqrt(best.fitness / floor.fitness))
-        message = f"The residuals are {ratio:.2g} times as large as the given standard deviations allow."
+        message = (
+            f"The root mean square of the residuals is {ratio:.2g} times as large as the given standard deviations "
+            "allow."
+        )
         advice = "Check the standard deviations and the model structure, or increase starts."
         yield Finding("misfit-above-noise", "warning", {"ratio": ratio}, message, advice)
     elif not correlated:

@@ -62,7 +62,7 @@ class GroundPoint(Checked):
 
 @dataclass(frozen=True)
 class Ground:
-    """What does not move. As a side of a joint: the place where the other side stands at first."""
+    """What does not move. As a side of a joint: the initial position of the other side."""
 
     IN_WORDS = "the ground"
 

@@ -33,8 +33,8 @@ from dalembert.multibody.kernels.motion import (
 class Differentiation(NamedTuple):
     """Work of the derivatives: a call in complex numbers, a matrix, and vectors.
 
-    ``r``, ``right`` and ``delta`` have the rows of the reduced system; ``change`` is the correction of all unknowns,
-    the same array as ``delta`` without nodes.
+    ``r``, ``right`` and ``delta`` have the rows of the reduced system. ``change`` is the correction of all unknowns. If
+    no coordinates have internal constraints, the reduced system is the full one, and ``change`` is the array ``delta``.
     """
 
     complex_work: Address
@@ -63,11 +63,12 @@ def differentiate(
     problem: Problem, complex_model: Address, directions: Integers, c: Coefficients, t: float, within: float,
     new: MotionState, dolds: MotionStates, dnews: MotionStates, room: Differentiation,
 ) -> bool:  # fmt: skip
-    """Derivatives of the converged step along all directions; whether the tangent is regular.
+    """Compute the derivatives of the converged step along all directions; return whether the tangent is regular.
 
-    The derivative of the residual r = 0 is linear in those of accelerations and multipliers. So one solution with the
-    exact tangent of the step gives them, from the predicted ones: the right-hand side is Im r / STEP of the perturbed
-    state (`docs/theory/sensitivities.md`).
+    The derivatives at the start of the step are read from ``dolds``, those at its end are written into ``dnews``. The
+    derivative of the residual r = 0 is linear in those of accelerations and multipliers. So one solution with the exact
+    tangent of the step gives the correction of the predicted derivatives: its right-hand side is Im r / STEP in the
+    state that is perturbed along them (`docs/theory/sensitivities.md`).
     """
     n, own, complex_state, factors = problem.n, problem.reduced, room.complex_state, room.factors
     r, right, delta, change = room.r, room.right, room.delta, room.change

@@ -175,7 +175,8 @@ class Condensation:
     def full(self, retained: np.ndarray, interior: np.ndarray) -> np.ndarray:
         """Return all degrees of freedom (orders, n) from the retained and the interior ones.
 
-        Where nothing holds a mean position, it is the smallest one: without a part along :attr:`free`.
+        If nothing holds the structure along the motions :attr:`free`, its mean position (order 0) is not determined
+        along them. The one without a part along them is returned, which has the smallest norm.
         """
         motion = retained @ self.retained.T + np.asarray((self.back @ interior.T).T)
         if self.free.size:

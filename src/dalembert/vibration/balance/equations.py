@@ -69,7 +69,8 @@ class Equations:
     ) -> Solution:
         """Solve the equations by Newton's method from a guess. Samples are doubled until they suffice.
 
-        Where nothing holds a mean position, few samples may leave a mean force that more of them remove.
+        If nothing holds the structure along a motion, too few samples may leave a mean force along it, which no mean
+        position balances. More samples remove this force.
         """
         fresh = partial(self.newton, unknowns, omega, samples, plane, point)
         if self.checkpoint is None:

@@ -143,8 +143,9 @@ def line(d, force, states, numbers):
     """A slider in one dimension that remembers, under a constant load: the law of :func:`update` in scalars.
 
     Writes forces and states of the periodic motion, each (samples,). Returns whether its place does not depend on its
-    past, since it slips in each period, and whether it slips at all. The second period is as the first from where both
-    slip to the same side, which puts the slider in the same place.
+    past, since it slips in each period, and whether it slips at all. Slip determines the place of the slider. So once
+    it slips in the same direction at the same sample of the first and of the second period, the rest of the second
+    period equals that of the first and is not computed.
     """
     stiffness, limit = numbers[TANGENTIAL], numbers[FRICTION] * numbers[LOAD]
     z, begins, forgets = 0.0 * d[0], False, False

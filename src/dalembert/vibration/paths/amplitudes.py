@@ -88,12 +88,14 @@ def coordinate_row(coordinates: Sequence[str], name: str) -> int:
 
 
 def observed_column(dofs: Sequence[str], dof: str) -> int:
-    """Return the column of an observed degree of freedom. A node with only one may be named alone.
+    """Return the column of an observed degree of freedom.
+
+    If only one degree of freedom of a node was observed, the name of the node is enough.
 
     Raises
     ------
     InputError
-        For one that was not observed.
+        For a degree of freedom that was not observed.
     """
     own = [name for name in dofs if name.rpartition(".")[0] == dof]
     name = own[0] if len(own) == 1 else dof

@@ -44,14 +44,14 @@ class AncfBeam(Ancf):
     height, width : float
         Of the section, in the plane of motion and across it, m.
     angle : float
-        At first, rad, from the x axis.
+        Initial angle from the x axis, rad.
     start : (float, float) or Point
-        Where the bar starts at first, m. The attributes ``start`` and ``end`` are the bar's points.
+        Initial position of the start, m. The attributes ``start`` and ``end`` are the bar's points.
     velocity : (float, float), optional
-        Of the start at first, m/s. If not given, that of the point that the body is placed at, or zero; the joints may
-        change it then.
+        Initial velocity of the start, m/s. If not given, that of the point that the body is placed at, or zero; the
+        joints may change it then.
     angular_velocity : float, optional
-        At first, rad/s. If not given, zero; the joints may change it then.
+        Initial, rad/s. If not given, zero; the joints may change it then.
     damping : float
         Retardation time of the Kelvin-Voigt material, s: stress = D (strain + damping x strain rate).
     law : {"plane-stress", "plane-strain", "uncoupled"}

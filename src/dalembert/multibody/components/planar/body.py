@@ -29,7 +29,7 @@ class Marker(NamedTuple):
 
 @dataclass(frozen=True)
 class Body(BaseBody):
-    """Base of all planar bodies: a name, a first placement and a first rigid motion. The frame is (x, y, angle)."""
+    """Base of all planar bodies: a name, an initial placement and an initial rigid motion. The frame is (x, y, angle)."""
 
     FRAME: ClassVar[tuple[str, ...]] = ("x", "y", "angle")
     sensor: ClassVar[Kind] = SENSOR
@@ -38,16 +38,16 @@ class Body(BaseBody):
     @property
     @abstractmethod
     def place(self) -> Place:
-        """Where the placed point stands at first."""
+        """Initial position of the placed point."""
 
     @property
     def turn(self) -> Number:
-        """Angle at first, rad."""
+        """Initial angle, rad."""
         return getattr(self, "angle", 0.0)
 
     @property
     def motion(self) -> tuple[Number | None, Number | None, Number | None]:
-        """Velocity of the placed point and angular velocity at first; None where they are not stated."""
+        """Initial velocity (x, y) of the placed point and angular velocity; None where they are not given."""
         velocity = getattr(self, "velocity", None)
         along, across = (None, None) if velocity is None else velocity
         return along, across, getattr(self, "angular_velocity", None)
@@ -59,7 +59,7 @@ class Body(BaseBody):
 
     @abstractmethod
     def coordinates(self, x: Number, y: Number, angle: Number) -> np.ndarray:
-        """Coordinates of the undeformed body with the placed point at (x, y), turned by ``angle``."""
+        """Coordinates (size,) of the undeformed body with the placed point at (x, y), turned by ``angle``."""
 
     @abstractmethod
     def marker(self, point: str) -> Marker:

@@ -1,7 +1,7 @@
 """Two markers: their relative position, velocity, angle, and the forces between them.
 
-Local coordinates: marker a (slots 0-3) and b (4-7); absent ones are 0. Numbers: ``a_x a_y a_angle b_x b_y b_angle``; integers: ``a_kind``
-and ``b_kind``, see :mod:`markers`, and ``wraps``: 1 where a node's angle must be wrapped.
+Local coordinates: marker a (slots 0-3) and b (4-7); absent ones are 0. Numbers: ``a_x a_y a_angle b_x b_y b_angle``;
+integers: ``a_kind`` and ``b_kind``, see :mod:`markers`, and ``wraps``: 1 where a node's angle must be wrapped.
 """
 
 from typing import Any

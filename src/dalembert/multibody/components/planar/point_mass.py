@@ -42,7 +42,10 @@ POINT_MASS = Kind(
 @with_points("centre")
 @dataclass(frozen=True)
 class PointMass(Body):
-    """A point with a mass; joints may hold its place, not a direction.
+    """A point with a mass and without an angle.
+
+    Joints may hold its position (revolute joints without friction, distance joints), but no angle (fixed, prismatic and
+    gear joints).
 
     Parameters
     ----------
@@ -50,10 +53,10 @@ class PointMass(Body):
     mass : float
         kg.
     position : (float, float) or Point
-        At first, m.
+        Initial position, m.
     velocity : (float, float), optional
-        At first, m/s. If not given, that of the point that the mass is placed at, or zero; the joints may change it
-        then.
+        Initial velocity, m/s. If not given, that of the point that the mass is placed at, or zero; the joints may
+        change it then.
     """
 
     mass: Number = number("kg", above=0)

@@ -24,7 +24,7 @@ class RigidBarBetween(Bar):
     ----------
     name : str
     start, end : (float, float)
-        Where the bar starts and ends at first, m. The attributes of these names, and ``centre``, are the bar's points.
+        Initial positions of both ends, m. The attributes of these names, and ``centre``, are the bar's points.
     mass, line_density : float
         The mass of the bar is ``mass + line_density * length``; kg and kg/m, not negative, and not both 0.
     inertia : float, optional
@@ -32,9 +32,9 @@ class RigidBarBetween(Bar):
     centre : float
         Place of the centre of mass, as a fraction of the length from the start.
     velocity : (float, float)
-        Of the start at first, m/s.
+        Initial velocity of the start, m/s.
     angular_velocity : float
-        At first, rad/s.
+        Initial, rad/s.
 
     Raises
     ------

@@ -25,18 +25,18 @@ class RigidBody(Rigid):
     inertia : float
         Moment of inertia about the centre of mass, kg m^2.
     position : (float, float) or Point
-        Where the anchor stands at first, m.
+        Initial position of the anchor, m.
     angle : float
-        At first, rad.
+        Initial angle, rad.
     anchor : str
         The point that is placed: ``"centre"`` (of mass) or one of ``points``.
     points : mapping of str to (float, float)
         Points in the body's axes, from the centre of mass, m.
     velocity : (float, float), optional
-        Of the anchor at first, m/s. If not given, that of the point that the body is placed at, or zero; the joints may
-        change it then.
+        Initial velocity of the anchor, m/s. If not given, that of the point that the body is placed at, or zero; the
+        joints may change it then.
     angular_velocity : float, optional
-        At first, rad/s. If not given, zero; the joints may change it then.
+        Initial, rad/s. If not given, zero; the joints may change it then.
 
     Examples
     --------

@@ -1,9 +1,9 @@
 """Physically consistent inertial parameters from torques."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
-from scipy.optimize import minimize
 
 from dalembert.errors import InputError, listed, unknown
 from dalembert.findings import Finding
@@ -25,8 +25,17 @@ DECREMENT = 1e-8
 EDGE = 1e-4
 """Smallest eigenvalue relative to the prior below which a link is nearly one that cannot exist."""
 
-POLISHING = 20
-"""Most Newton steps after the trust region."""
+NEAR = 1e-7
+"""The same, below which whole steps are taken while it falls."""
+
+STEPS = 100
+"""Most Newton steps."""
+
+DECADES = 10
+"""Largest factor of the regularisation, as a power of ten, where a path of problems begins."""
+
+SHORTEST = 1e-10
+"""Smallest part of a Newton step."""
 
 
 def identify_inertias(
@@ -74,9 +83,10 @@ def identify_inertias(
     -----
     Minimises Σ_j ‖Y_j θ − τ_j‖² / σ_j² + γ Σ_i D(P_i, P_i⁰), with the log-det Bregman distance D of pseudo-inertias,
     over log-Cholesky parameters relative to the prior, and over logarithms of positive parameters with the distance
-    p/p₀ − 1 − log(p/p₀). A trust region with exact Hessians starts at the prior or at the projected least-squares
-    solution, whichever is better. By θ the objective is convex, so there are no other minima. The covariance is the
-    inverse of the Hessian of half the objective by θ.
+    p/p₀ − 1 − log(p/p₀). The search starts at the prior or at the projected least-squares solution, whichever is
+    better. By θ the objective is convex, so there are no other minima, and Newton's method with exact Hessians steps
+    there. The gradient by log-Cholesky parameters is zero at the same point. The covariance is the inverse of the
+    Hessian of half the objective by θ.
 
     Source: T. Lee, P. M. Wensing, F. C. Park, IEEE Transactions on Robotics 36 (2020); C. Rucker, P. M. Wensing, IEEE
     Robotics and Automation Letters 7 (2022).
@@ -107,9 +117,10 @@ def identify_inertias(
     chosen = np.isin(names, positive)
     problem = ConsistentProblem(triangle, right, known, len(links), chosen, float(regularisation))
     started, unknowns = _start(problem, plain.base, plain.values)
-    unknowns, gradient, decrement, steps = _minimised(problem, unknowns)
-    values = problem.parameters(unknowns)
-    covariance = np.linalg.pinv(problem.curvature(values), rcond=1e-14, hermitian=True)
+    values, decrement, steps = _minimised(problem, problem.parameters(unknowns))
+    if not decrement < DECREMENT:
+        started, values, decrement, steps = "prior", *_followed(problem)
+    covariance = _covariance(problem, values)
     mixed = plain.base.combinations
     inertial, tail = values[: 10 * len(links)].reshape(-1, 10), slice(10 * len(links), None)
     before = known[: 10 * len(links)].reshape(-1, 10)
@@ -135,7 +146,7 @@ def identify_inertias(
         noise_is_known=plain.noise_is_known,
         log_cholesky=logs,
         gradient=by_logs,
-        other_gradient=gradient[tail],
+        other_gradient=(problem.slope(values) * np.where(chosen, values, 1.0))[tail],
         eigenvalues=eigenvalues,
         plain_eigenvalues=smallest_eigenvalues(
             _spread(problem, plain.base, plain.values)[: inertial.size].reshape(-1, 10), before
@@ -197,7 +208,7 @@ def _compressed(table: np.ndarray, torques: np.ndarray, noise: np.ndarray) -> tu
 
 def _spread(problem: ConsistentProblem, base: BaseParameters, values: np.ndarray) -> np.ndarray:
     """Parameters with given base parameters that are nearest to the prior, relative to its sizes."""
-    size = np.sqrt(np.diagonal(np.linalg.inv(problem.curvature(problem.prior))))
+    size = np.sqrt(np.maximum(np.diagonal(_covariance(problem, problem.prior)), 0.0))
     mixed = base.combinations * size
     return problem.prior + size * (np.linalg.pinv(mixed) @ (values - base.combinations @ problem.prior))
 
@@ -212,36 +223,61 @@ def _start(problem: ConsistentProblem, base: BaseParameters, values: np.ndarray)
     return best, starts[best]
 
 
-def _minimised(problem: ConsistentProblem, start: np.ndarray) -> tuple[np.ndarray, np.ndarray, float, int]:
-    """Unknowns at the minimum, the gradient there, half the squared Newton decrement, and the number of steps."""
-    last = start, problem.derivatives(start)
+def _followed(problem: ConsistentProblem) -> tuple[np.ndarray, float, int]:
+    """The same from the prior, by problems whose regularisation decreases to that of the problem."""
+    values, decrement, steps = problem.prior, np.inf, 0
+    for power in np.arange(DECADES, -0.5, -0.5):
+        own = replace(problem, regularisation=problem.regularisation * 10.0**power)
+        values, decrement, count = _minimised(own, values)
+        steps += count
+    return values, decrement, steps
 
-    def derivatives(unknowns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Those of the last point once only."""
-        nonlocal last
-        if not np.array_equal(unknowns, last[0]):
-            last = unknowns.copy(), problem.derivatives(unknowns)
-        return last[1]
 
-    found = minimize(
-        lambda z: float(np.real(problem.value(z))),
-        start,
-        jac=lambda z: derivatives(z)[0],
-        hess=lambda z: derivatives(z)[1],
-        method="trust-exact",
-        options={"gtol": 1e-5, "maxiter": 1000, "initial_trust_radius": 1.0, "max_trust_radius": 100.0},
-    )
-    unknowns, steps = found.x, int(found.nit)
-    gradient, hessian = problem.derivatives(unknowns)
-    decrement = np.inf
-    for _ in range(POLISHING):
-        step = np.linalg.lstsq(hessian, -gradient, rcond=1e-14)[0]
-        decrement = float(-0.5 * gradient @ step)
-        slope, curvature = problem.derivatives(unknowns + step)
-        if not np.linalg.norm(slope) < 0.5 * np.linalg.norm(gradient):
-            break
-        unknowns, gradient, hessian, steps = unknowns + step, slope, curvature, steps + 1
-    return unknowns, gradient, abs(decrement), steps
+def _minimised(problem: ConsistentProblem, start: np.ndarray) -> tuple[np.ndarray, float, int]:
+    """Parameters at the minimum, half the squared Newton decrement, and the number of steps.
+
+    Newton's method by θ with a line search that keeps links possible: the objective is convex there, and combinations
+    that the torques determine well are straight. It is curved over log-Cholesky parameters.
+    """
+    values, fitness, last = start, problem.value_at(start), np.inf
+    for steps in range(STEPS):
+        step, decrement = newton_step(problem, values)
+        if not np.isfinite(decrement):
+            return values, decrement, steps
+        if decrement < NEAR:  # the objective changes by less than its rounding errors
+            if not decrement < 0.1 * last or not np.isfinite(problem.value_at(values + step)):
+                return values, decrement, steps
+            values, last, fitness = values + step, decrement, np.inf
+            continue
+        size = 1.0
+        while size > SHORTEST and not problem.value_at(values + size * step) < fitness - 1e-4 * size * decrement:
+            size *= 0.5
+        if size <= SHORTEST:
+            return values, decrement, steps
+        values = values + size * step
+        fitness = problem.value_at(values)
+    return values, newton_step(problem, values)[1], STEPS
+
+
+def newton_step(problem: ConsistentProblem, values: np.ndarray) -> tuple[np.ndarray, float]:
+    """Newton's step by θ (parameters,), and half the squared Newton decrement."""
+    try:
+        rows, right = problem.linearised(values)
+    except np.linalg.LinAlgError:  # a link that nearly cannot exist
+        return np.zeros_like(values), np.inf
+    scale = np.linalg.norm(rows, axis=0)
+    scale[scale == 0] = 1.0
+    step = -np.linalg.lstsq(rows / scale, right, rcond=None)[0] / scale
+    return step, 0.5 * float(np.sum((rows @ step) ** 2))
+
+
+def _covariance(problem: ConsistentProblem, values: np.ndarray) -> np.ndarray:
+    """Inverse of the Hessian by θ."""
+    rows, _ = problem.linearised(values)
+    scale = np.linalg.norm(rows, axis=0)
+    scale[scale == 0] = 1.0
+    inverse = np.linalg.pinv(rows / scale) / scale[:, None]
+    return inverse @ inverse.T
 
 
 def _log_gradient(problem: ConsistentProblem, values: np.ndarray, logs: np.ndarray) -> np.ndarray:

@@ -13,6 +13,10 @@ from functools import cached_property
 import numpy as np
 
 from dalembert.inverse.inertial.log_cholesky import of_ordered, parameters_of_factor, upper_factor
+from dalembert.inverse.inertial.pseudo_inertia import bregman_distances, smallest_eigenvalues
+
+LEAST = 1e-12
+"""Smallest eigenvalue relative to the prior that rounding errors do not hide."""
 
 _ROWS, _COLUMNS = np.triu_indices(4)
 _DIAGONAL = _ROWS == _COLUMNS
@@ -149,11 +153,15 @@ class ConsistentProblem:
 
     def _pulls(self, parameters: np.ndarray, k: int) -> tuple[np.ndarray, np.ndarray]:
         """1 − X⁻¹ of X = U₀⁻¹ P U₀⁻ᵀ, and the derivatives (10, 4, 4) of X by the parameters of link k."""
-        inverse = np.linalg.inv(self._linear(k))
-        slopes = np.zeros((10, 4, 4))
-        slopes[:, _ROWS, _COLUMNS] = slopes[:, _COLUMNS, _ROWS] = inverse.T
+        slopes = self._slopes(k)
         ratio = np.einsum("i,ijk->jk", parameters[10 * k : 10 * k + 10], slopes)
         return np.eye(4) - np.linalg.inv(ratio), slopes
+
+    def _slopes(self, k: int) -> np.ndarray:
+        """Derivatives (10, 4, 4) of X by the parameters of link k."""
+        slopes = np.zeros((10, 4, 4))
+        slopes[:, _ROWS, _COLUMNS] = slopes[:, _COLUMNS, _ROWS] = np.linalg.inv(self._linear(k)).T
+        return slopes
 
     def curvature(self, parameters: np.ndarray) -> np.ndarray:
         """Hessian (parameters, parameters) of the objective by θ: the inverse of the covariance."""
@@ -167,6 +175,39 @@ class ConsistentProblem:
         tail = np.flatnonzero(self.positive)
         found[tail, tail] += 0.5 * self.regularisation / parameters[tail] ** 2
         return found
+
+    def linearised(self, parameters: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """S (rows, parameters) and b (rows,): by θ, SᵀS is the Hessian of the objective and Sᵀb its gradient.
+
+        With a factor L of X = U₀⁻¹ P U₀⁻ᵀ, the rows of a link are L⁻¹ dX L⁻ᵀ, and b is Lᵀ L − 1.
+        """
+        root = np.sqrt(0.5 * self.regularisation)
+        count, rows, right = len(parameters), [self.triangle], [self.triangle @ parameters - self.right]
+        for k in range(self.links):
+            own = slice(10 * k, 10 * k + 10)
+            slopes = self._slopes(k)
+            factor = np.linalg.cholesky(np.einsum("i,ijk->jk", parameters[own], slopes))
+            both = np.linalg.solve(factor, np.swapaxes(np.linalg.solve(factor, slopes), 1, 2))
+            block = np.zeros((16, count))
+            block[:, own] = root * both.reshape(10, 16).T
+            rows.append(block)
+            right.append(root * (factor.T @ factor - np.eye(4)).ravel())
+        tail = np.flatnonzero(self.positive)
+        block = np.zeros((len(tail), count))
+        block[np.arange(len(tail)), tail] = root / parameters[tail]
+        return np.vstack([*rows, block]), np.concatenate([*right, root * (parameters[tail] / self.prior[tail] - 1.0)])
+
+    def value_at(self, parameters: np.ndarray) -> float:
+        """Objective at θ; infinite where a link cannot exist or a parameter is not positive."""
+        tail, count = np.flatnonzero(self.positive), 10 * self.links
+        if np.any(parameters[tail] <= 0):
+            return np.inf
+        if smallest_eigenvalues(parameters[:count].reshape(-1, 10), self.prior[:count].reshape(-1, 10)).min() < LEAST:
+            return np.inf
+        ratio, rest = parameters[tail] / self.prior[tail], self.triangle @ parameters - self.right
+        links = bregman_distances(parameters[:count].reshape(-1, 10), self.prior[:count].reshape(-1, 10))
+        distance = np.sum(links) + np.sum(ratio - 1.0 - np.log(ratio))
+        return float(0.5 * (rest @ rest + self.regularisation * distance))
 
     def _split(self, unknowns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         count = 10 * self.links

@@ -35,7 +35,8 @@ class Automatic(Integrator):
     Parameters
     ----------
     tolerance : float
-        Of the estimated error of a step, relative to each coordinate's scale.
+        Of the estimated error of a step, relative to each coordinate's scale: the extent of the mechanism for
+        positions, 1 for angles and gradients.
 
     Examples
     --------

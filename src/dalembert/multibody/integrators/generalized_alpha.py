@@ -66,7 +66,8 @@ class GeneralizedAlpha(Integrator):
     adaptive : bool
         Choose the step by the estimated local error.
     tolerance : float
-        Of the local error, relative to each coordinate's scale; for ``adaptive``.
+        Of the local error, relative to each coordinate's scale (the extent of the mechanism for positions, 1 for angles
+        and gradients); for ``adaptive``.
     newton_tolerance : float
         Of the coordinates at each step, relative to their scale. An error of a coordinate is 2 / step times as large in
         the velocity and adds up over the steps; so the default is rounding.

@@ -43,13 +43,14 @@ class RadauIIA(Integrator):
     Parameters
     ----------
     tolerance : float
-        Of the estimated error of a step, relative to each coordinate's scale, and of velocities to the largest one so
-        far. The estimate is of the order of the stages, so errors of fine steps are much smaller. Rounding allows
-        1e-12 and more for stiff mechanisms.
+        Of the estimated error of a step, relative to each coordinate's scale: the extent of the mechanism for
+        positions, 1 for angles and gradients. The scale of a velocity is that of its coordinate times the largest
+        velocity so far relative to the scale of its coordinate, 1/s. The estimate is of the order of the stages, so
+        errors of fine steps are much smaller. Rounding allows 1e-12 and more for stiff mechanisms.
     step : float, optional
         Fixed step in s; chosen by ``tolerance`` if not given.
     stages : {5, 3, 7}
-        Of which the order is twice as many, less one. Five were measured to be the cheapest at all errors from 1e-4 to
+        The order is twice as many, less one. Five were measured to be the cheapest at all errors from 1e-4 to
         1e-11, for rigid and flexible mechanisms; seven are for the last digits.
     newton_tolerance : float
         Of the coordinates at each stage, relative to the way that they go in the step; rounding by default, as

@@ -116,7 +116,7 @@ class PrismaticJoint(Joint):
     friction_coefficient : float
         Friction force per normal force.
     slip_velocity : float
-        Sliding velocity, m/s, over which the Coulomb force turns its sign, as tanh(velocity / slip_velocity). The
+        Sliding velocity, m/s, over which dry friction turns its sign, as tanh(velocity / slip_velocity). The
         finding ``slip-rate`` of a trajectory says whether it suits the motion, as for a revolute joint.
     stribeck : float
         Friction force at low velocities beyond that of Coulomb, N. It decreases with the velocity as
@@ -124,6 +124,7 @@ class PrismaticJoint(Joint):
     stribeck_velocity : float
         m/s.
     stribeck_exponent : float
+        2 (the default) for a Gaussian decrease, 1 for an exponential one.
 
     The output ``sliding_velocity`` is the velocity of b against a along the line.
     """

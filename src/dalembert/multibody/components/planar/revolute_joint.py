@@ -96,7 +96,7 @@ class RevoluteJoint(Joint):
     friction_coefficient : float
         With ``pin_radius`` (m): friction torque friction_coefficient x pin_radius x reaction force.
     slip_rate : float
-        Relative angular velocity, rad/s, over which the Coulomb torque turns its sign, as tanh(rate / slip_rate).
+        Relative angular velocity, rad/s, over which dry friction turns its sign, as tanh(rate / slip_rate).
         The finding ``slip-rate`` of a trajectory says whether it suits the motion: where it is large, the joint creeps
         although friction should hold it; where it is small, steps jump over the change of sign.
     stribeck : float
@@ -105,7 +105,7 @@ class RevoluteJoint(Joint):
     stribeck_rate : float
         rad/s. The largest torque is nearly the sum of all three only if ``slip_rate`` is several times smaller.
     stribeck_exponent : float
-        2 for a Gaussian decrease, 1 for an exponential one.
+        2 (the default) for a Gaussian decrease, 1 for an exponential one.
 
     Without ``viscous``, ``coulomb``, ``friction_coefficient`` and ``stribeck`` there is no friction. A coefficient of
     zero stays in the model: it may be the value of a parameter.

@@ -80,7 +80,7 @@ class RigidBarBetween(Bar):
 
     @property
     def angle(self) -> Number:
-        """At first, rad, from the x axis."""
+        """Initial angle from the x axis, rad."""
         across, up = self._along
         return atan2(up, across)
 
